@@ -1,0 +1,30 @@
+#version 460
+#include "interface.glsl"
+#include "common/fragment.glsl"
+#include "debug/debug.glsl"
+#include "lighting/radiance.glsl"
+#include "material.glsl"
+#include "user.glsl"
+
+// One fragment of the model, or one debug mode of it. Scene-referred linear RGB; alpha is coverage, premultiplied.
+
+layout(location = 0) in Fragment fragment;
+layout(location = 0) out vec4 out_color;
+
+// The scene color may be kept in half floats: beyond this they are infinite, and the mean of a pixel's samples with them.
+const float LARGEST_HALF = 65504.0;
+
+void main() {
+    vec3 v = safe_normalize(frame.eye_ws - fragment.position_ws, vec3(0.0, 0.0, 1.0));
+    Surface surface = make_surface(fragment, v);
+    user_surface(surface);
+    if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
+
+    vec3 value;
+    float coverage = 1.0;
+    if (!debug_value(fragment, surface, v, value)) {
+        value = outgoing_radiance(surface, v);
+        if (ALPHA_MODE == ALPHA_BLEND) coverage = surface.coverage;
+    }
+    out_color = vec4(min(value, LARGEST_HALF) * coverage, coverage);
+}

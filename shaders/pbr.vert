@@ -1,0 +1,26 @@
+#version 460
+#include "interface.glsl"
+#include "common/fragment.glsl"
+#include "common/math.glsl"
+
+// Vertices to the world and to the screen. They are read by address: there is no vertex input to declare.
+
+layout(location = 0) out Fragment fragment;
+
+void main() {
+    Vertex vertex = draw.vertices.at[gl_VertexIndex];
+    mat3 directions = mat3(draw.world_from_object);
+
+    fragment.position_ws = draw.world_from_object * vec4(vertex.position, 1.0);
+    // Unit length at each vertex, or a stretched mesh would interpolate towards its longer normals. Zero stays zero.
+    fragment.normal_ws = safe_normalize(draw.normal_ws_from_object * vertex.normal, vec3(0.0));
+    // A mirroring transform turns cross(n, t) around, so the sign of the bitangent turns with it.
+    float mirrored = determinant(directions) < 0.0 ? -1.0 : 1.0;
+    fragment.tangent_ws = vec4(safe_normalize(directions * vertex.tangent.xyz, vec3(0.0)), vertex.tangent.w * mirrored);
+    fragment.uv0 = vertex.uv0;
+    fragment.uv1 = vertex.uv1;
+    fragment.color = vertex.color;
+
+    gl_Position = frame.clip_from_world * vec4(fragment.position_ws, 1.0);
+    gl_PointSize = 4.0;
+}

@@ -1,0 +1,34 @@
+#version 460
+#include "interface.glsl"
+#include "common/color.glsl"
+#include "common/tonemap.glsl"
+
+// From scene color to the picture: exposure, tone map, background, encoding. The target stores numbers as they are (UNORM),
+// so the sRGB curve is applied here. Alpha leaves straight, not premultiplied.
+
+layout(set = SET_PASS, binding = BINDING_SCENE_COLOR) uniform sampler2D scene_color;
+
+layout(location = 0) out vec4 out_color;
+
+// What the display shows for `value`, 0..1 and still linear if it is a color.
+vec3 display_value(vec3 value) {
+    if (frame.tonemap != TONEMAP_OFF) value = tonemap(value * frame.exposure, frame.tonemap);
+    if (frame.encode == ENCODE_VECTOR) value = value * 0.5 + 0.5;
+    return saturate(value);
+}
+
+void main() {
+    vec4 scene = texelFetch(scene_color, ivec2(gl_FragCoord.xy - frame.viewport_origin_px), 0);
+    // The curves are not linear, so they want the color of the surface, not the color times how much of it there is.
+    vec3 front = display_value(scene.a > 0.0 ? scene.rgb / scene.a : vec3(0.0));
+
+    // Colors meet in linear light, as they would in a lens. Numbers have no such space: they meet the encoded background.
+    bool is_color = frame.encode == ENCODE_COLOR;
+    vec3 back = is_color ? frame.background.rgb : srgb_from_linear(frame.background.rgb);
+
+    // A over B (Porter & Duff 1984), with the result divided by its alpha.
+    float back_alpha = frame.background.a * (1.0 - scene.a);
+    float alpha = scene.a + back_alpha;
+    vec3 color = alpha > 0.0 ? (front * scene.a + back * back_alpha) / alpha : vec3(0.0);
+    out_color = vec4(is_color ? srgb_from_linear(color) : color, alpha);
+}

@@ -1,0 +1,178 @@
+//! Descriptor sets and the one pipeline layout, both fixed by `interface`.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::buffer::Buffer;
+use super::device::Gpu;
+use super::error::{Context, GpuError};
+use super::image::{Image, Sampler};
+use crate::interface::{self, BindingKind};
+
+const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw()
+        | vk::ShaderStageFlags::FRAGMENT.as_raw()
+        | vk::ShaderStageFlags::COMPUTE.as_raw(),
+);
+
+/// The descriptor set layouts of the contract and the pipeline layout over them. Every pipeline uses it, so a reload replaces
+/// pipelines and nothing else.
+pub struct SetLayouts {
+    gpu: Arc<Gpu>,
+    sets: Vec<vk::DescriptorSetLayout>,
+    pub(super) pipeline: vk::PipelineLayout,
+}
+
+impl SetLayouts {
+    /// Makes the layouts of [`interface::BINDINGS`].
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(gpu: &Arc<Gpu>) -> Result<Arc<Self>, GpuError> {
+        let count = interface::BINDINGS.iter().map(|b| b.set + 1).max().unwrap_or(0);
+        let mut layouts = Self { gpu: gpu.clone(), sets: Vec::new(), pipeline: vk::PipelineLayout::null() };
+        for set in 0..count {
+            let bindings: Vec<_> = interface::BINDINGS
+                .iter()
+                .filter(|b| b.set == set)
+                .map(|b| {
+                    vk::DescriptorSetLayoutBinding::default()
+                        .binding(b.binding)
+                        .descriptor_type(descriptor_type(b.kind))
+                        .descriptor_count(1)
+                        .stage_flags(STAGES)
+                })
+                .collect();
+            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+            // SAFETY: the device is live.
+            let layout = unsafe { gpu.device.create_descriptor_set_layout(&info, None) };
+            layouts.sets.push(layout.context("creating a descriptor set layout")?);
+        }
+        let ranges = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
+        let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts.sets).push_constant_ranges(&ranges);
+        // SAFETY: the set layouts are live.
+        layouts.pipeline =
+            unsafe { gpu.device.create_pipeline_layout(&info, None) }.context("creating the pipeline layout")?;
+        Ok(Arc::new(layouts))
+    }
+
+    pub(super) fn push_stages(&self) -> vk::ShaderStageFlags {
+        STAGES
+    }
+}
+
+impl Drop for SetLayouts {
+    fn drop(&mut self) {
+        // SAFETY: pipelines and sets hold this by `Arc`, so none is left.
+        unsafe {
+            self.gpu.device.destroy_pipeline_layout(self.pipeline, None);
+            for layout in &self.sets {
+                self.gpu.device.destroy_descriptor_set_layout(*layout, None);
+            }
+        }
+    }
+}
+
+fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
+    match kind {
+        BindingKind::UniformBuffer => vk::DescriptorType::UNIFORM_BUFFER,
+        BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+        BindingKind::Sampler2D | BindingKind::SamplerCube => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+    }
+}
+
+/// A descriptor set with a pool of its own and everything that it points to.
+pub struct DescriptorSet {
+    layouts: Arc<SetLayouts>,
+    pool: vk::DescriptorPool,
+    pub(super) raw: vk::DescriptorSet,
+    pub(super) index: u32,
+    _kept: Vec<Arc<dyn Any + Send + Sync>>,
+}
+
+/// Collects what a new set points to.
+#[derive(Default)]
+pub struct SetWriter {
+    buffers: Vec<(u32, vk::DescriptorBufferInfo)>,
+    images: Vec<(u32, vk::DescriptorImageInfo)>,
+    kept: Vec<Arc<dyn Any + Send + Sync>>,
+}
+
+impl SetWriter {
+    /// Points `binding` to a whole buffer.
+    pub fn buffer(mut self, binding: u32, buffer: &Arc<Buffer>) -> Self {
+        let info = vk::DescriptorBufferInfo { buffer: buffer.raw, offset: 0, range: vk::WHOLE_SIZE };
+        self.buffers.push((binding, info));
+        self.kept.push(buffer.clone());
+        self
+    }
+
+    /// Points `binding` to an image that is in [`super::Use::Sampled`] whenever the set is used.
+    pub fn texture(mut self, binding: u32, image: &Arc<Image>, sampler: &Arc<Sampler>) -> Self {
+        let info = vk::DescriptorImageInfo {
+            sampler: sampler.raw,
+            image_view: image.view,
+            image_layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+        };
+        self.images.push((binding, info));
+        self.kept.push(image.clone());
+        self.kept.push(sampler.clone());
+        self
+    }
+}
+
+impl DescriptorSet {
+    /// Makes set number `set` of the contract.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(layouts: &Arc<SetLayouts>, set: u32, writer: SetWriter) -> Result<Arc<Self>, GpuError> {
+        let device = &layouts.gpu.device;
+        let sizes: Vec<_> = interface::BINDINGS
+            .iter()
+            .filter(|b| b.set == set)
+            .map(|b| vk::DescriptorPoolSize { ty: descriptor_type(b.kind), descriptor_count: 1 })
+            .collect();
+        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+        // SAFETY: the device is live.
+        let pool = unsafe { device.create_descriptor_pool(&info, None) }.context("creating a descriptor pool")?;
+        let mut this = Self {
+            layouts: layouts.clone(),
+            pool,
+            raw: vk::DescriptorSet::null(),
+            index: set,
+            _kept: writer.kept,
+        };
+        let wanted = [layouts.sets[set as usize]];
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&wanted);
+        // SAFETY: the pool is new, unshared and large enough.
+        this.raw = unsafe { device.allocate_descriptor_sets(&info) }.context("allocating a descriptor set")?[0];
+        let kind = |binding: u32| {
+            let found = interface::BINDINGS.iter().find(|b| b.set == set && b.binding == binding);
+            found.map_or(vk::DescriptorType::UNIFORM_BUFFER, |b| descriptor_type(b.kind))
+        };
+        let write = |binding: u32| {
+            let write = vk::WriteDescriptorSet::default().dst_set(this.raw).dst_binding(binding);
+            write.descriptor_type(kind(binding)).descriptor_count(1)
+        };
+        let mut writes = Vec::new();
+        for (binding, info) in &writer.buffers {
+            writes.push(write(*binding).buffer_info(std::slice::from_ref(info)));
+        }
+        for (binding, info) in &writer.images {
+            writes.push(write(*binding).image_info(std::slice::from_ref(info)));
+        }
+        // SAFETY: the set is new, so nothing in flight uses it; what it points to is kept alive by `_kept`.
+        unsafe { device.update_descriptor_sets(&writes, &[]) };
+        Ok(Arc::new(this))
+    }
+}
+
+impl Drop for DescriptorSet {
+    fn drop(&mut self) {
+        // SAFETY: the last `Arc` is gone, so no command in flight uses the set; it goes with its pool.
+        unsafe { self.layouts.gpu.device.destroy_descriptor_pool(self.pool, None) };
+    }
+}

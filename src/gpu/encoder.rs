@@ -1,0 +1,345 @@
+//! Recording commands. The encoder keeps alive, until the fence of its submission, whatever its commands use.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::buffer::Buffer;
+use super::descriptor::{DescriptorSet, SetLayouts};
+use super::device::Gpu;
+use super::image::Image;
+use super::pipeline::Pipeline;
+
+/// A rectangle in pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rect {
+    /// Left.
+    pub x: u32,
+    /// Top.
+    pub y: u32,
+    /// Width.
+    pub width: u32,
+    /// Height.
+    pub height: u32,
+}
+
+/// What an image is used for; a transition between two uses is a barrier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Content does not matter.
+    Undefined,
+    /// Acquired from the swapchain: content does not matter, and the acquire semaphore was waited for at color output.
+    Acquired,
+    /// Color attachment.
+    Color,
+    /// Depth attachment.
+    Depth,
+    /// Read in shaders.
+    Sampled,
+    /// Source of a copy or blit.
+    CopyFrom,
+    /// Target of a copy or blit.
+    CopyTo,
+    /// Shown.
+    Present,
+}
+
+impl Use {
+    fn scope(self) -> (vk::PipelineStageFlags2, vk::AccessFlags2, vk::ImageLayout) {
+        use vk::{AccessFlags2 as A, ImageLayout as L, PipelineStageFlags2 as S};
+        match self {
+            Self::Undefined => (S::ALL_COMMANDS, A::MEMORY_WRITE, L::UNDEFINED),
+            Self::Acquired => (S::COLOR_ATTACHMENT_OUTPUT, A::NONE, L::UNDEFINED),
+            Self::Color => (
+                S::COLOR_ATTACHMENT_OUTPUT,
+                A::COLOR_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_READ,
+                L::COLOR_ATTACHMENT_OPTIMAL,
+            ),
+            Self::Depth => (
+                S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS,
+                A::DEPTH_STENCIL_ATTACHMENT_WRITE | A::DEPTH_STENCIL_ATTACHMENT_READ,
+                L::DEPTH_ATTACHMENT_OPTIMAL,
+            ),
+            Self::Sampled => {
+                (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_SAMPLED_READ, L::SHADER_READ_ONLY_OPTIMAL)
+            }
+            Self::CopyFrom => (S::ALL_TRANSFER, A::TRANSFER_READ, L::TRANSFER_SRC_OPTIMAL),
+            Self::CopyTo => (S::ALL_TRANSFER, A::TRANSFER_WRITE, L::TRANSFER_DST_OPTIMAL),
+            Self::Present => (S::BOTTOM_OF_PIPE, A::NONE, L::PRESENT_SRC_KHR),
+        }
+    }
+}
+
+/// The targets of a rendering pass.
+pub struct Attachments<'a> {
+    /// Color target, in [`Use::Color`].
+    pub color: &'a Arc<Image>,
+    /// Clear value; `None` keeps the content.
+    pub clear: Option<[f32; 4]>,
+    /// Where multisampled color is averaged to, in [`Use::Color`].
+    pub resolve: Option<&'a Arc<Image>>,
+    /// Depth target, in [`Use::Depth`]; cleared to 0, which is far, and not kept.
+    pub depth: Option<&'a Arc<Image>>,
+    /// The part of the target that is drawn.
+    pub area: Rect,
+}
+
+/// Records into one command buffer.
+pub struct Encoder {
+    pub(super) gpu: Arc<Gpu>,
+    pub(super) raw: vk::CommandBuffer,
+    pub(super) kept: Vec<Arc<dyn Any + Send + Sync>>,
+}
+
+impl Encoder {
+    pub(super) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer) -> Self {
+        Self { gpu: gpu.clone(), raw, kept: Vec::new() }
+    }
+
+    /// Keeps `object` alive until the commands have run.
+    pub fn keep<T: Any + Send + Sync>(&mut self, object: &Arc<T>) {
+        self.kept.push(object.clone());
+    }
+
+    /// SYNC: everything before that used `image` as `from` comes before everything after that uses it as `to`.
+    pub fn transition(&mut self, image: &Arc<Image>, from: Use, to: Use) {
+        self.transition_mips(image, 0, image.desc().mips, from, to);
+    }
+
+    /// SYNC: the same for mip levels `first..first + count`.
+    pub fn transition_mips(&mut self, image: &Arc<Image>, first: u32, count: u32, from: Use, to: Use) {
+        let (src_stage, src_access, old_layout) = from.scope();
+        let (dst_stage, dst_access, new_layout) = to.scope();
+        let barrier = vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(src_stage)
+            .src_access_mask(src_access)
+            .dst_stage_mask(dst_stage)
+            .dst_access_mask(dst_access)
+            .old_layout(old_layout)
+            .new_layout(new_layout)
+            .image(image.raw)
+            .subresource_range(vk::ImageSubresourceRange {
+                aspect_mask: image.aspect(),
+                base_mip_level: first,
+                level_count: count,
+                base_array_layer: 0,
+                layer_count: 1,
+            });
+        let barriers = [barrier];
+        self.keep(image);
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        // SAFETY: recording into our own buffer; the image is kept.
+        unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };
+    }
+
+    /// Begins drawing to `to`; viewport and scissor are set to its area.
+    pub fn begin_rendering(&mut self, to: &Attachments<'_>) {
+        let color = vk::RenderingAttachmentInfo::default()
+            .image_view(to.color.view)
+            .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+            .load_op(if to.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD })
+            .clear_value(vk::ClearValue {
+                color: vk::ClearColorValue { float32: to.clear.unwrap_or_default() },
+            });
+        self.keep(to.color);
+        let color = match to.resolve {
+            Some(resolve) => {
+                self.keep(resolve);
+                color
+                    .store_op(vk::AttachmentStoreOp::DONT_CARE)
+                    .resolve_mode(vk::ResolveModeFlags::AVERAGE)
+                    .resolve_image_view(resolve.view)
+                    .resolve_image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+            }
+            None => color.store_op(vk::AttachmentStoreOp::STORE),
+        };
+        let colors = [color];
+        let area = vk::Rect2D {
+            offset: vk::Offset2D { x: to.area.x as i32, y: to.area.y as i32 },
+            extent: vk::Extent2D { width: to.area.width, height: to.area.height },
+        };
+        let depth = to.depth.map(|depth| {
+            self.keep(depth);
+            vk::RenderingAttachmentInfo::default()
+                .image_view(depth.view)
+                .image_layout(vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL)
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::DONT_CARE)
+        });
+        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colors);
+        if let Some(depth) = &depth {
+            info = info.depth_attachment(depth);
+        }
+        let viewport = vk::Viewport {
+            x: to.area.x as f32,
+            y: to.area.y as f32,
+            width: to.area.width as f32,
+            height: to.area.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: recording into our own buffer; the images are kept.
+        unsafe {
+            self.gpu.device.cmd_begin_rendering(self.raw, &info);
+            self.gpu.device.cmd_set_viewport(self.raw, 0, &[viewport]);
+            self.gpu.device.cmd_set_scissor(self.raw, 0, &[area]);
+        }
+    }
+
+    /// Ends drawing.
+    pub fn end_rendering(&mut self) {
+        // SAFETY: recording into our own buffer.
+        unsafe { self.gpu.device.cmd_end_rendering(self.raw) };
+    }
+
+    /// Binds a pipeline.
+    pub fn bind_pipeline(&mut self, pipeline: &Arc<Pipeline>) {
+        self.keep(pipeline);
+        // SAFETY: recording into our own buffer; the pipeline is kept.
+        unsafe { self.gpu.device.cmd_bind_pipeline(self.raw, vk::PipelineBindPoint::GRAPHICS, pipeline.raw) };
+    }
+
+    /// Sets what a scene pipeline leaves open.
+    pub fn set_raster(&mut self, topology: vk::PrimitiveTopology, cull: vk::CullModeFlags, front: vk::FrontFace) {
+        // SAFETY: recording into our own buffer.
+        unsafe {
+            self.gpu.device.cmd_set_primitive_topology(self.raw, topology);
+            self.gpu.device.cmd_set_cull_mode(self.raw, cull);
+            self.gpu.device.cmd_set_front_face(self.raw, front);
+        }
+    }
+
+    /// Binds a descriptor set at its own number.
+    pub fn bind_set(&mut self, layouts: &Arc<SetLayouts>, set: &Arc<DescriptorSet>) {
+        self.keep(set);
+        // SAFETY: recording into our own buffer; the set is kept, and the layout is the one of every pipeline.
+        unsafe {
+            self.gpu.device.cmd_bind_descriptor_sets(
+                self.raw,
+                vk::PipelineBindPoint::GRAPHICS,
+                layouts.pipeline,
+                set.index,
+                &[set.raw],
+                &[],
+            );
+        }
+    }
+
+    /// Sets the push constants.
+    pub fn push<T: bytemuck::Pod>(&mut self, layouts: &SetLayouts, value: &T) {
+        let (stages, bytes) = (layouts.push_stages(), bytemuck::bytes_of(value));
+        // SAFETY: recording into our own buffer; `interface` asserts that the structs fit.
+        unsafe { self.gpu.device.cmd_push_constants(self.raw, layouts.pipeline, stages, 0, bytes) };
+    }
+
+    /// Binds 32-bit indices.
+    pub fn bind_indices(&mut self, buffer: &Arc<Buffer>) {
+        self.keep(buffer);
+        // SAFETY: recording into our own buffer; the index buffer is kept.
+        unsafe { self.gpu.device.cmd_bind_index_buffer(self.raw, buffer.raw, 0, vk::IndexType::UINT32) };
+    }
+
+    /// Draws without buffers.
+    pub fn draw(&mut self, vertices: u32) {
+        // SAFETY: recording into our own buffer.
+        unsafe { self.gpu.device.cmd_draw(self.raw, vertices, 1, 0, 0) };
+    }
+
+    /// Draws `count` indices from `first`.
+    pub fn draw_indexed(&mut self, count: u32, first: u32) {
+        // SAFETY: recording into our own buffer; `scene` promises indices in range.
+        unsafe { self.gpu.device.cmd_draw_indexed(self.raw, count, 1, first, 0, 0) };
+    }
+
+    /// Copies part of a buffer.
+    pub fn copy_buffer(&mut self, from: &Arc<Buffer>, from_offset: u64, to: &Arc<Buffer>, size: u64) {
+        self.keep(from);
+        self.keep(to);
+        let region = [vk::BufferCopy { src_offset: from_offset, dst_offset: 0, size }];
+        // SAFETY: recording into our own buffer; both buffers are kept.
+        unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
+    }
+
+    /// SYNC: copies before this are visible to every shader and index read after it.
+    pub fn copies_done(&mut self) {
+        let barrier = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ)];
+        let info = vk::DependencyInfo::default().memory_barriers(&barrier);
+        // SAFETY: recording into our own buffer.
+        unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };
+    }
+
+    /// Fills mip level 0, in [`Use::CopyTo`], from tightly packed rows.
+    pub fn copy_to_image(&mut self, from: &Arc<Buffer>, offset: u64, to: &Arc<Image>) {
+        self.keep(from);
+        self.keep(to);
+        let region = [whole_level(to, offset)];
+        // SAFETY: recording into our own buffer; buffer and image are kept.
+        unsafe {
+            let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+            self.gpu.device.cmd_copy_buffer_to_image(self.raw, from.raw, to.raw, layout, &region);
+        }
+    }
+
+    /// Reads mip level 0, in [`Use::CopyFrom`], into tightly packed rows.
+    pub fn copy_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>) {
+        self.keep(from);
+        self.keep(to);
+        let region = [whole_level(from, 0)];
+        // SAFETY: recording into our own buffer; buffer and image are kept.
+        unsafe {
+            let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+            self.gpu.device.cmd_copy_image_to_buffer(self.raw, from.raw, layout, to.raw, &region);
+        }
+    }
+
+    /// Makes mip level `level`, in [`Use::CopyTo`], from the one above it, in [`Use::CopyFrom`].
+    pub fn blit_level(&mut self, image: &Arc<Image>, level: u32) {
+        let desc = image.desc();
+        let size = |l: u32| [(desc.width >> l).max(1) as i32, (desc.height >> l).max(1) as i32];
+        let corner = |[x, y]: [i32; 2]| vk::Offset3D { x, y, z: 1 };
+        let layers = |mip_level| vk::ImageSubresourceLayers {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            mip_level,
+            base_array_layer: 0,
+            layer_count: 1,
+        };
+        let region = [vk::ImageBlit {
+            src_subresource: layers(level - 1),
+            src_offsets: [vk::Offset3D::default(), corner(size(level - 1))],
+            dst_subresource: layers(level),
+            dst_offsets: [vk::Offset3D::default(), corner(size(level))],
+        }];
+        self.keep(image);
+        // SAFETY: recording into our own buffer; the image is kept.
+        unsafe {
+            self.gpu.device.cmd_blit_image(
+                self.raw,
+                image.raw,
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                image.raw,
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &region,
+                vk::Filter::LINEAR,
+            );
+        }
+    }
+}
+
+fn whole_level(image: &Image, offset: u64) -> vk::BufferImageCopy {
+    vk::BufferImageCopy {
+        buffer_offset: offset,
+        image_subresource: vk::ImageSubresourceLayers {
+            aspect_mask: image.aspect(),
+            mip_level: 0,
+            base_array_layer: 0,
+            layer_count: 1,
+        },
+        image_extent: vk::Extent3D { width: image.desc().width, height: image.desc().height, depth: 1 },
+        ..Default::default()
+    }
+}

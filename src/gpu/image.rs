@@ -1,0 +1,190 @@
+//! Images with their view, and samplers.
+
+use std::sync::Arc;
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+
+use super::device::Gpu;
+use super::error::{Context, GpuError};
+
+/// What an image is.
+#[derive(Clone, Copy, Debug)]
+pub struct ImageDesc {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Mip levels.
+    pub mips: u32,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Format.
+    pub format: vk::Format,
+    /// Usage.
+    pub usage: vk::ImageUsageFlags,
+}
+
+impl ImageDesc {
+    /// A single-sampled image with one level.
+    pub fn new(width: u32, height: u32, format: vk::Format, usage: vk::ImageUsageFlags) -> Self {
+        Self { width, height, mips: 1, samples: 1, format, usage }
+    }
+}
+
+/// An image, its memory and a view of all of it. A swapchain's image has no memory of its own.
+pub struct Image {
+    gpu: Arc<Gpu>,
+    pub(super) raw: vk::Image,
+    pub(super) view: vk::ImageView,
+    allocation: Option<Allocation>,
+    owned: bool,
+    desc: ImageDesc,
+}
+
+impl Image {
+    /// Makes a 2D image.
+    ///
+    /// # Errors
+    /// Out of memory, or a format that the device lacks.
+    pub fn new(gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(desc.format)
+            .extent(vk::Extent3D { width: desc.width, height: desc.height, depth: 1 })
+            .mip_levels(desc.mips)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::from_raw(desc.samples))
+            .usage(desc.usage);
+        // SAFETY: the device is live.
+        let raw = unsafe { gpu.device.create_image(&info, None) }.context("creating an image")?;
+        let mut image =
+            Self { gpu: gpu.clone(), raw, view: vk::ImageView::null(), allocation: None, owned: true, desc };
+        // SAFETY: `raw` belongs to this device.
+        let requirements = unsafe { gpu.device.get_image_memory_requirements(raw) };
+        let allocation = gpu
+            .lock_allocator()
+            .allocate(&AllocationCreateDesc {
+                name,
+                requirements,
+                location: MemoryLocation::GpuOnly,
+                linear: false,
+                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+            })
+            .map_err(|e| GpuError::Allocation { what: name.into(), message: e.to_string() })?;
+        // SAFETY: the memory was allocated for these requirements and is bound once.
+        let bound = unsafe { gpu.device.bind_image_memory(raw, allocation.memory(), allocation.offset()) };
+        image.allocation = Some(allocation);
+        bound.context("binding image memory")?;
+        image.view = create_view(gpu, raw, &desc)?;
+        Ok(Arc::new(image))
+    }
+
+    /// Wraps an image of the swapchain, which the swapchain frees.
+    pub(super) fn from_swapchain(gpu: &Arc<Gpu>, raw: vk::Image, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
+        let view = create_view(gpu, raw, &desc)?;
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw, view, allocation: None, owned: false, desc }))
+    }
+
+    /// Its description.
+    pub fn desc(&self) -> &ImageDesc {
+        &self.desc
+    }
+
+    pub(super) fn aspect(&self) -> vk::ImageAspectFlags {
+        aspect(self.desc.format)
+    }
+}
+
+fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
+    if format == vk::Format::D32_SFLOAT { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR }
+}
+
+fn create_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc) -> Result<vk::ImageView, GpuError> {
+    let range = vk::ImageSubresourceRange {
+        aspect_mask: aspect(desc.format),
+        base_mip_level: 0,
+        level_count: desc.mips,
+        base_array_layer: 0,
+        layer_count: 1,
+    };
+    let info = vk::ImageViewCreateInfo::default()
+        .image(raw)
+        .view_type(vk::ImageViewType::TYPE_2D)
+        .format(desc.format)
+        .subresource_range(range);
+    // SAFETY: the image is live.
+    unsafe { gpu.device.create_image_view(&info, None) }.context("creating an image view")
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: the last `Arc` is gone, so no command in flight uses the image; a null view may be destroyed.
+        unsafe {
+            self.gpu.device.destroy_image_view(self.view, None);
+            if self.owned {
+                self.gpu.device.destroy_image(self.raw, None);
+            }
+        }
+        if let Some(allocation) = self.allocation.take() {
+            let _ = self.gpu.lock_allocator().free(allocation);
+        }
+    }
+}
+
+/// How a texture is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SamplerDesc {
+    /// Magnification.
+    pub mag: vk::Filter,
+    /// Minification.
+    pub min: vk::Filter,
+    /// Between mip levels.
+    pub mip: vk::SamplerMipmapMode,
+    /// Whether levels beyond 0 are read.
+    pub mips: bool,
+    /// Horizontal wrap.
+    pub wrap_u: vk::SamplerAddressMode,
+    /// Vertical wrap.
+    pub wrap_v: vk::SamplerAddressMode,
+    /// Samples along the axis of anisotropy; 1 is off.
+    pub anisotropy: u32,
+}
+
+/// A sampler.
+pub struct Sampler {
+    gpu: Arc<Gpu>,
+    pub(super) raw: vk::Sampler,
+}
+
+impl Sampler {
+    /// Makes a sampler.
+    ///
+    /// # Errors
+    /// Too many samplers.
+    pub fn new(gpu: &Arc<Gpu>, desc: &SamplerDesc) -> Result<Arc<Self>, GpuError> {
+        let anisotropy = (desc.anisotropy as f32).min(gpu.properties.limits.max_sampler_anisotropy);
+        let info = vk::SamplerCreateInfo::default()
+            .mag_filter(desc.mag)
+            .min_filter(desc.min)
+            .mipmap_mode(desc.mip)
+            .address_mode_u(desc.wrap_u)
+            .address_mode_v(desc.wrap_v)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .anisotropy_enable(gpu.anisotropy && anisotropy > 1.0)
+            .max_anisotropy(anisotropy.max(1.0))
+            // 0.25 keeps minification apart from magnification at level 0, as the Vulkan specification advises for GL's filters.
+            .max_lod(if desc.mips { vk::LOD_CLAMP_NONE } else { 0.25 });
+        // SAFETY: the device is live.
+        let raw = unsafe { gpu.device.create_sampler(&info, None) }.context("creating a sampler")?;
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw }))
+    }
+}
+
+impl Drop for Sampler {
+    fn drop(&mut self) {
+        // SAFETY: the last `Arc` is gone, so no descriptor in flight uses the sampler.
+        unsafe { self.gpu.device.destroy_sampler(self.raw, None) };
+    }
+}

@@ -1,0 +1,434 @@
+//! The contract between Rust and GLSL: descriptor sets, bindings, specialization ids and the structs that both sides read.
+//!
+//! Rust writes this memory, so Rust owns its meaning. [`glsl`] prints the whole contract as `shaders/interface.glsl`;
+//! `shader::contract` holds every compiled stage against [`BINDINGS`], [`SPECIALIZATION`] and the struct sizes below.
+//!
+//! All blocks use `scalar` layout, so a Rust `#[repr(C)]` struct of 4-byte fields and its GLSL twin agree byte for byte.
+
+use std::fmt::Write as _;
+
+use bytemuck::{Pod, Zeroable};
+
+/// Raised whenever a shader tree written for the previous contract would misread memory.
+pub const VERSION: u32 = 1;
+
+/// Set 0: bound once a frame.
+pub const SET_FRAME: u32 = 0;
+/// Set 1: bound once a material.
+pub const SET_MATERIAL: u32 = 1;
+/// Set 2: the images that a full-screen pass reads.
+pub const SET_PASS: u32 = 2;
+
+/// Push constants available to every graphics pipeline, in bytes (lavapipe and the Vulkan minimum both give 128).
+pub const PUSH_CONSTANT_SIZE: u32 = 128;
+/// Size of the user's parameter block in bytes: what `//@ui` members of `Params` may fill together.
+pub const PARAMS_SIZE: u32 = 4096;
+
+/// Specialization constants from this id on belong to the shader author (`//@ui` on a `constant_id`).
+pub const USER_CONSTANTS: u32 = 32;
+
+/// How a descriptor is used; printed into messages, so in GLSL's words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BindingKind {
+    /// `uniform` block.
+    UniformBuffer,
+    /// `buffer` block.
+    StorageBuffer,
+    /// `sampler2D`.
+    Sampler2D,
+    /// `samplerCube`.
+    SamplerCube,
+}
+
+impl BindingKind {
+    /// The GLSL spelling, for messages.
+    pub fn glsl(self) -> &'static str {
+        match self {
+            Self::UniformBuffer => "uniform block",
+            Self::StorageBuffer => "buffer block",
+            Self::Sampler2D => "sampler2D",
+            Self::SamplerCube => "samplerCube",
+        }
+    }
+}
+
+/// One descriptor of the contract. A shader may use any subset.
+#[derive(Clone, Copy, Debug)]
+pub struct Binding {
+    /// Descriptor set.
+    pub set: u32,
+    /// Binding within the set.
+    pub binding: u32,
+    /// The constant's name in GLSL, `BINDING_...`.
+    pub name: &'static str,
+    /// What is bound there.
+    pub kind: BindingKind,
+    /// For blocks: the largest size in bytes that a shader may declare.
+    pub size: u32,
+}
+
+const fn binding(set: u32, binding: u32, name: &'static str, kind: BindingKind, size: usize) -> Binding {
+    Binding { set, binding, name, kind, size: size as u32 }
+}
+
+/// Every descriptor of the contract, ordered by set and binding.
+pub const BINDINGS: &[Binding] = &[
+    binding(SET_FRAME, 0, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
+    binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::StorageBuffer, size_of::<Light>()),
+    binding(SET_FRAME, 2, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
+    binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
+    binding(SET_MATERIAL, 1, "BINDING_BASE_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 2, "BINDING_METALLIC_ROUGHNESS_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 3, "BINDING_NORMAL_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 4, "BINDING_OCCLUSION_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 5, "BINDING_EMISSIVE_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
+];
+
+/// A specialization constant that Rust sets.
+#[derive(Clone, Copy, Debug)]
+pub struct Specialization {
+    /// `constant_id`.
+    pub id: u32,
+    /// Name in GLSL.
+    pub name: &'static str,
+    /// What it selects.
+    pub doc: &'static str,
+}
+
+/// `constant_id` of [`SPECIALIZATION`]'s debug mode.
+pub const SPEC_MODE: u32 = 0;
+/// `constant_id` of the material's alpha mode: [`ALPHA_OPAQUE`], [`ALPHA_MASK`] or [`ALPHA_BLEND`].
+pub const SPEC_ALPHA_MODE: u32 = 1;
+/// `constant_id` of the material's features: the `FEATURE_*` bits.
+pub const SPEC_FEATURES: u32 = 2;
+
+/// The specialization constants that Rust sets for every stage; those from [`USER_CONSTANTS`] on are the author's.
+pub const SPECIALIZATION: &[Specialization] = &[
+    Specialization { id: SPEC_MODE, name: "MODE", doc: "debug mode, one of MODE_* in debug/modes.glsl" },
+    Specialization { id: SPEC_ALPHA_MODE, name: "ALPHA_MODE", doc: "glTF alphaMode, one of ALPHA_*" },
+    Specialization { id: SPEC_FEATURES, name: "FEATURES", doc: "what the material uses, FEATURE_* bits" },
+];
+
+/// glTF `alphaMode` OPAQUE.
+pub const ALPHA_OPAQUE: u32 = 0;
+/// glTF `alphaMode` MASK.
+pub const ALPHA_MASK: u32 = 1;
+/// glTF `alphaMode` BLEND.
+pub const ALPHA_BLEND: u32 = 2;
+
+/// KHR_materials_unlit.
+pub const FEATURE_UNLIT: u32 = 1;
+/// The material has a normal texture and the mesh a tangent frame for it.
+pub const FEATURE_NORMAL_TEXTURE: u32 = 2;
+
+/// Index of the base color texture in `Material::uv_from_texture` and in the bit masks.
+pub const TEXTURE_BASE_COLOR: u32 = 0;
+/// Index of the metallic-roughness texture.
+pub const TEXTURE_METALLIC_ROUGHNESS: u32 = 1;
+/// Index of the normal texture.
+pub const TEXTURE_NORMAL: u32 = 2;
+/// Index of the occlusion texture.
+pub const TEXTURE_OCCLUSION: u32 = 3;
+/// Index of the emissive texture.
+pub const TEXTURE_EMISSIVE: u32 = 4;
+/// How many textures a material has.
+pub const TEXTURE_COUNT: usize = 5;
+
+/// `Draw::attributes`: the mesh came with normals (else flat ones were made).
+pub const ATTRIBUTE_NORMAL: u32 = 1;
+/// `Draw::attributes`: the mesh came with tangents (else MikkTSpace made them).
+pub const ATTRIBUTE_TANGENT: u32 = 2;
+/// `Draw::attributes`: the mesh has TEXCOORD_0.
+pub const ATTRIBUTE_UV0: u32 = 4;
+/// `Draw::attributes`: the mesh has TEXCOORD_1.
+pub const ATTRIBUTE_UV1: u32 = 8;
+/// `Draw::attributes`: the mesh has COLOR_0.
+pub const ATTRIBUTE_COLOR: u32 = 16;
+/// `Draw::attributes`: a usable tangent frame exists, from the file or made.
+pub const ATTRIBUTE_TANGENT_FRAME: u32 = 32;
+
+/// `Light::kind`: parallel light, intensity in lux.
+pub const LIGHT_DIRECTIONAL: u32 = 0;
+/// `Light::kind`: point light, intensity in candela.
+pub const LIGHT_POINT: u32 = 1;
+/// `Light::kind`: spot light, intensity in candela.
+pub const LIGHT_SPOT: u32 = 2;
+
+/// `Frame::encode`: colors, sRGB-encoded on output.
+pub const ENCODE_COLOR: u32 = 0;
+/// `Frame::encode`: numbers, stored as they are.
+pub const ENCODE_DATA: u32 = 1;
+/// `Frame::encode`: vectors, stored as v * 0.5 + 0.5.
+pub const ENCODE_VECTOR: u32 = 2;
+
+/// `Frame::tonemap`: values that are not light (debug modes) skip exposure and tone mapping.
+pub const TONEMAP_OFF: u32 = 0xffff_ffff;
+
+/// What a frame shares: camera, output, counts. `SET_FRAME`, `BINDING_FRAME`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Frame {
+    /// World (metres, +Y up) to Vulkan clip space (+Y down, depth 0 far to 1 near: reversed).
+    pub clip_from_world: [[f32; 4]; 4],
+    /// Inverse of `clip_from_world`.
+    pub world_from_clip: [[f32; 4]; 4],
+    /// World to view space (camera looks along -Z).
+    pub view_from_world: [[f32; 4]; 4],
+    /// Camera position, world space.
+    pub eye_ws: [f32; 3],
+    /// Factor from luminance (cd/m^2) to the display's 0..1: 1 / (1.2 * 2^EV100).
+    pub exposure: f32,
+    /// Radiance that arrives from everywhere, linear RGB.
+    pub ambient: [f32; 3],
+    /// Seconds since the start; 0 in headless renderings.
+    pub time_s: f32,
+    /// Linear RGB behind the model, and its alpha.
+    pub background: [f32; 4],
+    /// Center of the model's bounds, world space.
+    pub scene_center_ws: [f32; 3],
+    /// Radius of the model's bounds, metres.
+    pub scene_radius: f32,
+    /// Width and height of the picture in pixels.
+    pub viewport_px: [f32; 2],
+    /// Upper left corner of the picture in the output image, pixels.
+    pub viewport_origin_px: [f32; 2],
+    /// Near plane distance, metres.
+    pub near: f32,
+    /// Far plane distance, metres (debug views only: the projection is infinite).
+    pub far: f32,
+    /// Lights in `BINDING_LIGHTS`.
+    pub light_count: u32,
+    /// Which light the BRDF term modes show: 0 all, else 1-based.
+    pub chosen_light: u32,
+    /// Tone map, `TONEMAP_*` in tonemap.frag, or `TONEMAP_OFF`.
+    pub tonemap: u32,
+    /// `ENCODE_*` of the mode on screen.
+    pub encode: u32,
+    /// Debug mode on screen, for passes that are not specialized by mode.
+    pub mode: u32,
+    /// Counts frames since the last change of anything, for accumulation.
+    pub frame_index: u32,
+}
+
+/// A light, in world space. `SET_FRAME`, `BINDING_LIGHTS`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Light {
+    /// World position (point, spot).
+    pub position_ws: [f32; 3],
+    /// `LIGHT_*`.
+    pub kind: u32,
+    /// Where the light shines to, unit (directional, spot).
+    pub direction_ws: [f32; 3],
+    /// Distance at which it ends, metres; 0 is without end.
+    pub range: f32,
+    /// Linear RGB times candela (point, spot) or lux (directional).
+    pub intensity: [f32; 3],
+    /// Spot: cosine of the angle where the falloff starts.
+    pub cos_inner: f32,
+    /// Spot: cosine of the angle where it ends.
+    pub cos_outer: f32,
+}
+
+/// A material's numbers. `SET_MATERIAL`, `BINDING_MATERIAL`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Material {
+    /// Linear RGBA factor.
+    pub base_color_factor: [f32; 4],
+    /// Linear RGB factor, KHR_materials_emissive_strength multiplied in.
+    pub emissive_factor: [f32; 3],
+    /// 0 dielectric .. 1 metal.
+    pub metallic_factor: f32,
+    /// Perceptual roughness 0..1.
+    pub roughness_factor: f32,
+    /// Scale of the normal texture's x and y.
+    pub normal_scale: f32,
+    /// 0 no occlusion .. 1 as in the texture.
+    pub occlusion_strength: f32,
+    /// ALPHA_MASK: below this a fragment is discarded.
+    pub alpha_cutoff: f32,
+    /// Bit `TEXTURE_*`: the texture exists (else a default one is bound).
+    pub texture_mask: u32,
+    /// Bit `TEXTURE_*`: the texture reads TEXCOORD_1.
+    pub uv1_mask: u32,
+    /// Index of the material, for the id view.
+    pub id: u32,
+    /// KHR_texture_transform of each texture: columns of a mat3x2 applied to (u, v, 1).
+    pub uv_from_texture: [[[f32; 2]; 3]; TEXTURE_COUNT],
+}
+
+/// Push constants of one draw. Vertices are read by address (`buffer_reference`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Draw {
+    /// Device address of the first [`Vertex`].
+    pub vertices: u64,
+    /// Columns of the object-to-world matrix, without the last row.
+    pub world_from_object: [[f32; 3]; 4],
+    /// Inverse transpose of its upper 3x3.
+    pub normal_ws_from_object: [[f32; 3]; 3],
+    /// `ATTRIBUTE_*` bits of the mesh.
+    pub attributes: u32,
+    /// Index of the primitive, for the id views.
+    pub primitive_id: u32,
+    /// Index of the node, for the id views.
+    pub node_id: u32,
+}
+
+/// A vertex as the shader reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Vertex {
+    /// Object space, metres.
+    pub position: [f32; 3],
+    /// Object space, unit.
+    pub normal: [f32; 3],
+    /// Object space, unit; w is the bitangent's sign.
+    pub tangent: [f32; 4],
+    /// TEXCOORD_0, or 0.
+    pub uv0: [f32; 2],
+    /// TEXCOORD_1, or `uv0`.
+    pub uv1: [f32; 2],
+    /// COLOR_0, linear RGBA, or 1.
+    pub color: [f32; 4],
+}
+
+const _: () = assert!(size_of::<Draw>() <= PUSH_CONSTANT_SIZE as usize);
+
+/// The contract as GLSL: the content of `shaders/interface.glsl`.
+pub fn glsl() -> String {
+    let mut out = String::from(
+        "// Printed by src/interface.rs. Do not edit: Rust writes this memory, and a test compares this file with what Rust prints.\n\
+         // The sets, bindings, specialization constants and structs that every shader may use, all in scalar layout.\n\
+         #ifndef SPECULA_INTERFACE_GLSL\n#define SPECULA_INTERFACE_GLSL\n\n\
+         #extension GL_EXT_scalar_block_layout : require\n\
+         #extension GL_EXT_buffer_reference : require\n\
+         #extension GL_EXT_buffer_reference2 : require\n\n",
+    );
+    let mut constant = |kind: &str, name: &str, value: String| {
+        let _ = writeln!(out, "const {kind} {name} = {value};");
+    };
+    constant("uint", "INTERFACE_VERSION", format!("{VERSION}u"));
+    for (name, value) in [("SET_FRAME", SET_FRAME), ("SET_MATERIAL", SET_MATERIAL), ("SET_PASS", SET_PASS)] {
+        constant("int", name, value.to_string());
+    }
+    for b in BINDINGS {
+        constant("int", b.name, b.binding.to_string());
+    }
+    constant("int", "USER_CONSTANTS", USER_CONSTANTS.to_string());
+    for (name, value) in UINTS {
+        constant("uint", name, if *value > 0xffff { format!("0x{value:x}u") } else { format!("{value}u") });
+    }
+    constant("int", "TEXTURE_COUNT", TEXTURE_COUNT.to_string());
+    out.push('\n');
+    for s in SPECIALIZATION {
+        let _ = writeln!(out, "layout(constant_id = {}) const uint {} = 0u; // {}", s.id, s.name, s.doc);
+    }
+    out.push_str(STRUCTS);
+    out.push_str("\n#endif\n");
+    out
+}
+
+const UINTS: &[(&str, u32)] = &[
+    ("ALPHA_OPAQUE", ALPHA_OPAQUE),
+    ("ALPHA_MASK", ALPHA_MASK),
+    ("ALPHA_BLEND", ALPHA_BLEND),
+    ("FEATURE_UNLIT", FEATURE_UNLIT),
+    ("FEATURE_NORMAL_TEXTURE", FEATURE_NORMAL_TEXTURE),
+    ("TEXTURE_BASE_COLOR", TEXTURE_BASE_COLOR),
+    ("TEXTURE_METALLIC_ROUGHNESS", TEXTURE_METALLIC_ROUGHNESS),
+    ("TEXTURE_NORMAL", TEXTURE_NORMAL),
+    ("TEXTURE_OCCLUSION", TEXTURE_OCCLUSION),
+    ("TEXTURE_EMISSIVE", TEXTURE_EMISSIVE),
+    ("ATTRIBUTE_NORMAL", ATTRIBUTE_NORMAL),
+    ("ATTRIBUTE_TANGENT", ATTRIBUTE_TANGENT),
+    ("ATTRIBUTE_UV0", ATTRIBUTE_UV0),
+    ("ATTRIBUTE_UV1", ATTRIBUTE_UV1),
+    ("ATTRIBUTE_COLOR", ATTRIBUTE_COLOR),
+    ("ATTRIBUTE_TANGENT_FRAME", ATTRIBUTE_TANGENT_FRAME),
+    ("LIGHT_DIRECTIONAL", LIGHT_DIRECTIONAL),
+    ("LIGHT_POINT", LIGHT_POINT),
+    ("LIGHT_SPOT", LIGHT_SPOT),
+    ("ENCODE_COLOR", ENCODE_COLOR),
+    ("ENCODE_DATA", ENCODE_DATA),
+    ("ENCODE_VECTOR", ENCODE_VECTOR),
+    ("TONEMAP_OFF", TONEMAP_OFF),
+];
+
+/// The structs in GLSL. Field for field the twins of the Rust structs above; the contract check compares their offsets.
+const STRUCTS: &str = r"
+layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
+    mat4 clip_from_world;      // reversed depth: 1 near, 0 at infinity
+    mat4 world_from_clip;
+    mat4 view_from_world;
+    vec3 eye_ws;
+    float exposure;            // 1 / (1.2 * 2^EV100)
+    vec3 ambient;              // radiance from everywhere
+    float time_s;
+    vec4 background;           // linear RGB, alpha
+    vec3 scene_center_ws;
+    float scene_radius;
+    vec2 viewport_px;
+    vec2 viewport_origin_px;
+    float near;
+    float far;
+    uint light_count;
+    uint chosen_light;         // 0 all, else 1-based
+    uint tonemap;
+    uint encode;
+    uint mode;
+    uint frame_index;
+} frame;
+
+struct Light {
+    vec3 position_ws;
+    uint kind;                 // LIGHT_*
+    vec3 direction_ws;         // where it shines to
+    float range;               // metres, 0 without end
+    vec3 intensity;            // linear RGB times candela (point, spot) or lux (directional)
+    float cos_inner;
+    float cos_outer;
+};
+
+layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) readonly buffer Lights {
+    Light lights[];
+};
+
+layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {
+    vec4 base_color_factor;
+    vec3 emissive_factor;
+    float metallic_factor;
+    float roughness_factor;
+    float normal_scale;
+    float occlusion_strength;
+    float alpha_cutoff;
+    uint texture_mask;         // bit TEXTURE_*: it exists
+    uint uv1_mask;             // bit TEXTURE_*: it reads TEXCOORD_1
+    uint id;
+    mat3x2 uv_from_texture[TEXTURE_COUNT];
+} material;
+
+struct Vertex {
+    vec3 position;
+    vec3 normal;
+    vec4 tangent;
+    vec2 uv0;
+    vec2 uv1;
+    vec4 color;
+};
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vertices {
+    Vertex at[];
+};
+
+layout(push_constant, scalar) uniform Draw {
+    Vertices vertices;
+    mat4x3 world_from_object;
+    mat3 normal_ws_from_object;
+    uint attributes;           // ATTRIBUTE_* bits
+    uint primitive_id;
+    uint node_id;
+} draw;
+";

@@ -1,0 +1,4 @@
+//! Specula.
+pub mod interface;
+pub mod settings;
+pub mod gpu;

@@ -1,0 +1,136 @@
+//! Why a model was not loaded, in words for the person who opened it.
+
+use std::path::PathBuf;
+
+/// A model that could not be loaded. Its message is one paragraph: the file, what was expected, what was found, what to do.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", file.display())]
+pub struct LoadError {
+    /// The file as the user gave it, or the name of a built-in model.
+    pub file: PathBuf,
+    /// What is wrong with it.
+    pub problem: Problem,
+}
+
+/// What is wrong with a model.
+#[derive(Debug, thiserror::Error)]
+pub enum Problem {
+    /// The file itself cannot be read.
+    #[error("cannot be read: {0}. Check the path and that the file may be read.")]
+    Read(#[source] std::io::Error),
+    /// The file has no bytes.
+    #[error("is empty. Expected a glTF 2.0 file (.gltf or .glb); copy or export it again.")]
+    Empty,
+    /// Neither JSON nor GLB.
+    #[error(
+        "is not a glTF file: expected JSON text or a binary that begins with `glTF`, found {found}. \
+         Convert the model to glTF 2.0 (.gltf or .glb), for example with Blender's export."
+    )]
+    NotGltf {
+        /// What the first bytes look like.
+        found: String,
+    },
+    /// The GLB container is damaged.
+    #[error("is a damaged GLB: expected {expected}, found {found}. The file may be cut short: copy or export it again.")]
+    Container {
+        /// What a GLB has at this place.
+        expected: String,
+        /// What it has instead.
+        found: String,
+    },
+    /// The JSON does not parse or is not glTF's.
+    #[error("has JSON that does not parse as glTF 2.0: {0}. Export the model again, or correct the line named here.")]
+    Json(#[source] gltf::json::Error),
+    /// Another major version.
+    #[error("needs glTF {found}, expected 2.0. Convert the model to glTF 2.0 (for example with Blender or gltf-pipeline).")]
+    Version {
+        /// `asset.version` or `asset.minVersion`.
+        found: String,
+    },
+    /// `extensionsRequired` names what Specula lacks.
+    #[error(
+        "requires {names}, which Specula does not support, so it would not look as its author meant. \
+         Export it without {pronoun} (supported: {supported})."
+    )]
+    Extensions {
+        /// The missing ones, separated by commas.
+        names: String,
+        /// "it" or "them".
+        pronoun: &'static str,
+        /// All that Specula supports, separated by commas.
+        supported: String,
+    },
+    /// The file contradicts the specification.
+    #[error("is invalid at {place}: expected {expected}, found {found}. Export the model again, or run it through the Khronos glTF validator.")]
+    Invalid {
+        /// The object, as a path into the JSON with its name.
+        place: String,
+        /// What glTF asks for.
+        expected: String,
+        /// What is there.
+        found: String,
+    },
+    /// A URI that is never opened.
+    #[error(
+        "names `{uri}` at {place}: expected a file beside the model or a data: URI, found the scheme `{scheme}:`, which is \
+         never opened. Save that file beside the model and name it by its relative path."
+    )]
+    Scheme {
+        /// The object.
+        place: String,
+        /// The URI, shortened.
+        uri: String,
+        /// Its scheme.
+        scheme: String,
+    },
+    /// A path out of the model's folder.
+    #[error(
+        "names `{uri}` at {place}: expected a file in the model's folder, found a path that leaves it. \
+         Give --allow-outside to read it if you trust this model."
+    )]
+    Outside {
+        /// The object.
+        place: String,
+        /// The URI, decoded.
+        uri: String,
+    },
+    /// A file that the model names cannot be read.
+    #[error("needs the file {}, named at {place}, which cannot be read: {source}. Put it there or export a self-contained .glb.", path.display())]
+    External {
+        /// The object.
+        place: String,
+        /// The resolved path.
+        path: PathBuf,
+        /// Why it cannot be read.
+        source: std::io::Error,
+    },
+    /// An image that does not decode.
+    #[error("has an image that does not decode: {image}, used as {used_by}: expected PNG, JPEG or WebP, found {found}. Save the image again.")]
+    Image {
+        /// Index and name of the image.
+        image: String,
+        /// The material slot.
+        used_by: String,
+        /// The decoder's words.
+        found: String,
+    },
+    /// Nothing visible.
+    #[error("has nothing to draw: expected a scene with at least one mesh, found {found}. Check what was selected when it was exported.")]
+    NothingToDraw {
+        /// What there is.
+        found: String,
+    },
+    /// A panic in the loader or a decoder, caught.
+    #[error("was refused: the loader stopped at something it did not expect ({found}). The file is most likely invalid; please report it with the file.")]
+    Refused {
+        /// The panic's words.
+        found: String,
+    },
+}
+
+impl Problem {
+    /// Shorthand for [`Problem::Invalid`].
+    pub(super) fn invalid(place: impl Into<String>, expected: impl Into<String>, found: impl Into<String>) -> Self {
+        Self::Invalid { place: place.into(), expected: expected.into(), found: found.into() }
+    }
+}

@@ -1,0 +1,100 @@
+//! Buffers and the files they come from.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use gltf::json;
+
+use super::super::error::Problem;
+use super::place;
+use super::uri::{self, Target};
+
+/// Where a model's files are, and which of them were read.
+pub struct Files {
+    /// The model's folder; `None` for a model in memory, which has no files.
+    pub folder: Option<PathBuf>,
+    /// `--allow-outside`.
+    pub allow_outside: bool,
+    /// Every file read so far.
+    pub read: Vec<PathBuf>,
+}
+
+impl Files {
+    /// The bytes that a URI names. `place` is for messages.
+    pub fn load(&mut self, uri: &str, place: &str) -> Result<Vec<u8>, Problem> {
+        let path = match uri::parse(uri, place, self.allow_outside)? {
+            Target::Data(bytes) => return Ok(bytes),
+            Target::File(path) => path,
+        };
+        let Some(folder) = &self.folder else {
+            let found = format!("the external file `{}`", path.display());
+            return Err(Problem::invalid(place, "all data inside of a built-in model", found));
+        };
+        let path = folder.join(path);
+        match read_regular(&path) {
+            Ok(bytes) => {
+                self.read.push(path);
+                Ok(bytes)
+            }
+            Err(source) => Err(Problem::External { place: place.into(), path, source }),
+        }
+    }
+}
+
+/// Reads a file, but no device or pipe, which might never end.
+pub fn read_regular(path: &Path) -> std::io::Result<Vec<u8>> {
+    let kind = std::fs::metadata(path)?;
+    if kind.is_file() { std::fs::read(path) } else { Err(std::io::Error::other("it is not a regular file")) }
+}
+
+/// The contents of all buffers. A buffer without data is only an error when something reads it.
+pub struct Buffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
+
+impl<'a> Buffers<'a> {
+    /// Reads all buffers of a file; `bin` is the GLB's binary chunk.
+    pub fn load(root: &json::Root, bin: Option<&'a [u8]>, files: &mut Files) -> Result<Self, Problem> {
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            let place = place("buffers", index, buffer.name.as_deref());
+            let bytes = match (&buffer.uri, bin) {
+                (Some(uri), _) => Some(Cow::Owned(files.load(uri, &place)?)),
+                (None, Some(bin)) if index == 0 => Some(Cow::Borrowed(bin)),
+                (None, _) => None,
+            };
+            let claimed = buffer.byte_length.0;
+            if let Some(bytes) = &bytes
+                && (bytes.len() as u64) < claimed
+            {
+                return Err(Problem::invalid(place, format!("{claimed} bytes (byteLength)"), format!("{} bytes", bytes.len())));
+            }
+            buffers.push(bytes);
+        }
+        Ok(Self(buffers))
+    }
+
+    /// The bytes of a buffer view.
+    pub fn view(&self, root: &json::Root, view: json::Index<json::buffer::View>, user: &str) -> Result<&[u8], Problem> {
+        let index = view.value();
+        let Some(view) = root.buffer_views.get(index) else {
+            return Err(super::out_of_range(user, "bufferViews", index, root.buffer_views.len()));
+        };
+        let place = place("bufferViews", index, view.name.as_deref());
+        let buffer_index = view.buffer.value();
+        let Some(buffer) = self.0.get(buffer_index) else {
+            return Err(super::out_of_range(&place, "buffers", buffer_index, self.0.len()));
+        };
+        let Some(bytes) = buffer else {
+            let expected = format!("buffers[{buffer_index}] to have a uri or to be the binary chunk of a GLB");
+            return Err(Problem::invalid(place, expected, "neither"));
+        };
+        // `byteLength` holds, not the data's length: what is behind it is padding.
+        let limit = root.buffers[buffer_index].byte_length.0.min(bytes.len() as u64);
+        let start = view.byte_offset.map_or(0, |offset| offset.0);
+        let end = start.checked_add(view.byte_length.0).filter(|&end| end <= limit);
+        let range = end.and_then(|end| Some(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
+        range.and_then(|range| bytes.get(range)).ok_or_else(|| {
+            let found = format!("byteOffset {start} and byteLength {}", view.byte_length.0);
+            Problem::invalid(place, format!("a range inside of the {limit} bytes of buffers[{buffer_index}]"), found)
+        })
+    }
+}

@@ -1,0 +1,144 @@
+//! From bytes to JSON: the GLB container, the version, the extensions.
+
+use gltf::json;
+
+use super::super::error::Problem;
+
+/// Extensions that a model may require.
+pub const SUPPORTED: &[&str] = &[
+    "EXT_texture_webp",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+const MAGIC: &[u8; 4] = b"glTF";
+const HEADER_SIZE: usize = 12;
+const CHUNK_HEADER_SIZE: usize = 8;
+const CHUNK_JSON: u32 = 0x4e4f_534a;
+const CHUNK_BIN: u32 = 0x004e_4942;
+
+/// A parsed file, before anything in it is trusted.
+pub struct Document<'a> {
+    /// The JSON.
+    pub root: json::Root,
+    /// The GLB's binary chunk.
+    pub bin: Option<&'a [u8]>,
+    /// Tolerated oddities.
+    pub warnings: Vec<String>,
+}
+
+/// Parses a `.gltf` or `.glb`, told apart by content.
+pub fn parse(bytes: &[u8]) -> Result<Document<'_>, Problem> {
+    if bytes.is_empty() {
+        return Err(Problem::Empty);
+    }
+    let (text, bin) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (json_text(bytes)?, None) };
+    let root = parse_json(text)?;
+    check_version(&root.asset)?;
+    let warnings = check_extensions(&root)?;
+    Ok(Document { root, bin, warnings })
+}
+
+/// Cuts a GLB into its JSON and binary chunks. Unknown chunks are skipped, as the specification asks.
+fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
+    let broken = |expected: String, found: String| Err(Problem::Container { expected, found });
+    if bytes.len() < HEADER_SIZE {
+        return broken(format!("a header of {HEADER_SIZE} bytes"), format!("a file of {} bytes", bytes.len()));
+    }
+    let version = u32_at(bytes, 4);
+    if version != 2 {
+        return Err(Problem::Version { found: format!("{version} (in the GLB header)") });
+    }
+    let length = u32_at(bytes, 8) as usize;
+    if length < HEADER_SIZE + CHUNK_HEADER_SIZE {
+        return broken("a length in the header that holds at least one chunk".into(), format!("{length} bytes"));
+    }
+    let Some(mut rest) = bytes.get(HEADER_SIZE..length) else {
+        return broken(format!("{length} bytes as its header says"), format!("a file of {} bytes", bytes.len()));
+    };
+    let mut chunks = Vec::new();
+    // Up to three bytes of padding may follow the last chunk.
+    while rest.len() >= CHUNK_HEADER_SIZE {
+        let (size, kind) = (u32_at(rest, 0) as usize, u32_at(rest, 4));
+        let body = &rest[CHUNK_HEADER_SIZE..];
+        if size > body.len() {
+            return broken(format!("a chunk of {size} bytes as its header says"), format!("{} bytes", body.len()));
+        }
+        let (chunk, after) = body.split_at(size);
+        chunks.push((kind, chunk));
+        rest = after;
+    }
+    match chunks.as_slice() {
+        [(CHUNK_JSON, text), (CHUNK_BIN, bin), ..] => Ok((text, Some(bin))),
+        [(CHUNK_JSON, text), ..] => Ok((text, None)),
+        _ => broken("a JSON chunk first".into(), "none".into()),
+    }
+}
+
+fn u32_at(bytes: &[u8], offset: usize) -> u32 {
+    u32::from_le_bytes([bytes[offset], bytes[offset + 1], bytes[offset + 2], bytes[offset + 3]])
+}
+
+/// Refuses what cannot be JSON text with words that help more than a parser's "line 1 column 1".
+fn json_text(bytes: &[u8]) -> Result<&[u8], Problem> {
+    // A byte order mark is forbidden by glTF and common in practice.
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match text.iter().find(|byte| !byte.is_ascii_whitespace()) {
+        Some(b'{') => Ok(text),
+        None => Err(Problem::NotGltf { found: "only white space".into() }),
+        Some(_) => {
+            let start: String = text.iter().take(16).map(|&byte| char::from(byte)).collect();
+            Err(Problem::NotGltf { found: format!("`{}`", start.escape_default()) })
+        }
+    }
+}
+
+fn parse_json(text: &[u8]) -> Result<json::Root, Problem> {
+    json::deserialize::from_slice(text).or_else(|error| repair(text).ok_or(Problem::Json(error)))
+}
+
+/// A scene without `nodes` is valid, but not for the parser: gives it an empty list.
+fn repair(text: &[u8]) -> Option<json::Root> {
+    let mut value: json::Value = json::deserialize::from_slice(text).ok()?;
+    for scene in value.get_mut("scenes")?.as_array_mut()? {
+        scene.as_object_mut()?.entry("nodes").or_insert_with(|| json::Value::Array(Vec::new()));
+    }
+    json::deserialize::from_value(value).ok()
+}
+
+/// Accepts 2.x; `minVersion`, when present, must be one that this loader implements.
+fn check_version(asset: &json::Asset) -> Result<(), Problem> {
+    let number = |text: &str| {
+        let (major, minor) = text.split_once('.')?;
+        Some((major.parse::<u32>().ok()?, minor.parse::<u32>().ok()?))
+    };
+    let accepted = match &asset.min_version {
+        Some(minimum) => number(minimum) == Some((2, 0)),
+        None => matches!(number(&asset.version), Some((2, _))),
+    };
+    let named = asset.min_version.as_ref().unwrap_or(&asset.version);
+    if accepted { Ok(()) } else { Err(Problem::Version { found: format!("`{}`", named.escape_default()) }) }
+}
+
+/// Required extensions that are missing are an error; used ones a warning each.
+fn check_extensions(root: &json::Root) -> Result<Vec<String>, Problem> {
+    let missing = |names: &[String]| {
+        let mut names: Vec<String> = names.iter().filter(|n| !SUPPORTED.contains(&n.as_str())).cloned().collect();
+        names.sort();
+        names.dedup();
+        names
+    };
+    let required = missing(&root.extensions_required);
+    if !required.is_empty() {
+        return Err(Problem::Extensions {
+            names: required.join(", "),
+            pronoun: if required.len() == 1 { "it" } else { "them" },
+            supported: SUPPORTED.join(", "),
+        });
+    }
+    let ignored = |name| format!("The extension {name} is ignored: Specula does not support it, so the model may look different.");
+    Ok(missing(&root.extensions_used).into_iter().map(ignored).collect())
+}

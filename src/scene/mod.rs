@@ -1,0 +1,42 @@
+//! CPU data only: models, lights, camera. Knows no Vulkan; what it makes, `render` uploads.
+//!
+//! [`load`] turns a glTF file into a [`Model`] whose indices and numbers can be trusted: everything behind it may index and
+//! divide without checks of its own. All that a file can get wrong ends in a [`LoadError`] or a warning of the model.
+
+mod camera;
+mod control;
+mod error;
+mod gltf;
+mod lights;
+mod model;
+
+use std::path::{Path, PathBuf};
+
+pub use camera::{View, frame};
+pub use control::{FlyCamera, OrbitCamera};
+pub use error::{LoadError, Problem};
+pub use lights::lights;
+pub use model::*;
+
+/// What a load may do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Read files that the model names by absolute paths or outside of its own folder (`--allow-outside`).
+    pub allow_outside: bool,
+}
+
+/// Loads a `.gltf` or `.glb` file, told apart by content.
+///
+/// # Errors
+/// When the file or one that it names cannot be read, is invalid, or needs what Specula lacks. Never panics on any content.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
+    gltf::load_file(path, options).map_err(|problem| LoadError { file: path.to_owned(), problem })
+}
+
+/// Loads a self-contained model from memory: a `.glb`, or JSON with data URIs. `name` is for messages and the model.
+///
+/// # Errors
+/// As [`load`]; external files are refused.
+pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Model, LoadError> {
+    gltf::load_memory(name, bytes).map_err(|problem| LoadError { file: PathBuf::from(name), problem })
+}

@@ -1,0 +1,242 @@
+//! What went wrong, where, and what to do about it: printed as a line for editors and as an excerpt for people.
+
+use std::fmt;
+use std::ops::Range;
+
+use codespan_reporting::diagnostic::{Diagnostic as Rendered, Label, Severity as RenderedSeverity};
+use codespan_reporting::files::{Error as FilesError, Files};
+use codespan_reporting::term;
+use serde::Serialize;
+
+/// Whether the shader set may be used all the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// The edit is refused.
+    Error,
+    /// The edit is shown.
+    Warning,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        })
+    }
+}
+
+/// One message about one place.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+pub struct Diagnostic {
+    /// Error or warning.
+    pub severity: Severity,
+    /// The file as printed, see `Source::display_path`.
+    pub file: String,
+    /// 1-based; none when the message is about the file as a whole.
+    pub line: Option<u32>,
+    /// 1-based, in characters; none when only the line is known.
+    pub column: Option<u32>,
+    /// How many characters the caret spans; 0 without a column.
+    pub length: u32,
+    /// What is wrong: expected and found.
+    pub message: String,
+    /// The line of source, as written.
+    pub excerpt: Option<String>,
+    /// What to do next.
+    pub help: Option<String>,
+    /// Further facts: the other place of a conflict, the include chain.
+    pub notes: Vec<String>,
+}
+
+impl Diagnostic {
+    /// An error about a file as a whole; [`Self::on_line`] and [`Self::under`] narrow it down.
+    pub fn error(file: impl Into<String>, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            file: file.into(),
+            line: None,
+            column: None,
+            length: 0,
+            message: message.into(),
+            excerpt: None,
+            help: None,
+            notes: Vec::new(),
+        }
+    }
+
+    /// A warning about a file as a whole.
+    pub fn warning(file: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(file, message) }
+    }
+
+    /// Sets the 1-based line and the source text found there.
+    #[must_use]
+    pub fn on_line(mut self, line: u32, source: Option<&str>) -> Self {
+        self.line = Some(line);
+        self.excerpt = source.map(str::to_owned);
+        self
+    }
+
+    /// Puts the caret under a byte range of the excerpt. Without an excerpt, or outside it, nothing changes.
+    #[must_use]
+    pub fn under(mut self, bytes: Range<usize>) -> Self {
+        let Some(excerpt) = &self.excerpt else { return self };
+        let (Some(before), Some(token)) = (excerpt.get(..bytes.start), excerpt.get(bytes)) else { return self };
+        let count = |text: &str| u32::try_from(text.chars().count()).unwrap_or(u32::MAX - 1);
+        self.column = Some(count(before) + 1);
+        self.length = count(token).max(1);
+        self
+    }
+
+    /// Says what to do.
+    #[must_use]
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Adds a fact.
+    #[must_use]
+    pub fn with_note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// `file:line:column: error: message`, leaving out what is not known. Editors parse this.
+    pub fn one_line(&self) -> String {
+        let place = match (self.line, self.column) {
+            (Some(line), Some(column)) => format!("{}:{line}:{column}", self.file),
+            (Some(line), None) => format!("{}:{line}", self.file),
+            _ => self.file.clone(),
+        };
+        format!("{place}: {}: {}", self.severity, self.message.replace('\n', " "))
+    }
+
+    /// Several lines of plain text: the message, the place, the line of source with a caret, help and notes.
+    pub fn render(&self) -> String {
+        let severity = match self.severity {
+            Severity::Error => RenderedSeverity::Error,
+            Severity::Warning => RenderedSeverity::Warning,
+        };
+        let mut rendered = Rendered::new(severity).with_message(&self.message);
+        let excerpt = OneLine { file: &self.file, line: self.line.unwrap_or(1), text: self.excerpt.as_deref() };
+        match self.caret_bytes() {
+            Some(bytes) => rendered.labels.push(Label::primary((), bytes)),
+            None => rendered.notes.push(match self.line {
+                Some(line) => format!("at {}:{line}", self.file),
+                None => format!("in {}", self.file),
+            }),
+        }
+        rendered.notes.extend(self.help.iter().map(|help| format!("help: {help}")));
+        rendered.notes.extend(self.notes.iter().map(|note| format!("note: {note}")));
+        let config = term::Config { chars: term::Chars::ascii(), ..term::Config::default() };
+        match term::emit_into_string(&config, &excerpt, &rendered) {
+            Ok(text) => text.trim_end().to_owned() + "\n",
+            // Only a range outside the excerpt could fail, and `under` lets none in; say the essential all the same.
+            Err(_) => self.one_line() + "\n",
+        }
+    }
+
+    /// What the caret spans: the token, or the line without its indentation.
+    fn caret_bytes(&self) -> Option<Range<usize>> {
+        let excerpt = self.excerpt.as_deref()?;
+        self.line?;
+        let byte = |character: u32| excerpt.char_indices().nth(character as usize).map_or(excerpt.len(), |(at, _)| at);
+        Some(match self.column {
+            Some(column) => byte(column - 1)..byte(column - 1 + self.length),
+            None => excerpt.len() - excerpt.trim_start().len()..excerpt.trim_end().len().max(1).min(excerpt.len()),
+        })
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.one_line())
+    }
+}
+
+/// Drops repetitions (several stages include the same broken file), keeping the order.
+pub fn unique(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut seen = std::collections::HashSet::new();
+    diagnostics.into_iter().filter(|diagnostic| seen.insert(diagnostic.clone())).collect()
+}
+
+/// A file of which only one line is at hand.
+struct OneLine<'a> {
+    file: &'a str,
+    line: u32,
+    text: Option<&'a str>,
+}
+
+impl<'a> Files<'a> for OneLine<'a> {
+    type FileId = ();
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, (): ()) -> Result<&'a str, FilesError> {
+        Ok(self.file)
+    }
+
+    fn source(&'a self, (): ()) -> Result<&'a str, FilesError> {
+        Ok(self.text.unwrap_or_default())
+    }
+
+    fn line_index(&'a self, (): (), _byte: usize) -> Result<usize, FilesError> {
+        Ok(0)
+    }
+
+    fn line_number(&'a self, (): (), _index: usize) -> Result<usize, FilesError> {
+        Ok(self.line as usize)
+    }
+
+    fn line_range(&'a self, (): (), index: usize) -> Result<Range<usize>, FilesError> {
+        match index {
+            0 => Ok(0..self.text.unwrap_or_default().len()),
+            given => Err(FilesError::LineTooLarge { given, max: 0 }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_line_is_what_editors_parse() {
+        let diagnostic = Diagnostic::error("pbr.frag", "'foo' : undeclared identifier");
+        assert_eq!(diagnostic.one_line(), "pbr.frag: error: 'foo' : undeclared identifier");
+        let diagnostic = diagnostic.on_line(3, Some("  x = foo;"));
+        assert_eq!(diagnostic.one_line(), "pbr.frag:3: error: 'foo' : undeclared identifier");
+        assert_eq!(diagnostic.under(6..9).one_line(), "pbr.frag:3:7: error: 'foo' : undeclared identifier");
+    }
+
+    #[test]
+    fn the_caret_stands_under_the_token() {
+        for source in ["x = foo;", "\t\tx = foo;", "/* äöü */ x = foo;", "  x = foo; // 日本"] {
+            let at = source.find("foo").unwrap();
+            let text = Diagnostic::error("a.frag", "m").on_line(12, Some(source)).under(at..at + 3).render();
+            let lines: Vec<&str> = text.lines().collect();
+            let row = lines.iter().position(|line| line.contains("^^^")).unwrap();
+            let column = |line: &str, what: &str| line[..line.find(what).unwrap()].chars().count();
+            assert_eq!(column(lines[row], "^^^"), column(lines[row - 1], "foo"), "{text}");
+            assert!(text.contains("a.frag:12:"), "{text}");
+            assert!(lines[row - 1].starts_with("12 "), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_message_without_a_place_names_its_file() {
+        let text = Diagnostic::warning("a.frag", "m").with_help("h").with_note("n").render();
+        assert_eq!(text, "warning: m\n = in a.frag\n = help: h\n = note: n\n");
+        let text = Diagnostic::error("a.frag", "m").on_line(9, None).render();
+        assert_eq!(text, "error: m\n = at a.frag:9\n");
+    }
+
+    #[test]
+    fn an_empty_line_is_no_trouble() {
+        let text = Diagnostic::error("a.frag", "m").on_line(1, Some("")).render();
+        assert!(text.starts_with("error: m"), "{text}");
+    }
+}

@@ -1,0 +1,31 @@
+//! Files to SPIR-V: shader trees, compilation, diagnostics, annotations and the check against the contract.
+//!
+//! Knows no Vulkan device and no scene. The way of an edit:
+//! [`watch`] delivers settled sets of changed paths; [`library`] finds the dirty stages through the include graph, compiles
+//! them ([`compile`]), reflects the modules ([`reflect`]), holds them against the contract ([`contract`]) and reads the
+//! author's annotations ([`annotation`]); out comes either a whole new [`ShaderSet`] or [`Diagnostic`]s, never a mixture.
+
+pub mod annotation;
+mod annotation_parse;
+pub mod check;
+pub mod compile;
+pub mod contract;
+mod declared;
+pub mod diagnostic;
+pub mod embedded;
+pub mod include;
+mod layout;
+pub mod library;
+pub mod log;
+pub mod reflect;
+pub mod snapshot;
+pub mod source;
+mod text;
+pub mod watch;
+
+pub use annotation::{Constant, Encode, Mode, Parameter};
+pub use compile::{Compiler, StageKind};
+pub use diagnostic::{Diagnostic, Severity};
+pub use library::{Change, Library, Report, ShaderSet, Stage, Update};
+pub use source::{Source, SourceError, TreePath};
+pub use watch::{Batch, Watcher};
