@@ -23,7 +23,7 @@ void main() {
     vec3 value;
     float coverage = 1.0;
     if (!debug_value(fragment, surface, v, value)) {
-        value = outgoing_radiance(surface, v);
+        value = outgoing_radiance(surface, v, all_lights());
         if (ALPHA_MODE == ALPHA_BLEND) coverage = surface.coverage;
     }
     out_color = vec4(min(value, LARGEST_HALF) * coverage, coverage);

@@ -15,6 +15,7 @@
 #ifndef BRDF_EVALUATE_GLSL
 #define BRDF_EVALUATE_GLSL
 
+#include "interface.glsl"
 #include "brdf/diffuse.glsl"
 #include "brdf/fresnel.glsl"
 #include "brdf/ndf.glsl"

@@ -5,8 +5,8 @@
 #include "common/math.glsl"
 
 // F = F0 + (1 - F0) (1 - VoH)^5 (Schlick 1994, eq. 15), the angle taken to the microfacet's normal h. VoH = 1 -> F0.
-// Within 1 % of the full equations for an index of refraction near 1.5; metals such as aluminum dip before they rise, and
-// this does not.
+// Glass (index of refraction 1.5): off the full equations by at most 0.036, at 85 degrees. Metals such as aluminum dip
+// before they rise; this does not.
 float f_schlick(float f0, float v_dot_h) { return f0 + (1.0 - f0) * pow5(1.0 - v_dot_h); }
 vec3 f_schlick(vec3 f0, float v_dot_h) { return f0 + (1.0 - f0) * pow5(1.0 - v_dot_h); }
 

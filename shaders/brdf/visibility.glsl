@@ -18,14 +18,14 @@ layout(constant_id = USER_CONSTANTS + 0) const uint MASKING_SHADOWING = 0u;   //
 float smith_root(float c, float a2) { return sqrt(c * c * (1.0 - a2) + a2); }
 
 // G = 1 / (1 + Lambda(l) + Lambda(v)) (Heitz 2014, eq. 99): a facet high enough to see the light is likely high enough to
-// be seen. alpha -> 0: V = 1 / (4 NoL NoV). Finite for NoL = NoV = 0 only if alpha > 0, hence MIN_ALPHA and MIN_N_DOT_V.
+// be seen. alpha -> 0: V = 1 / (4 NoL NoV). NoL = 0 leaves NoV alpha below the line: MIN_N_DOT_V and MIN_ALPHA keep it > 0.
 float v_smith_height_correlated(float n_dot_l, float n_dot_v, float alpha) {
     float a2 = alpha * alpha;
     return 0.5 / (n_dot_v * smith_root(n_dot_l, a2) + n_dot_l * smith_root(n_dot_v, a2));
 }
 
 // G = G1(l) G1(v) with G1 = 2 c / (c + smith_root) (Walter et al. 2007, eq. 23 and 34; Heitz 2014, eq. 98; glTF 2.0,
-// appendix B.3.2): as if the light and the eye had nothing to do with each other. Darker at grazing angles, at most by half.
+// appendix B.3.2): as if the light and the eye had nothing to do with each other. Darker at grazing angles.
 float v_smith_separable(float n_dot_l, float n_dot_v, float alpha) {
     float a2 = alpha * alpha;
     return 1.0 / ((n_dot_l + smith_root(n_dot_l, a2)) * (n_dot_v + smith_root(n_dot_v, a2)));

@@ -60,8 +60,8 @@ vec3 tonemap_agx(vec3 x) {
     return pow(max(outset * bent, 0.0), vec3(2.2));
 }
 
-// Khronos PBR Neutral (2024): below 0.8 the base color under grey light comes out as it went in, less 0.04 of Fresnel; above, the peak
-// is compressed towards 1 and the color fades to white.
+// Khronos PBR Neutral (2024): a color below 0.76 comes out as it went in, less the 0.04 that a dielectric reflects of white
+// surroundings, so that products look like their base color. Above, the peak bends towards 1 and the color fades to white.
 vec3 tonemap_neutral(vec3 x) {
     const float start = 0.8 - 0.04, desaturation = 0.15;
     float low = min_component(x);

@@ -22,6 +22,15 @@ struct LightRange {
 
 LightRange all_lights() { return LightRange(0u, frame.light_count); }
 
+// What the debug modes of one light look at: the chosen light, or all. Empty if there is none; unlit materials know none.
+LightRange chosen_lights() {
+    uint end = (FEATURES & FEATURE_UNLIT) != 0u ? 0u : frame.light_count;
+    if (frame.chosen_light == 0u) return LightRange(0u, end);
+    return LightRange(frame.chosen_light - 1u, min(frame.chosen_light, end));
+}
+
+bool is_empty(LightRange range) { return range.first >= range.end; }
+
 // L = sum over lights of f E NoL, E being the irradiance on a plane that faces the light.
 Lit shade(Surface s, vec3 v, LightRange range) {
     Lit lit = Lit(vec3(0.0), vec3(0.0), ambient_radiance(s));

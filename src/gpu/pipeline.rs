@@ -77,7 +77,6 @@ pub struct Pipeline {
     gpu: Arc<Gpu>,
     _layouts: Arc<SetLayouts>,
     pub(super) raw: vk::Pipeline,
-    pub(super) depth: bool,
 }
 
 impl Pipeline {
@@ -155,7 +154,7 @@ impl Pipeline {
         // synchronized.
         let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None) };
         let raw = made.map_err(|(_, result)| result).context("creating a pipeline")?[0];
-        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw, depth: desc.depth }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw }))
     }
 }
 

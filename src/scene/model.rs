@@ -73,6 +73,18 @@ impl Bounds {
         !(self.min.x <= self.max.x)
     }
 
+    /// The eight corners.
+    pub fn corners(&self) -> [Vec3; 8] {
+        let pick = |bit: usize, min: f32, max: f32| if bit == 0 { min } else { max };
+        std::array::from_fn(|i| {
+            Vec3::new(
+                pick(i & 1, self.min.x, self.max.x),
+                pick(i & 2, self.min.y, self.max.y),
+                pick(i & 4, self.min.z, self.max.z),
+            )
+        })
+    }
+
     /// Middle of the box; the origin when empty.
     pub fn center(&self) -> Vec3 {
         if self.is_empty() { Vec3::ZERO } else { (self.min + self.max) * 0.5 }

@@ -125,7 +125,7 @@ impl<'a> Reader<'a> {
                 // `view` has checked the index.
                 let stride = self.root.buffer_views[view.value()].byte_stride.map_or(size, |stride| stride.0);
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                strided(bytes, offset, *count, size, stride, place)?.map(decode_with(&decode, size)).collect()
+                strided(bytes, offset, *count, size, stride, place)?.map(|bytes| decode(&bytes[..size])).collect()
             }
             None if *count as u64 <= MAX_ZEROS => vec![zero; *count],
             None => {
@@ -171,11 +171,6 @@ impl<'a> Reader<'a> {
         }
         Ok(())
     }
-}
-
-/// Cuts every element to its size: a stride's chunk is longer.
-fn decode_with<T>(decode: &impl Fn(&[u8]) -> T, size: usize) -> impl Fn(&[u8]) -> T {
-    move |bytes| decode(&bytes[..size])
 }
 
 /// The elements of a buffer view, each at least `size` bytes long, after checking that all of them lie inside.

@@ -1,0 +1,23 @@
+// The debug override. MODE is a specialization constant: the driver keeps the one branch that is taken, drops the others,
+// and with them every texture and light that only they read.
+#ifndef DEBUG_DEBUG_GLSL
+#define DEBUG_DEBUG_GLSL
+
+#include "interface.glsl"
+#include "common/fragment.glsl"
+#include "debug/geometry.glsl"
+#include "debug/light.glsl"
+#include "debug/surface.glsl"
+#include "debug/terms.glsl"
+#include "debug/truth.glsl"
+
+// Whether MODE shows a value of its own; if not, the picture is shown. Each function answers for one group of modes.
+bool debug_value(Fragment f, Surface s, vec3 v, out vec3 value) {
+    if (debug_geometry(f, s, v, value)) return true;
+    if (debug_surface(f, s, value)) return true;
+    if (debug_terms(s, v, value)) return true;
+    if (debug_light(s, v, value)) return true;
+    return debug_truth(s, v, value);
+}
+
+#endif

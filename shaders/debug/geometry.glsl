@@ -1,0 +1,64 @@
+// Modes of the group Geometry: the mesh and its textures' footprint.
+#ifndef DEBUG_GEOMETRY_GLSL
+#define DEBUG_GEOMETRY_GLSL
+
+#include "interface.glsl"
+#include "brdf/surface.glsl"
+#include "common/color.glsl"
+#include "common/fragment.glsl"
+#include "debug/absent.glsl"
+#include "debug/modes.glsl"
+#include "material.glsl"
+
+const vec3 GOOD = vec3(0.05, 0.5, 0.1);
+const vec3 BAD = vec3(0.8, 0.06, 0.03);
+
+bool has_attribute(uint bit) { return (draw.attributes & bit) != 0u; }
+
+// The level that the base color texture is read at; half way up the scale is level 4.
+vec3 mip_level_color(Fragment f) {
+    return heat(textureQueryLod(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR)).x / 8.0);
+}
+
+// Area in texels over area in the world, both of one pixel: its root is texels per metre. Shown from 2^4 to 2^14.
+vec3 texel_density_color(Fragment f) {
+    vec2 texel = texture_uv(f, TEXTURE_BASE_COLOR) * vec2(textureSize(base_color_texture, 0));
+    float texels = abs(determinant(mat2(dFdx(texel), dFdy(texel))));
+    float area = length(cross(dFdx(f.position_ws), dFdy(f.position_ws)));
+    float density_log2 = 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));   // 1e-20: a triangle without area, in either
+    return heat((density_log2 - 4.0) / 10.0);
+}
+
+// The plane of the triangle, on the viewer's side. `v` where it is seen edge-on and the derivatives vanish.
+vec3 facet_normal(Fragment f, vec3 v) {
+    vec3 n = safe_normalize(cross(dFdx(f.position_ws), dFdy(f.position_ws)), v);
+    return dot(n, v) < 0.0 ? -n : n;
+}
+
+bool debug_geometry(Fragment f, Surface s, vec3 v, out vec3 value) {
+    bool has_frame = has_attribute(ATTRIBUTE_TANGENT_FRAME);
+    bool has_base_color = has_texture(TEXTURE_BASE_COLOR);
+    bool known = true;
+    if (MODE == MODE_POSITION) value = f.position_ws;
+    else if (MODE == MODE_DEPTH) value = vec3(-(frame.view_from_world * vec4(f.position_ws, 1.0)).z);
+    else if (MODE == MODE_GEOMETRIC_NORMAL) value = geometric_normal(f, v);
+    else if (MODE == MODE_SHADING_NORMAL) value = s.n;
+    else if (MODE == MODE_FACET_NORMAL) value = facet_normal(f, v);
+    else if (MODE == MODE_TANGENT) value = if_present(has_frame, safe_normalize(f.tangent_ws.xyz, vec3(0.0)));
+    else if (MODE == MODE_BITANGENT) value = if_present(has_frame, safe_normalize(bitangent_ws(f), vec3(0.0)));
+    else if (MODE == MODE_TANGENT_SIGN) value = if_present(has_frame, f.tangent_ws.w < 0.0 ? BAD : GOOD);
+    else if (MODE == MODE_UV0) value = if_present(has_attribute(ATTRIBUTE_UV0), vec3(f.uv0, 0.0));
+    else if (MODE == MODE_UV1) value = if_present(has_attribute(ATTRIBUTE_UV1), vec3(f.uv1, 0.0));
+    else if (MODE == MODE_VERTEX_COLOR) value = if_present(has_attribute(ATTRIBUTE_COLOR), f.color.rgb);
+    else if (MODE == MODE_FACE_ORIENTATION) value = gl_FrontFacing ? GOOD : BAD;
+    else if (MODE == MODE_TRIANGLE_ID) value = color_from_id(uint(gl_PrimitiveID));
+    else if (MODE == MODE_MESH_ID) value = color_from_id(draw.primitive_id);
+    else if (MODE == MODE_NODE_ID) value = color_from_id(draw.node_id);
+    else if (MODE == MODE_MATERIAL_ID) value = color_from_id(material.id);
+    else if (MODE == MODE_MIP_LEVEL) value = if_present(has_base_color, mip_level_color(f));
+    else if (MODE == MODE_TEXEL_DENSITY) value = if_present(has_base_color, texel_density_color(f));
+    else known = false;
+    return known;
+}
+
+#endif

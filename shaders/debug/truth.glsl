@@ -1,0 +1,74 @@
+// Modes of the group Truth: what cannot be, or should not be. What is well stays dark, so that a single pixel shows.
+#ifndef DEBUG_TRUTH_GLSL
+#define DEBUG_TRUTH_GLSL
+
+#include "interface.glsl"
+#include "brdf/surface.glsl"
+#include "common/color.glsl"
+#include "debug/modes.glsl"
+#include "lighting/radiance.glsl"
+
+const vec3 TOO_LOW = vec3(0.05, 0.15, 1.0);
+const vec3 TOO_HIGH = vec3(1.0, 0.06, 0.03);
+
+// The picture behind a warning: its luminance, squeezed below 1/4.
+vec3 dimmed(vec3 radiance) {
+    float seen = max(luminance(radiance) * frame.exposure, 0.0);
+    return vec3(0.25 * seen / (1.0 + seen));
+}
+
+vec3 nan_color(vec3 radiance) {
+    if (any(isnan(radiance))) return vec3(1.0, 0.0, 1.0);
+    if (any(isinf(radiance))) return vec3(1.0, 1.0, 0.0);
+    if (any(lessThan(radiance, vec3(0.0)))) return vec3(0.0, 1.0, 1.0);
+    return dimmed(radiance);
+}
+
+vec3 negative_color(vec3 radiance) {
+    bvec3 below = lessThan(radiance, vec3(0.0));
+    return any(below) ? vec3(below) : dimmed(radiance);
+}
+
+vec3 clipped_color(vec3 radiance) {
+    bvec3 above = greaterThan(radiance * frame.exposure, vec3(1.0));
+    return any(above) ? vec3(above) : dimmed(radiance);
+}
+
+// Stops above and below 18 % gray, the reflectance that a light meter takes for the mean of a scene: -6 .. +6.
+vec3 false_color(vec3 radiance) {
+    float seen = max(luminance(radiance) * frame.exposure, 1e-6);   // 1e-6: log2 of black is -infinity; 17 stops down is far off the scale
+    return heat((log2(seen / 0.18) + 6.0) / 12.0);
+}
+
+// No common dielectric is darker than charcoal (sRGB 30) or lighter than fresh snow (240) (McDermott 2018, The PBR Guide). A
+// metal's base color is not an albedo, so the more metal, the less is said: half and above, nothing.
+vec3 albedo_range_color(Surface s) {
+    vec3 srgb = srgb_from_linear(s.base_color) * 255.0;
+    if (s.metallic < 0.5 && max_component(srgb) < 30.0) return TOO_LOW;
+    if (s.metallic < 0.5 && max_component(srgb) > 240.0) return TOO_HIGH;
+    return vec3(0.25 * luminance(s.base_color));
+}
+
+// Dielectrics reflect 2 to 5 % along the normal, metals 70 % and more of sRGB, that is 180 (McDermott 2018). Nothing common lies between:
+// a metal this dark is dirt or rust, which are dielectric, and `metallic` says so.
+vec3 f0_range_color(Surface s) {
+    float f0 = max_component(mix(vec3(DIELECTRIC_F0), s.base_color, s.metallic));
+    if (f0 < 0.02) return TOO_LOW;
+    float metal = linear_from_srgb(vec3(180.0 / 255.0)).r;
+    if (f0 > 0.05 && f0 < metal) return TOO_HIGH;
+    return vec3(0.25 * f0);
+}
+
+bool debug_truth(Surface s, vec3 v, out vec3 value) {
+    bool known = true;
+    if (MODE == MODE_NAN) value = nan_color(outgoing_radiance(s, v, all_lights()));
+    else if (MODE == MODE_NEGATIVE) value = negative_color(outgoing_radiance(s, v, all_lights()));
+    else if (MODE == MODE_CLIPPED) value = clipped_color(outgoing_radiance(s, v, all_lights()));
+    else if (MODE == MODE_FALSE_COLOR) value = false_color(outgoing_radiance(s, v, all_lights()));
+    else if (MODE == MODE_ALBEDO_RANGE) value = albedo_range_color(s);
+    else if (MODE == MODE_F0_RANGE) value = f0_range_color(s);
+    else known = false;
+    return known;
+}
+
+#endif

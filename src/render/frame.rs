@@ -1,0 +1,291 @@
+//! One frame, from the wait for its slot to its picture on the screen or in memory.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::gpu::{
+    Attachments, DescriptorSet, Encoder, Frames, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc,
+    SetLayouts, SetWriter, Swapchain, UiRenderer, Use, vk,
+};
+use crate::interface::{ALPHA_BLEND, SET_PASS};
+
+use super::capture::{Capture, Readback};
+use super::pipelines::PipelineSet;
+use super::scene::{GpuDraw, GpuScene};
+use super::shot::Shot;
+use super::targets::Targets;
+use super::uniforms::Uniforms;
+use super::wanted::Wanted;
+
+/// What to draw.
+#[derive(Clone, Copy)]
+pub struct FrameInput<'a> {
+    /// Camera, lights and values.
+    pub shot: &'a Shot,
+    /// Which pipelines; `pipelines` has them all.
+    pub wanted: &'a Wanted,
+    /// One generation of shaders.
+    pub pipelines: &'a PipelineSet,
+    /// The model; `None` draws the background alone.
+    pub scene: Option<&'a GpuScene>,
+    /// Where in the output the picture goes.
+    pub rect: Rect,
+}
+
+/// egui's output for a frame.
+pub struct UiFrame<'a> {
+    /// Its renderer.
+    pub renderer: &'a mut UiRenderer,
+    /// What to draw.
+    pub primitives: &'a [egui::ClippedPrimitive],
+    /// Pixels of a point.
+    pub pixels_per_point: f32,
+}
+
+/// Where a frame goes.
+pub enum Target<'a> {
+    /// To a window, with the user interface over it.
+    Window(&'a mut Swapchain, UiFrame<'a>),
+    /// To memory: picture and raw HDR values.
+    Memory,
+}
+
+/// What became of a frame.
+pub enum Drawn {
+    /// It is on its way to the screen. `fits` is false when the swapchain must be made anew.
+    Shown {
+        /// Whether the swapchain still fits the window.
+        fits: bool,
+    },
+    /// The swapchain gave no image; make it anew and draw again.
+    NoImage,
+    /// It is in memory.
+    Captured(Capture),
+}
+
+/// Draws frames.
+pub struct Renderer {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    frames: Frames,
+    uniforms: Vec<Uniforms>,
+    targets: Option<(Targets, Arc<DescriptorSet>)>,
+    nearest: Arc<Sampler>,
+    scene_format: vk::Format,
+}
+
+impl Renderer {
+    /// Frame slots: while the device draws one, the CPU prepares the next.
+    pub const IN_FLIGHT: usize = 2;
+    /// Format of every picture.
+    pub const OUTPUT_FORMAT: vk::Format = Swapchain::FORMAT;
+
+    /// Makes a renderer whose HDR targets have `scene_format`: half floats for a window, full floats to measure.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, scene_format: vk::Format) -> Result<Self, GpuError> {
+        let nearest = SamplerDesc {
+            mag: vk::Filter::NEAREST,
+            min: vk::Filter::NEAREST,
+            mip: vk::SamplerMipmapMode::NEAREST,
+            mips: false,
+            wrap_u: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+            wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+            anisotropy: 1,
+        };
+        Ok(Self {
+            gpu: gpu.clone(),
+            layouts: layouts.clone(),
+            frames: Frames::new(gpu, Self::IN_FLIGHT)?,
+            uniforms: (0..Self::IN_FLIGHT).map(|_| Uniforms::new(gpu, layouts, 0)).collect::<Result<_, _>>()?,
+            targets: None,
+            nearest: Sampler::new(gpu, &nearest)?,
+            scene_format,
+        })
+    }
+
+    /// Format of the HDR targets.
+    pub fn scene_format(&self) -> vk::Format {
+        self.scene_format
+    }
+
+    /// Device time of the newest finished frame, milliseconds.
+    pub fn device_ms(&self) -> Option<f64> {
+        self.frames.last_device_ms()
+    }
+
+    /// SYNC: waits for all frames in flight, before egui's textures change.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn wait_for_frames(&mut self) -> Result<(), GpuError> {
+        self.frames.wait_all()
+    }
+
+    /// Draws one frame.
+    ///
+    /// # Errors
+    /// The device is lost or out of memory.
+    pub fn frame(&mut self, input: FrameInput<'_>, mut target: Target<'_>) -> Result<Drawn, GpuError> {
+        let size = (input.rect.width.max(1), input.rect.height.max(1));
+
+        // A slot whose last frame is done; then an image to draw to.
+        let mut encoder = self.frames.begin()?;
+        let acquired = match &mut target {
+            Target::Window(swapchain, _) => match swapchain.acquire()? {
+                Some(acquired) => Some(acquired),
+                None => {
+                    self.frames.submit(encoder, Default::default())?;
+                    return Ok(Drawn::NoImage);
+                }
+            },
+            Target::Memory => None,
+        };
+        let output = match &acquired {
+            Some(acquired) => acquired.image.clone(),
+            None => self.output_image(size)?,
+        };
+
+        // What the shaders read.
+        self.resize_targets(size, input.wanted.samples)?;
+        let slot = self.frames.current();
+        if self.uniforms[slot].light_capacity() < input.shot.lights.len() {
+            self.uniforms[slot] = Uniforms::new(&self.gpu, &self.layouts, input.shot.lights.len())?;
+        }
+        let uniforms = &self.uniforms[slot];
+        uniforms.write(&input.shot.uniforms(input.rect), &input.shot.lights, &input.shot.params);
+        encoder.bind_set(&self.layouts, &uniforms.set);
+
+        // The model, to HDR.
+        let Some((targets, hdr_set)) = &self.targets else { return Ok(Drawn::NoImage) };
+        draw_model(&mut encoder, &self.layouts, targets, &input);
+
+        // HDR to the picture: exposure, tone map, sRGB.
+        encoder.transition(&targets.color, Use::Color, Use::Sampled);
+        let before = if acquired.is_some() { Use::Acquired } else { Use::Undefined };
+        encoder.transition(&output, before, Use::Color);
+        let whole = Rect { x: 0, y: 0, width: output.desc().width, height: output.desc().height };
+        let clear = (input.rect != whole).then_some([0.0, 0.0, 0.0, 1.0]);
+        if clear.is_some() {
+            let all = Attachments { color: &output, clear, resolve: None, depth: None, area: whole };
+            encoder.begin_rendering(&all);
+            encoder.end_rendering();
+        }
+        let area = Attachments { color: &output, clear: None, resolve: None, depth: None, area: input.rect };
+        encoder.begin_rendering(&area);
+        if let Some(pipeline) = input.pipelines.get(&input.wanted.tonemap_key()) {
+            encoder.bind_pipeline(&pipeline);
+            encoder.bind_set(&self.layouts, hdr_set);
+            encoder.draw(3);
+        }
+        encoder.end_rendering();
+
+        // The user interface over it.
+        if let Target::Window(_, ui) = &mut target {
+            encoder.transition(&output, Use::Color, Use::Color);
+            encoder.begin_rendering(&Attachments { area: whole, ..area });
+            let extent = (whole.width, whole.height);
+            ui.renderer.draw(&mut encoder, extent, ui.pixels_per_point, ui.primitives)?;
+            encoder.end_rendering();
+        }
+
+        // Off to the screen, or back to memory.
+        match (target, acquired) {
+            (Target::Window(swapchain, _), Some(acquired)) => {
+                encoder.transition(&output, Use::Color, Use::Present);
+                self.frames.submit(encoder, acquired.submission)?;
+                Ok(Drawn::Shown { fits: swapchain.present(&acquired)? })
+            }
+            _ => {
+                encoder.transition(&output, Use::Color, Use::CopyFrom);
+                encoder.transition(&targets.color, Use::Sampled, Use::CopyFrom);
+                let readback = Readback::record(&self.gpu, &mut encoder, &output, &targets.color)?;
+                self.frames.submit(encoder, Default::default())?;
+                self.frames.wait()?;
+                Ok(Drawn::Captured(readback.finish()))
+            }
+        }
+    }
+
+    fn output_image(&self, (width, height): (u32, u32)) -> Result<Arc<Image>, GpuError> {
+        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
+        Image::new(&self.gpu, "picture", ImageDesc::new(width, height, Self::OUTPUT_FORMAT, usage))
+    }
+
+    fn resize_targets(&mut self, size: (u32, u32), samples: u32) -> Result<(), GpuError> {
+        if self.targets.as_ref().is_some_and(|(targets, _)| targets.fits(size, samples)) {
+            return Ok(());
+        }
+        let targets = Targets::new(&self.gpu, size, samples, self.scene_format)?;
+        let writer = SetWriter::default().texture(0, &targets.color, &self.nearest);
+        let set = DescriptorSet::new(&self.layouts, SET_PASS, writer)?;
+        self.targets = Some((targets, set));
+        Ok(())
+    }
+}
+
+/// Draws opaque, masked and blended primitives to the HDR target and resolves it.
+fn draw_model(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, targets: &Targets, input: &FrameInput<'_>) {
+    encoder.transition(&targets.color, Use::Undefined, Use::Color);
+    encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
+    let (color, resolve) = match &targets.multisampled {
+        Some(multisampled) => {
+            encoder.transition(multisampled, Use::Undefined, Use::Color);
+            (multisampled, Some(&targets.color))
+        }
+        None => (&targets.color, None),
+    };
+    let desc = targets.color.desc();
+    encoder.begin_rendering(&Attachments {
+        color,
+        clear: Some([0.0; 4]),
+        resolve,
+        depth: Some(&targets.depth),
+        area: Rect { x: 0, y: 0, width: desc.width, height: desc.height },
+    });
+    if let Some(scene) = input.scene {
+        encoder.keep(&scene.vertices);
+        encoder.bind_indices(&scene.indices);
+        for draw in sorted(&scene.draws, input.shot.view.eye) {
+            draw_primitive(encoder, layouts, scene, draw, input);
+        }
+    }
+    encoder.end_rendering();
+}
+
+fn draw_primitive(
+    encoder: &mut Encoder,
+    layouts: &Arc<SetLayouts>,
+    scene: &GpuScene,
+    draw: &GpuDraw,
+    input: &FrameInput<'_>,
+) {
+    let Some(pipeline) = input.pipelines.get(&input.wanted.model_key(draw.variant)) else { return };
+    encoder.bind_pipeline(&pipeline);
+    encoder.bind_set(layouts, &scene.materials[draw.material]);
+    encoder.push(layouts, &draw.push);
+    // Both faces of a transparent surface are blended in order: the far one, seen from inside, first.
+    let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {
+        (true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
+        (true, _) => &[vk::CullModeFlags::NONE],
+        (false, _) => &[vk::CullModeFlags::BACK],
+    };
+    for cull in passes {
+        encoder.set_raster(draw.topology, *cull, draw.front);
+        encoder.draw_indexed(draw.index_count, draw.first_index);
+    }
+}
+
+/// Opaque and masked primitives front to back, which saves shading, then blended ones back to front, which blending needs.
+fn sorted(draws: &[GpuDraw], eye: Vec3) -> Vec<&GpuDraw> {
+    let mut sorted: Vec<_> = draws.iter().collect();
+    sorted.sort_by(|a, b| {
+        let (a_blend, b_blend) = (a.variant.alpha == ALPHA_BLEND, b.variant.alpha == ALPHA_BLEND);
+        let (a_far, b_far) = (a.center_ws.distance_squared(eye), b.center_ws.distance_squared(eye));
+        let order = if a_blend { b_far.total_cmp(&a_far) } else { a_far.total_cmp(&b_far) };
+        a_blend.cmp(&b_blend).then(order)
+    });
+    sorted
+}

@@ -1,0 +1,87 @@
+//! The pipelines of one shader generation. A frame draws with exactly one set, so it never mixes two generations.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::gpu::{Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, SetLayouts, ShaderModule};
+use crate::shader::ShaderSet;
+
+use super::wanted::{Pass, PipelineKey, Wanted};
+
+/// The stages that a shader tree must have, as paths from its root.
+pub(super) const STAGES: [&str; 4] = ["pbr.vert", "pbr.frag", "tonemap.vert", "tonemap.frag"];
+
+/// Compiled shaders and every pipeline made of them so far. Pipelines are only ever added.
+pub struct PipelineSet {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    /// The shaders of this generation, with their modes and parameters.
+    pub shaders: Arc<ShaderSet>,
+    modules: BTreeMap<String, Arc<ShaderModule>>,
+    made: Mutex<HashMap<PipelineKey, Arc<Pipeline>>>,
+}
+
+impl PipelineSet {
+    /// Makes the set and the pipelines of `wanted`, all or nothing.
+    ///
+    /// # Errors
+    /// The driver refuses a stage or a pipeline.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        shaders: Arc<ShaderSet>,
+        wanted: &Wanted,
+    ) -> Result<Arc<Self>, GpuError> {
+        let modules = shaders
+            .stages
+            .iter()
+            .map(|(path, stage)| Ok((path.clone(), ShaderModule::new(gpu, &stage.spirv)?)))
+            .collect::<Result<_, GpuError>>()?;
+        let set = Self { gpu: gpu.clone(), layouts: layouts.clone(), shaders, modules, made: Mutex::default() };
+        set.build(wanted)?;
+        Ok(Arc::new(set))
+    }
+
+    /// Adds what `wanted` lacks. From any thread; frames may be drawn meanwhile.
+    ///
+    /// # Errors
+    /// The driver refuses a pipeline; those made before it stay.
+    pub fn build(&self, wanted: &Wanted) -> Result<(), GpuError> {
+        for key in wanted.keys() {
+            if self.get(&key).is_none() {
+                let pipeline = self.make(&key)?;
+                self.made.lock().unwrap_or_else(PoisonError::into_inner).insert(key, pipeline);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a frame of `wanted` can be drawn now.
+    pub fn has(&self, wanted: &Wanted) -> bool {
+        wanted.keys().all(|key| self.get(&key).is_some())
+    }
+
+    pub(super) fn get(&self, key: &PipelineKey) -> Option<Arc<Pipeline>> {
+        self.made.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+    }
+
+    fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
+        let missing = |path: &str| GpuError::NoDevice(format!("the shader tree has no {path}"));
+        let module = |path: &str| self.modules.get(path).ok_or_else(|| missing(path));
+        let (vertex, fragment, depth, blend, class) = match key.pass {
+            Pass::Model { blend, class } => (STAGES[0], STAGES[1], true, blend, class),
+            Pass::Tonemap => (STAGES[2], STAGES[3], false, false, PrimitiveClass::Triangles),
+        };
+        let desc = PipelineDesc {
+            vertex: module(vertex)?,
+            fragment: module(fragment)?,
+            specialization: &key.specialization,
+            color: key.format,
+            depth,
+            blend,
+            samples: key.samples,
+            class,
+        };
+        Pipeline::new(&self.gpu, &self.layouts, &desc)
+    }
+}

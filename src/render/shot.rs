@@ -1,0 +1,106 @@
+//! What a frame shows: camera, lights and values, worked out from the settings, the model and the shaders.
+
+use crate::gpu::Rect;
+use crate::interface::{self, Frame, Light, TONEMAP_OFF};
+use crate::scene::camera::View;
+use crate::scene::{Model, lights};
+use crate::settings::{Settings, Tonemap};
+use crate::shader::{Encode, Mode, ShaderSet};
+
+use super::values;
+use super::wanted;
+
+/// One picture's inputs, ready for the device.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// Camera.
+    pub view: View,
+    /// Lights in world space.
+    pub lights: Vec<Light>,
+    /// The author's parameter block.
+    pub params: Vec<u8>,
+    frame: Frame,
+}
+
+impl Shot {
+    /// Works out a shot of `model` (or of nothing) `time_s` seconds after the start.
+    ///
+    /// # Errors
+    /// A value in the settings that does not fit, in words.
+    pub fn new(
+        settings: &Settings,
+        shaders: &ShaderSet,
+        model: &Model,
+        view: View,
+        time_s: f32,
+    ) -> Result<Self, String> {
+        let lights = lights::lights(&settings.lights, model, time_s);
+        let mode = wanted::mode(shaders, &settings.mode);
+        let ambient = settings.lights.ambient_color.map(|c| c * settings.lights.ambient_strength);
+        let exposure = 1.0 / (1.2 * settings.view.ev.exp2());
+        let view_from_world = view.view_from_world();
+        let clip_from_world = view.clip_from_world();
+        let frame = Frame {
+            clip_from_world: clip_from_world.to_cols_array_2d(),
+            world_from_clip: clip_from_world.inverse().to_cols_array_2d(),
+            view_from_world: view_from_world.to_cols_array_2d(),
+            eye_ws: view.eye.to_array(),
+            exposure,
+            ambient,
+            time_s,
+            background: background(&settings.view.background, ambient.map(|c| c * exposure))?,
+            scene_center_ws: model.bounds.center().to_array(),
+            scene_radius: model.bounds.radius(),
+            near: view.near,
+            far: view.far,
+            light_count: lights.len() as u32,
+            chosen_light: settings.lights.chosen,
+            tonemap: tonemap(settings.view.tonemap, mode),
+            encode: match mode.map(|m| m.encode) {
+                Some(Encode::Data) => interface::ENCODE_DATA,
+                Some(Encode::Vector) => interface::ENCODE_VECTOR,
+                Some(Encode::Color) | None => interface::ENCODE_COLOR,
+            },
+            mode: mode.map_or(0, |m| m.id),
+            ..Default::default()
+        };
+        Ok(Self { view, lights, params: values::params(&settings.shader, &shaders.parameters)?, frame })
+    }
+
+    /// The frame's uniforms for a picture in this part of the output.
+    pub(super) fn uniforms(&self, rect: Rect) -> Frame {
+        Frame {
+            viewport_px: [rect.width as f32, rect.height as f32],
+            viewport_origin_px: [rect.x as f32, rect.y as f32],
+            ..self.frame
+        }
+    }
+}
+
+/// Exposure and tone map are for light; other values are shown as they are.
+fn tonemap(tonemap: Tonemap, mode: Option<&Mode>) -> u32 {
+    if mode.is_some_and(|m| m.tonemap) { tonemap as u32 } else { TONEMAP_OFF }
+}
+
+/// The linear color and alpha behind the model: `none`, `env` (the ambient light) or `#rrggbb`.
+///
+/// # Errors
+/// Anything else, in words.
+pub fn background(text: &str, ambient: [f32; 3]) -> Result<[f32; 4], String> {
+    let expected = || format!("background '{text}' is none of: none, env, #rrggbb (as #1b1d21)");
+    match text {
+        "none" => Ok([0.0; 4]),
+        "env" => Ok([ambient[0].min(1.0), ambient[1].min(1.0), ambient[2].min(1.0), 1.0]),
+        hex => {
+            let digits = hex.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii()).ok_or_else(expected)?;
+            let rgb = u32::from_str_radix(digits, 16).map_err(|_| expected())?;
+            let channel = |shift: u32| linear_from_srgb(((rgb >> shift) & 255) as f32 / 255.0);
+            Ok([channel(16), channel(8), channel(0), 1.0])
+        }
+    }
+}
+
+/// sRGB electro-optical transfer function (IEC 61966-2-1).
+fn linear_from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}

@@ -1,0 +1,118 @@
+//! Which pipelines a picture needs: the debug mode, the author's constants, and the kinds of material in the scene.
+
+use std::collections::BTreeSet;
+
+use crate::gpu::{PrimitiveClass, Specialization, vk};
+use crate::interface::{self, SPEC_ALPHA_MODE, SPEC_FEATURES, SPEC_MODE};
+use crate::settings::Settings;
+use crate::shader::{Mode, ShaderSet};
+
+use super::values;
+
+/// What a material asks of its pipeline.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialVariant {
+    /// `interface::ALPHA_*`.
+    pub alpha: u32,
+    /// `interface::FEATURE_*` bits.
+    pub features: u32,
+    /// Kind of primitive.
+    pub class: PrimitiveClass,
+}
+
+/// Everything that selects the pipelines of a picture.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Wanted {
+    /// Id of the debug mode.
+    pub mode: u32,
+    /// Values of the author's specialization constants.
+    pub constants: Specialization,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Format of the HDR target.
+    pub scene_format: vk::Format,
+    /// Format of the picture.
+    pub output_format: vk::Format,
+    /// Kinds of material in the scene.
+    pub materials: BTreeSet<MaterialVariant>,
+}
+
+/// One pipeline of a [`Wanted`].
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct PipelineKey {
+    pub(super) pass: Pass,
+    pub(super) format: vk::Format,
+    pub(super) samples: u32,
+    pub(super) specialization: Specialization,
+}
+
+/// What a pipeline draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Pass {
+    /// The model: `pbr.vert`, `pbr.frag`.
+    Model { blend: bool, class: PrimitiveClass },
+    /// HDR to picture: `tonemap.vert`, `tonemap.frag`.
+    Tonemap,
+}
+
+impl Wanted {
+    /// What `settings` ask of `shaders` for a scene with these materials. A mode that the tree lost falls back to its first.
+    ///
+    /// # Errors
+    /// A value for a constant that does not fit it, in words.
+    pub fn new(
+        settings: &Settings,
+        shaders: &ShaderSet,
+        materials: &BTreeSet<MaterialVariant>,
+        samples: u32,
+        scene_format: vk::Format,
+        output_format: vk::Format,
+    ) -> Result<Self, String> {
+        Ok(Self {
+            mode: mode(shaders, &settings.mode).map_or(0, |m| m.id),
+            constants: values::constants(&settings.shader, &shaders.constants)?,
+            samples,
+            scene_format,
+            output_format,
+            materials: materials.clone(),
+        })
+    }
+
+    /// The same picture in another mode.
+    pub fn with_mode(&self, mode: u32) -> Self {
+        Self { mode, ..self.clone() }
+    }
+
+    pub(super) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
+        let mut specialization = vec![
+            (SPEC_MODE, self.mode),
+            (SPEC_ALPHA_MODE, material.alpha),
+            (SPEC_FEATURES, material.features),
+        ];
+        specialization.extend_from_slice(&self.constants);
+        PipelineKey {
+            pass: Pass::Model { blend: material.alpha == interface::ALPHA_BLEND, class: material.class },
+            format: self.scene_format,
+            samples: self.samples,
+            specialization,
+        }
+    }
+
+    pub(super) fn tonemap_key(&self) -> PipelineKey {
+        PipelineKey {
+            pass: Pass::Tonemap,
+            format: self.output_format,
+            samples: 1,
+            specialization: self.constants.clone(),
+        }
+    }
+
+    pub(super) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
+        self.materials.iter().map(|m| self.model_key(*m)).chain([self.tonemap_key()])
+    }
+}
+
+/// The mode of this slug, or the tree's first mode.
+pub(super) fn mode<'a>(shaders: &'a ShaderSet, slug: &str) -> Option<&'a Mode> {
+    shaders.modes.iter().find(|m| m.slug == slug).or_else(|| shaders.modes.first())
+}

@@ -1,0 +1,249 @@
+//! Primitives: attributes, indices, flat normals.
+
+use glam::{Vec2, Vec3, Vec4};
+use gltf::json;
+use json::accessor::{ComponentType as C, Type};
+use json::mesh::{Mode, Semantic};
+use json::validation::Checked;
+
+use super::super::error::Problem;
+use super::super::model::{Bounds, Material, Primitive, Topology, Vertex};
+use super::accessor::{Format, Normalized as N, Reader};
+use super::triangles::{self, Corners};
+use super::{LARGEST_COORDINATE, get, place};
+use crate::interface as contract;
+
+/// A primitive and what was tolerated in it.
+pub struct Geometry {
+    /// The primitive; `tangents::complete` finishes it.
+    pub primitive: Primitive,
+    /// One sentence each.
+    pub warnings: Vec<String>,
+}
+
+// The integer types of positions, normals, tangents and texture coordinates are those of KHR_mesh_quantization.
+const POSITION: Format = Format {
+    types: &[Type::Vec3],
+    components: &[(C::F32, N::No), (C::I8, N::Either), (C::U8, N::Either), (C::I16, N::Either), (C::U16, N::Either)],
+};
+const NORMAL: Format = Format { types: &[Type::Vec3], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
+const TANGENT: Format = Format { types: &[Type::Vec4], components: NORMAL.components };
+const TEXCOORD: Format = Format { types: &[Type::Vec2], components: POSITION.components };
+const COLOR: Format =
+    Format { types: &[Type::Vec3, Type::Vec4], components: &[(C::F32, N::No), (C::U8, N::Yes), (C::U16, N::Yes)] };
+
+/// Reads the drawable primitives of a mesh.
+pub fn read(reader: Reader<'_>, index: usize, materials: &[Material]) -> Result<Vec<Geometry>, Problem> {
+    let mesh = &reader.root.meshes[index];
+    let mesh_place = place("meshes", index, mesh.name.as_deref());
+    let mut geometries = Vec::with_capacity(mesh.primitives.len());
+    for (number, primitive) in mesh.primitives.iter().enumerate() {
+        let place = format!("{mesh_place}.primitives[{number}]");
+        let title = mesh.name.as_deref().filter(|name| !name.is_empty());
+        let name = format!("{} #{number}", title.map_or_else(|| format!("mesh {index}"), str::to_owned));
+        let material = match primitive.material {
+            None => 0,
+            Some(material) => {
+                get(&reader.root.materials, material, &place, "materials")?;
+                // The default material comes first.
+                material.value() + 1
+            }
+        };
+        debug_assert!(material < materials.len());
+        geometries.push(Source { reader, primitive, place: &place }.read(name, material)?);
+    }
+    Ok(geometries)
+}
+
+struct Source<'a> {
+    reader: Reader<'a>,
+    primitive: &'a json::mesh::Primitive,
+    place: &'a str,
+}
+
+impl Source<'_> {
+    fn read(&self, name: String, material: usize) -> Result<Geometry, Problem> {
+        let mut warnings = Vec::new();
+        let Some(positions) = self.attribute::<3>(Semantic::Positions, "POSITION", &POSITION, None)? else {
+            return Err(Problem::invalid(self.place, "the attribute POSITION", "none"));
+        };
+        self.check_positions(&positions)?;
+        let count = positions.len();
+        let (topology, indices) = self.indices(count, &mut warnings)?;
+        let mut attributes = 0;
+        let mut vertices: Vec<Vertex> = positions
+            .into_iter()
+            .map(|position| Vertex { position, normal: [0.0, 0.0, 1.0], color: [1.0; 4], ..Vertex::default() })
+            .collect();
+        if let Some(normals) = self.attribute::<3>(Semantic::Normals, "NORMAL", &NORMAL, Some(count))? {
+            attributes |= contract::ATTRIBUTE_NORMAL;
+            vertices.iter_mut().zip(normals).for_each(|(vertex, normal)| vertex.normal = normal);
+            let bad = repair_normals(&mut vertices, topology, &indices);
+            self.note(bad, "normals are zero or not finite: those of their faces are used", &mut warnings);
+        }
+        // Without normals, the file's tangents are to be ignored as well (glTF 2.0, section 3.7.2.1).
+        if attributes & contract::ATTRIBUTE_NORMAL != 0
+            && let Some(tangents) = self.attribute::<4>(Semantic::Tangents, "TANGENT", &TANGENT, Some(count))?
+        {
+            attributes |= contract::ATTRIBUTE_TANGENT;
+            vertices.iter_mut().zip(tangents).for_each(|(vertex, tangent)| vertex.tangent = tangent);
+        }
+        attributes |= self.read_uvs_and_colors(&mut vertices, &mut warnings)?;
+        let mut primitive =
+            Primitive { name, vertices, indices, topology, material, attributes, bounds: Bounds::default() };
+        if attributes & contract::ATTRIBUTE_NORMAL == 0 && triangles::has_faces(topology) {
+            make_flat(&mut primitive);
+        }
+        for &index in &primitive.indices {
+            primitive.bounds.include(Vec3::from(primitive.vertices[index as usize].position));
+        }
+        Ok(Geometry { primitive, warnings })
+    }
+
+    /// Reads an attribute when there is one; all must have as many elements as POSITION.
+    fn attribute<const K: usize>(
+        &self,
+        semantic: Semantic,
+        name: &str,
+        format: &Format,
+        count: Option<usize>,
+    ) -> Result<Option<Vec<[f32; K]>>, Problem> {
+        let Some(&accessor) = self.primitive.attributes.get(&Checked::Valid(semantic)) else {
+            return Ok(None);
+        };
+        let user = format!("{}.{name}", self.place);
+        // The count first: reading a large mismatch would be wasted.
+        let found = self.reader.root.accessors.get(accessor.value()).map(|accessor| accessor.count.0);
+        if let (Some(count), Some(found)) = (count, found)
+            && count as u64 != found
+        {
+            return Err(Problem::invalid(user, format!("as many elements as POSITION has, {count}"), found.to_string()));
+        }
+        self.reader.floats(accessor, format, 1.0, &user).map(Some)
+    }
+
+    fn check_positions(&self, positions: &[[f32; 3]]) -> Result<(), Problem> {
+        // The comparison is false for NaN too.
+        let bad = positions.iter().position(|position| !position.iter().all(|x| x.abs() <= LARGEST_COORDINATE));
+        match bad {
+            None => Ok(()),
+            Some(vertex) => {
+                let place = format!("{}.POSITION", self.place);
+                let found = format!("{:?} at vertex {vertex}", positions[vertex]);
+                Err(Problem::invalid(place, format!("finite coordinates up to {LARGEST_COORDINATE:e}"), found))
+            }
+        }
+    }
+
+    /// The topology and its indices: in range, whole, enough to draw; a loop closed into a strip.
+    fn indices(&self, vertices: usize, warnings: &mut Vec<String>) -> Result<(Topology, Vec<u32>), Problem> {
+        let place = format!("{}.indices", self.place);
+        let mut indices = match self.primitive.indices {
+            Some(accessor) => self.reader.indices(accessor, &place)?,
+            None => match u32::try_from(vertices) {
+                Ok(count) => (0..count).collect(),
+                Err(_) => return Err(Problem::invalid(place, "fewer than 2^32 vertices", vertices.to_string())),
+            },
+        };
+        if let Some(&index) = indices.iter().find(|&&index| index as usize >= vertices) {
+            return Err(Problem::invalid(place, format!("indices below the vertex count of {vertices}"), index.to_string()));
+        }
+        let topology = match self.primitive.mode {
+            Checked::Valid(Mode::Points) => Topology::Points,
+            Checked::Valid(Mode::Lines) => Topology::Lines,
+            Checked::Valid(Mode::LineLoop) => {
+                indices.extend(indices.first().copied());
+                Topology::LineStrip
+            }
+            Checked::Valid(Mode::LineStrip) => Topology::LineStrip,
+            Checked::Valid(Mode::Triangles) => Topology::Triangles,
+            Checked::Valid(Mode::TriangleStrip) => Topology::TriangleStrip,
+            Checked::Valid(Mode::TriangleFan) => Topology::TriangleFan,
+            Checked::Invalid => return Err(Problem::invalid(format!("{}.mode", self.place), "a mode of 0 to 6", "another")),
+        };
+        let least = triangles::least(topology);
+        if indices.len() < least {
+            let expected = format!("at least {least} indices or vertices for {topology:?}");
+            return Err(Problem::invalid(place, expected, indices.len().to_string()));
+        }
+        let excess = triangles::excess(topology, indices.len());
+        if excess > 0 {
+            warnings.push(format!("{place} ends in an incomplete primitive: the last {excess} are left out."));
+            indices.truncate(indices.len() - excess);
+        }
+        Ok((topology, indices))
+    }
+
+    fn read_uvs_and_colors(&self, vertices: &mut [Vertex], warnings: &mut Vec<String>) -> Result<u32, Problem> {
+        let count = Some(vertices.len());
+        let mut attributes = 0;
+        let mut bad = 0;
+        let mut checked = |uv: [f32; 2]| {
+            let valid = Vec2::from(uv).is_finite();
+            bad += usize::from(!valid);
+            if valid { uv } else { [0.0; 2] }
+        };
+        if let Some(uvs) = self.attribute::<2>(Semantic::TexCoords(0), "TEXCOORD_0", &TEXCOORD, count)? {
+            attributes |= contract::ATTRIBUTE_UV0;
+            vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv0 = checked(uv));
+        }
+        vertices.iter_mut().for_each(|vertex| vertex.uv1 = vertex.uv0);
+        if let Some(uvs) = self.attribute::<2>(Semantic::TexCoords(1), "TEXCOORD_1", &TEXCOORD, count)? {
+            attributes |= contract::ATTRIBUTE_UV1;
+            vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv1 = checked(uv));
+        }
+        self.note(bad, "texture coordinates are not finite: 0 is used", warnings);
+        if let Some(colors) = self.attribute::<4>(Semantic::Colors(0), "COLOR_0", &COLOR, count)? {
+            attributes |= contract::ATTRIBUTE_COLOR;
+            let bad = colors.iter().filter(|color| !Vec4::from(**color).is_finite()).count();
+            let white = |color: [f32; 4]| if Vec4::from(color).is_finite() { color } else { [1.0; 4] };
+            vertices.iter_mut().zip(colors).for_each(|(vertex, color)| vertex.color = white(color));
+            self.note(bad, "vertex colors are not finite: white is used", warnings);
+        }
+        Ok(attributes)
+    }
+
+    fn note(&self, count: usize, what: &str, warnings: &mut Vec<String>) {
+        if count > 0 {
+            warnings.push(format!("{}: {count} {what}.", self.place));
+        }
+    }
+}
+
+/// Makes all normals unit. One that cannot be takes that of the faces around it, or +Z. Tells how many.
+fn repair_normals(vertices: &mut [Vertex], topology: Topology, indices: &[u32]) -> usize {
+    let mut broken = Vec::new();
+    for (index, vertex) in vertices.iter_mut().enumerate() {
+        match Vec3::from(vertex.normal).try_normalize() {
+            Some(normal) => vertex.normal = normal.to_array(),
+            None => {
+                vertex.normal = [0.0; 3];
+                broken.push(index);
+            }
+        }
+    }
+    if broken.is_empty() {
+        return 0;
+    }
+    let mut sums = vec![Vec3::ZERO; vertices.len()];
+    for triangle in triangles::triangles(topology, indices) {
+        let normal = triangles::face_normal(vertices, triangle);
+        triangle.iter().for_each(|&index| sums[index as usize] += normal);
+    }
+    for &index in &broken {
+        vertices[index].normal = sums[index].normalize_or(Vec3::Z).to_array();
+    }
+    broken.len()
+}
+
+/// Gives every triangle its own normal, for which it may share vertices with its coplanar neighbors alone.
+fn make_flat(primitive: &mut Primitive) {
+    let triangles = triangles::triangles(primitive.topology, &primitive.indices);
+    if triangles.is_empty() {
+        return;
+    }
+    let mut corners = Corners::new(&primitive.vertices, &triangles);
+    corners.flatten(Vec3::Z);
+    (primitive.vertices, primitive.indices) = corners.weld();
+    primitive.topology = Topology::Triangles;
+}

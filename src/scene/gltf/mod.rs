@@ -1,0 +1,158 @@
+//! glTF 2.0 to [`Model`]. The `gltf` crate parses the JSON; everything that the JSON refers to is checked and read here, since
+//! the crate's own readers panic on invalid files and refuse some valid ones.
+
+mod accessor;
+mod buffers;
+mod container;
+mod images;
+mod material;
+mod mesh;
+mod nodes;
+mod tangents;
+#[cfg(test)]
+mod tests;
+mod triangles;
+mod uri;
+
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::time::Instant;
+
+use gltf::json;
+use rayon::prelude::*;
+
+use self::accessor::Reader;
+use self::buffers::{Buffers, Files, read_regular};
+use self::mesh::Geometry;
+use super::LoadOptions;
+use super::error::Problem;
+use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
+
+/// Coordinates beyond this overflow when they are squared.
+const LARGEST_COORDINATE: f32 = 1e18;
+
+/// Loads a file.
+pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Model, Problem> {
+    let start = Instant::now();
+    let path = std::path::absolute(path).map_err(Problem::Read)?;
+    let bytes = read_regular(&path).map_err(Problem::Read)?;
+    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder = path.parent().map(Path::to_owned);
+    guarded(&name, &bytes, Files { folder, allow_outside: options.allow_outside, read: vec![path] }, start)
+}
+
+/// Loads a self-contained model.
+pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
+    guarded(name, bytes, Files { folder: None, allow_outside: false, read: Vec::new() }, Instant::now())
+}
+
+/// A panic in here would be a bug of ours or of a decoder; a file that provokes it must not cost the user the session.
+fn guarded(name: &str, bytes: &[u8], files: Files, start: Instant) -> Result<Model, Problem> {
+    catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start))).unwrap_or_else(|panic| {
+        let words = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(Problem::Refused { found: words.unwrap_or("a panic without words").to_owned() })
+    })
+}
+
+fn build(name: &str, bytes: &[u8], mut files: Files, start: Instant) -> Result<Model, Problem> {
+    let container::Document { root, bin, mut warnings } = container::parse(bytes)?;
+    let buffers = Buffers::load(&root, bin, &mut files)?;
+    let scene = nodes::walk(&root)?;
+    let material::Materials { materials, textures, images, warnings: material_warnings } = material::read(&root)?;
+    let sources = images
+        .into_iter()
+        .map(|(index, used_by)| images::find(&root, &buffers, &mut files, index, used_by))
+        .collect::<Result<Vec<_>, _>>()?;
+    let meshes = read_meshes(Reader { root: &root, buffers: &buffers }, &scene, &materials)?;
+    let parse_ms = milliseconds(start);
+    let ((images, decode_ms), (meshes, tangents_ms)) =
+        rayon::join(|| timed(|| images::decode(&sources)), || timed(|| finish_meshes(meshes, &materials)));
+    let images: Vec<Image> = images?;
+
+    warnings.extend(scene.warnings);
+    warnings.extend(material_warnings);
+    let mut model = Model { name: name.to_owned(), materials, textures, images, files: files.read, ..Model::default() };
+    let mut ranges = HashMap::new();
+    for (mesh, geometries) in meshes {
+        let first = model.primitives.len();
+        for Geometry { primitive, warnings: more } in geometries {
+            model.primitives.push(primitive);
+            warnings.extend(more);
+        }
+        ranges.insert(mesh, first..model.primitives.len());
+    }
+    for placed in scene.meshes {
+        for primitive in ranges.get(&placed.mesh).cloned().unwrap_or_default() {
+            let world_from_object = placed.world_from_object;
+            model.instances.push(Instance { primitive, world_from_object, node: placed.node, node_name: placed.name.clone() });
+        }
+    }
+    model.bounds = world_bounds(&model)?;
+    model.lights = scene.lights;
+    model.cameras = scene.cameras.iter().map(|camera| camera.place(&model.bounds)).collect();
+    model.warnings = warnings;
+    model.timing = LoadTiming { parse_ms, decode_ms, tangents_ms };
+    Ok(model)
+}
+
+type Meshes = Vec<(usize, Vec<Geometry>)>;
+
+/// Reads every mesh that the scene places, once.
+fn read_meshes(reader: Reader<'_>, scene: &nodes::Scene, materials: &[Material]) -> Result<Meshes, Problem> {
+    let mut used: Vec<usize> = scene.meshes.iter().map(|placed| placed.mesh).collect();
+    used.sort_unstable();
+    used.dedup();
+    used.into_par_iter().map(|index| Ok((index, mesh::read(reader, index, materials)?))).collect()
+}
+
+fn finish_meshes(mut meshes: Meshes, materials: &[Material]) -> Meshes {
+    meshes.par_iter_mut().flat_map(|(_, geometries)| geometries).for_each(|geometry| tangents::complete(geometry, materials));
+    meshes
+}
+
+fn world_bounds(model: &Model) -> Result<Bounds, Problem> {
+    let mut bounds = Bounds::default();
+    for instance in &model.instances {
+        for corner in model.primitives[instance.primitive].bounds.corners() {
+            bounds.include(instance.world_from_object.transform_point3(corner));
+        }
+    }
+    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    if model.instances.is_empty() {
+        return Err(Problem::NothingToDraw { found: "meshes without drawable primitives".into() });
+    }
+    if size <= LARGEST_COORDINATE {
+        return Ok(bounds);
+    }
+    let expected = format!("coordinates up to {LARGEST_COORDINATE:e} in world space");
+    Err(Problem::invalid("the scene", expected, format!("{size:e}")))
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let result = work();
+    (result, milliseconds(start))
+}
+
+fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}
+
+/// How messages name an object of the file: `materials[3] "Visor"`.
+fn place(kind: &str, index: usize, name: Option<&str>) -> String {
+    match name {
+        Some(name) if !name.is_empty() => format!("{kind}[{index}] \"{}\"", name.escape_debug()),
+        _ => format!("{kind}[{index}]"),
+    }
+}
+
+fn out_of_range(place: &str, kind: &str, index: usize, count: usize) -> Problem {
+    let expected = if count == 0 { format!("no use of {kind}, of which there are none") } else { format!("an index into {kind} of 0 to {}", count - 1) };
+    Problem::invalid(place, expected, index.to_string())
+}
+
+/// The name that the parser kept of an index, for lookups.
+fn get<'a, T>(items: &'a [T], index: json::Index<T>, place: &str, kind: &str) -> Result<&'a T, Problem> {
+    items.get(index.value()).ok_or_else(|| out_of_range(place, kind, index.value(), items.len()))
+}

@@ -1,0 +1,96 @@
+//! Tangent frames: the file's, or MikkTSpace's, or at least something orthogonal to the normal.
+
+use bevy_mikktspace::{TangentSpace, generate_tangents};
+use glam::{Vec3, Vec4};
+
+use super::super::model::{Material, Primitive, Topology, Vertex};
+use super::mesh::Geometry;
+use super::triangles::{self, Corners};
+use crate::interface as contract;
+
+/// Gives every vertex a unit tangent orthogonal to its normal (as far as the file's own are), and notes those replaced.
+pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
+    let primitive = &mut geometry.primitive;
+    let from_file = primitive.attributes & contract::ATTRIBUTE_TANGENT != 0;
+    let made = !from_file && make(primitive, materials);
+    if from_file || made {
+        primitive.attributes |= contract::ATTRIBUTE_TANGENT_FRAME;
+    }
+    let replaced = primitive.vertices.iter_mut().filter_map(repair).count();
+    if replaced > 0 && (from_file || made) {
+        let (name, total) = (&primitive.name, primitive.vertices.len());
+        geometry.warnings.push(format!(
+            "{name}: {replaced} of {total} tangents are zero or not finite: any direction orthogonal to the normal is used there."
+        ));
+    }
+}
+
+/// Normalizes a tangent and its sign. `Some` when it had to be replaced.
+fn repair(vertex: &mut Vertex) -> Option<()> {
+    let [x, y, z, w] = vertex.tangent;
+    let sign = if w < 0.0 { -1.0 } else { 1.0 };
+    let valid = Vec3::new(x, y, z).try_normalize();
+    let tangent = valid.unwrap_or_else(|| Vec3::from(vertex.normal).any_orthonormal_vector());
+    vertex.tangent = tangent.extend(sign).to_array();
+    if valid.is_none() { Some(()) } else { None }
+}
+
+/// MikkTSpace on the texture coordinates of the normal texture, before its KHR_texture_transform. `false` when there are no
+/// faces or texture coordinates.
+fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
+    let normal_texture = materials.get(primitive.material).and_then(|m| m.textures[contract::TEXTURE_NORMAL as usize]);
+    let (has_uv0, has_uv1) =
+        (primitive.attributes & contract::ATTRIBUTE_UV0 != 0, primitive.attributes & contract::ATTRIBUTE_UV1 != 0);
+    let second = has_uv1 && (!has_uv0 || normal_texture.is_some_and(|texture| texture.uv_set == 1));
+    let triangles = triangles::triangles(primitive.topology, &primitive.indices);
+    if triangles.is_empty() || !(has_uv0 || has_uv1) {
+        return false;
+    }
+    let mut mesh = Mesh { corners: Corners::new(&primitive.vertices, &triangles), second };
+    if generate_tangents(&mut mesh).is_err() {
+        return false;
+    }
+    (primitive.vertices, primitive.indices) = mesh.corners.weld();
+    primitive.topology = Topology::Triangles;
+    true
+}
+
+struct Mesh {
+    corners: Corners,
+    second: bool,
+}
+
+impl Mesh {
+    fn corner(&self, face: usize, vertex: usize) -> &Vertex {
+        &self.corners.vertices[face * 3 + vertex]
+    }
+}
+
+impl bevy_mikktspace::Geometry for Mesh {
+    fn num_faces(&self) -> usize {
+        self.corners.vertices.len() / 3
+    }
+
+    fn num_vertices_of_face(&self, _face: usize) -> usize {
+        3
+    }
+
+    fn position(&self, face: usize, vertex: usize) -> [f32; 3] {
+        self.corner(face, vertex).position
+    }
+
+    fn normal(&self, face: usize, vertex: usize) -> [f32; 3] {
+        self.corner(face, vertex).normal
+    }
+
+    fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
+        let corner = self.corner(face, vertex);
+        if self.second { corner.uv1 } else { corner.uv0 }
+    }
+
+    fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
+        // MikkTSpace's bitangent follows +v, which glTF has point down; glTF's bitangent points up the image, so it is negated.
+        let [x, y, z, sign] = space.map_or([0.0; 4], |space| space.tangent_encoded());
+        self.corners.vertices[face * 3 + vertex].tangent = Vec4::new(x, y, z, -sign).to_array();
+    }
+}

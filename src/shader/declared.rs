@@ -1,0 +1,372 @@
+//! A SPIR-V module's declarations: types, names, decorations, variables. See the SPIR-V specification, sections 3.52.2
+//! to 3.52.9, for the numbers.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::interface::BindingKind;
+
+use super::reflect::{Block, Descriptor, Location, Member, Reflection, Scalar, SpecConstant};
+
+type Id = u32;
+
+mod op {
+    pub const NAME: u32 = 5;
+    pub const MEMBER_NAME: u32 = 6;
+    pub const ENTRY_POINT: u32 = 15;
+    pub const TYPE_BOOL: u32 = 20;
+    pub const TYPE_INT: u32 = 21;
+    pub const TYPE_FLOAT: u32 = 22;
+    pub const TYPE_VECTOR: u32 = 23;
+    pub const TYPE_MATRIX: u32 = 24;
+    pub const TYPE_IMAGE: u32 = 25;
+    pub const TYPE_SAMPLER: u32 = 26;
+    pub const TYPE_SAMPLED_IMAGE: u32 = 27;
+    pub const TYPE_ARRAY: u32 = 28;
+    pub const TYPE_RUNTIME_ARRAY: u32 = 29;
+    pub const TYPE_STRUCT: u32 = 30;
+    pub const TYPE_POINTER: u32 = 32;
+    pub const CONSTANT: u32 = 43;
+    pub const SPEC_CONSTANT_TRUE: u32 = 48;
+    pub const SPEC_CONSTANT_FALSE: u32 = 49;
+    pub const SPEC_CONSTANT: u32 = 50;
+    pub const FUNCTION: u32 = 54;
+    pub const VARIABLE: u32 = 59;
+    pub const DECORATE: u32 = 71;
+    pub const MEMBER_DECORATE: u32 = 72;
+}
+
+mod decoration {
+    pub const SPEC_ID: u32 = 1;
+    pub const BUFFER_BLOCK: u32 = 3;
+    pub const ARRAY_STRIDE: u32 = 6;
+    pub const MATRIX_STRIDE: u32 = 7;
+    pub const BUILT_IN: u32 = 11;
+    pub const LOCATION: u32 = 30;
+    pub const BINDING: u32 = 33;
+    pub const DESCRIPTOR_SET: u32 = 34;
+    pub const OFFSET: u32 = 35;
+}
+
+mod storage {
+    pub const UNIFORM_CONSTANT: u32 = 0;
+    pub const INPUT: u32 = 1;
+    pub const UNIFORM: u32 = 2;
+    pub const OUTPUT: u32 = 3;
+    pub const PUSH_CONSTANT: u32 = 9;
+    pub const STORAGE_BUFFER: u32 = 12;
+}
+
+#[derive(Clone, Debug)]
+enum Type {
+    Bool,
+    Int { bits: u32, signed: bool },
+    Float { bits: u32 },
+    Vector { of: Id, count: u32 },
+    Matrix { column: Id, count: u32 },
+    Image { sampled: Id, dim: u32, arrayed: bool, storage: bool },
+    Sampler,
+    SampledImage { image: Id },
+    Array { of: Id, length: Id },
+    RuntimeArray { of: Id },
+    Struct { members: Vec<Id> },
+    Pointer { to: Id },
+}
+
+/// The declarations of one module.
+#[derive(Debug, Default)]
+pub struct Module {
+    names: HashMap<Id, String>,
+    member_names: HashMap<(Id, u32), String>,
+    decorations: HashMap<(Id, u32), u32>,
+    member_decorations: HashMap<(Id, u32, u32), u32>,
+    types: HashMap<Id, Type>,
+    constants: HashMap<Id, u32>,
+    specialization: Vec<(Id, Id, u32)>,
+    variables: Vec<(Id, Id, u32)>,
+    interface: Vec<Id>,
+}
+
+impl Module {
+    /// Reads the words up to the first function; an empty module when they are no SPIR-V.
+    pub fn parse(words: &[u32]) -> Self {
+        const MAGIC: u32 = 0x0723_0203;
+        const HEADER: usize = 5;
+        let mut module = Self::default();
+        if words.first() != Some(&MAGIC) {
+            return module;
+        }
+        let mut rest = words.get(HEADER..).unwrap_or_default();
+        while let Some(first) = rest.first() {
+            let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
+            let Some(operands) = rest.get(1..length) else { break };
+            if opcode == op::FUNCTION || module.instruction(opcode, operands).is_none() {
+                break;
+            }
+            rest = &rest[length..];
+        }
+        module
+    }
+
+    /// `None` when operands are missing.
+    fn instruction(&mut self, opcode: u32, operands: &[u32]) -> Option<()> {
+        let at = |index: usize| operands.get(index).copied();
+        match opcode {
+            op::NAME => {
+                self.names.insert(at(0)?, string(operands.get(1..)?).0);
+            }
+            op::MEMBER_NAME => {
+                self.member_names.insert((at(0)?, at(1)?), string(operands.get(2..)?).0);
+            }
+            op::ENTRY_POINT => {
+                let (_, words) = string(operands.get(2..)?);
+                self.interface = operands.get(2 + words..)?.to_vec();
+            }
+            op::DECORATE => {
+                self.decorations.insert((at(0)?, at(1)?), at(2).unwrap_or(0));
+            }
+            op::MEMBER_DECORATE => {
+                self.member_decorations.insert((at(0)?, at(1)?, at(2)?), at(3).unwrap_or(0));
+            }
+            op::CONSTANT => {
+                self.constants.insert(at(1)?, at(2)?);
+            }
+            op::SPEC_CONSTANT_TRUE => self.specialize(at(0)?, at(1)?, 1),
+            op::SPEC_CONSTANT_FALSE => self.specialize(at(0)?, at(1)?, 0),
+            op::SPEC_CONSTANT => self.specialize(at(0)?, at(1)?, at(2)?),
+            op::VARIABLE => self.variables.push((at(0)?, at(1)?, at(2)?)),
+            _ => {
+                if let Some(declared) = type_of(opcode, operands)? {
+                    self.types.insert(at(0)?, declared);
+                }
+            }
+        }
+        Some(())
+    }
+
+    fn specialize(&mut self, of: Id, result: Id, default: u32) {
+        // An array may be sized by it: then the default counts.
+        self.constants.insert(result, default);
+        self.specialization.push((result, of, default));
+    }
+
+    /// Everything at once.
+    pub fn reflect(&self) -> Reflection {
+        let mut out = Reflection::default();
+        for (pointer, variable, class) in &self.variables {
+            let Some(Type::Pointer { to, .. }) = self.types.get(pointer) else { continue };
+            match *class {
+                storage::UNIFORM_CONSTANT | storage::UNIFORM | storage::STORAGE_BUFFER => {
+                    out.descriptors.extend(self.descriptor(*variable, *to, *class));
+                }
+                storage::PUSH_CONSTANT => out.push_constants = self.block(*to),
+                storage::INPUT if self.interface.contains(variable) => self.locations(*variable, *to, &mut out.inputs),
+                storage::OUTPUT if self.interface.contains(variable) => self.locations(*variable, *to, &mut out.outputs),
+                _ => {}
+            }
+        }
+        out.constants = self.specialization.iter().filter_map(|constant| self.constant(*constant)).collect();
+        out.structs = self.structs();
+        out.descriptors.sort_by_key(|descriptor| (descriptor.set, descriptor.binding));
+        out.constants.sort_by_key(|constant| constant.id);
+        out.inputs.sort_by_key(|location| location.location);
+        out.outputs.sort_by_key(|location| location.location);
+        out
+    }
+
+    fn name(&self, id: Id) -> String {
+        self.names.get(&id).cloned().unwrap_or_default()
+    }
+
+    fn decoration(&self, id: Id, decoration: u32) -> Option<u32> {
+        self.decorations.get(&(id, decoration)).copied()
+    }
+
+    fn descriptor(&self, variable: Id, to: Id, class: u32) -> Option<Descriptor> {
+        let declared = self.types.get(&to)?;
+        let is_block = matches!(declared, Type::Struct { .. });
+        let storage = class == storage::STORAGE_BUFFER || self.decoration(to, decoration::BUFFER_BLOCK).is_some();
+        let glsl = self.type_name(to);
+        let (kind, glsl) = match declared {
+            Type::Struct { .. } if storage => (Some(BindingKind::StorageBuffer), "buffer block".to_owned()),
+            Type::Struct { .. } => (Some(BindingKind::UniformBuffer), "uniform block".to_owned()),
+            _ if glsl == "sampler2D" => (Some(BindingKind::Sampler2D), glsl),
+            _ if glsl == "samplerCube" => (Some(BindingKind::SamplerCube), glsl),
+            _ => (None, glsl),
+        };
+        Some(Descriptor {
+            set: self.decoration(variable, decoration::DESCRIPTOR_SET).unwrap_or(0),
+            binding: self.decoration(variable, decoration::BINDING)?,
+            kind,
+            glsl,
+            name: self.name(if is_block { to } else { variable }),
+            block: if is_block { self.block(to) } else { None },
+        })
+    }
+
+    fn block(&self, id: Id) -> Option<Block> {
+        let Type::Struct { members } = self.types.get(&id)? else { return None };
+        let mut block = Block { name: self.name(id), ..Block::default() };
+        for (index, member) in (0..).zip(members) {
+            let offset = *self.member_decorations.get(&(id, index, decoration::OFFSET))?;
+            let matrix_stride = self.member_decorations.get(&(id, index, decoration::MATRIX_STRIDE)).copied();
+            block.size = block.size.max(offset.saturating_add(self.size(*member, matrix_stride)));
+            block.members.push(Member {
+                name: self.member_names.get(&(id, index)).cloned().unwrap_or_default(),
+                offset,
+                type_name: self.type_name(*member),
+                stride: self.decoration(*member, decoration::ARRAY_STRIDE).unwrap_or(0),
+            });
+        }
+        Some(block)
+    }
+
+    /// Bytes in memory; matrices within arrays share the member's matrix stride.
+    fn size(&self, id: Id, matrix_stride: Option<u32>) -> u32 {
+        match self.types.get(&id) {
+            Some(Type::Bool) => 4,
+            Some(Type::Int { bits, .. } | Type::Float { bits }) => bits / 8,
+            Some(Type::Vector { of, count }) => self.size(*of, None).saturating_mul(*count),
+            Some(Type::Matrix { column, count }) => {
+                matrix_stride.unwrap_or_else(|| self.size(*column, None)).saturating_mul(*count)
+            }
+            Some(Type::Array { of, length }) => {
+                let stride = self.decoration(id, decoration::ARRAY_STRIDE).unwrap_or_else(|| self.size(*of, None));
+                stride.saturating_mul(self.constants.get(length).copied().unwrap_or(0))
+            }
+            Some(Type::Struct { .. }) => self.block(id).map_or(0, |block| block.size),
+            // Only a buffer reference can lie in memory: a 64-bit address.
+            Some(Type::Pointer { .. }) => 8,
+            _ => 0,
+        }
+    }
+
+    fn structs(&self) -> BTreeMap<String, Block> {
+        let ids = self.types.iter().filter(|(_, declared)| matches!(declared, Type::Struct { .. }));
+        let blocks = ids.filter_map(|(id, _)| self.block(*id));
+        blocks.filter(|block| !block.members.is_empty()).map(|block| (block.name.clone(), block)).collect()
+    }
+
+    fn constant(&self, (id, of, default): (Id, Id, u32)) -> Option<SpecConstant> {
+        let scalar = match self.types.get(&of)? {
+            Type::Bool => Scalar::Bool,
+            Type::Int { bits: 32, signed: true } => Scalar::Int,
+            Type::Int { bits: 32, signed: false } => Scalar::Uint,
+            Type::Float { bits: 32 } => Scalar::Float,
+            _ => return None,
+        };
+        Some(SpecConstant { id: self.decoration(id, decoration::SPEC_ID)?, name: self.name(id), scalar, default })
+    }
+
+    /// Adds a variable's locations: one, or one for each member of a block.
+    fn locations(&self, variable: Id, to: Id, out: &mut Vec<Location>) {
+        let Some(Type::Struct { members }) = self.types.get(&to) else {
+            let Some(location) = self.decoration(variable, decoration::LOCATION) else { return };
+            out.push(Location { location, name: self.name(variable), type_name: self.type_name(to) });
+            return;
+        };
+        let mut next = self.decoration(variable, decoration::LOCATION);
+        for (index, member) in (0..).zip(members) {
+            if self.member_decorations.contains_key(&(to, index, decoration::BUILT_IN)) {
+                return;
+            }
+            let own = self.member_decorations.get(&(to, index, decoration::LOCATION)).copied();
+            let Some(location) = own.or(next) else { return };
+            next = Some(location.saturating_add(self.location_count(*member)));
+            let member_name = self.member_names.get(&(to, index)).cloned().unwrap_or_default();
+            let name = format!("{}.{member_name}", self.name(to));
+            out.push(Location { location, name, type_name: self.type_name(*member) });
+        }
+    }
+
+    fn location_count(&self, id: Id) -> u32 {
+        match self.types.get(&id) {
+            Some(Type::Matrix { count, .. }) => *count,
+            Some(Type::Array { of, length }) => {
+                self.constants.get(length).copied().unwrap_or(1).saturating_mul(self.location_count(*of))
+            }
+            _ => 1,
+        }
+    }
+
+    /// GLSL's spelling of a type.
+    fn type_name(&self, id: Id) -> String {
+        let Some(declared) = self.types.get(&id) else { return "?".to_owned() };
+        match declared {
+            Type::Bool => "bool".to_owned(),
+            Type::Int { bits, signed } => match (bits, signed) {
+                (32, true) => "int".to_owned(),
+                (32, false) => "uint".to_owned(),
+                (bits, true) => format!("int{bits}_t"),
+                (bits, false) => format!("uint{bits}_t"),
+            },
+            Type::Float { bits: 32 } => "float".to_owned(),
+            Type::Float { bits: 64 } => "double".to_owned(),
+            Type::Float { bits } => format!("float{bits}_t"),
+            Type::Vector { of, count } => format!("{}vec{count}", self.prefix(*of)),
+            Type::Matrix { column, count } => match self.types.get(column) {
+                Some(Type::Vector { of, count: rows }) if rows == count => format!("{}mat{count}", self.prefix(*of)),
+                Some(Type::Vector { of, count: rows }) => format!("{}mat{count}x{rows}", self.prefix(*of)),
+                _ => "?".to_owned(),
+            },
+            Type::Image { sampled, dim, arrayed, storage } => {
+                let dimension = match dim {
+                    0 => "1D",
+                    1 => "2D",
+                    2 => "3D",
+                    3 => "Cube",
+                    5 => "Buffer",
+                    _ => "?",
+                };
+                let kind = if *storage { "image" } else { "texture" };
+                format!("{}{kind}{dimension}{}", self.prefix(*sampled), if *arrayed { "Array" } else { "" })
+            }
+            Type::Sampler => "sampler".to_owned(),
+            Type::SampledImage { image } => self.type_name(*image).replacen("texture", "sampler", 1),
+            Type::Array { of, length } => {
+                let length = self.constants.get(length).map_or_else(|| "?".to_owned(), u32::to_string);
+                format!("{}[{length}]", self.type_name(*of))
+            }
+            Type::RuntimeArray { of } => format!("{}[]", self.type_name(*of)),
+            Type::Struct { .. } => self.name(id),
+            Type::Pointer { to, .. } => self.name(*to),
+        }
+    }
+
+    /// What GLSL puts before `vec`, `mat` and `sampler`.
+    fn prefix(&self, scalar: Id) -> &'static str {
+        match self.types.get(&scalar) {
+            Some(Type::Int { signed: true, .. }) => "i",
+            Some(Type::Int { signed: false, .. }) => "u",
+            Some(Type::Bool) => "b",
+            Some(Type::Float { bits: 64 }) => "d",
+            _ => "",
+        }
+    }
+}
+
+/// The type that an instruction declares, if any; the outer `None` when operands are missing.
+fn type_of(opcode: u32, operands: &[u32]) -> Option<Option<Type>> {
+    let at = |index: usize| operands.get(index).copied();
+    Some(Some(match opcode {
+        op::TYPE_BOOL => Type::Bool,
+        op::TYPE_INT => Type::Int { bits: at(1)?, signed: at(2)? != 0 },
+        op::TYPE_FLOAT => Type::Float { bits: at(1)? },
+        op::TYPE_VECTOR => Type::Vector { of: at(1)?, count: at(2)? },
+        op::TYPE_MATRIX => Type::Matrix { column: at(1)?, count: at(2)? },
+        op::TYPE_IMAGE => Type::Image { sampled: at(1)?, dim: at(2)?, arrayed: at(4)? != 0, storage: at(6)? == 2 },
+        op::TYPE_SAMPLER => Type::Sampler,
+        op::TYPE_SAMPLED_IMAGE => Type::SampledImage { image: at(1)? },
+        op::TYPE_ARRAY => Type::Array { of: at(1)?, length: at(2)? },
+        op::TYPE_RUNTIME_ARRAY => Type::RuntimeArray { of: at(1)? },
+        op::TYPE_STRUCT => Type::Struct { members: operands.get(1..)?.to_vec() },
+        op::TYPE_POINTER => Type::Pointer { to: at(2)? },
+        _ => return Some(None),
+    }))
+}
+
+/// A literal string and how many words it takes.
+fn string(words: &[u32]) -> (String, usize) {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let length = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    (String::from_utf8_lossy(&bytes[..length]).into_owned(), length / 4 + 1)
+}
