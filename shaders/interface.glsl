@@ -6,7 +6,6 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 
 const uint INTERFACE_VERSION = 1u;
 const int SET_FRAME = 0;

@@ -7,7 +7,7 @@
 #include "common/fragment.glsl"
 #include "common/math.glsl"
 
-// A material without a texture has a neutral one bound (white, or a flat normal), so nothing here asks whether it exists.
+// Where a material has no texture a neutral one is bound (white, or a flat normal): nothing here asks which exist.
 layout(set = SET_MATERIAL, binding = BINDING_BASE_COLOR_TEXTURE) uniform sampler2D base_color_texture;
 layout(set = SET_MATERIAL, binding = BINDING_METALLIC_ROUGHNESS_TEXTURE) uniform sampler2D metallic_roughness_texture;
 layout(set = SET_MATERIAL, binding = BINDING_NORMAL_TEXTURE) uniform sampler2D normal_texture;
@@ -22,8 +22,8 @@ vec2 texture_uv(Fragment f, uint which) {
     return material.uv_from_texture[which] * vec3(uv, 1.0);
 }
 
-// The normal texture, tangent space: 0..1 stands for -1..1, x and y are scaled (glTF 2.0, 3.9.3), and the length is made 1
-// again. A texel of no direction is flat.
+// The normal texture, tangent space: 0..1 stands for -1..1, x and y are scaled (glTF 2.0, 3.9.3), and the length is
+// made 1 again. A texel of no direction is flat.
 vec3 normal_ts(Fragment f) {
     vec3 n = texture(normal_texture, texture_uv(f, TEXTURE_NORMAL)).xyz * 2.0 - 1.0;
     return safe_normalize(n * vec3(material.normal_scale, material.normal_scale, 1.0), vec3(0.0, 0.0, 1.0));
@@ -34,8 +34,8 @@ vec3 bitangent_ws(Fragment f) {
     return cross(f.normal_ws, f.tangent_ws.xyz) * (f.tangent_ws.w < 0.0 ? -1.0 : 1.0);
 }
 
-// A direction of the front seen from behind is the opposite one. Mirrored meshes have their winding turned by the renderer,
-// so gl_FrontFacing is right for them too.
+// A direction of the front seen from behind is the opposite one. Mirrored meshes have their winding turned by the
+// renderer, so gl_FrontFacing is right for them too.
 vec3 towards_viewer(vec3 direction_ws) { return gl_FrontFacing ? direction_ws : -direction_ws; }
 
 // The mesh's normal, interpolated. Where normals are zero or cancel out, the surface faces the eye.

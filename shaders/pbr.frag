@@ -11,7 +11,8 @@
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;
 
-// The scene color may be kept in half floats: beyond this they are infinite, and the mean of a pixel's samples with them.
+// The scene color may be kept in half floats: beyond this they are infinite, and the mean of a pixel's samples with
+// them.
 const float LARGEST_HALF = 65504.0;
 
 void main() {

@@ -3,8 +3,8 @@
 #include "common/color.glsl"
 #include "common/tonemap.glsl"
 
-// From scene color to the picture: exposure, tone map, background, encoding. The target stores numbers as they are (UNORM),
-// so the sRGB curve is applied here. Alpha leaves straight, not premultiplied.
+// From scene color to the picture: exposure, tone map, background, encoding. The target stores numbers as they are
+// (UNORM), so the sRGB curve is applied here. Alpha leaves straight, not premultiplied.
 
 layout(set = SET_PASS, binding = BINDING_SCENE_COLOR) uniform sampler2D scene_color;
 
@@ -22,7 +22,7 @@ void main() {
     // The curves are not linear, so they want the color of the surface, not the color times how much of it there is.
     vec3 front = display_value(scene.a > 0.0 ? scene.rgb / scene.a : vec3(0.0));
 
-    // Colors meet in linear light, as they would in a lens. Numbers have no such space: they meet the encoded background.
+    // Colors meet in linear light, as they do in a lens. Numbers have no such space: they meet the encoded background.
     bool is_color = frame.encode == ENCODE_COLOR;
     vec3 back = is_color ? frame.background.rgb : srgb_from_linear(frame.background.rgb);
 

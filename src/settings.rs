@@ -178,3 +178,153 @@ impl Default for ViewSettings {
         Self { tonemap: Tonemap::default(), ev: 0.0, background: "#1b1d21".into(), msaa: 4 }
     }
 }
+
+impl Settings {
+    /// Reads a look file.
+    ///
+    /// # Errors
+    /// TOML that does not parse or names that do not exist, in words with line and column.
+    pub fn from_toml(text: &str) -> Result<Self, String> {
+        toml::from_str(text).map_err(|e| e.to_string())
+    }
+
+    /// The settings as a look file.
+    pub fn to_toml(&self) -> String {
+        toml::to_string_pretty(self).unwrap_or_default()
+    }
+
+    /// Refuses values that no picture can be made of.
+    ///
+    /// # Errors
+    /// The setting, what it is and what it can be, in words.
+    pub fn check(&self) -> Result<(), String> {
+        let camera = &self.camera;
+        let numbers = [
+            ("camera.fovy", camera.fovy, 1.0, 170.0),
+            ("camera.elevation", camera.elevation, -90.0, 90.0),
+            ("camera.azimuth", camera.azimuth, -1e6, 1e6),
+            ("view.ev", self.view.ev, -30.0, 30.0),
+            ("lights.ambient_strength", self.lights.ambient_strength, 0.0, 1e9),
+            ("lights.spin", self.lights.spin, -1e4, 1e4),
+        ];
+        let orbit = self.lights.orbit.iter().enumerate();
+        let lights = orbit.flat_map(|(i, l)| {
+            [("strength", l.strength, 0.0, 1e9), ("distance", l.distance, 1e-3, 1e6)]
+                .map(|(name, value, low, high)| (format!("lights.orbit.{i}.{name}"), value, low, high))
+        });
+        let named = numbers.map(|(name, value, low, high)| (name.to_owned(), value, low, high));
+        for (name, value, low, high) in named.into_iter().chain(lights) {
+            if !(low..=high).contains(&value) {
+                return Err(format!("{name} is {value}; it can be {low} to {high}"));
+            }
+        }
+        let vectors = [("camera.eye", camera.eye), ("camera.target", camera.target)];
+        for (name, vector) in vectors {
+            if vector.is_some_and(|v| !v.iter().all(|c| c.is_finite())) {
+                return Err(format!("{name} must have finite numbers"));
+            }
+        }
+        match self.view.msaa {
+            1 | 4 => Ok(()),
+            other => Err(format!("view.msaa is {other}; it can be 1 or 4")),
+        }
+    }
+
+    /// Applies `path=value`, as `--set` takes it: a dotted path (`lights.orbit.0.strength`), or the bare name of a shader's own
+    /// constant or parameter; a TOML value, or text without quotes.
+    ///
+    /// # Errors
+    /// No `=`, a path that does not exist, or a value of the wrong kind, in words.
+    pub fn assign(&mut self, assignment: &str) -> Result<(), String> {
+        let (path, text) = assignment
+            .split_once('=')
+            .ok_or_else(|| format!("'{assignment}' is not path=value, as in lights.ambient_strength=0.2"))?;
+        let (path, text) = (path.trim(), text.trim());
+        let value = toml::from_str::<toml::Table>(&format!("value = {text}"))
+            .ok()
+            .and_then(|mut table| table.remove("value"))
+            .unwrap_or_else(|| toml::Value::String(text.into()));
+        let mut root = toml::Value::try_from(&*self).map_err(|e| e.to_string())?;
+        let is_own = !path.contains('.') && root.get(path).is_none();
+        let full = if is_own { format!("shader.{path}") } else { path.to_owned() };
+        set_at(&mut root, &full, value)?;
+        *self = root.try_into().map_err(|e: toml::de::Error| {
+            let cause = e.to_string().trim().replace('\n', " ");
+            format!("cannot set {path} to {text}: {cause}")
+        })?;
+        Ok(())
+    }
+}
+
+fn set_at(root: &mut toml::Value, path: &str, value: toml::Value) -> Result<(), String> {
+    let mut place = root;
+    for key in path.split('.') {
+        place = match place {
+            toml::Value::Table(table) => table.entry(key).or_insert_with(|| toml::Value::Table(toml::Table::new())),
+            toml::Value::Array(array) => {
+                let length = array.len();
+                let index = key.parse::<usize>().ok();
+                index.and_then(|i| array.get_mut(i)).ok_or_else(|| {
+                    format!("'{key}' in {path} is not one of the {length} entries, 0 to {}", length.saturating_sub(1))
+                })?
+            }
+            _ => return Err(format!("there is nothing below the part before '{key}' in {path}")),
+        };
+    }
+    *place = value;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn assign_reaches_every_depth() {
+        let mut settings = Settings::default();
+        for assignment in [
+            "mode=base-color",
+            "view.ev = -1",
+            "view.tonemap=reinhard-luminance",
+            "lights.orbit.2.color=[1, 0, 0.5]",
+            "camera.eye=[1,2,3]",
+            "shader.rim=0.5",
+            "NDF_MODEL=Beckmann",
+        ] {
+            settings.assign(assignment).unwrap();
+        }
+        assert_eq!(settings.mode, "base-color");
+        assert_eq!(settings.view.ev, -1.0);
+        assert_eq!(settings.view.tonemap, Tonemap::ReinhardLuminance);
+        assert_eq!(settings.lights.orbit[2].color, [1.0, 0.0, 0.5]);
+        assert_eq!(settings.camera.eye, Some([1.0, 2.0, 3.0]));
+        assert_eq!(settings.shader["rim"], ShaderValue::Float(0.5));
+        assert_eq!(settings.shader["NDF_MODEL"], ShaderValue::Name("Beckmann".into()));
+    }
+
+    #[test]
+    fn assign_explains_what_it_cannot_do() {
+        let mut settings = Settings::default();
+        let before = settings.clone();
+        for (assignment, part) in [
+            ("view.exposure=1", "exposure"),
+            ("view.ev=bright", "view.ev"),
+            ("lights.orbit.3.strength=1", "0 to 2"),
+            ("view.ev.x=1", "nothing below"),
+            ("view.ev", "path=value"),
+            ("view.tonemap=filmic", "filmic"),
+        ] {
+            let error = settings.assign(assignment).unwrap_err();
+            assert!(error.contains(part), "{assignment}: {error}");
+            assert_eq!(settings, before, "{assignment} left a trace");
+        }
+    }
+
+    #[test]
+    fn a_look_file_holds_every_setting() {
+        let mut settings = Settings::default();
+        settings.assign("camera.eye=[1,2,3]").unwrap();
+        settings.assign("rim=0.25").unwrap();
+        assert_eq!(Settings::from_toml(&settings.to_toml()).unwrap(), settings);
+    }
+}

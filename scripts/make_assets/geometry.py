@@ -92,7 +92,6 @@ def revolve(profile, segments, v, u_repeat=1.0):
     The texture is not mirrored: seen from the side the normals point to, u runs right and v runs down.
     """
     rows, columns = len(profile.points), segments + 1
-    # v grows along the way; u must grow so that right x up is the outside.
     turn = np.linspace(0.0, 2.0 * np.pi, columns)
     sin, cos = np.sin(turn), np.cos(turn)
     sin[-1], cos[-1] = sin[0], cos[0]  # the seam closes bit for bit
@@ -106,18 +105,17 @@ def revolve(profile, segments, v, u_repeat=1.0):
     normal = around(normal_radius, normal_height).reshape(-1, 3)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     way = np.diff(profile.points, axis=0)
-    clockwise = (profile.normals[:-1] * np.stack([way[:, 1], -way[:, 0]], axis=1)).sum() > 0
+    # Where the outside lies right of the way, v runs up the surface, so u runs against the turn to stay unmirrored.
+    right = (profile.normals[:-1] * np.stack([way[:, 1], -way[:, 0]], axis=1)).sum() > 0
     u = turn / (2.0 * np.pi) * u_repeat
-    if clockwise:
+    if right:
         u = u_repeat - u
     uv = np.stack([np.repeat(u[None], rows, axis=0), np.repeat(np.asarray(v)[:, None], columns, axis=1)], axis=2)
 
     corner = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]
     first, second = np.stack([a, c, d], axis=2), np.stack([a, d, b], axis=2)
-    if not clockwise:
-        pass
-    else:
+    if right:
         first, second = first[..., ::-1], second[..., ::-1]
     flat = radius < 1e-9  # a quad that touches the axis is one triangle
     triangles = np.concatenate([first[~flat[1:]].reshape(-1, 3), second[~flat[:-1]].reshape(-1, 3)])

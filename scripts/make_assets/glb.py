@@ -47,7 +47,8 @@ class Glb:
 
     def _view(self, data, **extra):
         self.binary += b"\0" * (-len(self.binary) % 4)
-        self.document["bufferViews"].append({"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data), **extra})
+        self.document["bufferViews"].append(
+            {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data), **extra})
         self.binary += data
         return len(self.document["bufferViews"]) - 1
 
@@ -95,7 +96,8 @@ class Glb:
     def bytes(self):
         """The file: header, JSON chunk, binary chunk."""
         self.binary += b"\0" * (-len(self.binary) % 4)
-        text = json.dumps({**self.document, "buffers": [{"byteLength": len(self.binary)}]}, separators=(",", ":")).encode()
+        document = {**self.document, "buffers": [{"byteLength": len(self.binary)}]}
+        text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         total = 12 + 8 + len(text) + 8 + len(self.binary)
         return b"".join([

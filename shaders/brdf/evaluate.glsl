@@ -10,8 +10,8 @@
 //   k_d = (1 - metallic) (1 - F_dielectric)      what is not reflected enters; in a metal it is absorbed
 //   k_s = mix(F_dielectric, F_metal, metallic)
 //
-// `metallic` mixes the results of two materials, not their F0: the diffuse part of the dielectric is weakened by its own
-// Fresnel term, which must not depend on the metal beside it. In both lobes, f = mix(dielectric, metal, metallic) exactly.
+// `metallic` mixes the results of two materials, not their F0: the dielectric's diffuse part is weakened by its own
+// Fresnel term, which must not depend on the metal beside it. So f = mix(f_dielectric, f_metal, metallic), exactly.
 #ifndef BRDF_EVALUATE_GLSL
 #define BRDF_EVALUATE_GLSL
 
@@ -40,11 +40,11 @@ struct Brdf {
     vec3 value;                // f: their sum
 };
 
-// A normal map can turn n away from the eye, where no BRDF is defined. Clamped, such a point is seen at a grazing angle, not
-// as a black hole. 1e-4 is far under a degree, and with MIN_ALPHA it keeps the denominator of V above zero.
+// A normal map can turn n away from the eye, where no BRDF is defined. Clamped, such a point is seen at a grazing
+// angle, not as a black hole. 1e-4 is far under a degree; with MIN_ALPHA it keeps V's denominator above zero.
 const float MIN_N_DOT_V = 1e-4;
 
-// l below the horizon: both lobes, D, G and V are 0. l = -v leaves h without a direction: any will do, since then NoL = 0.
+// l below the horizon: both lobes, D, G and V are 0. l = -v leaves h without a direction, and n is as good as any.
 Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     vec3 h = safe_normalize(l + v, s.n);
     float alpha = alpha_from_roughness(s.roughness);

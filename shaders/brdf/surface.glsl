@@ -13,9 +13,9 @@ struct Surface {
     vec3 emissive;             // radiance
 };
 
-// Below this the lobe is narrower than the numbers can say. Its peak 1 / (pi alpha^2) must fit into a half float (65504), in
-// which the scene color may be kept, so alpha > 0.0022; and D subtracts NoH^2 from 1, which is known to 6e-8 only, so
-// alpha^2 must be far more. 0.0025 is a roughness of 0.05. At 0 a point light, which has no size, would have no reflection.
+// Below this the lobe is narrower than the numbers can say. Its peak 1 / (pi alpha^2) must fit into a half float
+// (65504), in which the scene color may be kept, so alpha > 0.0022; and D takes NoH^2 from 1, known to 6e-8 only, so
+// alpha^2 must be far more. 0.0025 is a roughness of 0.05. At 0 a point light, having no size, has no reflection.
 const float MIN_ALPHA = 0.0025;
 
 // alpha = roughness^2 makes equal steps of roughness look equal (Burley 2012, section 5.4; glTF 2.0, appendix B.2.3).

@@ -21,8 +21,9 @@ float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 // 0 blue, 1/4 cyan, 1/2 green, 3/4 yellow, 1 red: each channel is a tent with a flat top. Inputs are clamped.
 vec3 heat(float t) { return saturate(1.5 - abs(4.0 * saturate(t) - vec3(3.0, 2.0, 1.0))); }
 
-// A hue for a number, neighbors far apart: steps of the golden ratio around the color wheel. 2654435769 is 2^32 / phi, so
-// the product is the fraction of id / phi in exact integers (Knuth 1973, The Art of Computer Programming 3, section 6.4).
+// A hue for a number, neighbors far apart: steps of the golden ratio around the color wheel. 2654435769 is 2^32 /
+// phi, so the product is the fraction of id / phi in exact integers (Knuth 1973, The Art of Computer Programming 3,
+// section 6.4).
 vec3 color_from_id(uint id) {
     float hue = float((id + 1u) * 2654435769u) / 4294967296.0;
     return 0.55 + 0.45 * cos(2.0 * PI * (hue + vec3(0.0, 1.0, 2.0) / 3.0));

@@ -1,5 +1,5 @@
-// What the vertex stage hands to the fragment stage: an `out Fragment` there, an `in Fragment` here. Interpolated, so no
-// direction has unit length anymore.
+// What the vertex stage hands to the fragment stage: an `out Fragment` there, an `in Fragment` here. Interpolated, so
+// no direction has unit length anymore.
 #ifndef COMMON_FRAGMENT_GLSL
 #define COMMON_FRAGMENT_GLSL
 

@@ -15,8 +15,9 @@ float pow5(float x) {
 float max_component(vec3 x) { return max(x.r, max(x.g, x.b)); }
 float min_component(vec3 x) { return min(x.r, min(x.g, x.b)); }
 
-// x / |x|, or `fallback` where x has no direction. Interpolated unit vectors can cancel out, and files hold zero vectors;
-// below a length of 1e-10 what is left is rounding noise. A NaN fails the comparison, so it too ends up as `fallback`.
+// x / |x|, or `fallback` where x has no direction. Interpolated unit vectors can cancel out, and files hold zero
+// vectors; below a length of 1e-10 what is left is rounding noise. A NaN fails the comparison, so it too ends up as
+// `fallback`.
 vec3 safe_normalize(vec3 x, vec3 fallback) {
     float length_squared = dot(x, x);
     return length_squared > 1e-20 ? x * inversesqrt(length_squared) : fallback;

@@ -1,4 +1,4 @@
-// Tone maps: from exposed light (1 is the brightest a camera set to this EV would record) to the display's 0..1, linear.
+// Tone maps: from exposed light (1 is the brightest that a camera at this EV records) to the display's 0..1, linear.
 #ifndef COMMON_TONEMAP_GLSL
 #define COMMON_TONEMAP_GLSL
 
@@ -15,8 +15,8 @@ const uint TONEMAP_ACES_HILL = 5u;
 const uint TONEMAP_AGX = 6u;
 const uint TONEMAP_NEUTRAL = 7u;
 
-// x / (1 + x) (Reinhard et al. 2002, eq. 3), on each channel. Nothing clips and nothing is ever white; 1 becomes 1/2. Bright
-// colors fade towards white, since each channel bends on its own.
+// x / (1 + x) (Reinhard et al. 2002, eq. 3), on each channel. Nothing clips and nothing is ever white; 1 becomes 1/2.
+// Bright colors fade towards white, since each channel bends on its own.
 vec3 tonemap_reinhard(vec3 x) { return x / (1.0 + x); }
 
 // The same on luminance, as in the paper: hue and saturation stay, so a saturated light can exceed 1 and clip.
@@ -30,22 +30,27 @@ vec3 hable(vec3 x) {
 }
 vec3 tonemap_uncharted2(vec3 x) { return hable(2.0 * x) / hable(vec3(11.2)); }
 
-// Rational fit of the ACES sRGB transform (Narkowicz 2015). About 1.7 times brighter than ACES (multiply x by 0.6 for its
-// exposure), bright colors keep their hue too long, and it clips at x = 7.2.
+// Rational fit of the ACES sRGB transform (Narkowicz 2015). About 1.7 times brighter than ACES (multiply x by 0.6 for
+// its exposure), bright colors keep their hue too long, and it clips at x = 7.2.
 vec3 tonemap_aces(vec3 x) { return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14); }
 
-// Fit of the ACES reference and output transforms (Hill 2016), in a color space between the two: bright colors go to white
-// as on film. Matrices are written by columns. Never quite reaches white: 1 / 0.9837 is its limit, clipped.
+// Fit of the ACES reference and output transforms (Hill 2016), in a color space between the two: bright colors go to
+// white as on film. Matrices are written by columns. Its limit is 1 / 0.9837:
+// only very bright light clips.
 vec3 tonemap_aces_hill(vec3 x) {
-    const mat3 aces_from_rgb = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
-    const mat3 rgb_from_aces = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+    const mat3 aces_from_rgb = mat3(0.59719, 0.07600, 0.02840,
+                                    0.35458, 0.90834, 0.13383,
+                                    0.04823, 0.01566, 0.83777);
+    const mat3 rgb_from_aces = mat3(1.60475, -0.10208, -0.00327,
+                                    -0.53108, 1.10813, -0.07276,
+                                    -0.07367, -0.00605, 1.07602);
     x = aces_from_rgb * x;
     x = (x * (x + 0.0245786) - 0.000090537) / (x * (0.983729 * x + 0.4329510) + 0.238081);
     return rgb_from_aces * x;
 }
 
-// AgX (Sobotka 2022) in the polynomial form of Wrensch 2023, base look: 16.5 stops of log2, bent by a sigmoid, between two
-// matrices that let bright colors lose saturation. Its output is encoded with a gamma of 2.2, undone at the end.
+// AgX (Sobotka 2022) in the polynomial form of Wrensch 2023, base look: 16.5 stops of log2, bent by a sigmoid between
+// two matrices that let bright colors lose saturation. Its result is encoded with gamma 2.2, which is undone here.
 vec3 tonemap_agx(vec3 x) {
     const mat3 inset = mat3(0.842479062253094, 0.0423282422610123, 0.0423756549057051,
                             0.0784335999999992, 0.878468636469772, 0.0784336,
@@ -54,14 +59,15 @@ vec3 tonemap_agx(vec3 x) {
                              -0.0980208811401368, 1.15190312990417, -0.0980434501171241,
                              -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
     const float min_ev = -12.47393, max_ev = 4.026069;
-    vec3 stops = log2(max(inset * x, 1e-10));   // 1e-10: log2 of 0 is -infinity; far below min_ev, so it changes nothing
+    // 1e-10: log2 of 0 is -infinity; far below min_ev, so it changes nothing.
+    vec3 stops = log2(max(inset * x, 1e-10));
     vec3 t = saturate((stops - min_ev) / (max_ev - min_ev));
     vec3 bent = ((((((15.5 * t - 40.14) * t + 31.96) * t - 6.868) * t + 0.4298) * t + 0.1191) * t) - 0.00232;
     return pow(max(outset * bent, 0.0), vec3(2.2));
 }
 
-// Khronos PBR Neutral (2024): a color below 0.76 comes out as it went in, less the 0.04 that a dielectric reflects of white
-// surroundings, so that products look like their base color. Above, the peak bends towards 1 and the color fades to white.
+// Khronos PBR Neutral (2024): a color below 0.76 comes out as it went in, less the 0.04 that a dielectric reflects of
+// white surroundings: products look like their base color. Above, the peak bends to 1 and the color fades to white.
 vec3 tonemap_neutral(vec3 x) {
     const float start = 0.8 - 0.04, desaturation = 0.15;
     float low = min_component(x);

@@ -1,5 +1,5 @@
-// The debug override. MODE is a specialization constant: the driver keeps the one branch that is taken, drops the others,
-// and with them every texture and light that only they read.
+// The debug override. MODE is a specialization constant: the driver keeps the one branch that is taken, drops the
+// others, and with them every texture and light that only they read.
 #ifndef DEBUG_DEBUG_GLSL
 #define DEBUG_DEBUG_GLSL
 

@@ -20,12 +20,13 @@ vec3 mip_level_color(Fragment f) {
     return heat(textureQueryLod(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR)).x / 8.0);
 }
 
-// Area in texels over area in the world, both of one pixel: its root is texels per metre. Shown from 2^4 to 2^14.
+// Area in texels over area in the world, both of one pixel: its root is texels per meter. Shown from 2^4 to 2^14.
 vec3 texel_density_color(Fragment f) {
     vec2 texel = texture_uv(f, TEXTURE_BASE_COLOR) * vec2(textureSize(base_color_texture, 0));
     float texels = abs(determinant(mat2(dFdx(texel), dFdy(texel))));
     float area = length(cross(dFdx(f.position_ws), dFdy(f.position_ws)));
-    float density_log2 = 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));   // 1e-20: a triangle without area, in either
+    // 1e-20: a triangle may have no area, in either.
+    float density_log2 = 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));
     return heat((density_log2 - 4.0) / 10.0);
 }
 

@@ -24,6 +24,12 @@ vec3 radiance_of_light(Surface s, vec3 v, uint i) {
     return if_present(present, reflected_radiance(shade(s, v, range)));
 }
 
+// The picture, were the material all dielectric (metallic 0) or all metal (1). The picture is their mix.
+vec3 radiance_with_metallic(Surface s, vec3 v, float metallic) {
+    s.metallic = metallic;
+    return outgoing_radiance(s, v, chosen_lights());
+}
+
 Surface as_clay(Surface s) {
     s.base_color = vec3(0.5);
     s.metallic = 0.0;
@@ -35,12 +41,16 @@ Surface as_clay(Surface s) {
 bool debug_light(Surface s, vec3 v, out vec3 value) {
     LightRange range = chosen_lights();
     bool present = !is_empty(range);
+    bool is_lit = (FEATURES & FEATURE_UNLIT) == 0u;
+    bool has_picture = is_lit && frame.chosen_light <= frame.light_count;   // of all lights there may be none
     bool known = true;
     if (MODE == MODE_CLAY) value = outgoing_radiance(as_clay(s), v, all_lights());
+    else if (MODE == MODE_DIELECTRIC) value = if_present(has_picture, radiance_with_metallic(s, v, 0.0));
+    else if (MODE == MODE_METAL) value = if_present(has_picture, radiance_with_metallic(s, v, 1.0));
     else if (MODE == MODE_DIRECT_DIFFUSE) value = if_present(present, shade(s, v, range).diffuse);
     else if (MODE == MODE_DIRECT_SPECULAR) value = if_present(present, shade(s, v, range).specular);
     else if (MODE == MODE_LAMBERT) value = if_present(present, lambert_without_cosine(s, range));
-    else if (MODE == MODE_AMBIENT) value = if_present((FEATURES & FEATURE_UNLIT) == 0u, ambient_radiance(s));
+    else if (MODE == MODE_AMBIENT) value = if_present(is_lit, ambient_radiance(s));
     else if (MODE == MODE_EMISSIVE_ONLY) value = s.emissive;
     else if (MODE == MODE_LIGHT_1) value = radiance_of_light(s, v, 0u);
     else if (MODE == MODE_LIGHT_2) value = radiance_of_light(s, v, 1u);

@@ -1,15 +1,15 @@
-// The debug modes. Each is one value of the specialization constant MODE, so a pipeline holds the code of one mode only.
+// The debug modes. Each is one value of the specialization constant MODE, so a pipeline holds the code of one only.
 //
 // To add one: an annotation and a constant here, a line that gives its value in debug.glsl's functions, save.
 //
-//   //@mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [key=d] doc="One sentence."
-//   const uint MODE_NAME = 1000u;           the number is free, but no other mode's
+//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [key=d] doc="One sentence."       in a comment
+//   const uint MODE_NAME = 1000u;                                              any number that no other mode has
 //
 //   encode    how a PNG and the window store the value: color: sRGB curve; data: as it is; vector: v * 0.5 + 0.5
 //   tonemap   the value is light: exposure and tone map apply
 //   key       a letter that shows the mode in the window
 //
-// Values are raw: a depth is in metres, D exceeds 1. A checkerboard means that the model or the light has no such data.
+// Values are raw: a depth is in meters, D exceeds 1. A checkerboard means that the model or the light has no such data.
 #ifndef DEBUG_MODES_GLSL
 #define DEBUG_MODES_GLSL
 
@@ -18,67 +18,67 @@ const uint MODE_FINAL = 0u;
 //@mode clay "Clay" group="Picture" encode=color tonemap key=c doc="Matte gray of albedo 0.5 with the model's normals."
 const uint MODE_CLAY = 1u;
 
-//@mode position "Position" group="Geometry" encode=data doc="World space, metres."
-const uint MODE_POSITION = 100u;
-//@mode depth "Depth" group="Geometry" encode=data key=z doc="Distance from the eye along the view direction, metres."
-const uint MODE_DEPTH = 101u;
+//@mode position "Position" group="Geometry" encode=data doc="World space, meters."
+const uint MODE_POSITION = 200u;
+//@mode depth "Depth" group="Geometry" encode=data key=z doc="Distance from the eye along the view direction, meters."
+const uint MODE_DEPTH = 201u;
 //@mode geometric-normal "Geometric normal" group="Geometry" encode=vector doc="The mesh's normal, world space."
-const uint MODE_GEOMETRIC_NORMAL = 102u;
+const uint MODE_GEOMETRIC_NORMAL = 202u;
 //@mode shading-normal "Shading normal" group="Geometry" encode=vector key=n doc="The normal that is lit, world space."
-const uint MODE_SHADING_NORMAL = 103u;
+const uint MODE_SHADING_NORMAL = 203u;
 //@mode facet-normal "Facet normal" group="Geometry" encode=vector doc="The triangle's own normal, world space."
-const uint MODE_FACET_NORMAL = 104u;
+const uint MODE_FACET_NORMAL = 204u;
 //@mode tangent "Tangent" group="Geometry" encode=vector key=t doc="The mesh's tangent, world space."
-const uint MODE_TANGENT = 105u;
+const uint MODE_TANGENT = 205u;
 //@mode bitangent "Bitangent" group="Geometry" encode=vector doc="cross(normal, tangent) times the sign, world space."
-const uint MODE_BITANGENT = 106u;
+const uint MODE_BITANGENT = 206u;
 //@mode tangent-sign "Tangent sign" group="Geometry" encode=color doc="Green is +1, red is -1: mirrored UVs."
-const uint MODE_TANGENT_SIGN = 107u;
+const uint MODE_TANGENT_SIGN = 207u;
 //@mode uv0 "UV 0" group="Geometry" encode=data doc="TEXCOORD_0."
-const uint MODE_UV0 = 108u;
+const uint MODE_UV0 = 208u;
 //@mode uv1 "UV 1" group="Geometry" encode=data doc="TEXCOORD_1."
-const uint MODE_UV1 = 109u;
+const uint MODE_UV1 = 209u;
 //@mode vertex-color "Vertex color" group="Geometry" encode=color doc="COLOR_0, linear RGB."
-const uint MODE_VERTEX_COLOR = 110u;
+const uint MODE_VERTEX_COLOR = 210u;
 //@mode face-orientation "Face orientation" group="Geometry" encode=color doc="Green is the front, red the back."
-const uint MODE_FACE_ORIENTATION = 111u;
+const uint MODE_FACE_ORIENTATION = 211u;
 //@mode triangle-id "Triangle" group="Geometry" encode=color doc="A color for each triangle of a mesh."
-const uint MODE_TRIANGLE_ID = 112u;
+const uint MODE_TRIANGLE_ID = 212u;
 //@mode mesh-id "Mesh" group="Geometry" encode=color doc="A color for each primitive."
-const uint MODE_MESH_ID = 113u;
+const uint MODE_MESH_ID = 213u;
 //@mode node-id "Node" group="Geometry" encode=color doc="A color for each node of the scene."
-const uint MODE_NODE_ID = 114u;
+const uint MODE_NODE_ID = 214u;
 //@mode material-id "Material" group="Geometry" encode=color doc="A color for each material."
-const uint MODE_MATERIAL_ID = 115u;
-//@mode mip-level "Mip level" group="Geometry" encode=color doc="Base color texture: blue is level 0, red level 8 and up."
-const uint MODE_MIP_LEVEL = 116u;
-//@mode texel-density "Texel density" group="Geometry" encode=color doc="Base color: blue 16 texels a metre, red 16384."
-const uint MODE_TEXEL_DENSITY = 117u;
+const uint MODE_MATERIAL_ID = 215u;
+//@mode mip-level "Mip level" group="Geometry" encode=color doc="Base color texture: blue is level 0, red 8 and up."
+const uint MODE_MIP_LEVEL = 216u;
+//@mode texel-density "Texel density" group="Geometry" encode=color doc="Base color: blue 16 texels a meter, red 16384."
+const uint MODE_TEXEL_DENSITY = 217u;
 
 //@mode base-color "Base color" group="Material" encode=color key=b doc="Texture, factor and vertex color, linear RGB."
-const uint MODE_BASE_COLOR = 200u;
+const uint MODE_BASE_COLOR = 100u;
 //@mode alpha "Alpha" group="Material" encode=data doc="Coverage before the cutoff; 1 where the material is opaque."
-const uint MODE_ALPHA = 201u;
+const uint MODE_ALPHA = 101u;
 //@mode metallic "Metallic" group="Material" encode=data key=m doc="0 is a dielectric, 1 a metal."
-const uint MODE_METALLIC = 202u;
+const uint MODE_METALLIC = 102u;
 //@mode roughness "Roughness" group="Material" encode=data key=u doc="Perceptual roughness."
-const uint MODE_ROUGHNESS = 203u;
+const uint MODE_ROUGHNESS = 103u;
 //@mode ggx-alpha "GGX alpha" group="Material" encode=data doc="Width of the lobe: roughness^2, at least 0.0025."
-const uint MODE_GGX_ALPHA = 204u;
+const uint MODE_GGX_ALPHA = 104u;
 //@mode occlusion "Occlusion" group="Material" encode=data doc="1 sees the whole sky; it dims ambient light only."
-const uint MODE_OCCLUSION = 205u;
+const uint MODE_OCCLUSION = 105u;
 //@mode emissive "Emissive" group="Material" encode=color doc="Texture and factor, linear RGB, without exposure."
-const uint MODE_EMISSIVE = 206u;
+const uint MODE_EMISSIVE = 106u;
 //@mode normal-texture "Normal texture" group="Material" encode=vector doc="Tangent space, scaled, unit length."
-const uint MODE_NORMAL_TEXTURE = 207u;
+const uint MODE_NORMAL_TEXTURE = 107u;
 //@mode diffuse-color "Diffuse color" group="Material" encode=color doc="base color (1 - metallic)."
-const uint MODE_DIFFUSE_COLOR = 208u;
+const uint MODE_DIFFUSE_COLOR = 108u;
 //@mode f0 "F0" group="Material" encode=color doc="Reflectance along the normal: mix(0.04, base color, metallic)."
-const uint MODE_F0 = 209u;
+const uint MODE_F0 = 109u;
 //@mode f90 "F90" group="Material" encode=color doc="Reflectance at a grazing angle: 1 in metallic-roughness."
-const uint MODE_F90 = 210u;
+const uint MODE_F90 = 110u;
 
-// D to V dot H: of the chosen light, of light 1 when all are chosen.
+// D to V dot H: of the chosen light, or of light 1 when all are chosen.
 //@mode d "Normal distribution D" group="BRDF terms" encode=data key=d doc="GGX (Walter et al. 2007, eq. 33), 1/sr."
 const uint MODE_D = 300u;
 //@mode g "Masking-shadowing G" group="BRDF terms" encode=data key=g doc="Smith, GGX (Heitz 2014, eq. 98 or 99)."
@@ -89,7 +89,7 @@ const uint MODE_V = 302u;
 const uint MODE_F = 303u;
 //@mode k-d "Diffuse weight k_d" group="BRDF terms" encode=data doc="(1 - metallic) (1 - F of the dielectric)."
 const uint MODE_K_D = 304u;
-//@mode k-s "Specular weight k_s" group="BRDF terms" encode=color doc="mix(F dielectric, F metal, metallic): equal to F."
+//@mode k-s "Specular weight k_s" group="BRDF terms" encode=color doc="mix(F dielectric, F metal, metallic): F itself."
 const uint MODE_K_S = 305u;
 //@mode n-dot-l "N dot L" group="BRDF terms" encode=data doc="0 behind the surface."
 const uint MODE_N_DOT_L = 306u;
@@ -99,42 +99,43 @@ const uint MODE_N_DOT_V = 307u;
 const uint MODE_N_DOT_H = 308u;
 //@mode v-dot-h "V dot H" group="BRDF terms" encode=data doc="Equal to L dot H: the angle that Fresnel takes."
 const uint MODE_V_DOT_H = 309u;
-// The rest sums over all lights, or takes the chosen one.
+// Of the chosen light, or the sum over all.
 //@mode diffuse-lobe "Diffuse lobe" group="BRDF terms" encode=color doc="k_d albedo / pi, 1/sr (Lambert 1760)."
 const uint MODE_DIFFUSE_LOBE = 310u;
 //@mode specular-lobe "Specular lobe" group="BRDF terms" encode=color key=k doc="k_s D V, 1/sr (Cook & Torrance 1982)."
 const uint MODE_SPECULAR_LOBE = 311u;
-//@mode dielectric "Dielectric only" group="BRDF terms" encode=color tonemap key=i doc="The picture with metallic 0."
-const uint MODE_DIELECTRIC = 312u;
-//@mode metal "Metal only" group="BRDF terms" encode=color tonemap key=j doc="The picture with metallic 1."
-const uint MODE_METAL = 313u;
 
-//@mode direct-diffuse "Direct diffuse" group="Light" encode=color tonemap doc="Diffuse lobe, lit by all or the chosen."
-const uint MODE_DIRECT_DIFFUSE = 400u;
-//@mode direct-specular "Direct specular" group="Light" encode=color tonemap doc="Specular lobe, lit by all or the chosen."
-const uint MODE_DIRECT_SPECULAR = 401u;
-//@mode lambert "Lambert, no cosine" group="Light" encode=color tonemap doc="base color / pi times irradiance, no N dot L."
-const uint MODE_LAMBERT = 402u;
+// Of the chosen light, of all lights when all are chosen; from `ambient` on, chosen or not.
+//@mode dielectric "Dielectric only" group="Light" encode=color tonemap key=i doc="The picture with metallic 0."
+const uint MODE_DIELECTRIC = 400u;
+//@mode metal "Metal only" group="Light" encode=color tonemap key=j doc="The picture with metallic 1."
+const uint MODE_METAL = 401u;
+//@mode direct-diffuse "Direct diffuse" group="Light" encode=color tonemap doc="Diffuse lobe, all lights or one."
+const uint MODE_DIRECT_DIFFUSE = 402u;
+//@mode direct-specular "Direct specular" group="Light" encode=color tonemap doc="Specular lobe, all lights or one."
+const uint MODE_DIRECT_SPECULAR = 403u;
+//@mode lambert "Lambert, no cosine" group="Light" encode=color tonemap doc="base color / pi times irradiance."
+const uint MODE_LAMBERT = 404u;
 //@mode ambient "Ambient" group="Light" encode=color tonemap doc="ambient radiance times base color times occlusion."
-const uint MODE_AMBIENT = 403u;
+const uint MODE_AMBIENT = 405u;
 //@mode emissive-only "Emission" group="Light" encode=color tonemap doc="Emission alone, exposed like the picture."
-const uint MODE_EMISSIVE_ONLY = 404u;
+const uint MODE_EMISSIVE_ONLY = 406u;
 //@mode light-1 "Light 1" group="Light" encode=color tonemap doc="The first light alone, with ambient light."
-const uint MODE_LIGHT_1 = 405u;
+const uint MODE_LIGHT_1 = 407u;
 //@mode light-2 "Light 2" group="Light" encode=color tonemap doc="The second light alone, with ambient light."
-const uint MODE_LIGHT_2 = 406u;
+const uint MODE_LIGHT_2 = 408u;
 //@mode light-3 "Light 3" group="Light" encode=color tonemap doc="The third light alone, with ambient light."
-const uint MODE_LIGHT_3 = 407u;
+const uint MODE_LIGHT_3 = 409u;
 //@mode luminance "Luminance" group="Light" encode=color tonemap doc="Y of the picture (ITU-R BT.709)."
-const uint MODE_LUMINANCE = 408u;
+const uint MODE_LUMINANCE = 410u;
 
-//@mode nan "NaN, Inf, negative" group="Truth" encode=color key=x doc="NaN magenta, Inf yellow, negative cyan; else dark."
+//@mode nan "NaN, Inf, negative" group="Truth" encode=color key=x doc="NaN magenta, Inf yellow, negative cyan."
 const uint MODE_NAN = 500u;
 //@mode negative "Negative" group="Truth" encode=color doc="Channels of the picture below zero; else dark."
 const uint MODE_NEGATIVE = 501u;
 //@mode clipped "Clipped" group="Truth" encode=color doc="Channels above 1 after exposure, before the tone map."
 const uint MODE_CLIPPED = 502u;
-//@mode false-color "False-color exposure" group="Truth" encode=color doc="Stops from middle gray: blue -6, green 0, red +6."
+//@mode false-color "False-color exposure" group="Truth" encode=color doc="Stops off middle gray: blue -6, red +6."
 const uint MODE_FALSE_COLOR = 503u;
 //@mode albedo-range "Albedo range" group="Truth" encode=color doc="sRGB under 30 blue, over 240 red (McDermott 2018)."
 const uint MODE_ALBEDO_RANGE = 504u;

@@ -6,7 +6,6 @@
 #include "brdf/evaluate.glsl"
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
-#include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
 
 // Both lobes added up over the lights, whatever their strength: where does the BRDF send light to the eye at all?
@@ -23,12 +22,6 @@ Lobes sum_of_lobes(Surface s, vec3 v, LightRange range) {
         sum.specular += f.specular;
     }
     return sum;
-}
-
-// The picture, were the material all dielectric (metallic 0) or all metal (1). The picture is their mix.
-vec3 radiance_with_metallic(Surface s, vec3 v, float metallic, LightRange range) {
-    s.metallic = metallic;
-    return outgoing_radiance(s, v, range);
 }
 
 bool debug_terms(Surface s, vec3 v, out vec3 value) {
@@ -51,8 +44,6 @@ bool debug_terms(Surface s, vec3 v, out vec3 value) {
     else if (MODE == MODE_V_DOT_H) value = vec3(f.v_dot_h);
     else if (MODE == MODE_DIFFUSE_LOBE) value = sum_of_lobes(s, v, range).diffuse;
     else if (MODE == MODE_SPECULAR_LOBE) value = sum_of_lobes(s, v, range).specular;
-    else if (MODE == MODE_DIELECTRIC) value = radiance_with_metallic(s, v, 0.0, range);
-    else if (MODE == MODE_METAL) value = radiance_with_metallic(s, v, 1.0, range);
     else known = false;
     if (known) value = if_present(present, value);
     return known;

@@ -36,12 +36,13 @@ vec3 clipped_color(vec3 radiance) {
 
 // Stops above and below 18 % gray, the reflectance that a light meter takes for the mean of a scene: -6 .. +6.
 vec3 false_color(vec3 radiance) {
-    float seen = max(luminance(radiance) * frame.exposure, 1e-6);   // 1e-6: log2 of black is -infinity; 17 stops down is far off the scale
+    // 1e-6: log2 of black is -infinity; 17 stops down is off the scale already.
+    float seen = max(luminance(radiance) * frame.exposure, 1e-6);
     return heat((log2(seen / 0.18) + 6.0) / 12.0);
 }
 
-// No common dielectric is darker than charcoal (sRGB 30) or lighter than fresh snow (240) (McDermott 2018, The PBR Guide). A
-// metal's base color is not an albedo, so the more metal, the less is said: half and above, nothing.
+// No common dielectric is darker than charcoal (sRGB 30) or lighter than fresh snow (240) (McDermott 2018, The PBR
+// Guide). A metal's base color is not an albedo, so the more metal, the less is said: half and above, nothing.
 vec3 albedo_range_color(Surface s) {
     vec3 srgb = srgb_from_linear(s.base_color) * 255.0;
     if (s.metallic < 0.5 && max_component(srgb) < 30.0) return TOO_LOW;
@@ -49,8 +50,8 @@ vec3 albedo_range_color(Surface s) {
     return vec3(0.25 * luminance(s.base_color));
 }
 
-// Dielectrics reflect 2 to 5 % along the normal, metals 70 % and more of sRGB, that is 180 (McDermott 2018). Nothing common lies between:
-// a metal this dark is dirt or rust, which are dielectric, and `metallic` says so.
+// Along the normal, dielectrics reflect 2 to 5 % and metals sRGB 180 and more (McDermott 2018). Nothing common lies
+// between: a metal that dark is covered by dirt or rust, which are dielectrics, and `metallic` should say so.
 vec3 f0_range_color(Surface s) {
     float f0 = max_component(mix(vec3(DIELECTRIC_F0), s.base_color, s.metallic));
     if (f0 < 0.02) return TOO_LOW;

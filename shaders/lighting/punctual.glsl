@@ -20,8 +20,8 @@ float range_window(float distance_squared, float range) {
     return saturate(1.0 - ratio_squared * ratio_squared);
 }
 
-// Square of a ramp in the cosine, from the outer cone to the inner one (KHR_lights_punctual). Where both cones are the same
-// the ramp is a step; 1e-3 keeps it divisible, and one pixel wide for most spots.
+// Square of a ramp in the cosine, from the outer cone to the inner one (KHR_lights_punctual). Where both cones are
+// the same the ramp is a step; 1e-3, from the extension as well, keeps it divisible.
 float spot_falloff(float cos_angle, float cos_inner, float cos_outer) {
     float ramp = saturate((cos_angle - cos_outer) / max(cos_inner - cos_outer, 1e-3));
     return ramp * ramp;

@@ -22,7 +22,7 @@ struct LightRange {
 
 LightRange all_lights() { return LightRange(0u, frame.light_count); }
 
-// What the debug modes of one light look at: the chosen light, or all. Empty if there is none; unlit materials know none.
+// What the debug modes of one light look at: the chosen light, or all. Empty if there is none, or nothing to light.
 LightRange chosen_lights() {
     uint end = (FEATURES & FEATURE_UNLIT) != 0u ? 0u : frame.light_count;
     if (frame.chosen_light == 0u) return LightRange(0u, end);

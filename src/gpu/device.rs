@@ -78,7 +78,7 @@ impl Gpu {
         let queue_family = graphics_family(&instance, physical)
             .ok_or_else(|| GpuError::NoDevice(format!("{} has no graphics queue", info.name)))?;
         let device =
-            create_device(&instance, physical, queue_family, options.display.is_some(), supported.sampler_anisotropy)?;
+            create_device(&instance, physical, queue_family, options.display.is_some(), &supported)?;
         // SAFETY: the family was asked for at device creation with one queue.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -321,6 +321,7 @@ fn missing(instance: &ash::Instance, physical: vk::PhysicalDevice, version: u32,
     let needs = [
         (v13.dynamic_rendering, "dynamic rendering"),
         (v13.synchronization2, "synchronization2"),
+        (v13.shader_terminate_invocation, "discard in shaders (shaderTerminateInvocation)"),
         (v12.buffer_device_address, "buffer device address"),
         (v12.scalar_block_layout, "scalar block layout"),
         (core.geometry_shader, "primitive ids in fragment shaders (geometryShader)"),
@@ -350,15 +351,23 @@ fn create_device(
     physical: vk::PhysicalDevice,
     queue_family: u32,
     window: bool,
-    anisotropy: vk::Bool32,
+    supported: &vk::PhysicalDeviceFeatures,
 ) -> Result<ash::Device, GpuError> {
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
     let extensions: &[_] = if window { &[khr::swapchain::NAME.as_ptr()] } else { &[] };
-    let core = vk::PhysicalDeviceFeatures { sampler_anisotropy: anisotropy, geometry_shader: vk::TRUE, ..Default::default() };
+    let core = vk::PhysicalDeviceFeatures {
+        sampler_anisotropy: supported.sampler_anisotropy,
+        large_points: supported.large_points,
+        geometry_shader: vk::TRUE,
+        ..Default::default()
+    };
     let mut v12 =
         vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true).scalar_block_layout(true);
-    let mut v13 = vk::PhysicalDeviceVulkan13Features::default().dynamic_rendering(true).synchronization2(true);
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
+        .dynamic_rendering(true)
+        .synchronization2(true)
+        .shader_terminate_invocation(true);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(extensions)

@@ -24,6 +24,15 @@ pub struct Rect {
     pub height: u32,
 }
 
+impl Rect {
+    fn vulkan(self) -> vk::Rect2D {
+        vk::Rect2D {
+            offset: vk::Offset2D { x: self.x as i32, y: self.y as i32 },
+            extent: vk::Extent2D { width: self.width, height: self.height },
+        }
+    }
+}
+
 /// What an image is used for; a transition between two uses is a barrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
@@ -155,10 +164,6 @@ impl Encoder {
             None => color.store_op(vk::AttachmentStoreOp::STORE),
         };
         let colors = [color];
-        let area = vk::Rect2D {
-            offset: vk::Offset2D { x: to.area.x as i32, y: to.area.y as i32 },
-            extent: vk::Extent2D { width: to.area.width, height: to.area.height },
-        };
         let depth = to.depth.map(|depth| {
             self.keep(depth);
             vk::RenderingAttachmentInfo::default()
@@ -167,23 +172,29 @@ impl Encoder {
                 .load_op(vk::AttachmentLoadOp::CLEAR)
                 .store_op(vk::AttachmentStoreOp::DONT_CARE)
         });
-        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colors);
+        let mut info = vk::RenderingInfo::default().render_area(to.area.vulkan()).layer_count(1).color_attachments(&colors);
         if let Some(depth) = &depth {
             info = info.depth_attachment(depth);
         }
+        // SAFETY: recording into our own buffer; the images are kept.
+        unsafe { self.gpu.device.cmd_begin_rendering(self.raw, &info) };
+        self.set_viewport(to.area);
+    }
+
+    /// Confines what follows to a rectangle.
+    pub fn set_viewport(&mut self, to: Rect) {
         let viewport = vk::Viewport {
-            x: to.area.x as f32,
-            y: to.area.y as f32,
-            width: to.area.width as f32,
-            height: to.area.height as f32,
+            x: to.x as f32,
+            y: to.y as f32,
+            width: to.width as f32,
+            height: to.height as f32,
             min_depth: 0.0,
             max_depth: 1.0,
         };
-        // SAFETY: recording into our own buffer; the images are kept.
+        // SAFETY: recording into our own buffer.
         unsafe {
-            self.gpu.device.cmd_begin_rendering(self.raw, &info);
             self.gpu.device.cmd_set_viewport(self.raw, 0, &[viewport]);
-            self.gpu.device.cmd_set_scissor(self.raw, 0, &[area]);
+            self.gpu.device.cmd_set_scissor(self.raw, 0, &[to.vulkan()]);
         }
     }
 

@@ -23,11 +23,9 @@ use super::wanted::Wanted;
 pub struct FrameInput<'a> {
     /// Camera, lights and values.
     pub shot: &'a Shot,
-    /// Which pipelines; `pipelines` has them all.
-    pub wanted: &'a Wanted,
-    /// One generation of shaders.
-    pub pipelines: &'a PipelineSet,
-    /// The model; `None` draws the background alone.
+    /// One generation of shaders, and which of its pipelines; it has them all. `None`, at the start, draws the background alone.
+    pub pipelines: Option<(&'a PipelineSet, &'a Wanted)>,
+    /// The model, or none yet.
     pub scene: Option<&'a GpuScene>,
     /// Where in the output the picture goes.
     pub rect: Rect,
@@ -149,7 +147,7 @@ impl Renderer {
         };
 
         // What the shaders read.
-        self.resize_targets(size, input.wanted.samples)?;
+        self.resize_targets(size, input.pipelines.map_or(1, |(_, wanted)| wanted.samples))?;
         let slot = self.frames.current();
         if self.uniforms[slot].light_capacity() < input.shot.lights.len() {
             self.uniforms[slot] = Uniforms::new(&self.gpu, &self.layouts, input.shot.lights.len())?;
@@ -167,15 +165,11 @@ impl Renderer {
         let before = if acquired.is_some() { Use::Acquired } else { Use::Undefined };
         encoder.transition(&output, before, Use::Color);
         let whole = Rect { x: 0, y: 0, width: output.desc().width, height: output.desc().height };
-        let clear = (input.rect != whole).then_some([0.0, 0.0, 0.0, 1.0]);
-        if clear.is_some() {
-            let all = Attachments { color: &output, clear, resolve: None, depth: None, area: whole };
-            encoder.begin_rendering(&all);
-            encoder.end_rendering();
-        }
-        let area = Attachments { color: &output, clear: None, resolve: None, depth: None, area: input.rect };
-        encoder.begin_rendering(&area);
-        if let Some(pipeline) = input.pipelines.get(&input.wanted.tonemap_key()) {
+        let attachments =
+            Attachments { color: &output, clear: Some([0.0, 0.0, 0.0, 1.0]), resolve: None, depth: None, area: whole };
+        encoder.begin_rendering(&attachments);
+        if let Some(pipeline) = input.pipelines.and_then(|(set, wanted)| set.get(&wanted.tonemap_key())) {
+            encoder.set_viewport(input.rect);
             encoder.bind_pipeline(&pipeline);
             encoder.bind_set(&self.layouts, hdr_set);
             encoder.draw(3);
@@ -185,7 +179,7 @@ impl Renderer {
         // The user interface over it.
         if let Target::Window(_, ui) = &mut target {
             encoder.transition(&output, Use::Color, Use::Color);
-            encoder.begin_rendering(&Attachments { area: whole, ..area });
+            encoder.begin_rendering(&Attachments { clear: None, ..attachments });
             let extent = (whole.width, whole.height);
             ui.renderer.draw(&mut encoder, extent, ui.pixels_per_point, ui.primitives)?;
             encoder.end_rendering();
@@ -245,25 +239,20 @@ fn draw_model(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, targets: &Target
         depth: Some(&targets.depth),
         area: Rect { x: 0, y: 0, width: desc.width, height: desc.height },
     });
-    if let Some(scene) = input.scene {
+    if let (Some(scene), Some((pipelines, wanted))) = (input.scene, input.pipelines) {
         encoder.keep(&scene.vertices);
         encoder.bind_indices(&scene.indices);
         for draw in sorted(&scene.draws, input.shot.view.eye) {
-            draw_primitive(encoder, layouts, scene, draw, input);
+            if let Some(pipeline) = pipelines.get(&wanted.model_key(draw.variant)) {
+                encoder.bind_pipeline(&pipeline);
+                draw_primitive(encoder, layouts, scene, draw);
+            }
         }
     }
     encoder.end_rendering();
 }
 
-fn draw_primitive(
-    encoder: &mut Encoder,
-    layouts: &Arc<SetLayouts>,
-    scene: &GpuScene,
-    draw: &GpuDraw,
-    input: &FrameInput<'_>,
-) {
-    let Some(pipeline) = input.pipelines.get(&input.wanted.model_key(draw.variant)) else { return };
-    encoder.bind_pipeline(&pipeline);
+fn draw_primitive(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, scene: &GpuScene, draw: &GpuDraw) {
     encoder.bind_set(layouts, &scene.materials[draw.material]);
     encoder.push(layouts, &draw.push);
     // Both faces of a transparent surface are blended in order: the far one, seen from inside, first.

@@ -16,8 +16,8 @@ mod wanted;
 
 pub use capture::Capture;
 pub use frame::{Drawn, FrameInput, Renderer, Target, UiFrame};
-pub use pipelines::PipelineSet;
-pub use reload::{Outcome, Reload, Reloader};
+pub use pipelines::{PipelineSet, STAGES};
+pub use reload::{Outcome, Reload, Reloader, tree_name};
 pub use scene::{GpuScene, UploadError};
 pub use shot::{Shot, background};
 pub use values::unknown_names;

@@ -9,7 +9,7 @@ use crate::shader::ShaderSet;
 use super::wanted::{Pass, PipelineKey, Wanted};
 
 /// The stages that a shader tree must have, as paths from its root.
-pub(super) const STAGES: [&str; 4] = ["pbr.vert", "pbr.frag", "tonemap.vert", "tonemap.frag"];
+pub const STAGES: [&str; 4] = ["pbr.vert", "pbr.frag", "tonemap.vert", "tonemap.frag"];
 
 /// Compiled shaders and every pipeline made of them so far. Pipelines are only ever added.
 pub struct PipelineSet {

@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Gpu, SetLayouts};
-use crate::shader::{Change, Diagnostic, Library, Report, ShaderSet, Source, Update};
+use crate::events::ReloadEvent;
+use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, Update};
 
 use super::pipelines::{PipelineSet, STAGES};
 use super::wanted::Wanted;
@@ -14,7 +15,6 @@ pub struct Reloader {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
     library: Library,
-    current: Option<Arc<ShaderSet>>,
     unbuilt: bool,
 }
 
@@ -43,12 +43,11 @@ pub struct Reload {
 
 impl Reloader {
     /// For the tree of `source`. Compiles nothing yet.
-    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, source: Source) -> Self {
+    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, compiler: &Arc<Compiler>, source: Source) -> Self {
         Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
-            library: Library::new(source, &STAGES),
-            current: None,
+            library: Library::new(source, compiler.clone(), &STAGES),
             unbuilt: false,
         }
     }
@@ -68,7 +67,7 @@ impl Reloader {
         wanted: impl FnOnce(&ShaderSet) -> Result<Wanted, String>,
         superseded: impl Fn() -> bool,
     ) -> Reload {
-        let (shaders, report) = match self.library.update(change) {
+        let (shaders, report) = match self.library.update(&change) {
             Update::Failed(diagnostics, report) => {
                 return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Failed(diagnostics) };
             }
@@ -76,12 +75,14 @@ impl Reloader {
                 self.unbuilt = true;
                 (shaders, report)
             }
-            Update::Unchanged { cleared, report } => match &self.current {
-                Some(shaders) if self.unbuilt => (shaders.clone(), report),
-                _ => return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared } },
+            Update::Unchanged { cleared } => match self.library.set() {
+                Some(shaders) if self.unbuilt => (shaders.clone(), Report::default()),
+                _ => {
+                    let outcome = Outcome::Unchanged { cleared };
+                    return Reload { report: Report::default(), pipeline_ms: 0.0, outcome };
+                }
             },
         };
-        self.current = Some(shaders.clone());
         if superseded() {
             return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
         }
@@ -95,8 +96,29 @@ impl Reloader {
                 self.unbuilt = false;
                 Outcome::Ready(set)
             }
-            Err(message) => Outcome::Failed(vec![Diagnostic::error(self.library.display_root(), None, message)]),
+            Err(message) => Outcome::Failed(vec![Diagnostic::error(tree_name(self.library.source()), message)]),
         };
         Reload { report, pipeline_ms, outcome }
     }
+}
+
+impl Reload {
+    /// The event that tells of it.
+    pub fn event(&self, generation: u64, detect_ms: f64, first_frame_ms: f64) -> ReloadEvent {
+        ReloadEvent {
+            generation,
+            changed: self.report.changed.clone(),
+            stages: self.report.stages.iter().map(|(stage, _)| stage.clone()).collect(),
+            ok: !matches!(self.outcome, Outcome::Failed(_)),
+            detect_ms,
+            compile_ms: self.report.compile_ms,
+            pipeline_ms: self.pipeline_ms,
+            first_frame_ms,
+        }
+    }
+}
+
+/// What a tree is called in messages.
+pub fn tree_name(source: &Source) -> String {
+    source.root().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string())
 }

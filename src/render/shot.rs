@@ -1,9 +1,8 @@
 //! What a frame shows: camera, lights and values, worked out from the settings, the model and the shaders.
 
 use crate::gpu::Rect;
-use crate::interface::{self, Frame, Light, TONEMAP_OFF};
-use crate::scene::camera::View;
-use crate::scene::{Model, lights};
+use crate::interface::{Frame, Light, TONEMAP_OFF};
+use crate::scene::{self, Model, View};
 use crate::settings::{Settings, Tonemap};
 use crate::shader::{Encode, Mode, ShaderSet};
 
@@ -29,13 +28,14 @@ impl Shot {
     /// A value in the settings that does not fit, in words.
     pub fn new(
         settings: &Settings,
-        shaders: &ShaderSet,
+        shaders: Option<&ShaderSet>,
         model: &Model,
         view: View,
         time_s: f32,
     ) -> Result<Self, String> {
-        let lights = lights::lights(&settings.lights, model, time_s);
-        let mode = wanted::mode(shaders, &settings.mode);
+        let lights = scene::lights(&settings.lights, model, time_s);
+        let mode = shaders.and_then(|s| wanted::mode(s, &settings.mode));
+        let params = shaders.map_or(Ok(Vec::new()), |s| values::params(&settings.shader, &s.parameters))?;
         let ambient = settings.lights.ambient_color.map(|c| c * settings.lights.ambient_strength);
         let exposure = 1.0 / (1.2 * settings.view.ev.exp2());
         let view_from_world = view.view_from_world();
@@ -56,15 +56,11 @@ impl Shot {
             light_count: lights.len() as u32,
             chosen_light: settings.lights.chosen,
             tonemap: tonemap(settings.view.tonemap, mode),
-            encode: match mode.map(|m| m.encode) {
-                Some(Encode::Data) => interface::ENCODE_DATA,
-                Some(Encode::Vector) => interface::ENCODE_VECTOR,
-                Some(Encode::Color) | None => interface::ENCODE_COLOR,
-            },
+            encode: mode.map_or(Encode::Color, |m| m.encode).id(),
             mode: mode.map_or(0, |m| m.id),
             ..Default::default()
         };
-        Ok(Self { view, lights, params: values::params(&settings.shader, &shaders.parameters)?, frame })
+        Ok(Self { view, lights, params, frame })
     }
 
     /// The frame's uniforms for a picture in this part of the output.

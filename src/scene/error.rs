@@ -31,7 +31,9 @@ pub enum Problem {
         found: String,
     },
     /// The GLB container is damaged.
-    #[error("is a damaged GLB: expected {expected}, found {found}. The file may be cut short: copy or export it again.")]
+    #[error(
+        "is a damaged GLB: expected {expected}, found {found}. The file may be cut short: copy or export it again."
+    )]
     Container {
         /// What a GLB has at this place.
         expected: String,
@@ -42,7 +44,9 @@ pub enum Problem {
     #[error("has JSON that does not parse as glTF 2.0: {0}. Export the model again, or correct the line named here.")]
     Json(#[source] gltf::json::Error),
     /// Another major version.
-    #[error("needs glTF {found}, expected 2.0. Convert the model to glTF 2.0 (for example with Blender or gltf-pipeline).")]
+    #[error(
+        "needs glTF {found}, expected 2.0. Convert the model to glTF 2.0 (for example with Blender or gltf-pipeline)."
+    )]
     Version {
         /// `asset.version` or `asset.minVersion`.
         found: String,
@@ -61,7 +65,9 @@ pub enum Problem {
         supported: String,
     },
     /// The file contradicts the specification.
-    #[error("is invalid at {place}: expected {expected}, found {found}. Export the model again, or run it through the Khronos glTF validator.")]
+    #[error(
+        "is invalid at {place}: expected {expected}, found {found}. Export the model again, or run it through the Khronos glTF validator."
+    )]
     Invalid {
         /// The object, as a path into the JSON with its name.
         place: String,
@@ -105,7 +111,9 @@ pub enum Problem {
         source: std::io::Error,
     },
     /// An image that does not decode.
-    #[error("has an image that does not decode: {image}, used as {used_by}: expected PNG, JPEG or WebP, found {found}. Save the image again.")]
+    #[error(
+        "has an image that does not decode: {image}, used as {used_by}: expected PNG, JPEG or WebP, found {found}. Save the image again."
+    )]
     Image {
         /// Index and name of the image.
         image: String,
@@ -115,13 +123,17 @@ pub enum Problem {
         found: String,
     },
     /// Nothing visible.
-    #[error("has nothing to draw: expected a scene with at least one mesh, found {found}. Check what was selected when it was exported.")]
+    #[error(
+        "has nothing to draw: expected a scene with at least one mesh, found {found}. Check what was selected when it was exported."
+    )]
     NothingToDraw {
         /// What there is.
         found: String,
     },
     /// A panic in the loader or a decoder, caught.
-    #[error("was refused: the loader stopped at something it did not expect ({found}). The file is most likely invalid; please report it with the file.")]
+    #[error(
+        "was refused: the loader stopped at something it did not expect ({found}). The file is most likely invalid; please report it with the file."
+    )]
     Refused {
         /// The panic's words.
         found: String,

@@ -3,6 +3,7 @@
 //! [`load`] turns a glTF file into a [`Model`] whose indices and numbers can be trusted: everything behind it may index and
 //! divide without checks of its own. All that a file can get wrong ends in a [`LoadError`] or a warning of the model.
 
+mod built_in;
 mod camera;
 mod control;
 mod error;
@@ -12,6 +13,7 @@ mod model;
 
 use std::path::{Path, PathBuf};
 
+pub use built_in::{BUILT_IN, built_in};
 pub use camera::{View, frame};
 pub use control::{FlyCamera, OrbitCamera};
 pub use error::{LoadError, Problem};
@@ -23,6 +25,18 @@ pub use model::*;
 pub struct LoadOptions {
     /// Read files that the model names by absolute paths or outside of its own folder (`--allow-outside`).
     pub allow_outside: bool,
+}
+
+/// Loads what the user named: a file, or else a built-in model of that name; without a name the first of those.
+///
+/// # Errors
+/// As [`load`].
+pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadError> {
+    let name = path.map_or(Some(BUILT_IN[0]), |path| if path.exists() { None } else { path.to_str() });
+    match (name.and_then(built_in), path) {
+        (Some(model), _) => model,
+        (None, path) => load(path.unwrap_or(Path::new("")), options),
+    }
 }
 
 /// Loads a `.gltf` or `.glb` file, told apart by content.

@@ -90,7 +90,8 @@ impl Compiler {
     pub fn compile(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Compiled {
         let file = || snapshot.display_path(stage);
         let dependencies = BTreeSet::from([stage.clone()]);
-        let failed = |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies, ms: 0.0 };
+        let failed =
+            |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies, ms: 0.0 };
         let Some(kind) = StageKind::of(stage) else {
             let message = "not a shader stage: the extension must be .vert, .frag or .comp";
             return failed(Diagnostic::error(file(), message));
@@ -103,7 +104,7 @@ impl Compiler {
 
     /// Compiles a library alone, as if a fragment shader included nothing else: it must include what it uses.
     pub fn compile_library(&self, snapshot: &Snapshot<'_>, library: &TreePath) -> Compiled {
-        // An outermost file that no tree can hold: paths of a tree never begin with a slash.
+        // It holds no text of the user's; `rename` below keeps its name from the messages.
         let wrapper = TreePath::from("(library)");
         let text = format!("#version 460\n#include \"{library}\"\nvoid main() {{}}\n");
         let mut compiled = self.compile_text(snapshot, &wrapper, &text, StageKind::Fragment);

@@ -160,7 +160,9 @@ impl Module {
                 }
                 storage::PUSH_CONSTANT => out.push_constants = self.block(*to),
                 storage::INPUT if self.interface.contains(variable) => self.locations(*variable, *to, &mut out.inputs),
-                storage::OUTPUT if self.interface.contains(variable) => self.locations(*variable, *to, &mut out.outputs),
+                storage::OUTPUT if self.interface.contains(variable) => {
+                    self.locations(*variable, *to, &mut out.outputs)
+                }
                 _ => {}
             }
         }

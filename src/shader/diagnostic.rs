@@ -139,6 +139,13 @@ impl Diagnostic {
         }
     }
 
+    /// For a terminal: the line that editors parse, then the source with its caret.
+    pub fn full(&self) -> String {
+        let rendered = self.render();
+        let rest = rendered.split_once('\n').map_or("", |(_, rest)| rest.trim_end());
+        format!("{}\n{rest}", self.one_line()).trim_end().to_owned()
+    }
+
     /// What the caret spans: the token, or the line without its indentation.
     fn caret_bytes(&self) -> Option<Range<usize>> {
         let excerpt = self.excerpt.as_deref()?;

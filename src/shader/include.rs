@@ -37,11 +37,12 @@ impl<'a> Includes<'a> {
         if depth > MAX_DEPTH {
             return Err(format!("includes nest deeper than {MAX_DEPTH}: {}", chain(&stack, None)));
         }
-        let candidates: BTreeSetOrdered = [including.sibling(name), TreePath::parse(name)].into_iter().flatten().collect();
-        if candidates.0.is_empty() {
+        let mut candidates: Vec<TreePath> = including.sibling(name).into_iter().chain(TreePath::parse(name)).collect();
+        candidates.dedup();
+        if candidates.is_empty() {
             return Err(format!("\"{name}\" leaves the shader tree; includes must stay inside its root"));
         }
-        for path in &candidates.0 {
+        for path in &candidates {
             self.dependencies.borrow_mut().insert(path.clone());
             match self.snapshot.read(path) {
                 Ok(text) => {
@@ -55,24 +56,13 @@ impl<'a> Includes<'a> {
                 Err(error) => return Err(format!("{} {error}", self.snapshot.display_path(path))),
             }
         }
-        let looked: Vec<String> = candidates.0.iter().map(|path| self.snapshot.display_path(path)).collect();
+        let looked: Vec<String> = candidates.iter().map(|path| self.snapshot.display_path(path)).collect();
         Err(format!("\"{name}\" not found; looked for {}", looked.join(" and ")))
     }
 
     /// Every file that was read and every path that was looked for in vain.
     pub fn into_dependencies(self) -> BTreeSet<TreePath> {
         self.dependencies.into_inner()
-    }
-}
-
-/// At most two paths in search order, without repetition.
-struct BTreeSetOrdered(Vec<TreePath>);
-
-impl FromIterator<TreePath> for BTreeSetOrdered {
-    fn from_iter<I: IntoIterator<Item = TreePath>>(paths: I) -> Self {
-        let mut out: Vec<TreePath> = paths.into_iter().collect();
-        out.dedup();
-        Self(out)
     }
 }
 

@@ -63,7 +63,8 @@ fn is_summary(row: &str) -> bool {
 
 /// glslang goes on with a made-up `float` after an unknown name, and then complains about that `float`.
 fn is_consequence(first: &Diagnostic, next: &Diagnostic) -> bool {
-    let unknown = ["undeclared identifier", "no matching overloaded function found", "out of range", "swizzle selection"];
+    let unknown =
+        ["undeclared identifier", "no matching overloaded function found", "out of range", "swizzle selection"];
     let conversion = ["cannot convert from", "type does not match", "wrong operand type", "can't use function"];
     first.severity == Severity::Error
         && (&first.file, first.line) == (&next.file, next.line)
@@ -118,9 +119,8 @@ fn locate(line: &Line<'_>, token: &str, said: &str) -> Option<Range<usize>> {
 /// The first `=` that is not part of a comparison.
 fn assignment(code: &str) -> Option<Range<usize>> {
     let bytes = code.as_bytes();
-    let compares = |at: usize| {
-        bytes.get(at + 1) == Some(&b'=') || (at > 0 && matches!(bytes[at - 1], b'=' | b'!' | b'<' | b'>'))
-    };
+    let compares =
+        |at: usize| bytes.get(at + 1) == Some(&b'=') || (at > 0 && matches!(bytes[at - 1], b'=' | b'!' | b'<' | b'>'));
     code.match_indices('=').map(|(at, _)| at).find(|at| !compares(*at)).map(|at| at..at + 1)
 }
 
@@ -135,16 +135,16 @@ fn not_ascii(file: String, line: u32, source: Option<&Line<'_>>) -> Diagnostic {
     let found = source.and_then(|line| line.code.char_indices().find(|(_, c)| !c.is_ascii()));
     let diagnostic = |message| Diagnostic::error(file, message).on_line(line, source.map(|line| line.raw));
     match found {
-        Some((at, c)) => {
-            diagnostic(format!("'{c}' : GLSL allows only ASCII characters outside comments")).under(at..at + c.len_utf8())
-        }
+        Some((at, c)) => diagnostic(format!("'{c}' : GLSL allows only ASCII characters outside comments"))
+            .under(at..at + c.len_utf8()),
         None => diagnostic("GLSL allows only ASCII characters outside comments".to_owned()),
     }
 }
 
 /// Errors of the whole stage. Linker messages name functions as `f(f1;`.
 fn without_line(file: String, said: &str, lines: &[Line<'_>]) -> Diagnostic {
-    let said = said.strip_prefix("Linking ").and_then(|rest| rest.split_once(" stage: ")).map_or(said, |(_, said)| said);
+    let said =
+        said.strip_prefix("Linking ").and_then(|rest| rest.split_once(" stage: ")).map_or(said, |(_, said)| said);
     let diagnostic = Diagnostic::error(file, said.trim_end_matches(':'));
     if said.starts_with("Missing entry point") {
         return diagnostic.with_help("a stage needs `void main() { ... }`; files meant to be included end in .glsl");
@@ -215,7 +215,8 @@ fn suspect(code: &str, name: &str) -> Option<Range<usize>> {
     let at = if is_a(name, "x") || is_a(name, "1") {
         let follows = |at: &usize| {
             // `type name` is no pair of values: the first of the pair must itself be part of an expression.
-            let inside = *at >= 2 && (!tokens[at - 2].1.starts_with(is_word) && !matches!(tokens[at - 2].1, ";" | "{" | "}"));
+            let inside =
+                *at >= 2 && (!tokens[at - 2].1.starts_with(is_word) && !matches!(tokens[at - 2].1, ";" | "{" | "}"));
             *at >= 1 && value(tokens[at - 1].1) && (inside || is_a("INTCONSTANT", tokens[at - 1].1))
         };
         (0..tokens.len()).filter(fits).find(follows).or_else(|| (0..tokens.len().min(1)).find(fits))?

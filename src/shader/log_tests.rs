@@ -42,7 +42,7 @@ fn tokens_are_marked() {
                       'layout( location=0) out highp 4-component vector of float'";
     expect(
         &format!("{head}void main() {{ if (1 == 1) o = vec3(1.0); }}"),
-        &[(&format!("m.frag:3:30: error: 'assign' : {conversion}"), "=")],
+        &[(&format!("m.frag:3:29: error: 'assign' : {conversion}"), "=")],
     );
     // The conversion of the made-up result is not reported a second time.
     expect(
@@ -108,10 +108,7 @@ fn include_errors_mark_the_name() {
 
 #[test]
 fn errors_of_the_whole_stage() {
-    expect(
-        "#version 460\nint a;",
-        &[("m.frag: error: Missing entry point: Each stage requires one entry point", "")],
-    );
+    expect("#version 460\nint a;", &[("m.frag: error: Missing entry point: Each stage requires one entry point", "")]);
     expect(
         "void main() {}",
         &[("m.frag: error: #version: Desktop shaders for Vulkan SPIR-V require version 140 or higher", "")],

@@ -6,6 +6,7 @@
 //! author's annotations ([`annotation`]); out comes either a whole new [`ShaderSet`] or [`Diagnostic`]s, never a mixture.
 
 pub mod annotation;
+mod annotation_cursor;
 mod annotation_parse;
 pub mod check;
 pub mod compile;
@@ -13,6 +14,7 @@ pub mod contract;
 mod declared;
 pub mod diagnostic;
 pub mod embedded;
+mod fingerprint;
 pub mod include;
 mod layout;
 pub mod library;
@@ -27,5 +29,5 @@ pub use annotation::{Constant, Encode, Mode, Parameter};
 pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update};
-pub use source::{Source, SourceError, TreePath};
+pub use source::{Source, SourceError, TreePath, is_specula_tree};
 pub use watch::{Batch, Watcher};

@@ -142,7 +142,8 @@ mod tests {
              layout(set = 3, binding = 0, rgba8) uniform image2D other;
              void main() {}",
         );
-        let kinds: Vec<_> = reflection.descriptors.iter().map(|d| (d.set, d.binding, d.kind, d.name.as_str())).collect();
+        let kinds: Vec<_> =
+            reflection.descriptors.iter().map(|d| (d.set, d.binding, d.kind, d.name.as_str())).collect();
         use BindingKind::{Sampler2D, SamplerCube, StorageBuffer, UniformBuffer};
         let expected = [
             (0, 1, Some(StorageBuffer), "List"),

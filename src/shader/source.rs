@@ -146,9 +146,7 @@ impl Source {
         match self {
             Self::Disk(root) => read_file(&root.join(path.as_str())),
             Self::Embedded => check_text(embedded::read(path).ok_or(SourceError::Missing)?.to_vec()),
-            Self::Memory(files) => {
-                check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes())
-            }
+            Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
         }
     }
 
@@ -182,17 +180,6 @@ impl Source {
             Self::Disk(root) => Some(root),
             _ => None,
         }
-    }
-
-    /// Which file of this tree an absolute path from the watcher is; `None` outside the tree.
-    pub fn tree_path(&self, absolute: &Path) -> Option<TreePath> {
-        let Self::Disk(root) = self else { return None };
-        let relative = match root.canonicalize() {
-            Ok(canonical) => absolute.strip_prefix(canonical).ok()?,
-            // The root is gone: the path as the user gave it is the best there is.
-            Err(_) => absolute.strip_prefix(root).ok()?,
-        };
-        TreePath::parse(&relative.to_string_lossy())
     }
 }
 
@@ -298,16 +285,5 @@ mod tests {
         assert_eq!(read("dir"), Err(SourceError::Directory));
         assert_eq!(read("none"), Err(SourceError::Missing));
         assert_eq!(read("bom.glsl/x"), Err(SourceError::Missing));
-    }
-
-    #[test]
-    fn absolute_paths_map_back_through_links() {
-        let directory = tempfile::tempdir().unwrap();
-        std::fs::create_dir(directory.path().join("real")).unwrap();
-        std::os::unix::fs::symlink("real", directory.path().join("link")).unwrap();
-        let source = Source::Disk(directory.path().join("link"));
-        let absolute = directory.path().canonicalize().unwrap().join("real/a/b.glsl");
-        assert_eq!(source.tree_path(&absolute), TreePath::parse("a/b.glsl"));
-        assert_eq!(source.tree_path(Path::new("/elsewhere/b.glsl")), None);
     }
 }

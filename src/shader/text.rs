@@ -66,7 +66,7 @@ pub fn find_word(code: &str, word: &str) -> Option<Range<usize>> {
     code.match_indices(word).map(|(at, _)| at..at + word.len()).find(|range| {
         let before = code[..range.start].chars().next_back().is_some_and(is_word);
         let after = code[range.end..].chars().next().is_some_and(is_word);
-        !(starts && before) && !(ends && after)
+        !(starts && before || ends && after)
     })
 }
 

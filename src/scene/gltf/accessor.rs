@@ -55,7 +55,13 @@ struct Checkup<'a> {
 impl<'a> Reader<'a> {
     /// Reads floats, integers converted as the specification says. Missing components are filled with `fill`
     /// (RGB colors read as RGBA). `place` names who asks.
-    pub fn floats<const N: usize>(&self, index: Index, format: &Format, fill: f32, user: &str) -> Result<Vec<[f32; N]>, Problem> {
+    pub fn floats<const N: usize>(
+        &self,
+        index: Index,
+        format: &Format,
+        fill: f32,
+        user: &str,
+    ) -> Result<Vec<[f32; N]>, Problem> {
         let checked = self.check(index, format, user)?;
         let normalized = checked.accessor.normalized;
         let (component, width) = (checked.component, checked.component.size());
@@ -112,7 +118,8 @@ impl<'a> Reader<'a> {
             return Err(Problem::invalid(place, "a count of at least 1", "0"));
         }
         // On 32 bits a count may not fit; no buffer could hold it then.
-        let count = usize::try_from(count).map_err(|_| Problem::invalid(&place, "a count that fits memory", count.to_string()))?;
+        let count = usize::try_from(count)
+            .map_err(|_| Problem::invalid(&place, "a count that fits memory", count.to_string()))?;
         Ok(Checkup { accessor, place, count, kind, component })
     }
 
@@ -181,7 +188,7 @@ fn strided<'b>(
     size: usize,
     stride: usize,
     place: &str,
-) -> Result<impl Iterator<Item = &'b [u8]>, Problem> {
+) -> Result<std::slice::Chunks<'b, u8>, Problem> {
     if stride < size {
         return Err(Problem::invalid(place, format!("a byteStride of at least {size}"), stride.to_string()));
     }

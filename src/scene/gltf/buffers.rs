@@ -65,7 +65,11 @@ impl<'a> Buffers<'a> {
             if let Some(bytes) = &bytes
                 && (bytes.len() as u64) < claimed
             {
-                return Err(Problem::invalid(place, format!("{claimed} bytes (byteLength)"), format!("{} bytes", bytes.len())));
+                return Err(Problem::invalid(
+                    place,
+                    format!("{claimed} bytes (byteLength)"),
+                    format!("{} bytes", bytes.len()),
+                ));
             }
             buffers.push(bytes);
         }

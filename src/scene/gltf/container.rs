@@ -139,6 +139,8 @@ fn check_extensions(root: &json::Root) -> Result<Vec<String>, Problem> {
             supported: SUPPORTED.join(", "),
         });
     }
-    let ignored = |name| format!("The extension {name} is ignored: Specula does not support it, so the model may look different.");
+    let ignored = |name| {
+        format!("The extension {name} is ignored: Specula does not support it, so the model may look different.")
+    };
     Ok(missing(&root.extensions_used).into_iter().map(ignored).collect())
 }

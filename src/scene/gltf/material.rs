@@ -71,7 +71,11 @@ impl Slot {
     fn raw(texture: JsonIndex, uv_set: u32, others: Option<&Extensions>, place: &str) -> Result<Self, Problem> {
         let raw = others.and_then(|others| others.get("KHR_texture_transform"));
         let transform = raw.map(|raw| json::deserialize::from_value(raw.clone())).transpose().map_err(|error| {
-            Problem::invalid(format!("{place}.extensions.KHR_texture_transform"), "a texture transform", error.to_string())
+            Problem::invalid(
+                format!("{place}.extensions.KHR_texture_transform"),
+                "a texture transform",
+                error.to_string(),
+            )
         })?;
         Ok(Self { texture, uv_set, transform })
     }
@@ -103,8 +107,16 @@ impl Collector<'_> {
             metallic_factor: factor(pbr.metallic_factor.0, "metallicFactor")?,
             roughness_factor: factor(pbr.roughness_factor.0, "roughnessFactor")?,
             emissive_factor: finite(Vec3::from(emissive) * strength, place)?,
-            occlusion_strength: factor(occlusion.map_or(1.0, |texture| texture.strength.0), "occlusionTexture.strength")?,
-            normal_scale: self.clamp(normal.map_or(1.0, |texture| texture.scale), f32::MIN..=f32::MAX, place, "scale")?,
+            occlusion_strength: factor(
+                occlusion.map_or(1.0, |texture| texture.strength.0),
+                "occlusionTexture.strength",
+            )?,
+            normal_scale: self.clamp(
+                normal.map_or(1.0, |texture| texture.scale),
+                f32::MIN..=f32::MAX,
+                place,
+                "scale",
+            )?,
             alpha_cutoff: self.clamp(source.alpha_cutoff.map_or(0.5, |c| c.0), 0.0..=f32::MAX, place, "alphaCutoff")?,
             alpha_mode: alpha_mode(source, place)?,
             double_sided: source.double_sided,
@@ -113,7 +125,11 @@ impl Collector<'_> {
         };
         let slots = [
             (contract::TEXTURE_BASE_COLOR, "baseColorTexture", pbr.base_color_texture.as_ref().map(Slot::new)),
-            (contract::TEXTURE_METALLIC_ROUGHNESS, "metallicRoughnessTexture", pbr.metallic_roughness_texture.as_ref().map(Slot::new)),
+            (
+                contract::TEXTURE_METALLIC_ROUGHNESS,
+                "metallicRoughnessTexture",
+                pbr.metallic_roughness_texture.as_ref().map(Slot::new),
+            ),
             (contract::TEXTURE_NORMAL, "normalTexture", normal_slot(source, place)?),
             (contract::TEXTURE_OCCLUSION, "occlusionTexture", occlusion_slot(source, place)?),
             (contract::TEXTURE_EMISSIVE, "emissiveTexture", source.emissive_texture.as_ref().map(Slot::new)),
@@ -153,12 +169,17 @@ impl Collector<'_> {
         };
         let mut uv_set = slot.transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(slot.uv_set);
         if uv_set > LAST_UV_SET {
-            self.warnings.push(format!("{place} reads TEXCOORD_{uv_set}: Specula has sets 0 and 1, so TEXCOORD_0 is used."));
+            self.warnings
+                .push(format!("{place} reads TEXCOORD_{uv_set}: Specula has sets 0 and 1, so TEXCOORD_0 is used."));
             uv_set = 0;
         }
         let uv_from_mesh = slot.transform.as_ref().map_or(Affine2::IDENTITY, affine);
         if !uv_from_mesh.is_finite() {
-            return Err(Problem::invalid(format!("{place}.extensions.KHR_texture_transform"), "finite numbers", "others"));
+            return Err(Problem::invalid(
+                format!("{place}.extensions.KHR_texture_transform"),
+                "finite numbers",
+                "others",
+            ));
         }
         let texture = *seen.entry((image, sampler)).or_insert_with(|| {
             let known = self.images.iter().position(|(index, _)| *index == image);
@@ -175,7 +196,8 @@ impl Collector<'_> {
     /// Index of the image of a texture: the WebP one of EXT_texture_webp, or the core one.
     fn image_of(&self, texture: &json::Texture, index: usize) -> Result<usize, Problem> {
         let place = place("textures", index, texture.name.as_deref());
-        let webp = texture.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp")).and_then(|e| e.get("source"));
+        let webp =
+            texture.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp")).and_then(|e| e.get("source"));
         // The parser says u32::MAX for "absent".
         let core = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
         let source = match webp {
@@ -216,7 +238,9 @@ fn alpha_mode(material: &json::Material, place: &str) -> Result<AlphaMode, Probl
         Checked::Valid(json::material::AlphaMode::Opaque) => Ok(AlphaMode::Opaque),
         Checked::Valid(json::material::AlphaMode::Mask) => Ok(AlphaMode::Mask),
         Checked::Valid(json::material::AlphaMode::Blend) => Ok(AlphaMode::Blend),
-        Checked::Invalid => Err(Problem::invalid(format!("{place}.alphaMode"), "OPAQUE, MASK or BLEND", "another word")),
+        Checked::Invalid => {
+            Err(Problem::invalid(format!("{place}.alphaMode"), "OPAQUE, MASK or BLEND", "another word"))
+        }
     }
 }
 
@@ -232,12 +256,12 @@ fn affine(transform: &TextureTransform) -> Affine2 {
 
 fn read_sampler(sampler: &json::texture::Sampler, index: usize) -> Result<Sampler, Problem> {
     let invalid = |name: &str, values: &[u32]| {
-        Err(Problem::invalid(format!("samplers[{index}].{name}"), format!("one of {values:?}"), "another number"))
+        Problem::invalid(format!("samplers[{index}].{name}"), format!("one of {values:?}"), "another number")
     };
     let mag_linear = match sampler.mag_filter {
         None | Some(Checked::Valid(MagFilter::Linear)) => true,
         Some(Checked::Valid(MagFilter::Nearest)) => false,
-        Some(Checked::Invalid) => return invalid("magFilter", json::texture::VALID_MAG_FILTERS),
+        Some(Checked::Invalid) => return Err(invalid("magFilter", json::texture::VALID_MAG_FILTERS)),
     };
     let (min_linear, mip) = match sampler.min_filter {
         None | Some(Checked::Valid(MinFilter::LinearMipmapLinear)) => (true, Mip::Linear),
@@ -246,13 +270,19 @@ fn read_sampler(sampler: &json::texture::Sampler, index: usize) -> Result<Sample
         Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => (true, Mip::Nearest),
         Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => (false, Mip::Nearest),
         Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => (false, Mip::Linear),
-        Some(Checked::Invalid) => return invalid("minFilter", json::texture::VALID_MIN_FILTERS),
+        Some(Checked::Invalid) => return Err(invalid("minFilter", json::texture::VALID_MIN_FILTERS)),
     };
     let wrap = |mode: Checked<WrappingMode>, name| match mode {
         Checked::Valid(WrappingMode::Repeat) => Ok(Wrap::Repeat),
         Checked::Valid(WrappingMode::MirroredRepeat) => Ok(Wrap::Mirror),
         Checked::Valid(WrappingMode::ClampToEdge) => Ok(Wrap::Clamp),
-        Checked::Invalid => invalid(name, json::texture::VALID_WRAPPING_MODES).map(|()| Wrap::Repeat),
+        Checked::Invalid => Err(invalid(name, json::texture::VALID_WRAPPING_MODES)),
     };
-    Ok(Sampler { mag_linear, min_linear, mip, wrap_u: wrap(sampler.wrap_s, "wrapS")?, wrap_v: wrap(sampler.wrap_t, "wrapT")? })
+    Ok(Sampler {
+        mag_linear,
+        min_linear,
+        mip,
+        wrap_u: wrap(sampler.wrap_s, "wrapS")?,
+        wrap_v: wrap(sampler.wrap_t, "wrapT")?,
+    })
 }

@@ -26,11 +26,15 @@ const POSITION: Format = Format {
     types: &[Type::Vec3],
     components: &[(C::F32, N::No), (C::I8, N::Either), (C::U8, N::Either), (C::I16, N::Either), (C::U16, N::Either)],
 };
-const NORMAL: Format = Format { types: &[Type::Vec3], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
+const NORMAL: Format =
+    Format { types: &[Type::Vec3], components: &[(C::F32, N::No), (C::I8, N::Yes), (C::I16, N::Yes)] };
 const TANGENT: Format = Format { types: &[Type::Vec4], components: NORMAL.components };
 const TEXCOORD: Format = Format { types: &[Type::Vec2], components: POSITION.components };
 const COLOR: Format =
     Format { types: &[Type::Vec3, Type::Vec4], components: &[(C::F32, N::No), (C::U8, N::Yes), (C::U16, N::Yes)] };
+
+/// Most indices of a primitive: strips and fans grow threefold as lists, and each corner may become a vertex.
+const MAX_INDICES: usize = 1 << 30;
 
 /// Reads the drawable primitives of a mesh.
 pub fn read(reader: Reader<'_>, index: usize, materials: &[Material]) -> Result<Vec<Geometry>, Problem> {
@@ -117,7 +121,11 @@ impl Source<'_> {
         if let (Some(count), Some(found)) = (count, found)
             && count as u64 != found
         {
-            return Err(Problem::invalid(user, format!("as many elements as POSITION has, {count}"), found.to_string()));
+            return Err(Problem::invalid(
+                user,
+                format!("as many elements as POSITION has, {count}"),
+                found.to_string(),
+            ));
         }
         self.reader.floats(accessor, format, 1.0, &user).map(Some)
     }
@@ -146,7 +154,11 @@ impl Source<'_> {
             },
         };
         if let Some(&index) = indices.iter().find(|&&index| index as usize >= vertices) {
-            return Err(Problem::invalid(place, format!("indices below the vertex count of {vertices}"), index.to_string()));
+            return Err(Problem::invalid(
+                place,
+                format!("indices below the vertex count of {vertices}"),
+                index.to_string(),
+            ));
         }
         let topology = match self.primitive.mode {
             Checked::Valid(Mode::Points) => Topology::Points,
@@ -159,8 +171,13 @@ impl Source<'_> {
             Checked::Valid(Mode::Triangles) => Topology::Triangles,
             Checked::Valid(Mode::TriangleStrip) => Topology::TriangleStrip,
             Checked::Valid(Mode::TriangleFan) => Topology::TriangleFan,
-            Checked::Invalid => return Err(Problem::invalid(format!("{}.mode", self.place), "a mode of 0 to 6", "another")),
+            Checked::Invalid => {
+                return Err(Problem::invalid(format!("{}.mode", self.place), "a mode of 0 to 6", "another"));
+            }
         };
+        if indices.len() > MAX_INDICES {
+            return Err(Problem::invalid(place, format!("at most {MAX_INDICES} indices"), indices.len().to_string()));
+        }
         let least = triangles::least(topology);
         if indices.len() < least {
             let expected = format!("at least {least} indices or vertices for {topology:?}");

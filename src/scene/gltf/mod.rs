@@ -29,8 +29,8 @@ use super::LoadOptions;
 use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 
-/// Coordinates beyond this overflow when they are squared.
-const LARGEST_COORDINATE: f32 = 1e18;
+/// Largest coordinate of a mesh and of the scene, metres: a camera that frames it can still be squared in `f32`.
+const LARGEST_COORDINATE: f32 = 1e15;
 
 /// Loads a file.
 pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Model, Problem> {
@@ -50,7 +50,8 @@ pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
 /// A panic in here would be a bug of ours or of a decoder; a file that provokes it must not cost the user the session.
 fn guarded(name: &str, bytes: &[u8], files: Files, start: Instant) -> Result<Model, Problem> {
     catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start))).unwrap_or_else(|panic| {
-        let words = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+        let words =
+            panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
         Err(Problem::Refused { found: words.unwrap_or("a panic without words").to_owned() })
     })
 }
@@ -85,7 +86,12 @@ fn build(name: &str, bytes: &[u8], mut files: Files, start: Instant) -> Result<M
     for placed in scene.meshes {
         for primitive in ranges.get(&placed.mesh).cloned().unwrap_or_default() {
             let world_from_object = placed.world_from_object;
-            model.instances.push(Instance { primitive, world_from_object, node: placed.node, node_name: placed.name.clone() });
+            model.instances.push(Instance {
+                primitive,
+                world_from_object,
+                node: placed.node,
+                node_name: placed.name.clone(),
+            });
         }
     }
     model.bounds = world_bounds(&model)?;
@@ -107,7 +113,10 @@ fn read_meshes(reader: Reader<'_>, scene: &nodes::Scene, materials: &[Material])
 }
 
 fn finish_meshes(mut meshes: Meshes, materials: &[Material]) -> Meshes {
-    meshes.par_iter_mut().flat_map(|(_, geometries)| geometries).for_each(|geometry| tangents::complete(geometry, materials));
+    meshes
+        .par_iter_mut()
+        .flat_map(|(_, geometries)| geometries)
+        .for_each(|geometry| tangents::complete(geometry, materials));
     meshes
 }
 
@@ -148,7 +157,11 @@ fn place(kind: &str, index: usize, name: Option<&str>) -> String {
 }
 
 fn out_of_range(place: &str, kind: &str, index: usize, count: usize) -> Problem {
-    let expected = if count == 0 { format!("no use of {kind}, of which there are none") } else { format!("an index into {kind} of 0 to {}", count - 1) };
+    let expected = if count == 0 {
+        format!("no use of {kind}, of which there are none")
+    } else {
+        format!("an index into {kind} of 0 to {}", count - 1)
+    };
     Problem::invalid(place, expected, index.to_string())
 }
 

@@ -83,7 +83,10 @@ fn scene_roots(scene: &json::Scene, root: &json::Root, has_parent: &[bool]) -> R
         get(&root.nodes, *node, "scenes[].nodes", "nodes")?;
         let node = node.value();
         if has_parent[node] || std::mem::replace(&mut listed[node], true) {
-            let found = format!("nodes[{node}], which is {}", if has_parent[node] { "a child of another" } else { "listed twice" });
+            let found = format!(
+                "nodes[{node}], which is {}",
+                if has_parent[node] { "a child of another" } else { "listed twice" }
+            );
             return Err(Problem::invalid("scenes[].nodes", "each root node once", found));
         }
         roots.push(node);
@@ -151,7 +154,14 @@ fn local_transform(node: &json::Node, place: &str, warnings: &mut Vec<String>) -
 }
 
 impl Scene {
-    fn add(&mut self, root: &json::Root, node: &json::Node, index: usize, world: Mat4, place: &str) -> Result<(), Problem> {
+    fn add(
+        &mut self,
+        root: &json::Root,
+        node: &json::Node,
+        index: usize,
+        world: Mat4,
+        place: &str,
+    ) -> Result<(), Problem> {
         let name = node.name.clone().unwrap_or_default();
         if let Some(mesh) = node.mesh {
             get(&root.meshes, mesh, place, "meshes")?;
@@ -160,7 +170,8 @@ impl Scene {
         }
         if let Some(camera) = node.camera {
             let lens = read_lens(get(&root.cameras, camera, place, "cameras")?, camera.value())?;
-            let name = root.cameras[camera.value()].name.clone().filter(|n| !n.is_empty()).unwrap_or_else(|| name.clone());
+            let name =
+                root.cameras[camera.value()].name.clone().filter(|n| !n.is_empty()).unwrap_or_else(|| name.clone());
             self.cameras.push(PlacedCamera { name, world_from_object: world, lens });
         }
         if let Some(light) = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref()) {
@@ -186,7 +197,12 @@ impl Scene {
     }
 }
 
-fn read_light(light: &punctual::Light, index: usize, world: &Mat4, warnings: &mut Vec<String>) -> Result<Light, Problem> {
+fn read_light(
+    light: &punctual::Light,
+    index: usize,
+    world: &Mat4,
+    warnings: &mut Vec<String>,
+) -> Result<Light, Problem> {
     let place = place("KHR_lights_punctual.lights", index, light.name.as_deref());
     let intensity = Vec3::from(light.color) * light.intensity;
     if !intensity.is_finite() || intensity.min_element() < 0.0 {
@@ -196,7 +212,10 @@ fn read_light(light: &punctual::Light, index: usize, world: &Mat4, warnings: &mu
         Checked::Valid(punctual::Type::Directional) => LightKind::Directional,
         Checked::Valid(punctual::Type::Point) => LightKind::Point,
         Checked::Valid(punctual::Type::Spot) => {
-            let spot = light.spot.clone().unwrap_or(punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle: std::f32::consts::FRAC_PI_4 });
+            let spot = light
+                .spot
+                .clone()
+                .unwrap_or(punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle: std::f32::consts::FRAC_PI_4 });
             let (inner, outer) = (spot.inner_cone_angle, spot.outer_cone_angle);
             if !(0.0 <= inner && inner < outer && outer <= std::f32::consts::FRAC_PI_2 + 1e-6) {
                 let expected = "cone angles with 0 <= inner < outer <= pi/2";
@@ -247,7 +266,10 @@ impl PlacedCamera {
         let world = &self.world_from_object;
         let eye = world.w_axis.truncate();
         let forward = world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
-        let up = world.transform_vector3(Vec3::Y).reject_from_normalized(forward).normalize_or(forward.any_orthonormal_vector());
+        let up = world
+            .transform_vector3(Vec3::Y)
+            .reject_from_normalized(forward)
+            .normalize_or(forward.any_orthonormal_vector());
         let fovy = match self.lens {
             Lens::Perspective { fovy } => fovy,
             Lens::Orthographic { half_height } => {

@@ -73,7 +73,8 @@ impl Corners {
     /// Gives every triangle its flat normal; `fallback` where it has none.
     pub fn flatten(&mut self, fallback: Vec3) {
         for corners in self.vertices.chunks_exact_mut(3) {
-            let normal = face_normal(corners, [0, 1, 2]).normalize_or(fallback).to_array();
+            // Adding zero turns -0 into 0, so that coplanar neighbors are welded.
+            let normal = (face_normal(corners, [0, 1, 2]).normalize_or(fallback) + Vec3::ZERO).to_array();
             corners.iter_mut().for_each(|corner| corner.normal = normal);
         }
     }

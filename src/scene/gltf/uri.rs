@@ -62,10 +62,17 @@ fn leaves_folder(path: &str) -> bool {
 /// Decodes what follows `data:`.
 fn decode_data(data: &str, place: &str) -> Result<Vec<u8>, Problem> {
     let Some((header, body)) = data.split_once(',') else {
-        return Err(Problem::invalid(place, "a data URI with a comma before its data", format!("`data:{}`", shorten(data))));
+        return Err(Problem::invalid(
+            place,
+            "a data URI with a comma before its data",
+            format!("`data:{}`", shorten(data)),
+        ));
     };
-    let (decoded, kind) =
-        if header.ends_with(";base64") { (base64_decode(body), "base64") } else { (percent_decode(body), "percent-encoded") };
+    let (decoded, kind) = if header.ends_with(";base64") {
+        (base64_decode(body), "base64")
+    } else {
+        (percent_decode(body), "percent-encoded")
+    };
     decoded.ok_or_else(|| Problem::invalid(place, format!("{kind} data in a data URI"), "characters that are not"))
 }
 
@@ -73,7 +80,7 @@ fn decode_data(data: &str, place: &str) -> Result<Vec<u8>, Problem> {
 fn percent_decode(text: &str) -> Option<Vec<u8>> {
     let mut out = Vec::with_capacity(text.len());
     let mut bytes = text.bytes();
-    let mut digit = |bytes: &mut std::str::Bytes<'_>| char::from(bytes.next()?).to_digit(16);
+    let digit = |bytes: &mut std::str::Bytes<'_>| char::from(bytes.next()?).to_digit(16);
     while let Some(byte) = bytes.next() {
         let decoded = match byte {
             b'%' => u8::try_from(digit(&mut bytes)? * 16 + digit(&mut bytes)?).ok()?,
@@ -124,7 +131,9 @@ mod tests {
 
     #[test]
     fn base64_of_every_length() {
-        for (text, bytes) in [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg", "foob"), ("Zm9vYmE=", "fooba")] {
+        for (text, bytes) in
+            [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg", "foob"), ("Zm9vYmE=", "fooba")]
+        {
             assert_eq!(base64_decode(text).as_deref(), Some(bytes.as_bytes()), "{text}");
         }
         assert_eq!(base64_decode("-_+/"), Some(vec![0xfb, 0xff, 0xbf]));
@@ -146,7 +155,8 @@ mod tests {
 
     #[test]
     fn ways_out_need_leave_and_schemes_never_get_it() {
-        for uri in ["/etc/x", "../x", "a/../../x", "%2e%2e/x", "..\\x", "C:\\x", "C:x", "\\\\server\\x", "a\\..\\..\\x"] {
+        for uri in ["/etc/x", "../x", "a/../../x", "%2e%2e/x", "..\\x", "C:\\x", "C:x", "\\\\server\\x", "a\\..\\..\\x"]
+        {
             assert!(matches!(parse(uri, "", false), Err(Problem::Outside { .. })), "{uri}");
             assert!(matches!(parse(uri, "", true), Ok(Target::File(_))), "{uri}");
         }

@@ -1,0 +1,379 @@
+//! What the window shows and what the user has set. Only the window's thread touches it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use winit::event_loop::EventLoopProxy;
+
+use crate::events::{Event, ReloadEvent, emit};
+use crate::gpu::{Gpu, SetLayouts, vk};
+use crate::headless;
+use crate::render::{GpuScene, Outcome, PipelineSet, Reload, Wanted};
+use crate::scene::{LoadOptions, Model};
+use crate::settings::Settings;
+use crate::shader::{Batch, Change, Diagnostic, Mode, ShaderSet, Source, TreePath, Watcher, is_specula_tree};
+
+use super::camera::CameraHand;
+use super::input::Mouse;
+use super::loader::{self, Loaded};
+use super::worker::{Needs, Worker, WorkerMessage};
+use super::{AppOptions, Message};
+
+/// What the last frame was drawn with, and the next one is until something better is complete.
+pub(super) struct Shown {
+    pub(super) pipelines: Arc<PipelineSet>,
+    pub(super) wanted: Wanted,
+    pub(super) scene: Option<Arc<GpuScene>>,
+    pub(super) settings: Settings,
+}
+
+/// A reload whose first frame is still to come.
+pub(super) struct FirstFrame {
+    pub(super) generation: u64,
+    pub(super) event: ReloadEvent,
+}
+
+/// The shader tree's state, for the panel.
+#[derive(Default)]
+pub(super) struct ShaderState {
+    pub(super) tree: String,
+    pub(super) compiling: bool,
+    pub(super) last: Option<ReloadEvent>,
+}
+
+/// Everything behind the window.
+pub(super) struct Document {
+    pub(super) settings: Settings,
+    pub(super) model: Model,
+    pub(super) model_path: Option<PathBuf>,
+    pub(super) loading: bool,
+    pub(super) load_ms: f64,
+    pub(super) pipelines: Option<Arc<PipelineSet>>,
+    pub(super) diagnostics: Vec<Diagnostic>,
+    pub(super) shader: ShaderState,
+    /// A message for a while, with its time.
+    pub(super) notice: Option<(String, Instant)>,
+    pub(super) hand: CameraHand,
+    pub(super) mouse: Mouse,
+    pub(super) show_ui: bool,
+    pub(super) quit: bool,
+    pub(super) screenshot: bool,
+    pub(super) events: bool,
+    pub(super) start: Instant,
+    pub(super) first_frame: Option<FirstFrame>,
+    scene: Option<Arc<GpuScene>>,
+    next_scene: Option<(Model, Arc<GpuScene>)>,
+    shown: Option<Shown>,
+    asked: Option<(u64, Wanted)>,
+    ready: bool,
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    proxy: EventLoopProxy<Message>,
+    worker: Worker,
+    tree_watcher: Option<Watcher>,
+    model_watcher: Option<Watcher>,
+    allow_outside: bool,
+    ticket: u64,
+}
+
+/// Format of the window's HDR target: half floats hold every picture, at half the cost.
+pub(super) const SCENE_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
+impl Document {
+    pub(super) fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        options: AppOptions,
+        proxy: &EventLoopProxy<Message>,
+    ) -> Self {
+        let needs = Needs {
+            settings: options.settings.clone(),
+            materials: Default::default(),
+            samples: headless::samples(gpu, &options.settings).unwrap_or(1),
+            scene_format: SCENE_FORMAT,
+        };
+        let tree = options.source.clone();
+        let worker = Worker::start(gpu, layouts, options.source, needs, &options.compiler, proxy.clone());
+        let mut document = Self {
+            settings: options.settings,
+            model: Model::default(),
+            model_path: options.model.clone(),
+            loading: false,
+            load_ms: 0.0,
+            pipelines: None,
+            diagnostics: Vec::new(),
+            shader: ShaderState { compiling: true, ..Default::default() },
+            notice: None,
+            hand: CameraHand::default(),
+            mouse: Mouse::default(),
+            show_ui: true,
+            quit: false,
+            screenshot: false,
+            events: options.events,
+            start: options.start,
+            first_frame: None,
+            scene: None,
+            next_scene: None,
+            shown: None,
+            asked: None,
+            ready: false,
+            gpu: gpu.clone(),
+            layouts: layouts.clone(),
+            proxy: proxy.clone(),
+            worker,
+            tree_watcher: None,
+            model_watcher: None,
+            allow_outside: options.allow_outside,
+            ticket: 0,
+        };
+        document.watch_tree(&tree);
+        document.load_model(options.model);
+        document
+    }
+
+    /// The shaders on screen.
+    pub(super) fn shaders(&self) -> Option<&ShaderSet> {
+        self.pipelines.as_ref().map(|p| &*p.shaders)
+    }
+
+    /// The debug mode that is set, as the tree describes it.
+    pub(super) fn mode(&self) -> Option<&Mode> {
+        self.shaders()?.modes.iter().find(|m| m.slug == self.settings.mode)
+    }
+
+    /// Tells the user something for a few seconds.
+    pub(super) fn say(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        eprintln!("specula: {text}");
+        self.notice = Some((text, Instant::now()));
+    }
+
+    /// Looks at the whole model again.
+    pub(super) fn frame_model(&mut self) {
+        self.settings.camera.eye = None;
+        self.settings.camera.target = None;
+    }
+
+    /// Whether the device draws faster than a screen shows, so that waiting for the screen saves work. A software device is
+    /// slower than any screen, and has no frame to give away.
+    pub(super) fn gpu_is_fast(&self) -> bool {
+        self.gpu.info().kind != "cpu"
+    }
+
+    /// Name of the device, and its Vulkan version.
+    pub(super) fn device(&self) -> String {
+        let info = self.gpu.info();
+        format!("{} · Vulkan {}", info.name, info.api)
+    }
+
+    /// Compiles everything again.
+    pub(super) fn reload(&mut self) {
+        self.shader.compiling = true;
+        self.worker.change(Change::All, Instant::now());
+    }
+
+    /// Opens whatever was dropped on the window.
+    pub(super) fn open_path(&mut self, path: PathBuf) {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        match ending.as_str() {
+            _ if path.is_dir() && is_specula_tree(&path) => {
+                let source = Source::Disk(path.clone());
+                self.watch_tree(&source);
+                self.shader.compiling = true;
+                self.worker.open_tree(source);
+            }
+            _ if path.is_dir() => self.say(format!(
+                "{} is no Specula shader tree: it has no interface.glsl. `specula new DIR` writes one",
+                path.display()
+            )),
+            "gltf" | "glb" => self.load_model(Some(path)),
+            "hdr" | "exr" => {
+                self.say(format!("{}: environments are not supported yet; the ambient light stays", path.display()));
+            }
+            _ => self.say(format!(
+                "{}: expected a .gltf or .glb model or a folder with a shader tree",
+                path.display()
+            )),
+        }
+    }
+
+    /// Loads a model; the old one stays until it is ready.
+    pub(super) fn load_model(&mut self, path: Option<PathBuf>) {
+        self.ticket += 1;
+        self.loading = true;
+        let options = LoadOptions { allow_outside: self.allow_outside };
+        loader::load(&self.gpu, &self.layouts, &self.proxy, path, options, self.ticket);
+    }
+
+    /// The model's file has changed.
+    pub(super) fn reload_model(&mut self) {
+        self.load_model(self.model_path.clone());
+    }
+
+    pub(super) fn on_loaded(&mut self, loaded: Loaded) {
+        if loaded.ticket != self.ticket {
+            return;
+        }
+        self.loading = false;
+        match loaded.result {
+            Ok((model, scene)) => {
+                for warning in &model.warnings {
+                    eprintln!("specula: warning: {}: {warning}", model.name);
+                }
+                self.load_ms = loaded.ms;
+                if loaded.path != self.model_path {
+                    self.settings.camera.eye = None;
+                    self.settings.camera.target = None;
+                }
+                self.model_path = loaded.path;
+                self.watch_model(&model.files);
+                self.next_scene = Some((model, scene));
+            }
+            Err(message) => {
+                // A file that was half written is read again at its next event.
+                if let Some(path) = &loaded.path {
+                    self.watch_model(std::slice::from_ref(path));
+                }
+                self.say(message);
+            }
+        }
+    }
+
+    pub(super) fn on_worker(&mut self, message: WorkerMessage) {
+        match message {
+            WorkerMessage::Built(Ok(())) => {}
+            WorkerMessage::Built(Err(message)) => self.say(message),
+            WorkerMessage::Reloaded { reload, detect_ms, tree } => {
+                self.shader.compiling = false;
+                self.shader.tree = tree;
+                self.on_reload(*reload, detect_ms);
+            }
+        }
+    }
+
+    fn on_reload(&mut self, reload: Reload, detect_ms: f64) {
+        let generation = self.shaders().map_or(0, |s| s.generation);
+        match &reload.outcome {
+            Outcome::Unchanged { cleared: false } => {}
+            Outcome::Unchanged { cleared: true } => {
+                self.diagnostics.clear();
+                self.emit_reload(reload.event(generation, detect_ms, 0.0));
+            }
+            Outcome::Failed(diagnostics) => {
+                for diagnostic in diagnostics {
+                    eprintln!("{}", diagnostic.full());
+                    emit(self.events, &Event::Diagnostic(diagnostic));
+                }
+                self.diagnostics.clone_from(diagnostics);
+                self.emit_reload(reload.event(generation, detect_ms, 0.0));
+            }
+            Outcome::Ready(set) => {
+                self.diagnostics.clone_from(&set.shaders.warnings);
+                for warning in &self.diagnostics {
+                    eprintln!("{}", warning.full());
+                }
+                let event = reload.event(set.shaders.generation, detect_ms, 0.0);
+                self.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
+                self.pipelines = Some(set.clone());
+                self.asked = None;
+            }
+        }
+    }
+
+    fn emit_reload(&mut self, event: ReloadEvent) {
+        emit(self.events, &Event::Reload(event.clone()));
+        self.shader.last = Some(event);
+    }
+
+    /// Works out what the next frame is drawn with: what the user asks for once it is complete, what was shown before until then.
+    pub(super) fn shown(&mut self) -> Option<&Shown> {
+        if let Some(set) = self.pipelines.clone() {
+            let scene = self.next_scene.as_ref().map(|(_, scene)| scene).or(self.scene.as_ref());
+            let needs = Needs {
+                settings: self.settings.clone(),
+                materials: scene.map(|s| s.variants().clone()).unwrap_or_default(),
+                samples: headless::samples(&self.gpu, &self.settings).unwrap_or(1),
+                scene_format: SCENE_FORMAT,
+            };
+            match needs.wanted(&set.shaders) {
+                Ok(wanted) if set.has(&wanted) => self.show(set, wanted),
+                Ok(wanted) => {
+                    let asked = Some((set.shaders.generation, wanted.clone()));
+                    if self.asked != asked {
+                        self.worker.need(needs.clone());
+                        self.worker.build(&set, &wanted);
+                        self.asked = asked;
+                    }
+                }
+                Err(message) => {
+                    self.settings.shader.clear();
+                    self.say(format!("{message}; the shader's own values are back to their defaults"));
+                }
+            }
+            self.worker.need(needs);
+        }
+        self.shown.as_ref()
+    }
+
+    fn show(&mut self, pipelines: Arc<PipelineSet>, wanted: Wanted) {
+        if let Some((model, scene)) = self.next_scene.take() {
+            self.model = model;
+            self.scene = Some(scene);
+        }
+        self.shown = Some(Shown { pipelines, wanted, scene: self.scene.clone(), settings: self.settings.clone() });
+    }
+
+    /// A frame of this generation is finished, `ms` after it was begun.
+    pub(super) fn frame_done(&mut self, generation: u64, ms: f64) {
+        if let Some(first) = self.first_frame.take_if(|first| first.generation == generation) {
+            self.emit_reload(ReloadEvent { first_frame_ms: ms, ..first.event });
+        }
+        if !self.ready && self.scene.is_some() {
+            self.ready = true;
+            let ms = self.start.elapsed().as_secs_f64() * 1e3;
+            emit(self.events, &Event::Ready { device: &self.gpu.info().name, ms });
+        }
+    }
+
+    /// Whether the time of the next frame is of interest: it is the first of a generation, or of the model.
+    pub(super) fn times_next_frame(&self) -> bool {
+        self.first_frame.is_some() || (!self.ready && self.scene.is_some())
+    }
+
+    fn watch_tree(&mut self, source: &Source) {
+        let Some(root) = source.root().map(Path::to_owned) else {
+            self.tree_watcher = None;
+            return;
+        };
+        let send = self.worker.changes();
+        let base = root.canonicalize().unwrap_or_else(|_| root.clone());
+        let on_batch = move |batch: Batch| {
+            let relative = batch.paths.iter().filter_map(|p| p.strip_prefix(&base).ok());
+            let paths = relative.filter_map(|p| TreePath::parse(&p.to_string_lossy())).collect();
+            send(Change::Paths(paths), batch.first_event);
+        };
+        match Watcher::new(Some(&root), &[], on_batch) {
+            Ok(watcher) => self.tree_watcher = Some(watcher),
+            Err(error) => self.say(error.to_string()),
+        }
+    }
+
+    fn watch_model(&mut self, files: &[PathBuf]) {
+        if let Some(watcher) = &self.model_watcher {
+            watcher.set_files(files);
+            return;
+        }
+        if files.is_empty() {
+            return;
+        }
+        let proxy = self.proxy.clone();
+        let on_batch = move |_: Batch| {
+            let _ = proxy.send_event(Message::ModelChanged);
+        };
+        match Watcher::new(None, files, on_batch) {
+            Ok(watcher) => self.model_watcher = Some(watcher),
+            Err(error) => self.say(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! The window: an editor on one half of the screen, this on the other.
+//!
+//! Three threads beside the window's own: the watcher (events only), the [`worker`] (compiles and builds pipelines) and a loader
+//! for models. They send [`Message`]s; only the window's thread touches what is on screen.
+
+mod camera;
+mod document;
+mod input;
+mod loader;
+mod panels;
+mod screen;
+mod worker;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::raw_window_handle::HasDisplayHandle as _;
+use winit::window::{Window, WindowId};
+
+use crate::gpu::{Gpu, GpuError, GpuOptions};
+use crate::settings::Settings;
+use crate::shader::{Compiler, Source};
+
+use document::Document;
+use loader::Loaded;
+use screen::Screen;
+use worker::WorkerMessage;
+
+/// How to open the window.
+pub struct AppOptions {
+    /// Shader tree.
+    pub source: Source,
+    /// Shader compiler.
+    pub compiler: Arc<Compiler>,
+    /// Model file; `None` is the built-in shader ball.
+    pub model: Option<PathBuf>,
+    /// Settings to start with.
+    pub settings: Settings,
+    /// Size of the window in pixels.
+    pub size: (u32, u32),
+    /// Part of the device's name.
+    pub device: Option<String>,
+    /// Validation layers.
+    pub validation: bool,
+    /// Models may read outside their folder.
+    pub allow_outside: bool,
+    /// Print events.
+    pub events: bool,
+    /// Start of the program, for the events' times.
+    pub start: Instant,
+}
+
+/// Why there is no window, or why it closed early.
+#[derive(Debug, thiserror::Error)]
+pub enum AppError {
+    /// No display.
+    #[error(
+        "no display to open a window on ({0}). Without one, `specula render --watch` writes a PNG again at every save"
+    )]
+    NoDisplay(String),
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The validation layers said something.
+    #[error("the validation layers reported {0} messages (above)")]
+    Validation(usize),
+}
+
+/// What the other threads send.
+enum Message {
+    Worker(WorkerMessage),
+    Loaded(Box<Loaded>),
+    ModelChanged,
+}
+
+/// Opens the window and runs until it is closed.
+///
+/// # Errors
+/// No display, no device, or a device that fails.
+pub fn run(options: AppOptions) -> Result<(), AppError> {
+    let event_loop = EventLoop::<Message>::with_user_event().build().map_err(|e| AppError::NoDisplay(e.to_string()))?;
+    let mut app = App { proxy: event_loop.create_proxy(), options: Some(options), open: None, result: Ok(()) };
+    event_loop.run_app(&mut app).map_err(|e| AppError::NoDisplay(e.to_string()))?;
+    app.result
+}
+
+struct App {
+    proxy: EventLoopProxy<Message>,
+    options: Option<AppOptions>,
+    open: Option<Open>,
+    result: Result<(), AppError>,
+}
+
+/// Everything behind an open window. The screen goes before the device, the window last.
+struct Open {
+    document: Document,
+    screen: Screen,
+    gpu: Arc<Gpu>,
+    window: Arc<Window>,
+}
+
+impl App {
+    fn open(&mut self, event_loop: &ActiveEventLoop, options: AppOptions) -> Result<Open, AppError> {
+        let attributes = Window::default_attributes()
+            .with_title("Specula")
+            .with_inner_size(PhysicalSize::new(options.size.0, options.size.1))
+            .with_min_inner_size(PhysicalSize::new(320, 240));
+        let window = event_loop.create_window(attributes).map_err(|e| AppError::NoDisplay(e.to_string()))?;
+        let window = Arc::new(window);
+        let display = event_loop.display_handle().map_err(|e| AppError::NoDisplay(e.to_string()))?;
+        let gpu = Gpu::new(&GpuOptions {
+            device: options.device.clone(),
+            validation: options.validation,
+            display: Some(display.as_raw()),
+        })?;
+        let screen = Screen::new(&gpu, &window)?;
+        let document = Document::new(&gpu, screen.layouts(), options, &self.proxy);
+        Ok(Open { document, screen, gpu, window })
+    }
+
+    fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
+        if let Some(open) = self.open.take() {
+            let messages = open.gpu.validation_messages().len();
+            drop(open.screen);
+            drop(open.document);
+            self.result = match result {
+                Ok(()) if messages > 0 => Err(AppError::Validation(messages)),
+                other => other,
+            };
+        } else if let Err(error) = result {
+            self.result = Err(error);
+        }
+        event_loop.exit();
+    }
+}
+
+impl ApplicationHandler<Message> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(options) = self.options.take() else { return };
+        match self.open(event_loop, options) {
+            Ok(open) => {
+                open.window.request_redraw();
+                self.open = Some(open);
+            }
+            Err(error) => self.end(event_loop, Err(error)),
+        }
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
+            open.window.request_redraw();
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, message: Message) {
+        let Some(open) = &mut self.open else { return };
+        match message {
+            Message::Worker(message) => open.document.on_worker(message),
+            Message::Loaded(loaded) => open.document.on_loaded(*loaded),
+            Message::ModelChanged => open.document.reload_model(),
+        }
+        open.window.request_redraw();
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        let response = open.screen.on_window_event(&open.window, &event);
+        if response.repaint {
+            open.window.request_redraw();
+        }
+        match event {
+            WindowEvent::CloseRequested => return self.end(event_loop, Ok(())),
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+                open.screen.resized();
+                open.window.request_redraw();
+            }
+            WindowEvent::DroppedFile(path) => open.document.open_path(path),
+            WindowEvent::RedrawRequested => {
+                let drawn = open.screen.draw(&open.window, &mut open.document);
+                match drawn {
+                    Ok(again) => event_loop.set_control_flow(match again {
+                        Some(wait) if wait.is_zero() => {
+                            open.window.request_redraw();
+                            ControlFlow::Wait
+                        }
+                        Some(wait) => ControlFlow::WaitUntil(Instant::now() + wait.min(Duration::from_secs(3600))),
+                        None => ControlFlow::Wait,
+                    }),
+                    Err(error) => return self.end(event_loop, Err(error.into())),
+                }
+            }
+            event => {
+                if input::on_window_event(&mut open.document, &event, &open.screen, response.consumed) {
+                    open.window.request_redraw();
+                }
+            }
+        }
+        if open.document.quit {
+            self.end(event_loop, Ok(()));
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! The camera: field of view, framing, the model's own cameras.
+
+use egui::{RichText, Slider, Ui};
+
+use super::{QUIET, row, section};
+use crate::app::document::Document;
+
+pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+    section(ui, "Camera", false, |ui| {
+        row(ui, "Field of view", "Vertical (--fovy)", |ui| {
+            ui.add(Slider::new(&mut document.settings.camera.fovy, 5.0..=120.0).suffix("°").max_decimals(0));
+        });
+        ui.horizontal(|ui| {
+            if ui.button("Frame the model").on_hover_text("R or Home").clicked() {
+                document.frame_model();
+            }
+        });
+        for camera in document.model.cameras.clone() {
+            let name = if camera.name.is_empty() { "Camera of the model" } else { &camera.name };
+            if ui.button(name).clicked() {
+                // The target is any point ahead; at the model's depth, orbiting feels right.
+                let depth = (document.model.bounds.center() - camera.eye).dot(camera.forward);
+                let depth = if depth > 0.0 { depth } else { document.model.bounds.radius() };
+                let settings = &mut document.settings.camera;
+                settings.eye = Some(camera.eye.to_array());
+                settings.target = Some((camera.eye + camera.forward * depth).to_array());
+                settings.fovy = camera.fovy.to_degrees().clamp(1.0, 170.0);
+            }
+        }
+        let camera = &document.settings.camera;
+        if let (Some(eye), Some(target)) = (camera.eye, camera.target) {
+            let list = |v: [f32; 3]| v.map(|c| format!("{c:.3}")).join(",");
+            let text = format!("--eye {} --target {}", list(eye), list(target));
+            let label = ui.label(RichText::new(&text).monospace().small().color(QUIET));
+            if label.on_hover_text("Click to copy").interact(egui::Sense::click()).clicked() {
+                ui.ctx().copy_text(text);
+            }
+        }
+        let help = "Drag to orbit, Shift+drag to pan, wheel to zoom.\nHold the right button and W A S D Q E to fly.";
+        ui.label(RichText::new(help).small().color(QUIET));
+    });
+}

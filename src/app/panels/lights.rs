@@ -1,0 +1,57 @@
+//! The lights: which shine, the three that orbit, and the ambient light.
+
+use egui::{Slider, Ui};
+
+use super::{color, row, section};
+use crate::app::document::Document;
+use crate::settings::LightSource;
+
+pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+    let in_model = document.model.lights.len();
+    let lights = &mut document.settings.lights;
+    section(ui, "Lights", true, |ui| {
+        row(ui, "Source", "Which lights shine (--lights)", |ui| {
+            ui.selectable_value(&mut lights.source, LightSource::Orbit, "Orbit");
+            let model = egui::Button::selectable(lights.source == LightSource::Model, format!("Model ({in_model})"));
+            if ui.add_enabled(in_model > 0, model).clicked() {
+                lights.source = LightSource::Model;
+            }
+            ui.selectable_value(&mut lights.source, LightSource::None, "None");
+        });
+        row(ui, "BRDF terms of", "Which light the BRDF term modes show", |ui| {
+            ui.selectable_value(&mut lights.chosen, 0, "All");
+            let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
+            for light in 1..=count {
+                ui.selectable_value(&mut lights.chosen, light, light.to_string());
+            }
+        });
+        if lights.source == LightSource::Orbit {
+            row(ui, "Orbit", "Degrees a second around the model (L)", |ui| {
+                ui.add(Slider::new(&mut lights.spin, -90.0..=90.0).suffix("°/s").max_decimals(0));
+            });
+            for (i, light) in lights.orbit.iter_mut().enumerate() {
+                ui.push_id(i, |ui| {
+                    ui.separator();
+                    row(ui, &format!("Light {}", i + 1), "Color, and irradiance at one model radius", |ui| {
+                        color(ui, &mut light.color);
+                        ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
+                    });
+                    row(ui, "Distance", "In radii of the model", |ui| {
+                        ui.add(Slider::new(&mut light.distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
+                    });
+                    row(ui, "Azimuth", "Around +Y, from +Z towards +X", |ui| {
+                        ui.add(Slider::new(&mut light.azimuth, -180.0..=360.0).suffix("°").max_decimals(0));
+                    });
+                    row(ui, "Polar", "From +Y", |ui| {
+                        ui.add(Slider::new(&mut light.polar, 0.0..=180.0).suffix("°").max_decimals(0));
+                    });
+                });
+            }
+        }
+        ui.separator();
+        row(ui, "Ambient", "Radiance from everywhere", |ui| {
+            color(ui, &mut lights.ambient_color);
+            ui.add(Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
+        });
+    });
+}

@@ -1,0 +1,38 @@
+//! From radiance to the screen: exposure, tone map, background, samples.
+
+use clap::ValueEnum as _;
+use egui::{Slider, Ui};
+
+use super::{row, section};
+use crate::app::document::Document;
+use crate::settings::Tonemap;
+
+pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+    let view = &mut document.settings.view;
+    section(ui, "Output", true, |ui| {
+        row(ui, "Exposure", "EV100: exposure is 1 / (1.2 * 2^EV) (--ev)", |ui| {
+            ui.add(Slider::new(&mut view.ev, -10.0..=10.0).suffix(" EV").max_decimals(1));
+        });
+        row(ui, "Tone map", "--tonemap", |ui| {
+            let name = |tonemap: Tonemap| {
+                tonemap.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+            };
+            egui::ComboBox::from_id_salt("tonemap").selected_text(name(view.tonemap)).show_ui(ui, |ui| {
+                for tonemap in Tonemap::value_variants() {
+                    ui.selectable_value(&mut view.tonemap, *tonemap, name(*tonemap));
+                }
+            });
+        });
+        row(ui, "Background", "--background", |ui| {
+            let hex = u32::from_str_radix(view.background.trim_start_matches('#'), 16).unwrap_or(0);
+            let mut srgb = [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8];
+            if ui.color_edit_button_srgb(&mut srgb).changed() {
+                view.background = format!("#{:02x}{:02x}{:02x}", srgb[0], srgb[1], srgb[2]);
+            }
+        });
+        row(ui, "Samples", "Multisampling", |ui| {
+            ui.selectable_value(&mut view.msaa, 1, "1x");
+            ui.selectable_value(&mut view.msaa, 4, "4x");
+        });
+    });
+}

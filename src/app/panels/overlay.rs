@@ -1,0 +1,89 @@
+//! What lies over the picture: diagnostics with their source line, a message for a while, and what is being loaded.
+
+use std::time::Duration;
+
+use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichText, Stroke};
+
+use super::{ERROR, QUIET, WARNING};
+use crate::app::document::Document;
+use crate::shader::{Diagnostic, Severity};
+
+const NOTICE: Duration = Duration::from_secs(6);
+const MOST_DIAGNOSTICS: usize = 8;
+
+pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui::Rect) {
+    if !document.diagnostics.is_empty() {
+        diagnostics(egui, &document.diagnostics, picture);
+    }
+    let loading = document.loading.then(|| "Loading the model…".to_owned());
+    let notice = document.notice.as_ref().filter(|(_, since)| since.elapsed() < NOTICE);
+    if let Some((_, since)) = notice {
+        egui.request_repaint_after(NOTICE.saturating_sub(since.elapsed()));
+    }
+    let text = notice.map(|(text, _)| text.clone()).or(loading);
+    if let Some(text) = text {
+        area("notice", Align2::CENTER_BOTTOM, picture).show(egui, |ui| {
+            card(Color32::from_gray(90)).show(ui, |ui| ui.label(text));
+        });
+    }
+    if document.show_ui {
+        let mode = document.mode().map(|mode| (mode.name.clone(), mode.slug != "final"));
+        if let Some((name, true)) = mode {
+            area("mode", Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
+                card(Color32::from_gray(60)).show(ui, |ui| ui.label(name));
+            });
+        }
+    }
+}
+
+fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::Rect) {
+    area("diagnostics", Align2::LEFT_BOTTOM, picture).show(egui, |ui| {
+        let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+        card(if failed { ERROR } else { WARNING }).show(ui, |ui| {
+            ui.set_max_width((picture.width() - 60.0).max(200.0));
+            egui::ScrollArea::vertical().max_height((picture.height() * 0.6).max(80.0)).show(ui, |ui| {
+                for diagnostic in diagnostics.iter().take(MOST_DIAGNOSTICS) {
+                    one(ui, diagnostic);
+                }
+                if diagnostics.len() > MOST_DIAGNOSTICS {
+                    ui.label(format!("and {} more, on stderr", diagnostics.len() - MOST_DIAGNOSTICS));
+                }
+                if failed {
+                    ui.label(RichText::new("The picture is the last good one.").small().color(QUIET));
+                }
+            });
+        });
+    });
+}
+
+fn one(ui: &mut egui::Ui, diagnostic: &Diagnostic) {
+    let color = if diagnostic.severity == Severity::Error { ERROR } else { WARNING };
+    let place = match diagnostic.line {
+        Some(line) => format!("{}:{line}", diagnostic.file),
+        None => diagnostic.file.clone(),
+    };
+    let response = ui.label(RichText::new(&place).monospace().color(color).strong());
+    if response.on_hover_text("Click to copy the place").interact(egui::Sense::click()).clicked() {
+        ui.ctx().copy_text(place);
+    }
+    let full = diagnostic.full();
+    let rest = full.split_once('\n').map_or("", |(_, rest)| rest);
+    ui.label(RichText::new(&diagnostic.message).monospace());
+    if !rest.is_empty() {
+        ui.add(egui::Label::new(RichText::new(rest).monospace().color(Color32::from_gray(215))).extend());
+    }
+    ui.add_space(6.0);
+}
+
+fn area(id: &str, corner: Align2, picture: egui::Rect) -> Area {
+    let at = corner.pos_in_rect(&picture.shrink(12.0));
+    Area::new(Id::new(id)).order(Order::Foreground).pivot(corner).fixed_pos(at).constrain_to(picture)
+}
+
+fn card(edge: Color32) -> Frame {
+    Frame::new()
+        .fill(Color32::from_rgba_unmultiplied(16, 17, 20, 235))
+        .stroke(Stroke::new(1.0, edge))
+        .corner_radius(CornerRadius::same(6))
+        .inner_margin(Margin::symmetric(12, 8))
+}

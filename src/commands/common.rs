@@ -1,0 +1,182 @@
+//! The options that every command takes, and what they come to.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use specula::gpu::{Gpu, GpuOptions};
+use specula::scene::{self, LoadOptions, Model};
+use specula::settings::{LightSource, Settings, Tonemap};
+use specula::shader::{Compiler, ShaderSet, Source, is_specula_tree};
+
+use super::Failure;
+
+/// Options that are the same everywhere.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Common {
+    /// Shader tree [default: ./shaders when it is Specula's, else the built-in one]
+    #[arg(long, value_name = "DIR")]
+    pub shaders: Option<PathBuf>,
+    /// Which lights shine
+    #[arg(long, value_enum)]
+    lights: Option<LightSource>,
+    /// Camera position in metres, as 0,1,3 [default: the model is framed]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    eye: Option<[f32; 3]>,
+    /// Point the camera looks at
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    target: Option<[f32; 3]>,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEG")]
+    fovy: Option<f32>,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    pub size: (u32, u32),
+    /// Tone map
+    #[arg(long, value_enum)]
+    tonemap: Option<Tonemap>,
+    /// Exposure value (EV100): exposure is 1 / (1.2 * 2^N)
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    ev: Option<f32>,
+    /// Behind the model: none (transparent), env or #rrggbb
+    #[arg(long, value_name = "WHAT")]
+    background: Option<String>,
+    /// Debug mode; `specula modes` lists them
+    #[arg(long, value_name = "NAME")]
+    pub mode: Option<String>,
+    /// Set anything, as view.msaa=1 or a shader parameter's name=value; may repeat
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Look file (TOML) with settings to start from
+    #[arg(long, value_name = "FILE.toml")]
+    look: Option<PathBuf>,
+    /// Device whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub device: Option<String>,
+    /// Print what happens as JSON lines on stdout
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub events: Option<EventFormat>,
+    /// Let a model read files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Turn the Vulkan validation layers on; their messages fail the command
+    #[arg(long)]
+    pub validate: bool,
+}
+
+/// How events are printed.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum EventFormat {
+    /// One JSON object a line.
+    Json,
+}
+
+impl Common {
+    /// The settings: defaults, then the look file, then options, then `--set` in order.
+    pub fn settings(&self) -> Result<Settings, Failure> {
+        let mut settings = match &self.look {
+            None => Settings::default(),
+            Some(path) => {
+                let text = std::fs::read_to_string(path)
+                    .map_err(|e| Failure::Input(format!("{}: cannot read the look file: {e}", path.display())))?;
+                Settings::from_toml(&text).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))?
+            }
+        };
+        let put = |to: &mut f32, from: Option<f32>| *to = from.unwrap_or(*to);
+        settings.camera.eye = self.eye.or(settings.camera.eye);
+        settings.camera.target = self.target.or(settings.camera.target);
+        put(&mut settings.camera.fovy, self.fovy);
+        put(&mut settings.view.ev, self.ev);
+        settings.lights.source = self.lights.unwrap_or(settings.lights.source);
+        settings.view.tonemap = self.tonemap.unwrap_or(settings.view.tonemap);
+        if let Some(background) = &self.background {
+            settings.view.background.clone_from(background);
+        }
+        if let Some(mode) = &self.mode {
+            settings.mode.clone_from(mode);
+        }
+        for assignment in &self.set {
+            settings.assign(assignment).map_err(|e| Failure::Input(format!("--set: {e}")))?;
+        }
+        settings.check().map_err(Failure::Input)?;
+        Ok(settings)
+    }
+
+    /// The shader tree.
+    pub fn source(&self) -> Result<Source, Failure> {
+        match &self.shaders {
+            Some(directory) if is_specula_tree(directory) => disk(directory),
+            Some(directory) => Err(Failure::Input(format!(
+                "{} is no Specula shader tree: it has no interface.glsl. `specula new {}` writes one",
+                directory.display(),
+                directory.display()
+            ))),
+            None if is_specula_tree(Path::new("shaders")) => disk(Path::new("shaders")),
+            None => Ok(Source::embedded()),
+        }
+    }
+
+    /// The model at `path`, or the built-in shader ball.
+    pub fn model(&self, path: Option<&Path>) -> Result<Model, Failure> {
+        let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
+        let model = loaded.map_err(|e| Failure::Input(e.to_string()))?;
+        for warning in &model.warnings {
+            eprintln!("specula: warning: {}: {warning}", model.name);
+        }
+        Ok(model)
+    }
+
+    /// Opens the device without a window.
+    pub fn gpu(&self) -> Result<Arc<Gpu>, Failure> {
+        let options = GpuOptions { device: self.device.clone(), validation: self.validate, display: None };
+        Ok(Gpu::new(&options)?)
+    }
+
+    /// Whether events are printed.
+    pub fn emits(&self) -> bool {
+        self.events.is_some()
+    }
+}
+
+/// The shader compiler.
+pub fn compiler() -> Result<Arc<Compiler>, Failure> {
+    Compiler::new().map(Arc::new).map_err(Failure::Input)
+}
+
+/// Fails when the tree has no such mode, and names the closest.
+pub fn check_mode(shaders: &ShaderSet, slug: &str) -> Result<(), Failure> {
+    if shaders.modes.iter().any(|m| m.slug == slug) {
+        return Ok(());
+    }
+    let close: Vec<&str> =
+        shaders.modes.iter().map(|m| m.slug.as_str()).filter(|s| s.contains(slug) || slug.contains(s)).collect();
+    let hint = if close.is_empty() { String::new() } else { format!(" Close: {}.", close.join(", ")) };
+    Err(Failure::Input(format!("there is no mode '{slug}'.{hint} `specula modes` lists them all")))
+}
+
+/// Fails when the validation layers said something.
+pub fn check_validation(gpu: &Gpu) -> Result<(), Failure> {
+    match gpu.validation_messages().len() {
+        0 => Ok(()),
+        count => Err(Failure::Input(format!("the validation layers reported {count} messages (above)"))),
+    }
+}
+
+fn disk(directory: &Path) -> Result<Source, Failure> {
+    let absolute = std::path::absolute(directory);
+    absolute.map(Source::Disk).map_err(|e| Failure::Input(format!("{}: {e}", directory.display())))
+}
+
+fn vector(text: &str) -> Result<[f32; 3], String> {
+    let numbers: Vec<f32> = text.split(',').map_while(|t| t.trim().parse().ok()).collect();
+    let vector = <[f32; 3]>::try_from(numbers).map_err(|_| "expected three numbers, as 0,1.5,3".to_owned())?;
+    if vector.iter().all(|v| v.is_finite()) { Ok(vector) } else { Err("the numbers must be finite".into()) }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parts {
+        Some((width, height)) if width > 0 && height > 0 => Ok((width, height)),
+        _ => Err("expected width x height in pixels, each at least 1, as 1280x720".into()),
+    }
+}

@@ -1,0 +1,39 @@
+//! `specula view`: the window.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use specula::app::{self, AppError, AppOptions};
+
+use super::Failure;
+use super::common::{Common, compiler};
+
+/// Options of `view`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
+    model: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the command.
+pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
+    let events = args.common.emits();
+    let options = AppOptions {
+        source: args.common.source()?,
+        compiler: compiler()?,
+        model: args.model,
+        settings: args.common.settings()?,
+        size: args.common.size,
+        allow_outside: args.common.allow_outside,
+        validation: args.common.validate,
+        device: args.common.device,
+        events,
+        start,
+    };
+    app::run(options).map_err(|error| match error {
+        AppError::Validation(_) => Failure::Input(error.to_string()),
+        AppError::NoDisplay(_) | AppError::Gpu(_) => Failure::Device(error.to_string()),
+    })
+}

@@ -1,0 +1,54 @@
+//! Waiting for saves, for `render --watch`.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use crossbeam_channel::{Receiver, unbounded};
+use specula::scene::Model;
+use specula::shader::{Batch, Source, Watcher};
+
+use super::Failure;
+
+/// Watches a shader tree and a model's files.
+pub struct Watch {
+    watcher: Watcher,
+    batches: Receiver<Batch>,
+    model_files: BTreeSet<PathBuf>,
+}
+
+/// What changed together.
+pub struct Changes {
+    /// Changed files, absolute.
+    pub paths: BTreeSet<PathBuf>,
+    /// Whether one of them is the model's.
+    pub model: bool,
+    /// When the first event came.
+    pub first_event: Instant,
+}
+
+impl Watch {
+    /// Starts watching.
+    pub fn new(source: &Source) -> Result<Self, Failure> {
+        let (sender, batches) = unbounded();
+        let on_batch = move |batch| {
+            let _ = sender.send(batch);
+        };
+        let watcher = Watcher::new(source.root(), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
+        Ok(Self { watcher, batches, model_files: BTreeSet::new() })
+    }
+
+    /// Watches this model's files too, in place of those before.
+    pub fn follow(&mut self, model: &Model) {
+        self.watcher.set_files(&model.files);
+        let resolved = model.files.iter().map(|file| file.canonicalize().unwrap_or_else(|_| file.clone()));
+        self.model_files = model.files.iter().cloned().chain(resolved).collect();
+    }
+
+    /// Waits for the next changes; `None` when watching has ended.
+    pub fn next(&mut self) -> Option<Changes> {
+        let batch = self.batches.recv().ok()?;
+        let model = batch.paths.iter().any(|path| self.model_files.contains(path));
+        Some(Changes { paths: batch.paths, model, first_event: batch.first_event })
+    }
+}

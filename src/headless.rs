@@ -1,0 +1,184 @@
+//! Rendering without a window: the same reload and the same frame as on screen, called one after the other.
+
+use std::sync::Arc;
+
+use crate::gpu::{Gpu, GpuError, Rect, SetLayouts, vk};
+use crate::render::{
+    Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload, Reloader, Renderer, Shot, Target, UploadError,
+    Wanted, unknown_names,
+};
+use crate::scene::{self, Model};
+use crate::settings::Settings;
+use crate::shader::{Change, Compiler, Diagnostic, Source};
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum HeadlessError {
+    /// The shaders do not compile, and there are no earlier ones.
+    #[error("the shaders do not compile")]
+    Shaders(Vec<Diagnostic>),
+    /// A setting does not fit.
+    #[error("{0}")]
+    Settings(String),
+    /// The model does not fit the device.
+    #[error(transparent)]
+    Upload(#[from] UploadError),
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+/// A renderer with a shader tree, a model and settings.
+pub struct Headless {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    renderer: Renderer,
+    reloader: Reloader,
+    pipelines: Arc<PipelineSet>,
+    model: Model,
+    scene: Arc<GpuScene>,
+    settings: Settings,
+    size: (u32, u32),
+}
+
+impl Headless {
+    /// Compiles the tree, uploads the model and builds the pipelines. The HDR target has full floats, so that what is read back
+    /// is what the shader wrote.
+    ///
+    /// # Errors
+    /// Shaders that do not compile, settings or a model that do not fit, a device that fails.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        compiler: &Arc<Compiler>,
+        source: Source,
+        model: Model,
+        settings: Settings,
+        size: (u32, u32),
+    ) -> Result<(Self, Reload), HeadlessError> {
+        let layouts = SetLayouts::new(gpu)?;
+        let renderer = Renderer::new(gpu, &layouts, vk::Format::R32G32B32A32_SFLOAT)?;
+        let most = gpu.max_image_size();
+        if size.0 > most || size.1 > most {
+            let message = format!("{}x{} is too large; this device draws at most {most} pixels a side", size.0, size.1);
+            return Err(HeadlessError::Settings(message));
+        }
+        let scene = GpuScene::upload(gpu, &layouts, &model)?;
+        let mut reloader = Reloader::new(gpu, &layouts, compiler, source);
+        let mut problem = None;
+        let wanted = |shaders: &_| match wanted(gpu, &settings, shaders, &scene) {
+            Ok(wanted) => Ok(wanted),
+            Err(message) => {
+                problem = Some(message.clone());
+                Err(message)
+            }
+        };
+        let mut reload = reloader.update(Change::All, wanted, || false);
+        if let Some(message) = problem {
+            return Err(HeadlessError::Settings(message));
+        }
+        let pipelines = match std::mem::replace(&mut reload.outcome, Outcome::Unchanged { cleared: false }) {
+            Outcome::Ready(pipelines) => pipelines,
+            Outcome::Failed(diagnostics) => return Err(HeadlessError::Shaders(diagnostics)),
+            Outcome::Unchanged { .. } => return Err(HeadlessError::Shaders(Vec::new())),
+        };
+        reload.outcome = Outcome::Ready(pipelines.clone());
+        if let Some(message) = unknown_names(&settings.shader, &pipelines.shaders) {
+            return Err(HeadlessError::Settings(message));
+        }
+        let (gpu, layouts) = (gpu.clone(), layouts);
+        Ok((Self { gpu, layouts, renderer, reloader, pipelines, model, scene, settings, size }, reload))
+    }
+
+    /// The pipelines on screen, with their shaders.
+    pub fn pipelines(&self) -> &Arc<PipelineSet> {
+        &self.pipelines
+    }
+
+    /// The tree.
+    pub fn reloader(&self) -> &Reloader {
+        &self.reloader
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The settings of the next [`Headless::render`].
+    pub fn settings_mut(&mut self) -> &mut Settings {
+        &mut self.settings
+    }
+
+    /// Device time of the last frame in milliseconds, where the device can tell.
+    pub fn device_ms(&self) -> Option<f64> {
+        self.renderer.device_ms()
+    }
+
+    /// Takes changed shaders in. On failure the last good ones stay.
+    pub fn update(&mut self, change: Change) -> Reload {
+        let (gpu, settings, scene) = (&self.gpu, &self.settings, &self.scene);
+        let reload = self.reloader.update(change, |shaders| wanted(gpu, settings, shaders, scene), || false);
+        if let Outcome::Ready(pipelines) = &reload.outcome {
+            self.pipelines = pipelines.clone();
+        }
+        reload
+    }
+
+    /// Replaces the model. On failure the old one stays.
+    ///
+    /// # Errors
+    /// A model that does not fit the device.
+    pub fn set_model(&mut self, model: Model) -> Result<(), HeadlessError> {
+        self.scene = GpuScene::upload(&self.gpu, &self.layouts, &model)?;
+        self.model = model;
+        Ok(())
+    }
+
+    /// Renders one frame, building the pipelines that a changed mode or constant needs.
+    ///
+    /// # Errors
+    /// Settings that do not fit, a device that fails.
+    pub fn render(&mut self) -> Result<Capture, HeadlessError> {
+        let wanted =
+            wanted(&self.gpu, &self.settings, &self.pipelines.shaders, &self.scene).map_err(HeadlessError::Settings)?;
+        self.pipelines.build(&wanted)?;
+        let (width, height) = self.size;
+        let view = scene::frame(&self.model.bounds, &self.settings.camera, width as f32 / height as f32);
+        let shot = Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0)
+            .map_err(HeadlessError::Settings)?;
+        let input = FrameInput {
+            shot: &shot,
+            pipelines: Some((&self.pipelines, &wanted)),
+            scene: Some(&self.scene),
+            rect: Rect { x: 0, y: 0, width, height },
+        };
+        match self.renderer.frame(input, Target::Memory)? {
+            Drawn::Captured(capture) => Ok(capture),
+            Drawn::Shown { .. } | Drawn::NoImage => unreachable!("a frame to memory is captured"),
+        }
+    }
+}
+
+/// What the settings ask of these shaders for this scene, when the HDR target has full floats.
+fn wanted(
+    gpu: &Gpu,
+    settings: &Settings,
+    shaders: &crate::shader::ShaderSet,
+    scene: &GpuScene,
+) -> Result<Wanted, String> {
+    let samples = samples(gpu, settings)?;
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    Wanted::new(settings, shaders, scene.variants(), samples, format, Renderer::OUTPUT_FORMAT)
+}
+
+/// Samples a pixel as the settings ask, checked against the device.
+///
+/// # Errors
+/// A count that is neither 1 nor 4, or that the device lacks, in words.
+pub fn samples(gpu: &Gpu, settings: &Settings) -> Result<u32, String> {
+    match settings.view.msaa {
+        samples @ (1 | 4) if gpu.supports_samples(samples) => Ok(samples),
+        4 => Err("this device has no 4x multisampling; use --set view.msaa=1".into()),
+        other => Err(format!("view.msaa is {other}; it can be 1 or 4")),
+    }
+}

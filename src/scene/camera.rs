@@ -1,0 +1,247 @@
+//! Where the picture is taken from: framing and matrices.
+
+use glam::{Mat4, Vec3};
+
+use super::model::{Bounds, Camera};
+use crate::settings::CameraSettings;
+
+/// Space around a framed model: its box fills this part of the picture's width or height.
+const FILL: f32 = 1.0 / 1.08;
+/// Coordinates of eye and target beyond this overflow when they are squared.
+const FARTHEST: f32 = 1e18;
+/// Field of view when the setting is not a number, degrees.
+const DEFAULT_FOVY_DEG: f32 = 35.0;
+
+/// A perspective view in world space: right-handed, +Y up, metres. Made by [`View::new`] or [`frame`], it is never degenerate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Position.
+    pub eye: Vec3,
+    /// Looked-at point, apart from `eye`.
+    pub target: Vec3,
+    /// Up in the picture: unit, orthogonal to the direction of view.
+    pub up: Vec3,
+    /// Vertical field of view, radians.
+    pub fovy_rad: f32,
+    /// Width by height.
+    pub aspect: f32,
+    /// Near plane distance, metres.
+    pub near: f32,
+    /// Distance behind which nothing of the model is, metres (the projection itself is infinite).
+    pub far: f32,
+}
+
+impl View {
+    /// A view of a model of these bounds. What is not finite or has no direction is replaced by what shows the model; the
+    /// near plane is as far out as the bounds allow.
+    pub fn new(eye: Vec3, target: Vec3, fovy_rad: f32, aspect: f32, bounds: &Bounds) -> Self {
+        let radius = bounds.radius();
+        let usable = |point: Vec3| point.abs().max_element() <= FARTHEST && point.is_finite();
+        let target = if usable(target) { target } else { bounds.center() };
+        let apart = usable(eye) && (target - eye).try_normalize().is_some();
+        // Far from the origin a radius may be less than a float's step.
+        let eye = if apart { eye } else { target + Vec3::Z * radius.max(target.length() * 1e-3) };
+        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+        let center_distance = (bounds.center() - eye).length();
+        let least = radius * 1e-3;
+        let near = (center_distance - radius).max(least);
+        Self {
+            eye,
+            target,
+            up: upright(forward),
+            fovy_rad: sane_fovy(fovy_rad),
+            aspect: if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 },
+            near,
+            far: (center_distance + radius).max(near * 2.0),
+        }
+    }
+
+    /// The view of one of the model's cameras. Its target is at the depth of the model's center, for orbiting.
+    pub fn of_camera(camera: &Camera, aspect: f32, bounds: &Bounds) -> Self {
+        let depth = camera.forward.dot(bounds.center() - camera.eye);
+        let depth = if depth > 0.0 { depth } else { bounds.radius() };
+        let mut view = Self::new(camera.eye, camera.eye + camera.forward * depth, camera.fovy, aspect, bounds);
+        view.up = camera.up.reject_from_normalized(view.forward()).normalize_or(view.up);
+        view
+    }
+
+    /// Direction of view, unit.
+    pub fn forward(&self) -> Vec3 {
+        (self.target - self.eye).normalize_or(Vec3::NEG_Z)
+    }
+
+    /// World to view space: the camera looks along -Z, +Y is up.
+    pub fn view_from_world(&self) -> Mat4 {
+        glam::camera::rh::view::look_to_mat4(self.eye, self.forward(), self.up)
+    }
+
+    /// World to Vulkan's clip space: +Y down, depth 1 at the near plane and 0 at infinity (reversed, for float depth).
+    pub fn clip_from_world(&self) -> Mat4 {
+        let clip_from_view =
+            glam::camera::rh::proj::vulkan::perspective_infinite_reverse(self.fovy_rad, self.aspect, self.near);
+        clip_from_view * self.view_from_world()
+    }
+}
+
+/// The view that the settings ask for. Without an eye, the corners of the model's box are fitted into the picture, with some
+/// space around them, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
+pub fn frame(bounds: &Bounds, settings: &CameraSettings, aspect: f32) -> View {
+    let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
+    let fovy_rad = sane_fovy(settings.fovy.to_radians());
+    let number = |degrees: f32| if degrees.is_finite() { degrees.to_radians() } else { 0.0 };
+    let (framed_eye, framed_target) =
+        fit(bounds, number(settings.azimuth), number(settings.elevation), fovy_rad, aspect);
+    let (eye, target) = match (settings.eye.map(Vec3::from), settings.target.map(Vec3::from)) {
+        (None, None) => (framed_eye, framed_target),
+        (None, Some(target)) => (target + (framed_eye - framed_target), target),
+        (Some(eye), None) => (eye, bounds.center()),
+        (Some(eye), Some(target)) => (eye, target),
+    };
+    let mut view = View::new(eye, target, fovy_rad, aspect, bounds);
+    if settings.eye.is_none() {
+        // Seen from right above, the azimuth still says where up is.
+        let (_, _, up) = basis(number(settings.azimuth), number(settings.elevation));
+        view.up = up.reject_from_normalized(view.forward()).normalize_or(view.up);
+    }
+    view
+}
+
+/// Unit vectors towards the eye, to the right and up.
+fn basis(azimuth_rad: f32, elevation_rad: f32) -> (Vec3, Vec3, Vec3) {
+    let (sin_a, cos_a) = azimuth_rad.sin_cos();
+    let back = direction(azimuth_rad, elevation_rad);
+    let right = Vec3::new(cos_a, 0.0, -sin_a);
+    (back, right, back.cross(right))
+}
+
+/// Unit vector at an azimuth (from +Z towards +X) and an elevation above the horizon.
+pub(super) fn direction(azimuth_rad: f32, elevation_rad: f32) -> Vec3 {
+    let (sin_a, cos_a) = azimuth_rad.sin_cos();
+    let (sin_e, cos_e) = elevation_rad.sin_cos();
+    Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
+}
+
+/// Eye and target from which the box just fits. In the camera's frame, with t the tangent of half the usable angle, a corner
+/// (x, z) is inside when |x - eye.x| <= t (eye.z - z): two linear bounds for each axis, which the closest eye meets both.
+fn fit(bounds: &Bounds, azimuth_rad: f32, elevation_rad: f32, fovy_rad: f32, aspect: f32) -> (Vec3, Vec3) {
+    let (back, right, up) = basis(azimuth_rad, elevation_rad);
+    let center = bounds.center();
+    let tan_y = (fovy_rad * 0.5).tan() * FILL;
+    let tan_x = tan_y * aspect;
+    // Nothing to fit, or a point: a sphere of radius 1 stands in.
+    let solid = !bounds.is_empty() && (bounds.max - bounds.min).max_element() > 0.0;
+    if !solid {
+        return (center + back * (bounds.radius() / tan_y.min(tan_x)).max(1.0), center);
+    }
+    let axis = |side: Vec3, tan: f32| {
+        let corners = bounds.corners().map(|corner| ((corner - center).dot(side), (corner - center).dot(back)));
+        let high = corners.iter().map(|(x, z)| x + tan * z).fold(f32::NEG_INFINITY, f32::max);
+        let low = corners.iter().map(|(x, z)| -x + tan * z).fold(f32::NEG_INFINITY, f32::max);
+        ((high - low) * 0.5, (high + low) / (2.0 * tan))
+    };
+    let (x, distance_x) = axis(right, tan_x);
+    let (y, distance_y) = axis(up, tan_y);
+    let target = center + right * x + up * y;
+    (target + back * distance_x.max(distance_y), target)
+}
+
+/// Up in the picture for a direction of view: +Y as far as it goes, or a fixed one when looking straight up or down.
+fn upright(forward: Vec3) -> Vec3 {
+    let fallback = if forward.y < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
+    let up = Vec3::Y.reject_from_normalized(forward);
+    if up.length() > 1e-4 { up.normalize() } else { fallback.reject_from_normalized(forward).normalize_or(fallback) }
+}
+
+fn sane_fovy(fovy_rad: f32) -> f32 {
+    let fovy_rad = if fovy_rad.is_finite() { fovy_rad } else { DEFAULT_FOVY_DEG.to_radians() };
+    fovy_rad.clamp(1_f32.to_radians(), 170_f32.to_radians())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube() -> Bounds {
+        Bounds { min: Vec3::new(-1.0, 0.0, -0.5), max: Vec3::new(3.0, 2.0, 0.5) }
+    }
+
+    fn extent(view: &View, bounds: &Bounds) -> (f32, f32) {
+        let corners = bounds.corners().map(|corner| view.clip_from_world().project_point3(corner));
+        assert!(corners.iter().all(|c| c.is_finite() && c.z > 0.0 && c.z <= 1.0), "{corners:?}");
+        let most = |pick: fn(&Vec3) -> f32| corners.iter().map(pick).fold(0.0, f32::max);
+        (most(|c| c.x.abs()), most(|c| c.y.abs()))
+    }
+
+    #[test]
+    fn framing_fills_the_picture_from_every_side() {
+        for azimuth in [-180.0, -35.0, 0.0, 30.0, 90.0] {
+            for elevation in [-90.0, -30.0, 0.0, 15.0, 89.9, 90.0] {
+                for (aspect, fovy) in [(1.0, 35.0), (1.78, 20.0), (0.5, 60.0), (3.0, 90.0)] {
+                    let settings = CameraSettings { azimuth, elevation, fovy, ..CameraSettings::default() };
+                    let (x, y) = extent(&frame(&cube(), &settings, aspect), &cube());
+                    let fill = x.max(y);
+                    assert!((fill - FILL).abs() < 1e-3, "{azimuth} {elevation} {aspect} {fovy}: {x} {y}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn clip_space_is_vulkan_reversed() {
+        let view = View::new(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, 1.0, 2.0, &cube());
+        let clip = view.clip_from_world();
+        let at = |x: f32, y: f32, depth: f32| clip.project_point3(Vec3::new(x, y, 5.0 - depth));
+        assert!((at(0.0, 0.0, view.near).z - 1.0).abs() < 1e-5);
+        assert!(at(0.0, 0.0, 1e6).z < 1e-4 && at(0.0, 0.0, 1e6).z > 0.0);
+        assert!(at(0.0, 1.0, 5.0).y < 0.0, "+Y is up in the world and down in clip space");
+        assert!(at(1.0, 0.0, 5.0).x > 0.0);
+        let top = 5.0 * 0.5_f32.tan();
+        assert!((at(2.0 * top, top, 5.0) - Vec3::new(1.0, -1.0, view.near / 5.0)).length() < 1e-5);
+    }
+
+    #[test]
+    fn azimuth_goes_from_z_towards_x() {
+        let settings = |azimuth, elevation| CameraSettings { azimuth, elevation, ..CameraSettings::default() };
+        let from = |azimuth, elevation| -frame(&cube(), &settings(azimuth, elevation), 1.0).forward();
+        assert!(from(0.0, 0.0).distance(Vec3::Z) < 1e-5);
+        assert!(from(90.0, 0.0).distance(Vec3::X) < 1e-5);
+        assert!(from(0.0, 90.0).distance(Vec3::Y) < 1e-5);
+    }
+
+    #[test]
+    fn explicit_eye_and_target_win() {
+        let settings =
+            CameraSettings { eye: Some([1.0, 2.0, 3.0]), target: Some([1.0, 0.0, 0.0]), ..CameraSettings::default() };
+        let view = frame(&cube(), &settings, 1.5);
+        assert_eq!((view.eye, view.target), (Vec3::new(1.0, 2.0, 3.0), Vec3::X));
+        let only_target = CameraSettings { target: Some([9.0, 0.0, 0.0]), ..CameraSettings::default() };
+        let view = frame(&cube(), &only_target, 1.5);
+        assert_eq!(view.target, Vec3::new(9.0, 0.0, 0.0));
+        let only_eye = CameraSettings { eye: Some([9.0, 0.0, 0.0]), ..CameraSettings::default() };
+        assert_eq!(frame(&cube(), &only_eye, 1.5).target, cube().center());
+    }
+
+    #[test]
+    fn nothing_degenerate_makes_nan() {
+        let point = Bounds { min: Vec3::ONE, max: Vec3::ONE };
+        let plane = Bounds { min: Vec3::ZERO, max: Vec3::new(1.0, 0.0, 0.0) };
+        let huge = Bounds { min: Vec3::splat(-1e15), max: Vec3::splat(1e15) };
+        let tiny = Bounds { min: Vec3::splat(-1e-12), max: Vec3::splat(1e-12) };
+        let odd = [f32::NAN, f32::INFINITY, 0.0, -90.0, 90.0, 1e30];
+        for bounds in [Bounds::default(), point, plane, huge, tiny, cube()] {
+            for value in odd {
+                let framed =
+                    CameraSettings { azimuth: value, elevation: value, fovy: value, ..CameraSettings::default() };
+                let same = CameraSettings { eye: Some([value; 3]), target: Some([value; 3]), ..framed.clone() };
+                let above = CameraSettings { eye: Some([0.0, 5.0, 0.0]), target: Some([0.0; 3]), ..framed.clone() };
+                for settings in [framed, same, above] {
+                    let view = frame(&bounds, &settings, value);
+                    assert!(view.view_from_world().is_finite(), "{bounds:?} {settings:?}");
+                    assert!(view.clip_from_world().is_finite(), "{bounds:?} {settings:?}");
+                    assert!(view.clip_from_world().determinant() != 0.0 || bounds == huge || bounds == tiny);
+                    assert!(view.near > 0.0 && view.far > view.near, "{view:?}");
+                }
+            }
+        }
+    }
+}

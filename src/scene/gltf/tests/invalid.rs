@@ -1,0 +1,225 @@
+//! Bad input: every mistake is an error that names its place, and nothing panics.
+
+use super::*;
+
+/// A file with a bit of everything, to be damaged.
+fn rich() -> Builder {
+    let mut builder = Builder::square();
+    builder.image("normalTexture", &materials::png(2, 2));
+    builder.attribute_f32("COLOR_0", "VEC3", &[1.0; 12]);
+    let indices = builder.view(&[1, 2]);
+    let values = builder.view(bytemuck::cast_slice(&[0.5_f32; 6]));
+    builder.json["accessors"][0]["sparse"] = json!({
+        "count": 2, "indices": { "bufferView": indices, "componentType": U8 }, "values": { "bufferView": values }
+    });
+    builder.json["samplers"] = json!([{ "wrapS": 10497 }]);
+    builder.json["textures"][0]["sampler"] = json!(0);
+    builder.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 1 } }]);
+    builder.json["nodes"][0]["camera"] = json!(0);
+    builder
+}
+
+/// Sets a value in the JSON of [`rich`] and expects an error with a word.
+fn assert_refused(pointer: &str, value: Value, word: &str) {
+    let mut builder = rich();
+    let (parent, key) = pointer.rsplit_once('/').unwrap();
+    let parent = builder.json.pointer_mut(parent).unwrap_or_else(|| panic!("{parent}"));
+    match key.parse::<usize>() {
+        Ok(index) => parent[index] = value.clone(),
+        Err(_) => parent[key] = value.clone(),
+    }
+    let error = builder.error();
+    assert!(error.contains(word), "{pointer} = {value}: {error}");
+}
+
+#[test]
+fn files_that_are_not_gltf() {
+    let message = |bytes: &[u8]| load_bytes("x.glb", bytes).unwrap_err().to_string();
+    assert!(message(b"").contains("is empty"));
+    assert!(message(b" \n").contains("only white space"));
+    assert!(message(b"\x89PNG\r\n").contains("is not a glTF file"));
+    assert!(message(b"{").contains("JSON") && message(b"{").contains("line 1"));
+    assert!(message(b"{}").contains("asset"));
+    assert!(message(b"{\"asset\":{\"version\":\"2.0\"}}").contains("nothing to draw"));
+    assert!(message(b"glTF").contains("damaged GLB"));
+    let missing = load("/nonexistent/model.glb".as_ref(), &LoadOptions::default()).unwrap_err();
+    assert!(missing.to_string().contains("/nonexistent/model.glb: cannot be read"));
+    assert!(load(std::env::temp_dir().as_path(), &LoadOptions::default()).is_err());
+}
+
+#[test]
+fn damaged_containers() {
+    let glb = rich().glb();
+    let changed = |at: usize, value: u32| {
+        let mut bytes = glb.clone();
+        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        load_bytes("x.glb", &bytes).unwrap_err().to_string()
+    };
+    assert!(changed(4, 1).contains("needs glTF 1"));
+    for length in [0, 4, 12, 19, u32::MAX] {
+        assert!(changed(8, length).contains("damaged GLB"), "{length}");
+    }
+    assert!(changed(12, u32::MAX).contains("chunk of 4294967295 bytes"));
+    assert!(changed(16, 7).contains("JSON chunk first"));
+}
+
+#[test]
+fn versions_and_extensions() {
+    assert_refused("/asset/version", json!("1.0"), "needs glTF `1.0`, expected 2.0");
+    assert_refused("/asset/version", json!("two"), "needs glTF `two`");
+    assert_refused("/asset/minVersion", json!("2.1"), "needs glTF `2.1`");
+    assert_refused(
+        "/extensionsRequired",
+        json!(["KHR_draco_mesh_compression", "KHR_materials_unlit"]),
+        "KHR_draco_mesh_compression, which",
+    );
+    let mut builder = Builder::square();
+    builder.json["asset"]["version"] = json!("2.7");
+    builder.json["extensionsUsed"] = json!(["KHR_materials_ior", "EXT_x", "EXT_x", "KHR_texture_transform"]);
+    let warnings = builder.model().warnings;
+    let named = |word: &str| warnings.iter().filter(|warning| warning.contains(word)).count();
+    assert_eq!((warnings.len(), named("KHR_materials_ior is ignored"), named("EXT_x")), (2, 1, 1), "{warnings:?}");
+}
+
+#[test]
+fn accessors() {
+    let huge = json!(u64::MAX);
+    for (key, value, word) in [
+        ("count", json!(0), "at least 1"),
+        ("count", huge.clone(), "elements"),
+        ("count", json!(5), "inside of the bufferView"),
+        ("byteOffset", huge.clone(), "inside of the bufferView"),
+        ("byteOffset", json!(4), "inside of the bufferView"),
+        ("bufferView", json!(99), "an index into bufferViews"),
+        ("type", json!("VEC2"), "expected Vec3 of F32"),
+        ("type", json!("SCALAR"), "expected Vec3 of F32"),
+        ("type", json!("VEC9"), "that glTF defines"),
+        ("componentType", json!(U32), "expected Vec3 of F32"),
+        ("componentType", json!(1), "that glTF defines"),
+    ] {
+        // The other attributes would notice another count first.
+        let mut builder = Builder::triangle();
+        builder.json["accessors"][0][key] = value.clone();
+        let error = builder.error();
+        assert!(error.contains(word) && error.contains("accessors[0]"), "{key} = {value}: {error}");
+    }
+    assert_refused("/accessors/1/count", json!(3), "as many elements as POSITION has");
+    assert_refused("/accessors/0/count", json!(-1), "JSON");
+    assert_refused("/accessors/0/sparse/count", json!(5), "a count of 1 to 4");
+    assert_refused("/accessors/0/sparse/count", json!(0), "a count of 1 to 4");
+    assert_refused("/accessors/0/sparse/count", json!(4), "inside of the bufferView");
+    assert_refused("/accessors/0/sparse/indices/byteOffset", huge, "inside of the bufferView");
+    assert_refused("/accessors/0/sparse/indices/componentType", json!(F32), "indices of U8");
+    // Byte 14 of the positions is part of a float.
+    let indices = json!({ "bufferView": 0, "byteOffset": 14, "componentType": U8 });
+    assert_refused("/accessors/0/sparse/indices", indices, "indices below the count of 4");
+    assert_refused("/accessors/0/sparse/values/bufferView", json!(77), "an index into bufferViews");
+    let mut zeros = Builder::triangle();
+    zeros.json["accessors"][0] = json!({ "componentType": F32, "type": "VEC3", "count": 1_u64 << 40 });
+    assert!(zeros.error().contains("without a bufferView"));
+}
+
+#[test]
+fn buffers_and_views() {
+    assert_refused("/bufferViews/0/byteStride", json!(4), "byteStride of at least 12");
+    assert_refused("/bufferViews/0/byteStride", json!(0), "byteStride of at least 12");
+    assert_refused("/bufferViews/0/byteStride", json!(u64::MAX), "inside of the bufferView");
+    assert_refused("/bufferViews/0/byteLength", json!(u64::MAX), "a range inside");
+    assert_refused("/bufferViews/0/byteOffset", json!(u64::MAX), "a range inside");
+    assert_refused("/bufferViews/0/buffer", json!(3), "an index into buffers");
+    assert_refused("/buffers/0/byteLength", json!(1 << 30), "bytes (byteLength)");
+    assert_refused("/buffers/0/byteLength", json!(8), "a range inside of the 8 bytes");
+    assert_refused("/buffers/0/uri", json!("%ff"), "percent-encoded UTF-8");
+    assert_refused("/buffers/0/uri", json!("data:;base64,!!"), "base64");
+    assert_refused("/images/0/bufferView", json!(99), "an index into bufferViews");
+    assert_refused("/images/0/uri", json!("x.png"), "found both");
+    assert_refused("/images/0", json!({}), "found neither");
+    let mut builder = rich();
+    let text = builder.json.to_string();
+    assert!(load_bytes("x", text.as_bytes()).unwrap_err().to_string().contains("binary chunk of a GLB"));
+    // A view with an image in it may not be cut short either.
+    let view = builder.json["images"][0]["bufferView"].as_u64().unwrap() as usize;
+    builder.json["bufferViews"][view]["byteOffset"] = json!(1 << 20);
+    assert!(builder.error().contains("a range inside"));
+}
+
+#[test]
+fn primitives_and_references() {
+    let primitive = "/meshes/0/primitives/0";
+    for (key, value, word) in [
+        ("mode", json!(9), "a mode of 0 to 6"),
+        ("material", json!(5), "an index into materials"),
+        ("indices", json!(99), "an index into accessors"),
+        ("indices", json!(0), "expected Scalar of U8"),
+        ("attributes", json!({}), "the attribute POSITION"),
+        ("attributes", json!({ "POSITION": 99 }), "an index into accessors"),
+    ] {
+        assert_refused(&format!("{primitive}/{key}"), value, word);
+    }
+    assert_refused("/textures/0/source", json!(9), "an index into images");
+    assert_refused("/textures/0", json!({}), "a source that is a PNG");
+    assert_refused(
+        "/textures/0",
+        json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } }),
+        "KHR_texture_basisu",
+    );
+    assert_refused("/textures/0/sampler", json!(9), "an index into samplers");
+    assert_refused("/samplers/0/wrapS", json!(1), "samplers[0].wrapS");
+    assert_refused("/samplers/0/minFilter", json!(1), "samplers[0].minFilter");
+    assert_refused("/materials/0/normalTexture/index", json!(9), "an index into textures");
+    assert_refused("/materials/0/alphaMode", json!("GLASS"), "OPAQUE, MASK or BLEND");
+    assert_refused("/meshes/0/primitives", json!([]), "nothing to draw");
+    let mut builder = Builder::square();
+    builder.indices(U16, &[0, 1, 4]);
+    assert!(builder.error().contains("indices below the vertex count of 4, found 4"));
+    builder.indices(U16, &[0, 1]);
+    assert!(builder.error().contains("at least 3 indices"));
+    for bad in [f32::NAN, f32::INFINITY, 1e30] {
+        let positions = [0.0, 0.0, 0.0, 1.0, bad, 0.0, 0.0, 1.0, 0.0];
+        assert!(Builder::positions(&positions).error().contains("at vertex 1"));
+    }
+}
+
+/// Neither panics nor lies: what loads keeps the model's promises.
+fn survives(bytes: &[u8], what: std::fmt::Arguments<'_>) {
+    match load_bytes("damaged", bytes) {
+        Ok(model) => assert_sound(&model),
+        Err(error) => assert!(!matches!(error.problem, Problem::Refused { .. }), "{what}: {error}"),
+    }
+}
+
+#[test]
+fn truncation_at_every_length() {
+    let glb = rich().glb();
+    for length in 0..glb.len() {
+        survives(&glb[..length], format_args!("cut to {length}"));
+        assert!(load_bytes("cut", &glb[..length]).is_err(), "{length}");
+    }
+}
+
+#[test]
+fn flipped_bytes() {
+    let glb = rich().glb();
+    for at in 0..glb.len() {
+        for bits in [0x01, 0x10, 0x80, 0xff] {
+            let mut bytes = glb.clone();
+            bytes[at] ^= bits;
+            survives(&bytes, format_args!("byte {at} ^ {bits:#x}"));
+        }
+    }
+}
+
+#[test]
+fn digits_changed_everywhere() {
+    // Bit flips seldom leave valid JSON with another number in it: this does.
+    let builder = rich();
+    let text = builder.json.to_string();
+    for (at, _) in text.char_indices().filter(|(_, c)| c.is_ascii_digit()) {
+        for digits in ["0", "9", "99999999", "4294967295", "18446744073709551615", "-1", "1e39"] {
+            let changed = format!("{}{digits}{}", &text[..at], &text[at + 1..]);
+            if let Ok(json) = serde_json::from_str(&changed) {
+                survives(&Builder { json, bin: builder.bin.clone() }.glb(), format_args!("{changed}"));
+            }
+        }
+    }
+}

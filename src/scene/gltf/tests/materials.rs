@@ -1,0 +1,189 @@
+//! Materials, textures, images, files.
+
+use std::io::Cursor;
+
+use image::{DynamicImage, ImageFormat, Rgba, RgbaImage};
+
+use super::super::super::model::{AlphaMode, Mip, Wrap};
+use super::*;
+use crate::interface as contract;
+
+fn encode(format: ImageFormat, image: &DynamicImage) -> Vec<u8> {
+    let mut out = Cursor::new(Vec::new());
+    image.write_to(&mut out, format).expect("encodes");
+    out.into_inner()
+}
+
+fn red(width: u32, height: u32) -> DynamicImage {
+    RgbaImage::from_pixel(width, height, Rgba([200, 30, 20, 255])).into()
+}
+
+/// A PNG of one color.
+pub fn png(width: u32, height: u32) -> Vec<u8> {
+    encode(ImageFormat::Png, &red(width, height))
+}
+
+#[test]
+fn images_of_every_kind() {
+    let deep = DynamicImage::from(red(3, 2).into_rgba16());
+    let gray = DynamicImage::from(image::GrayImage::from_pixel(3, 2, image::Luma([90])));
+    let cases = [
+        ("png", encode(ImageFormat::Png, &red(3, 2)), [200, 30, 20]),
+        ("webp", encode(ImageFormat::WebP, &red(3, 2)), [200, 30, 20]),
+        ("jpeg", encode(ImageFormat::Jpeg, &red(3, 2).into_rgb8().into()), [200, 30, 20]),
+        ("16 bits", encode(ImageFormat::Png, &deep), [200, 30, 20]),
+        ("gray", encode(ImageFormat::Png, &gray), [90, 90, 90]),
+    ];
+    for (name, bytes, color) in cases {
+        let mut builder = Builder::square();
+        builder.image("baseColorTexture", &bytes);
+        let model = builder.model();
+        assert_eq!((model.images[0].width, model.images[0].height), (3, 2), "{name}");
+        for (found, expected) in model.images[0].rgba8[..3].iter().zip(color) {
+            assert!(found.abs_diff(expected) <= 4, "{name}: {:?}", &model.images[0].rgba8[..4]);
+        }
+        assert_eq!(model.images[0].rgba8[3], 255);
+    }
+}
+
+#[test]
+fn webp_extension_is_preferred() {
+    let mut builder = Builder::square();
+    builder.image("baseColorTexture", &png(1, 1));
+    let view = builder.view(&encode(ImageFormat::WebP, &red(4, 4)));
+    let webp = builder.push("images", json!({ "bufferView": view, "mimeType": "image/webp" }));
+    builder.json["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = json!(webp);
+    builder.json["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    assert_eq!(builder.model().images.iter().map(|image| image.width).collect::<Vec<_>>(), [4]);
+}
+
+#[test]
+fn images_that_do_not_decode_are_named_and_unused_ones_ignored() {
+    for bytes in [&png(8, 8)[..40], b"hello", b"", &[0xff, 0xd8, 0xff, 0xe0], b"RIFF\0\0\0\0WEBPVP8 "] {
+        let mut builder = Builder::square();
+        builder.image("emissiveTexture", bytes);
+        builder.json["images"][0]["name"] = json!("glow");
+        let error = builder.error();
+        assert!(error.contains("images[0] \"glow\"") && error.contains("materials[0].emissiveTexture"), "{error}");
+        builder.json["materials"] = json!([{}]);
+        assert!(builder.model().images.is_empty());
+    }
+}
+
+#[test]
+fn textures_are_shared_by_image_and_sampler() {
+    let mut builder = Builder::square();
+    builder.image("baseColorTexture", &png(1, 1));
+    builder.json["samplers"] = json!([{ "magFilter": 9728, "minFilter": 9984, "wrapS": 33071, "wrapT": 33648 }]);
+    builder.json["textures"] = json!([{ "source": 0 }, { "source": 0 }, { "source": 0, "sampler": 0 }]);
+    builder.json["materials"][0]["occlusionTexture"] = json!({ "index": 1, "strength": 0.5 });
+    builder.json["materials"][0]["emissiveTexture"] = json!({ "index": 2 });
+    let model = builder.model();
+    assert_eq!((model.images.len(), model.textures.len()), (1, 2));
+    let sampler = model.textures[1].sampler;
+    assert_eq!((sampler.mag_linear, sampler.min_linear, sampler.mip), (false, false, Mip::Nearest));
+    assert_eq!((sampler.wrap_u, sampler.wrap_v), (Wrap::Clamp, Wrap::Mirror));
+    assert_eq!(model.materials[1].occlusion_strength, 0.5);
+}
+
+#[test]
+fn texture_transform() {
+    let mut builder = Builder::square();
+    builder.image("normalTexture", &png(1, 1));
+    let transform =
+        json!({ "offset": [0.25, 0.5], "rotation": std::f32::consts::FRAC_PI_2, "scale": [2, 4], "texCoord": 1 });
+    builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
+    builder.json["materials"][0]["occlusionTexture"] = json!({ "index": 0 });
+    for path in ["/normalTexture", "/occlusionTexture", "/pbrMetallicRoughness/baseColorTexture"] {
+        let info = builder.json["materials"][0].pointer_mut(path).unwrap();
+        info["extensions"]["KHR_texture_transform"] = transform.clone();
+    }
+    let model = builder.model();
+    for slot in [contract::TEXTURE_NORMAL, contract::TEXTURE_OCCLUSION, contract::TEXTURE_BASE_COLOR] {
+        let used = model.materials[1].textures[slot as usize].unwrap();
+        assert_eq!(used.uv_set, 1);
+        // Counter-clockwise with v down: u turns to -v, v to u.
+        let turned = |u, v| used.uv_from_mesh.transform_point2(glam::Vec2::new(u, v));
+        assert!(turned(1.0, 0.0).distance(glam::Vec2::new(0.25, 0.5 - 2.0)) < 1e-6, "{}", turned(1.0, 0.0));
+        assert!(turned(0.0, 1.0).distance(glam::Vec2::new(0.25 + 4.0, 0.5)) < 1e-6);
+    }
+    builder.json["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["scale"] = json!([1e39, 1]);
+    assert!(builder.error().contains("finite"));
+    builder.json["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["scale"] = json!("x");
+    assert!(builder.error().contains("normalTexture.extensions.KHR_texture_transform"));
+}
+
+#[test]
+fn material_numbers() {
+    let mut builder = Builder::triangle();
+    builder.json["materials"] = json!([{
+        "name": "paint", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true, "emissiveFactor": [0.5, 1, 0],
+        "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 1.5 },
+        "extensions": { "KHR_materials_unlit": {}, "KHR_materials_emissive_strength": { "emissiveStrength": 4.0 } }
+    }]);
+    builder.primitive()["material"] = json!(0);
+    let model = builder.model();
+    let material = &model.materials[model.primitives[0].material];
+    assert_eq!((material.name.as_str(), material.alpha_mode, material.alpha_cutoff), ("paint", AlphaMode::Mask, 0.25));
+    assert!(material.double_sided && material.unlit);
+    assert_eq!(material.emissive_factor, glam::Vec3::new(2.0, 4.0, 0.0));
+    assert_eq!((material.metallic_factor, material.roughness_factor), (0.5, 1.0));
+    assert!(model.warnings.len() == 1 && model.warnings[0].contains("roughnessFactor is 1.5"), "{:?}", model.warnings);
+    // The default material comes first and is what a primitive without one gets.
+    builder.primitive().as_object_mut().unwrap().remove("material");
+    assert_eq!(builder.model().primitives[0].material, 0);
+    builder.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = json!(1e39);
+    assert!(builder.error().contains("metallicFactor"));
+}
+
+#[test]
+fn third_texture_coordinates_are_warned_of() {
+    let mut builder = Builder::square();
+    builder.image("baseColorTexture", &png(1, 1));
+    builder.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = json!(2);
+    let model = builder.model();
+    assert_eq!(model.materials[1].textures[0].unwrap().uv_set, 0);
+    assert!(model.warnings[0].contains("TEXCOORD_2"));
+}
+
+#[test]
+fn external_files_and_data_uris() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut builder = Builder::square();
+    builder.image("baseColorTexture", b"");
+    builder.json["images"][0] = json!({ "uri": "pictures/r%C3%B6d%20f%C3%A4rg.png" });
+    builder.json["buffers"][0]["uri"] = json!("data.bin");
+    std::fs::create_dir(folder.path().join("pictures")).unwrap();
+    std::fs::write(folder.path().join("pictures/r\u{f6}d f\u{e4}rg.png"), png(5, 5)).unwrap();
+    std::fs::write(folder.path().join("data.bin"), &builder.bin).unwrap();
+    let path = folder.path().join("model.gltf");
+    let open = |builder: &Builder, allow_outside| {
+        // A byte order mark is tolerated.
+        std::fs::write(&path, format!("\u{feff}{}", builder.json)).unwrap();
+        load(&path, &LoadOptions { allow_outside }).map_err(|error| error.to_string())
+    };
+    let model = open(&builder, false).unwrap();
+    assert_sound(&model);
+    assert_eq!((model.name.as_str(), model.images[0].width, model.files.len()), ("model", 5, 3));
+    assert!(model.files.iter().all(|file| file.is_absolute()), "{:?}", model.files);
+
+    let outside = tempfile::tempdir().unwrap();
+    let file = outside.path().join("data.bin");
+    std::fs::write(&file, &builder.bin).unwrap();
+    builder.json["buffers"][0]["uri"] = json!(file.to_str().unwrap());
+    assert!(open(&builder, false).unwrap_err().contains("--allow-outside"));
+    assert_sound(&open(&builder, true).unwrap());
+    for (uri, word) in
+        [("gone.bin", "cannot be read"), ("pictures", "regular file"), ("https://example.org/a", "scheme `https:`")]
+    {
+        builder.json["buffers"][0]["uri"] = json!(uri);
+        let error = open(&builder, true).unwrap_err();
+        assert!(error.contains(word) && error.contains("buffers[0]"), "{error}");
+    }
+    let hex: String = builder.bin.iter().map(|byte| format!("%{byte:02x}")).collect();
+    builder.json["buffers"][0]["uri"] = json!(format!("data:application/octet-stream,{hex}"));
+    assert_sound(&open(&builder, false).unwrap());
+    // A model in memory has no folder.
+    builder.json["buffers"][0]["uri"] = json!("data.bin");
+    assert!(load_bytes("ball", builder.json.to_string().as_bytes()).unwrap_err().to_string().contains("built-in"));
+}

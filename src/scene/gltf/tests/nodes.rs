@@ -1,0 +1,162 @@
+//! Hierarchy, lights, cameras.
+
+use glam::{Vec3, Vec4};
+
+use super::super::super::model::LightKind;
+use super::*;
+
+#[test]
+fn transforms_multiply_down_the_hierarchy() {
+    let mut builder = Builder::triangle();
+    let half = 0.5_f32.sqrt();
+    builder.json["nodes"] = json!([
+        { "children": [1, 2], "translation": [10, 0, 0], "scale": [2, 2, 2] },
+        { "mesh": 0, "name": "turned", "rotation": [0, half, 0, half] },
+        { "mesh": 0, "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1] },
+    ]);
+    let model = builder.model();
+    assert_eq!((model.primitives.len(), model.instances.len()), (1, 2));
+    let [turned, mirrored] = [0, 1].map(|index| &model.instances[index]);
+    assert_eq!((turned.node, turned.node_name.as_str(), mirrored.node), (1, "turned", 2));
+    // A quarter turn around +Y takes +X to -Z.
+    assert!(turned.world_from_object.transform_point3(Vec3::X).distance(Vec3::new(10.0, 0.0, -2.0)) < 1e-5);
+    assert!(mirrored.world_from_object.determinant() < 0.0);
+    assert_eq!(mirrored.world_from_object.w_axis, Vec4::new(12.0, 4.0, 6.0, 1.0));
+    assert!((model.bounds.min.z + 2.0).abs() < 1e-5 && model.bounds.max.distance(Vec3::new(12.0, 6.0, 6.0)) < 1e-5);
+}
+
+#[test]
+fn scene_is_the_default_or_first_or_all() {
+    let mut builder = Builder::triangle();
+    builder.json["nodes"] = json!([{ "mesh": 0, "name": "a" }, { "mesh": 0, "name": "b" }]);
+    builder.json["scenes"] = json!([{ "nodes": [0] }, { "nodes": [1] }, {}]);
+    let drawn = |builder: &Builder| builder.model().instances.iter().map(|i| i.node_name.clone()).collect::<String>();
+    builder.json["scene"] = json!(1);
+    assert_eq!(drawn(&builder), "b");
+    builder.json.as_object_mut().unwrap().remove("scene");
+    assert_eq!(drawn(&builder), "a");
+    builder.json.as_object_mut().unwrap().remove("scenes");
+    assert_eq!(drawn(&builder), "ab");
+}
+
+#[test]
+fn deep_hierarchies_do_not_overflow_the_stack() {
+    let mut builder = Builder::triangle();
+    let depth = 50_000;
+    let mut nodes: Vec<Value> = (1..depth).map(|child| json!({ "children": [child] })).collect();
+    nodes.push(json!({ "mesh": 0 }));
+    builder.json["nodes"] = Value::Array(nodes);
+    assert_eq!(builder.model().instances[0].node, depth - 1);
+}
+
+#[test]
+fn hierarchy_mistakes_are_named() {
+    let cases = [
+        (json!([{ "mesh": 0, "children": [1] }, { "children": [0] }]), "cycles"),
+        (json!([{ "mesh": 0 }, { "children": [1] }]), "cycles"),
+        (json!([{ "children": [2] }, { "children": [2] }, { "mesh": 0 }]), "one parent"),
+        (json!([{ "children": [1, 1] }, { "mesh": 0 }]), "one parent"),
+        (json!([{ "children": [7] }]), "nodes[0]: expected an index into nodes of 0 to 0, found 7"),
+        (json!([{ "mesh": 3 }]), "an index into meshes of 0 to 0, found 3"),
+        (json!([{ "mesh": 0, "camera": 0 }]), "no use of cameras"),
+        (json!([{ "mesh": 0, "extensions": { "KHR_lights_punctual": { "light": 0 } } }]), "KHR_lights_punctual.lights"),
+        (json!([{ "mesh": 0, "scale": [1e39, 1, 1] }]), "finite"),
+        (json!([{ "mesh": 0, "rotation": [1e39, 0, 0, 1] }]), "finite"),
+        (json!([{ "mesh": 0, "matrix": [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }]), "last row"),
+        (json!([{ "scale": [1e30, 1, 1], "children": [1] }, { "scale": [1e30, 1, 1], "mesh": 0 }]), "overflows"),
+        (json!([{ "mesh": 0, "scale": [1e30, 1, 1] }]), "world space"),
+        (json!([{}]), "nothing to draw"),
+        (json!([]), "an index into nodes"),
+    ];
+    for (nodes, word) in cases {
+        let mut builder = Builder::triangle();
+        builder.json["nodes"] = nodes.clone();
+        let error = builder.error();
+        assert!(
+            error.contains(word) || (word == "an index into nodes" && error.contains("no use of nodes")),
+            "{nodes}: {error}"
+        );
+    }
+    let mut builder = Builder::triangle();
+    builder.json["nodes"] = json!([{ "children": [1] }, { "mesh": 0 }]);
+    for (roots, word) in [(json!([1]), "a child of another"), (json!([0, 0]), "listed twice"), (json!([5]), "found 5")]
+    {
+        builder.json["scenes"][0]["nodes"] = roots;
+        assert!(builder.error().contains(word), "{}", builder.error());
+    }
+    builder.json["scene"] = json!(4);
+    assert!(builder.error().contains("index into scenes"));
+}
+
+#[test]
+fn a_rotation_of_length_zero_is_none() {
+    let mut builder = Builder::triangle();
+    builder.json["nodes"][0]["rotation"] = json!([0, 0, 0, 0]);
+    let model = builder.model();
+    assert_eq!(model.instances[0].world_from_object, glam::Mat4::IDENTITY);
+    assert_eq!(model.warnings.len(), 1);
+}
+
+#[test]
+fn punctual_lights() {
+    let mut builder = Builder::triangle();
+    builder.json["extensionsRequired"] = json!(["KHR_lights_punctual"]);
+    builder.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([
+        { "type": "spot", "name": "lamp", "color": [1, 0.5, 0], "intensity": 10, "range": 3, "spot": { "innerConeAngle": 0.1 } },
+        { "type": "directional" },
+        { "type": "point", "range": -1, "extras": { "note": 1 } },
+    ]);
+    let light = |index: usize| json!({ "KHR_lights_punctual": { "light": index } });
+    let half = 0.5_f32.sqrt();
+    builder.json["nodes"] = json!([
+        { "mesh": 0, "children": [1, 2, 3] },
+        // Turned to look along -X.
+        { "extensions": light(0), "translation": [1, 2, 3], "rotation": [0, half, 0, half], "scale": [5, 5, 5] },
+        { "extensions": light(1) }, { "extensions": light(2) },
+    ]);
+    let model = builder.model();
+    let [spot, sun, point] = [0, 1, 2].map(|index| &model.lights[index]);
+    assert_eq!((spot.name.as_str(), spot.position, spot.range), ("lamp", Vec3::new(1.0, 2.0, 3.0), Some(3.0)));
+    assert!(spot.direction.distance(Vec3::NEG_X) < 1e-6);
+    assert_eq!(spot.intensity, Vec3::new(10.0, 5.0, 0.0));
+    assert_eq!(spot.kind, LightKind::Spot { inner: 0.1, outer: std::f32::consts::FRAC_PI_4 });
+    assert_eq!((sun.kind, sun.direction, sun.intensity), (LightKind::Directional, Vec3::NEG_Z, Vec3::ONE));
+    assert_eq!((point.kind, point.range, model.warnings.len()), (LightKind::Point, None, 1));
+    for bad in [
+        json!({ "type": "lamp" }),
+        json!({ "type": "spot", "spot": { "innerConeAngle": 1, "outerConeAngle": 0.5 } }),
+        json!({ "type": "spot", "spot": { "outerConeAngle": 3 } }),
+        json!({ "type": "point", "intensity": -1 }),
+        json!({ "type": "point", "color": [1e39, 1, 1] }),
+    ] {
+        builder.json["extensions"]["KHR_lights_punctual"]["lights"][0] = bad;
+        assert!(builder.error().contains("KHR_lights_punctual.lights[0]"));
+    }
+}
+
+#[test]
+fn cameras() {
+    let mut builder = Builder::triangle();
+    builder.json["cameras"] = json!([
+        { "type": "perspective", "name": "eye", "perspective": { "yfov": 0.7, "znear": 0.1 } },
+        { "type": "orthographic", "orthographic": { "xmag": 1, "ymag": 2, "znear": 0, "zfar": 9 } },
+    ]);
+    builder.json["nodes"] = json!([
+        { "mesh": 0, "children": [1, 2] },
+        { "camera": 0, "translation": [0, 0, 4] },
+        { "name": "plan", "camera": 1, "translation": [0.5, 0.5, 2] },
+    ]);
+    let model = builder.model();
+    let [perspective, orthographic] = [0, 1].map(|index| &model.cameras[index]);
+    assert_eq!((perspective.name.as_str(), perspective.eye, perspective.fovy), ("eye", Vec3::Z * 4.0, 0.7));
+    assert_eq!((perspective.forward, perspective.up), (Vec3::NEG_Z, Vec3::Y));
+    // The center is 2 m away, where the picture is 4 m high.
+    assert_eq!(orthographic.name, "plan");
+    assert!((orthographic.fovy - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
+    for bad in
+        [json!({ "type": "perspective" }), json!({ "type": "perspective", "perspective": { "yfov": 0, "znear": 1 } })]
+    {
+        builder.json["cameras"][0] = bad;
+        assert!(builder.error().contains("cameras[0]"));
+    }
+}

@@ -1,0 +1,123 @@
+//! Annotations read from compiled shaders.
+
+use super::*;
+use crate::shader::compile::Compiler;
+use crate::shader::source::Source;
+
+fn read_text(text: &str) -> Result<Annotations, Vec<Diagnostic>> {
+    let interface = interface::glsl();
+    let text = format!("#version 460\n#include \"interface.glsl\"\n{text}\nvoid main() {{}}\n");
+    let source = Source::memory([("m.frag", text.as_str()), ("interface.glsl", &interface)]);
+    let snapshot = Snapshot::new(&source);
+    let compiled = Compiler::new().unwrap().compile(&snapshot, &"m.frag".into());
+    let reflection = Reflection::of(&compiled.result.unwrap());
+    read(&snapshot, &compiled.dependencies, &[&reflection])
+}
+
+#[track_caller]
+fn refused(text: &str, expected: &str) {
+    let errors: Vec<String> = read_text(text).unwrap_err().iter().map(Diagnostic::one_line).collect();
+    assert_eq!(errors, [expected]);
+}
+
+const PARAMS: &str = "layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {";
+
+#[test]
+fn modes_in_the_order_of_their_ids() {
+    let modes = read_text(
+        "//@mode d \"Normal distribution D\" group=\"BRDF terms\" encode=data doc=\"GGX: eq. 33\"\n\
+         const uint MODE_BRDF_D = 120u;\n\
+         const uint MODE_FINAL = 0u; //@mode final \"Final\" encode=color tonemap key=1\n\
+         // not one: //@mode nonsense\n/*\n//@mode nonsense\n*/",
+    )
+    .unwrap()
+    .modes;
+    let rows: Vec<_> =
+        modes.iter().map(|mode| (mode.id, mode.slug.as_str(), mode.line, mode.tonemap, mode.key)).collect();
+    assert_eq!(rows, [(0, "final", 5, true, Some('1')), (120, "d", 3, false, None)]);
+    assert_eq!(
+        (modes[1].group.as_str(), modes[1].encode, modes[1].doc.as_str()),
+        ("BRDF terms", Encode::Data, "GGX: eq. 33")
+    );
+}
+
+#[test]
+fn constants_and_parameters() {
+    let found = read_text(&format!(
+        "layout(constant_id = USER_CONSTANTS + 1) const uint NDF_MODEL = 1u; //@ui \"NDF\" choice GGX=0 Beckmann=1\n\
+         layout(constant_id = USER_CONSTANTS + 0) const bool WRAP_DIFFUSE = true; //@ui\n\
+         {PARAMS}\n float rim; //@ui \"Rim\" 0..1 = 0.2\n vec3 rim_color; //@ui color = 1 0.8 0.6\n float hidden;\n\
+         //@ui -1.5..2\n int steps_taken;\n bool on; //@ui = true\n}};"
+    ))
+    .unwrap();
+    let constants: Vec<_> = found.constants.iter().map(|c| (c.id, c.label.as_str(), c.default)).collect();
+    assert_eq!(constants, [(32, "Wrap diffuse", 1), (33, "NDF", 1)]);
+    assert_eq!(found.constants[1].choices, [("GGX".to_owned(), 0), ("Beckmann".to_owned(), 1)]);
+    let rows: Vec<_> =
+        found.parameters.iter().map(|p| (p.name.as_str(), p.label.as_str(), p.offset, p.default.clone())).collect();
+    let expected = [
+        ("rim", "Rim", 0, vec![0.2]),
+        ("rim_color", "Rim color", 4, vec![1.0, 0.8, 0.6]),
+        ("steps_taken", "Steps taken", 20, vec![0.0]),
+        ("on", "On", 24, vec![1.0]),
+    ];
+    assert_eq!(rows, expected);
+    assert!(found.parameters[1].color);
+    assert_eq!(found.parameters[2].range, Some((-1.5, 2.0)));
+}
+
+#[test]
+fn what_does_not_parse_says_what_was_expected() {
+    refused("//@mod d \"D\"\nint a;", "m.frag:3:1: error: expected `//@mode` or `//@ui`, found `//@mod`");
+    refused(
+        "//@mode D \"D\"\nconst uint M = 1u;",
+        "m.frag:3:9: error: expected the mode's slug in a-z, 0-9 and `-`, found `D`",
+    );
+    refused("//@mode d D\nconst uint M = 1u;", "m.frag:3:11: error: expected the mode's name in quotes, found `D`");
+    refused("//@mode d \"D\nconst uint M = 1u;", "m.frag:3:11: error: expected a closing quote");
+    refused(
+        "//@mode d \"D\"\nint a;",
+        "m.frag:3:1: error: expected `const uint NAME = NUMBER;` with the mode, found `int a;`",
+    );
+    refused(
+        "const uint M = 1u; //@mode d \"D\" encode=rgb",
+        "m.frag:3:41: error: expected encode=color, encode=data or encode=vector, found `rgb`",
+    );
+    refused(
+        "const uint M = 1u; //@mode d \"D\" colour=1",
+        "m.frag:3:34: error: expected group=, encode=, tonemap, key= or doc=, found `colour`",
+    );
+    refused(
+        &format!("{PARAMS}\nfloat a; //@ui 1..0\n}};"),
+        "m.frag:4:16: error: expected a range lo..hi with lo < hi, found `1..0`",
+    );
+    refused(
+        &format!("{PARAMS}\nvec3 a; //@ui = 1 2\n}};"),
+        "m.frag:4:16: error: expected 3 number(s) after `=`, found 2",
+    );
+    refused(&format!("{PARAMS}\nfloat a; //@ui = x\n}};"), "m.frag:4:18: error: expected a number, found `x`");
+    refused(
+        &format!("{PARAMS}\nmat4 a; //@ui\n}};"),
+        "m.frag:4:9: error: expected float, int, uint, bool, vec2, vec3 or vec4 before the name, found `mat4`",
+    );
+    refused(
+        "float a; //@ui",
+        "m.frag:3:10: error: `a` is no member of the block at SET_FRAME, BINDING_PARAMS in any compiled stage",
+    );
+    let ui = "layout(constant_id = 40) const uint C = 0u; //@ui";
+    refused(&format!("{ui} choice A"), "m.frag:3:58: error: expected NAME=NUMBER after `choice`, found `A`");
+    refused(
+        &format!("{ui} = 1"),
+        "m.frag:3:45: error: a constant's default stands in its declaration, not after //@ui",
+    );
+}
+
+#[test]
+fn what_is_given_twice_names_both_places() {
+    let text = "const uint A = 1u; //@mode a \"A\"\nconst uint B = 2u; //@mode a \"B\"";
+    let errors = read_text(text).unwrap_err();
+    assert_eq!(errors[0].one_line(), "m.frag:4:20: error: mode slug `a` is given twice");
+    assert_eq!(errors[0].notes, ["the other is at m.frag:3"]);
+    let text = "const uint A = 1u; //@mode a \"A\"\nconst uint B = 1u; //@mode b \"B\"";
+    assert_eq!(read_text(text).unwrap_err()[0].message, "mode id `1` is given twice");
+}
