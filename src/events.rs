@@ -8,6 +8,11 @@ use crate::shader::Diagnostic;
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "event", rename_all = "lowercase")]
 pub enum Event<'a> {
+    /// The window shows its first frame; the model may still be loading.
+    Window {
+        /// Milliseconds since the start of the program.
+        ms: f64,
+    },
     /// The first picture of the model is there.
     Ready {
         /// Device in use.

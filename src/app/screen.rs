@@ -28,6 +28,7 @@ pub(super) struct Screen {
     input: egui_winit::State,
     to_free: egui::TexturesDelta,
     stale: bool,
+    first: bool,
     /// Where the picture is, in pixels of the window.
     pub(super) rect: Rect,
     /// The camera of the last frame.
@@ -61,6 +62,7 @@ impl Screen {
             input,
             to_free: egui::TexturesDelta::default(),
             stale: true,
+            first: true,
             rect: Rect::default(),
             view: None,
             last_frame: Instant::now(),
@@ -125,6 +127,11 @@ impl Screen {
             Drawn::Shown { fits } => self.stale |= !fits,
             Drawn::NoImage => self.stale = true,
             Drawn::Captured(_) => {}
+        }
+        if std::mem::take(&mut self.first) {
+            // SYNC: once, so that the time is that of a finished frame.
+            self.renderer.wait_for_frames()?;
+            emit(document.events, &Event::Window { ms: document.start.elapsed().as_secs_f64() * 1e3 });
         }
         if document.screenshot {
             document.screenshot = false;

@@ -113,11 +113,6 @@ impl Encoder {
 
     /// SYNC: everything before that used `image` as `from` comes before everything after that uses it as `to`.
     pub fn transition(&mut self, image: &Arc<Image>, from: Use, to: Use) {
-        self.transition_mips(image, 0, image.desc().mips, from, to);
-    }
-
-    /// SYNC: the same for mip levels `first..first + count`.
-    pub fn transition_mips(&mut self, image: &Arc<Image>, first: u32, count: u32, from: Use, to: Use) {
         let (src_stage, src_access, old_layout) = from.scope();
         let (dst_stage, dst_access, new_layout) = to.scope();
         let barrier = vk::ImageMemoryBarrier2::default()
@@ -130,8 +125,8 @@ impl Encoder {
             .image(image.raw)
             .subresource_range(vk::ImageSubresourceRange {
                 aspect_mask: image.aspect(),
-                base_mip_level: first,
-                level_count: count,
+                base_mip_level: 0,
+                level_count: image.desc().mips,
                 base_array_layer: 0,
                 layer_count: 1,
             });
@@ -284,15 +279,21 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };
     }
 
-    /// Fills mip level 0, in [`Use::CopyTo`], from tightly packed rows.
+    /// Fills every mip level, in [`Use::CopyTo`], from tightly packed levels that follow each other.
     pub fn copy_to_image(&mut self, from: &Arc<Buffer>, offset: u64, to: &Arc<Image>) {
         self.keep(from);
         self.keep(to);
-        let region = [whole_level(to, offset)];
+        let mut regions = Vec::new();
+        let mut at = offset;
+        for level in 0..to.desc().mips {
+            let region = whole_level(to, level, at);
+            at += u64::from(region.image_extent.width) * u64::from(region.image_extent.height) * 4;
+            regions.push(region);
+        }
         // SAFETY: recording into our own buffer; buffer and image are kept.
         unsafe {
             let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-            self.gpu.device.cmd_copy_buffer_to_image(self.raw, from.raw, to.raw, layout, &region);
+            self.gpu.device.cmd_copy_buffer_to_image(self.raw, from.raw, to.raw, layout, &regions);
         }
     }
 
@@ -300,57 +301,26 @@ impl Encoder {
     pub fn copy_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>) {
         self.keep(from);
         self.keep(to);
-        let region = [whole_level(from, 0)];
+        let region = [whole_level(from, 0, 0)];
         // SAFETY: recording into our own buffer; buffer and image are kept.
         unsafe {
             let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
             self.gpu.device.cmd_copy_image_to_buffer(self.raw, from.raw, layout, to.raw, &region);
         }
     }
-
-    /// Makes mip level `level`, in [`Use::CopyTo`], from the one above it, in [`Use::CopyFrom`].
-    pub fn blit_level(&mut self, image: &Arc<Image>, level: u32) {
-        let desc = image.desc();
-        let size = |l: u32| [(desc.width >> l).max(1) as i32, (desc.height >> l).max(1) as i32];
-        let corner = |[x, y]: [i32; 2]| vk::Offset3D { x, y, z: 1 };
-        let layers = |mip_level| vk::ImageSubresourceLayers {
-            aspect_mask: vk::ImageAspectFlags::COLOR,
-            mip_level,
-            base_array_layer: 0,
-            layer_count: 1,
-        };
-        let region = [vk::ImageBlit {
-            src_subresource: layers(level - 1),
-            src_offsets: [vk::Offset3D::default(), corner(size(level - 1))],
-            dst_subresource: layers(level),
-            dst_offsets: [vk::Offset3D::default(), corner(size(level))],
-        }];
-        self.keep(image);
-        // SAFETY: recording into our own buffer; the image is kept.
-        unsafe {
-            self.gpu.device.cmd_blit_image(
-                self.raw,
-                image.raw,
-                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
-                image.raw,
-                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-                &region,
-                vk::Filter::LINEAR,
-            );
-        }
-    }
 }
 
-fn whole_level(image: &Image, offset: u64) -> vk::BufferImageCopy {
+fn whole_level(image: &Image, level: u32, offset: u64) -> vk::BufferImageCopy {
+    let side = |pixels: u32| (pixels >> level).max(1);
     vk::BufferImageCopy {
         buffer_offset: offset,
         image_subresource: vk::ImageSubresourceLayers {
             aspect_mask: image.aspect(),
-            mip_level: 0,
+            mip_level: level,
             base_array_layer: 0,
             layer_count: 1,
         },
-        image_extent: vk::Extent3D { width: image.desc().width, height: image.desc().height, depth: 1 },
+        image_extent: vk::Extent3D { width: side(image.desc().width), height: side(image.desc().height), depth: 1 },
         ..Default::default()
     }
 }

@@ -5,6 +5,7 @@
 
 mod capture;
 mod frame;
+mod mips;
 mod pipelines;
 mod reload;
 mod scene;

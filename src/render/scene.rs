@@ -4,6 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use glam::Mat3;
+use rayon::prelude::*;
 
 use crate::gpu::{
     Buffer, DescriptorSet, Gpu, GpuError, Image, ImageDesc, Memory, PrimitiveClass, Sampler, SamplerDesc, SetLayouts,
@@ -12,6 +13,7 @@ use crate::gpu::{
 use crate::interface::{self, Draw, TEXTURE_BASE_COLOR, TEXTURE_COUNT, TEXTURE_EMISSIVE, TEXTURE_NORMAL, Vertex};
 use crate::scene::{self as model, AlphaMode, Model, Topology};
 
+use super::mips;
 use super::wanted::MaterialVariant;
 
 /// Why a model cannot be put on the device.
@@ -62,10 +64,13 @@ impl GpuScene {
     /// # Errors
     /// An image beyond the device's limit, or no memory left.
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, model: &Model) -> Result<Arc<Self>, UploadError> {
+        let start = std::time::Instant::now();
         let mut staging = Staging::new(gpu, model)?;
         let (vertices, indices, ranges) = staging.geometry(model)?;
         let textures = staging.textures(model)?;
+        tracing::debug!("staged in {:?}", start.elapsed());
         staging.submit()?;
+        tracing::debug!("submitted after {:?}", start.elapsed());
         let materials = materials(gpu, layouts, model, &textures)?;
         let draws = draws(model, vertices.address(), &ranges);
         let variants = draws.iter().map(|d| d.variant).collect();
@@ -102,9 +107,7 @@ struct Staging<'a> {
 }
 
 const TEXTURE_USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
-    vk::ImageUsageFlags::SAMPLED.as_raw()
-        | vk::ImageUsageFlags::TRANSFER_SRC.as_raw()
-        | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
+    vk::ImageUsageFlags::SAMPLED.as_raw() | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
 );
 
 /// Images that stand in for missing textures: white, and a flat normal.
@@ -118,7 +121,8 @@ impl<'a> Staging<'a> {
             .iter()
             .map(|p| size_of_val(p.vertices.as_slice()) + size_of_val(p.indices.as_slice()) + 32)
             .sum();
-        let images: usize = uses(model).iter().map(|(image, _)| model.images[*image].rgba8.len() + 16).sum();
+        let bytes = |image: &model::Image| mips::bytes(image.width, image.height) + 16;
+        let images: usize = uses(model).iter().map(|(image, _)| bytes(&model.images[*image])).sum();
         let size = (geometry + images + 64) as u64;
         let buffer = Buffer::new(gpu, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload)?;
         Ok(Self { gpu, buffer, used: 0, buffers: Vec::new(), images: Vec::new() })
@@ -159,16 +163,26 @@ impl<'a> Staging<'a> {
 
     fn textures(&mut self, model: &Model) -> Result<Textures, UploadError> {
         let mut textures = Textures::new();
-        textures.insert(WHITE, self.image("white", 1, 1, false, &[255; 4])?);
-        textures.insert(FLAT_NORMAL, self.image("flat normal", 1, 1, false, &[128, 128, 255, 255])?);
-        for (index, srgb) in uses(model) {
+        textures.insert(WHITE, self.image("white", (1, 1), false, &[255; 4], &[])?);
+        textures.insert(FLAT_NORMAL, self.image("flat normal", (1, 1), false, &[128, 128, 255, 255], &[])?);
+        let start = std::time::Instant::now();
+        let uses: Vec<_> = uses(model).into_iter().collect();
+        let chains: Vec<Vec<u8>> = uses
+            .par_iter()
+            .map(|(index, srgb)| {
+                let image = &model.images[*index];
+                mips::below(&image.rgba8, image.width, image.height, *srgb)
+            })
+            .collect();
+        tracing::debug!("mips in {:?}", start.elapsed());
+        for ((index, srgb), chain) in uses.into_iter().zip(chains) {
             let image = &model.images[index];
             let most = self.gpu.max_image_size();
             if image.width > most || image.height > most {
                 let (name, width, height) = (image.name.clone(), image.width, image.height);
                 return Err(UploadError::ImageTooLarge { name, width, height, most });
             }
-            let made = self.image(&image.name, image.width, image.height, srgb, &image.rgba8)?;
+            let made = self.image(&image.name, (image.width, image.height), srgb, &image.rgba8, &chain)?;
             textures.insert((index, srgb), made);
         }
         Ok(textures)
@@ -177,21 +191,23 @@ impl<'a> Staging<'a> {
     fn image(
         &mut self,
         name: &str,
-        width: u32,
-        height: u32,
+        (width, height): (u32, u32),
         srgb: bool,
         rgba8: &[u8],
+        below: &[u8],
     ) -> Result<Arc<Image>, UploadError> {
         let format = if srgb { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
-        let mips = width.max(height).max(1).ilog2() + 1;
-        let desc = ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) };
-        let image = Image::new(self.gpu, name, desc)?;
+        let mips = mips::count(width, height);
+        let image = Image::new(self.gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?;
         let offset = self.push(rgba8);
+        // The levels follow each other without a gap, each a multiple of 4 bytes.
+        self.buffer.write(self.used, below);
+        self.used += below.len() as u64;
         self.images.push((offset, image.clone()));
         Ok(image)
     }
 
-    /// Copies everything, and makes the mip levels by halving.
+    /// Copies everything.
     fn submit(self) -> Result<(), UploadError> {
         one_shot(self.gpu, |encoder| {
             for (offset, buffer) in &self.buffers {
@@ -200,15 +216,7 @@ impl<'a> Staging<'a> {
             for (offset, image) in &self.images {
                 encoder.transition(image, Use::Undefined, Use::CopyTo);
                 encoder.copy_to_image(&self.buffer, *offset, image);
-                let mips = image.desc().mips;
-                for level in 1..mips {
-                    encoder.transition_mips(image, level - 1, 1, Use::CopyTo, Use::CopyFrom);
-                    encoder.blit_level(image, level);
-                }
-                if mips > 1 {
-                    encoder.transition_mips(image, 0, mips - 1, Use::CopyFrom, Use::Sampled);
-                }
-                encoder.transition_mips(image, mips - 1, 1, Use::CopyTo, Use::Sampled);
+                encoder.transition(image, Use::CopyTo, Use::Sampled);
             }
             encoder.copies_done();
             Ok(())
@@ -314,8 +322,11 @@ fn draws(model: &Model, vertices: u64, ranges: &[Range]) -> Vec<GpuDraw> {
         let world = instance.world_from_object;
         let linear = Mat3::from_mat4(world);
         let determinant = linear.determinant();
-        // A flattened object (scale 0) has no inverse; its normals stay as they are.
-        let normals = if determinant.abs() > 1e-30 { linear.inverse().transpose() } else { Mat3::IDENTITY };
+        // The cofactors are the inverse transpose times the determinant, and exist for flattened objects too, which have no
+        // inverse. The shader normalizes, so only the determinant's sign is missing.
+        let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
+        let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
+        let normals = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
         let push = Draw {
             vertices: vertices + range.first_vertex * size_of::<Vertex>() as u64,
             world_from_object: world.to_cols_array_2d().map(|c| [c[0], c[1], c[2]]),

@@ -12,7 +12,8 @@ const FARTHEST: f32 = 1e18;
 /// Field of view when the setting is not a number, degrees.
 const DEFAULT_FOVY_DEG: f32 = 35.0;
 
-/// A perspective view in world space: right-handed, +Y up, metres. Made by [`View::new`] or [`frame`], it is never degenerate.
+/// A perspective view in world space: right-handed, +Y up, metres. Made by [`View::new`] or [`frame`], it is never
+/// degenerate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Position.
@@ -32,8 +33,8 @@ pub struct View {
 }
 
 impl View {
-    /// A view of a model of these bounds. What is not finite or has no direction is replaced by what shows the model; the
-    /// near plane is as far out as the bounds allow.
+    /// A view of a model of these bounds. What is not finite or has no direction is replaced by what shows the model;
+    /// the near plane is as far out as the bounds allow.
     pub fn new(eye: Vec3, target: Vec3, fovy_rad: f32, aspect: f32, bounds: &Bounds) -> Self {
         let radius = bounds.radius();
         let usable = |point: Vec3| point.abs().max_element() <= FARTHEST && point.is_finite();
@@ -83,8 +84,8 @@ impl View {
     }
 }
 
-/// The view that the settings ask for. Without an eye, the corners of the model's box are fitted into the picture, with some
-/// space around them, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
+/// The view that the settings ask for. Without an eye, the corners of the model's box are fitted into the picture,
+/// with some space around them, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
 pub fn frame(bounds: &Bounds, settings: &CameraSettings, aspect: f32) -> View {
     let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
     let fovy_rad = sane_fovy(settings.fovy.to_radians());
@@ -121,8 +122,9 @@ pub(super) fn direction(azimuth_rad: f32, elevation_rad: f32) -> Vec3 {
     Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
 }
 
-/// Eye and target from which the box just fits. In the camera's frame, with t the tangent of half the usable angle, a corner
-/// (x, z) is inside when |x - eye.x| <= t (eye.z - z): two linear bounds for each axis, which the closest eye meets both.
+/// Eye and target from which the box just fits. In the camera's frame, with t the tangent of half the usable angle, a
+/// corner (x, z) is inside when |x - eye.x| <= t (eye.z - z): two linear bounds for each axis, which the closest eye
+/// meets both.
 fn fit(bounds: &Bounds, azimuth_rad: f32, elevation_rad: f32, fovy_rad: f32, aspect: f32) -> (Vec3, Vec3) {
     let (back, right, up) = basis(azimuth_rad, elevation_rad);
     let center = bounds.center();

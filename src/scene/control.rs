@@ -1,4 +1,5 @@
-//! Moving the camera by hand. Pure math: the window turns input into these calls and keeps eye and target in the settings.
+//! Moving the camera by hand. Pure math: the window turns input into these calls and keeps eye and target in the
+//! settings.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-/// A model that could not be loaded. Its message is one paragraph: the file, what was expected, what was found, what to do.
+/// A model that could not be loaded. Its message is one paragraph: the file, what was expected, what was found, what
+/// to do.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {problem}", file.display())]
 pub struct LoadError {
@@ -66,7 +67,8 @@ pub enum Problem {
     },
     /// The file contradicts the specification.
     #[error(
-        "is invalid at {place}: expected {expected}, found {found}. Export the model again, or run it through the Khronos glTF validator."
+        "is invalid at {place}: expected {expected}, found {found}. \
+         Export the model again, or run it through the Khronos glTF validator."
     )]
     Invalid {
         /// The object, as a path into the JSON with its name.
@@ -78,8 +80,8 @@ pub enum Problem {
     },
     /// A URI that is never opened.
     #[error(
-        "names `{uri}` at {place}: expected a file beside the model or a data: URI, found the scheme `{scheme}:`, which is \
-         never opened. Save that file beside the model and name it by its relative path."
+        "names `{uri}` at {place}: expected a file beside the model or a data: URI, found the scheme `{scheme}:`, \
+         which is never opened. Save that file beside the model and name it by its relative path."
     )]
     Scheme {
         /// The object.
@@ -101,7 +103,11 @@ pub enum Problem {
         uri: String,
     },
     /// A file that the model names cannot be read.
-    #[error("needs the file {}, named at {place}, which cannot be read: {source}. Put it there or export a self-contained .glb.", path.display())]
+    #[error(
+        "needs the file {}, named at {place}, which cannot be read: {source}. Put it there or export a \
+         self-contained .glb.",
+        path.display()
+    )]
     External {
         /// The object.
         place: String,
@@ -112,7 +118,8 @@ pub enum Problem {
     },
     /// An image that does not decode.
     #[error(
-        "has an image that does not decode: {image}, used as {used_by}: expected PNG, JPEG or WebP, found {found}. Save the image again."
+        "has an image that does not decode: {image}, used as {used_by}: expected PNG, JPEG or WebP, found {found}. \
+         Save the image again."
     )]
     Image {
         /// Index and name of the image.
@@ -124,7 +131,8 @@ pub enum Problem {
     },
     /// Nothing visible.
     #[error(
-        "has nothing to draw: expected a scene with at least one mesh, found {found}. Check what was selected when it was exported."
+        "has nothing to draw: expected a scene with at least one mesh, found {found}. \
+         Check what was selected when it was exported."
     )]
     NothingToDraw {
         /// What there is.
@@ -132,7 +140,8 @@ pub enum Problem {
     },
     /// A panic in the loader or a decoder, caught.
     #[error(
-        "was refused: the loader stopped at something it did not expect ({found}). The file is most likely invalid; please report it with the file."
+        "was refused: the loader stopped at something it did not expect ({found}). \
+         The file is most likely invalid; please report it with the file."
     )]
     Refused {
         /// The panic's words.

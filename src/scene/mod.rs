@@ -1,7 +1,8 @@
 //! CPU data only: models, lights, camera. Knows no Vulkan; what it makes, `render` uploads.
 //!
-//! [`load`] turns a glTF file into a [`Model`] whose indices and numbers can be trusted: everything behind it may index and
-//! divide without checks of its own. All that a file can get wrong ends in a [`LoadError`] or a warning of the model.
+//! [`load`] turns a glTF file into a [`Model`] whose indices and numbers can be trusted: everything behind it may
+//! index and divide without checks of its own. All that a file can get wrong ends in a [`LoadError`] or a warning of
+//! the model.
 
 mod built_in;
 mod camera;
@@ -42,7 +43,8 @@ pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadErr
 /// Loads a `.gltf` or `.glb` file, told apart by content.
 ///
 /// # Errors
-/// When the file or one that it names cannot be read, is invalid, or needs what Specula lacks. Never panics on any content.
+/// When the file or one that it names cannot be read, is invalid, or needs what Specula lacks. Never panics on any
+/// content.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
     gltf::load_file(path, options).map_err(|problem| LoadError { file: path.to_owned(), problem })
 }

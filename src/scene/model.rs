@@ -70,7 +70,7 @@ impl Bounds {
 
     /// Whether nothing was included.
     pub fn is_empty(&self) -> bool {
-        !(self.min.x <= self.max.x)
+        !self.min.cmple(self.max).all()
     }
 
     /// The eight corners.
@@ -97,7 +97,8 @@ impl Bounds {
     }
 }
 
-/// How vertices form primitives. Strips, fans and loops keep their kind where Vulkan has it; a line loop is made a strip.
+/// How vertices form primitives. A line loop is made a strip; a triangle strip or fan a list when flat normals or
+/// tangents are made for it, which splits its vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Topology {
@@ -329,6 +330,7 @@ pub struct Camera {
     pub forward: Vec3,
     /// Up, unit.
     pub up: Vec3,
-    /// Vertical field of view in radians (an orthographic camera gives the one that frames the same height at its target).
+    /// Vertical field of view in radians. An orthographic camera gives the one that frames the same height at the depth
+    /// of the model's center.
     pub fovy: f32,
 }

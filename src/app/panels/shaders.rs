@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>)
             let changed = if last.changed.is_empty() { "start".into() } else { last.changed.join(" ") };
             let names: Vec<&str> = changed.split(' ').map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
             let text = format!(
-                "{} → {}\n{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
+                "{} -> {}\n{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
                 names.join(" "),
                 if last.stages.is_empty() { "nothing to do".into() } else { last.stages.join(" ") },
                 last.compile_ms,

@@ -1,5 +1,5 @@
-//! Reads accessors of any component type, stride and sparseness, with checked arithmetic throughout: nothing is allocated
-//! before the buffer is known to hold it.
+//! Reads accessors of any component type, stride and sparseness, with checked arithmetic throughout: nothing is
+//! allocated before the buffer is known to hold it.
 
 use gltf::json;
 use json::accessor::{Accessor, ComponentType, Type};

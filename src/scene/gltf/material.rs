@@ -248,8 +248,8 @@ fn finite(value: Vec3, place: &str) -> Result<Vec3, Problem> {
     if value.is_finite() { Ok(value) } else { Err(Problem::invalid(place, "a finite emission", value.to_string())) }
 }
 
-/// KHR_texture_transform: translation * rotation * scale. Its rotation is counter-clockwise as seen with v pointing down,
-/// hence the minus.
+/// KHR_texture_transform: translation * rotation * scale. Its rotation is counter-clockwise as seen with v pointing
+/// down, hence the minus.
 fn affine(transform: &TextureTransform) -> Affine2 {
     Affine2::from_scale_angle_translation(transform.scale.0.into(), -transform.rotation.0, transform.offset.0.into())
 }

@@ -1,5 +1,5 @@
-//! glTF 2.0 to [`Model`]. The `gltf` crate parses the JSON; everything that the JSON refers to is checked and read here, since
-//! the crate's own readers panic on invalid files and refuse some valid ones.
+//! glTF 2.0 to [`Model`]. The `gltf` crate parses the JSON; everything that the JSON refers to is checked and read
+//! here, since the crate's own readers panic on invalid files and refuse some valid ones.
 
 mod accessor;
 mod buffers;
@@ -165,7 +165,7 @@ fn out_of_range(place: &str, kind: &str, index: usize, count: usize) -> Problem 
     Problem::invalid(place, expected, index.to_string())
 }
 
-/// The name that the parser kept of an index, for lookups.
+/// Looks an index of the file up. `place` names who asks, for the message.
 fn get<'a, T>(items: &'a [T], index: json::Index<T>, place: &str, kind: &str) -> Result<&'a T, Problem> {
     items.get(index.value()).ok_or_else(|| out_of_range(place, kind, index.value(), items.len()))
 }

@@ -260,8 +260,8 @@ fn read_lens(camera: &json::Camera, index: usize) -> Result<Lens, Problem> {
 }
 
 impl PlacedCamera {
-    /// The camera in a scene of these bounds: an orthographic one becomes the perspective one that sees the same height at
-    /// the depth of their center.
+    /// The camera in a scene of these bounds: an orthographic one becomes the perspective one that sees the same
+    /// height at the depth of their center.
     pub fn place(&self, bounds: &Bounds) -> Camera {
         let world = &self.world_from_object;
         let eye = world.w_axis.truncate();

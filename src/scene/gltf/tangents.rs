@@ -20,7 +20,8 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
     if replaced > 0 && (from_file || made) {
         let (name, total) = (&primitive.name, primitive.vertices.len());
         geometry.warnings.push(format!(
-            "{name}: {replaced} of {total} tangents are zero or not finite: any direction orthogonal to the normal is used there."
+            "{name}: {replaced} of {total} tangents are zero or not finite: any direction \
+             orthogonal to the normal is used there."
         ));
     }
 }
@@ -35,8 +36,8 @@ fn repair(vertex: &mut Vertex) -> Option<()> {
     if valid.is_none() { Some(()) } else { None }
 }
 
-/// MikkTSpace on the texture coordinates of the normal texture, before its KHR_texture_transform. `false` when there are no
-/// faces or texture coordinates.
+/// MikkTSpace on the texture coordinates of the normal texture, before its KHR_texture_transform. `false` when there
+/// are no faces or texture coordinates.
 fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
     let normal_texture = materials.get(primitive.material).and_then(|m| m.textures[contract::TEXTURE_NORMAL as usize]);
     let (has_uv0, has_uv1) =
@@ -89,7 +90,8 @@ impl bevy_mikktspace::Geometry for Mesh {
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
-        // MikkTSpace's bitangent follows +v, which glTF has point down; glTF's bitangent points up the image, so it is negated.
+        // MikkTSpace's bitangent follows +v, which glTF has point down; glTF's bitangent points up the image, so it
+        // is negated.
         let [x, y, z, sign] = space.map_or([0.0; 4], |space| space.tangent_encoded());
         self.corners.vertices[face * 3 + vertex].tangent = Vec4::new(x, y, z, -sign).to_array();
     }

@@ -27,8 +27,8 @@ pub fn has_faces(topology: Topology) -> bool {
     least(topology) == 3
 }
 
-/// The triangles of a list, strip or fan, in the winding of Vulkan and glTF; none of points and lines. Triangles that use a
-/// vertex twice, as strips do to turn, are left out.
+/// The triangles of a list, strip or fan, in the winding of Vulkan and glTF; none of points and lines. Triangles that
+/// use a vertex twice, as strips do to turn, are left out.
 pub fn triangles(topology: Topology, indices: &[u32]) -> Vec<[u32; 3]> {
     let all: Vec<[u32; 3]> = match topology {
         Topology::Triangles => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),

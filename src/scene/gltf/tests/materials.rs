@@ -118,7 +118,8 @@ fn material_numbers() {
     let mut builder = Builder::triangle();
     builder.json["materials"] = json!([{
         "name": "paint", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true, "emissiveFactor": [0.5, 1, 0],
-        "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 1.5 },
+        "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 1], "metallicFactor": 0.5,
+            "roughnessFactor": 1.5 },
         "extensions": { "KHR_materials_unlit": {}, "KHR_materials_emissive_strength": { "emissiveStrength": 4.0 } }
     }]);
     builder.primitive()["material"] = json!(0);

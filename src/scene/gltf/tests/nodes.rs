@@ -102,7 +102,8 @@ fn punctual_lights() {
     let mut builder = Builder::triangle();
     builder.json["extensionsRequired"] = json!(["KHR_lights_punctual"]);
     builder.json["extensions"]["KHR_lights_punctual"]["lights"] = json!([
-        { "type": "spot", "name": "lamp", "color": [1, 0.5, 0], "intensity": 10, "range": 3, "spot": { "innerConeAngle": 0.1 } },
+        { "type": "spot", "name": "lamp", "color": [1, 0.5, 0], "intensity": 10, "range": 3,
+          "spot": { "innerConeAngle": 0.1 } },
         { "type": "directional" },
         { "type": "point", "range": -1, "extras": { "note": 1 } },
     ]);
