@@ -143,7 +143,7 @@ impl Headless {
             wanted(&self.gpu, &self.settings, &self.pipelines.shaders, &self.scene).map_err(HeadlessError::Settings)?;
         self.pipelines.build(&wanted)?;
         let (width, height) = self.size;
-        let view = scene::frame(&self.model.bounds, &self.settings.camera, width as f32 / height as f32);
+        let view = scene::frame(&self.model.bounds, &self.model.outline, &self.settings.camera, width as f32 / height as f32);
         let shot = Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0)
             .map_err(HeadlessError::Settings)?;
         let input = FrameInput {

@@ -18,7 +18,7 @@ pub(super) struct CameraHand {
 impl CameraHand {
     /// The camera on screen.
     pub(super) fn view(settings: &CameraSettings, model: &Model, aspect: f32) -> View {
-        scene::frame(&model.bounds, settings, aspect)
+        scene::frame(&model.bounds, &model.outline, settings, aspect)
     }
 
     /// Drags with the left button: around the target.

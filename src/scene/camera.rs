@@ -84,14 +84,16 @@ impl View {
     }
 }
 
-/// The view that the settings ask for. Without an eye, the corners of the model's box are fitted into the picture,
-/// with some space around them, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
-pub fn frame(bounds: &Bounds, settings: &CameraSettings, aspect: f32) -> View {
+/// The view that the settings ask for. Without an eye, the model's outline (or the corners of its box) is fitted into the
+/// picture, with some space around it, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
+pub fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspect: f32) -> View {
+    let corners = bounds.corners();
+    let outline = if outline.is_empty() { &corners } else { outline };
     let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
     let fovy_rad = sane_fovy(settings.fovy.to_radians());
     let number = |degrees: f32| if degrees.is_finite() { degrees.to_radians() } else { 0.0 };
     let (framed_eye, framed_target) =
-        fit(bounds, number(settings.azimuth), number(settings.elevation), fovy_rad, aspect);
+        fit(bounds, outline, number(settings.azimuth), number(settings.elevation), fovy_rad, aspect);
     let (eye, target) = match (settings.eye.map(Vec3::from), settings.target.map(Vec3::from)) {
         (None, None) => (framed_eye, framed_target),
         (None, Some(target)) => (target + (framed_eye - framed_target), target),
@@ -122,10 +124,17 @@ pub(super) fn direction(azimuth_rad: f32, elevation_rad: f32) -> Vec3 {
     Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
 }
 
-/// Eye and target from which the box just fits. In the camera's frame, with t the tangent of half the usable angle, a
-/// corner (x, z) is inside when |x - eye.x| <= t (eye.z - z): two linear bounds for each axis, which the closest eye
+/// Eye and target from which the points just fit. In the camera's frame, with t the tangent of half the usable angle, a
+/// point (x, z) is inside when |x - eye.x| <= t (eye.z - z): two linear bounds for each axis, which the closest eye
 /// meets both.
-fn fit(bounds: &Bounds, azimuth_rad: f32, elevation_rad: f32, fovy_rad: f32, aspect: f32) -> (Vec3, Vec3) {
+fn fit(
+    bounds: &Bounds,
+    points: &[Vec3],
+    azimuth_rad: f32,
+    elevation_rad: f32,
+    fovy_rad: f32,
+    aspect: f32,
+) -> (Vec3, Vec3) {
     let (back, right, up) = basis(azimuth_rad, elevation_rad);
     let center = bounds.center();
     let tan_y = (fovy_rad * 0.5).tan() * FILL;
@@ -136,9 +145,11 @@ fn fit(bounds: &Bounds, azimuth_rad: f32, elevation_rad: f32, fovy_rad: f32, asp
         return (center + back * (bounds.radius() / tan_y.min(tan_x)).max(1.0), center);
     }
     let axis = |side: Vec3, tan: f32| {
-        let corners = bounds.corners().map(|corner| ((corner - center).dot(side), (corner - center).dot(back)));
-        let high = corners.iter().map(|(x, z)| x + tan * z).fold(f32::NEG_INFINITY, f32::max);
-        let low = corners.iter().map(|(x, z)| -x + tan * z).fold(f32::NEG_INFINITY, f32::max);
+        let most = |sign: f32| {
+            let reach = |point: &Vec3| sign * (*point - center).dot(side) + tan * (*point - center).dot(back);
+            points.iter().map(reach).fold(f32::NEG_INFINITY, f32::max)
+        };
+        let (high, low) = (most(1.0), most(-1.0));
         ((high - low) * 0.5, (high + low) / (2.0 * tan))
     };
     let (x, distance_x) = axis(right, tan_x);
@@ -180,7 +191,7 @@ mod tests {
             for elevation in [-90.0, -30.0, 0.0, 15.0, 89.9, 90.0] {
                 for (aspect, fovy) in [(1.0, 35.0), (1.78, 20.0), (0.5, 60.0), (3.0, 90.0)] {
                     let settings = CameraSettings { azimuth, elevation, fovy, ..CameraSettings::default() };
-                    let (x, y) = extent(&frame(&cube(), &settings, aspect), &cube());
+                    let (x, y) = extent(&frame(&cube(), &[], &settings, aspect), &cube());
                     let fill = x.max(y);
                     assert!((fill - FILL).abs() < 1e-3, "{azimuth} {elevation} {aspect} {fovy}: {x} {y}");
                 }
@@ -204,7 +215,7 @@ mod tests {
     #[test]
     fn azimuth_goes_from_z_towards_x() {
         let settings = |azimuth, elevation| CameraSettings { azimuth, elevation, ..CameraSettings::default() };
-        let from = |azimuth, elevation| -frame(&cube(), &settings(azimuth, elevation), 1.0).forward();
+        let from = |azimuth, elevation| -frame(&cube(), &[], &settings(azimuth, elevation), 1.0).forward();
         assert!(from(0.0, 0.0).distance(Vec3::Z) < 1e-5);
         assert!(from(90.0, 0.0).distance(Vec3::X) < 1e-5);
         assert!(from(0.0, 90.0).distance(Vec3::Y) < 1e-5);
@@ -214,13 +225,13 @@ mod tests {
     fn explicit_eye_and_target_win() {
         let settings =
             CameraSettings { eye: Some([1.0, 2.0, 3.0]), target: Some([1.0, 0.0, 0.0]), ..CameraSettings::default() };
-        let view = frame(&cube(), &settings, 1.5);
+        let view = frame(&cube(), &[], &settings, 1.5);
         assert_eq!((view.eye, view.target), (Vec3::new(1.0, 2.0, 3.0), Vec3::X));
         let only_target = CameraSettings { target: Some([9.0, 0.0, 0.0]), ..CameraSettings::default() };
-        let view = frame(&cube(), &only_target, 1.5);
+        let view = frame(&cube(), &[], &only_target, 1.5);
         assert_eq!(view.target, Vec3::new(9.0, 0.0, 0.0));
         let only_eye = CameraSettings { eye: Some([9.0, 0.0, 0.0]), ..CameraSettings::default() };
-        assert_eq!(frame(&cube(), &only_eye, 1.5).target, cube().center());
+        assert_eq!(frame(&cube(), &[], &only_eye, 1.5).target, cube().center());
     }
 
     #[test]
@@ -237,7 +248,7 @@ mod tests {
                 let same = CameraSettings { eye: Some([value; 3]), target: Some([value; 3]), ..framed.clone() };
                 let above = CameraSettings { eye: Some([0.0, 5.0, 0.0]), target: Some([0.0; 3]), ..framed.clone() };
                 for settings in [framed, same, above] {
-                    let view = frame(&bounds, &settings, value);
+                    let view = frame(&bounds, &[], &settings, value);
                     assert!(view.view_from_world().is_finite(), "{bounds:?} {settings:?}");
                     assert!(view.clip_from_world().is_finite(), "{bounds:?} {settings:?}");
                     assert!(view.clip_from_world().determinant() != 0.0 || bounds == huge || bounds == tiny);

@@ -11,6 +11,7 @@ mod error;
 mod gltf;
 mod lights;
 mod model;
+mod outline;
 
 use std::path::{Path, PathBuf};
 

@@ -27,6 +27,8 @@ pub struct Model {
     pub cameras: Vec<Camera>,
     /// World bounds of all instances.
     pub bounds: Bounds,
+    /// The outermost vertices in world space, for framing; empty stands for the corners of `bounds`.
+    pub outline: Vec<Vec3>,
     /// Every file that was read, absolute: these are watched.
     pub files: Vec<PathBuf>,
     /// What the loader tolerated: unknown extensions, replaced tangents. One sentence each.

@@ -27,6 +27,7 @@ use self::buffers::{Buffers, Files, read_regular};
 use self::mesh::Geometry;
 use super::LoadOptions;
 use super::error::Problem;
+use super::outline::outline;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 
 /// Largest coordinate of a mesh and of the scene, metres: a camera that frames it can still be squared in `f32`.
@@ -95,6 +96,7 @@ fn build(name: &str, bytes: &[u8], mut files: Files, start: Instant) -> Result<M
         }
     }
     model.bounds = world_bounds(&model)?;
+    model.outline = outline(&model);
     model.lights = scene.lights;
     model.cameras = scene.cameras.iter().map(|camera| camera.place(&model.bounds)).collect();
     model.warnings = warnings;
