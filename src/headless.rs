@@ -134,16 +134,32 @@ impl Headless {
         Ok(())
     }
 
-    /// Renders one frame, building the pipelines that a changed mode or constant needs.
+    /// Renders one frame, building the pipelines that a changed mode or constant needs, and reads it back.
     ///
     /// # Errors
     /// Settings that do not fit, a device that fails.
     pub fn render(&mut self) -> Result<Capture, HeadlessError> {
+        match self.frame(Target::Memory)? {
+            Drawn::Captured(capture) => Ok(capture),
+            Drawn::Finished | Drawn::Shown { .. } | Drawn::NoImage => unreachable!("a frame to memory is captured"),
+        }
+    }
+
+    /// Renders one frame and waits for it, without reading it back: what a window would take.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn draw(&mut self) -> Result<(), HeadlessError> {
+        self.frame(Target::Nowhere).map(|_| ())
+    }
+
+    fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
         let wanted =
             wanted(&self.gpu, &self.settings, &self.pipelines.shaders, &self.scene).map_err(HeadlessError::Settings)?;
         self.pipelines.build(&wanted)?;
         let (width, height) = self.size;
-        let view = scene::frame(&self.model.bounds, &self.model.outline, &self.settings.camera, width as f32 / height as f32);
+        let aspect = width as f32 / height as f32;
+        let view = scene::frame(&self.model.bounds, &self.model.outline, &self.settings.camera, aspect);
         let shot = Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0)
             .map_err(HeadlessError::Settings)?;
         let input = FrameInput {
@@ -152,10 +168,7 @@ impl Headless {
             scene: Some(&self.scene),
             rect: Rect { x: 0, y: 0, width, height },
         };
-        match self.renderer.frame(input, Target::Memory)? {
-            Drawn::Captured(capture) => Ok(capture),
-            Drawn::Shown { .. } | Drawn::NoImage => unreachable!("a frame to memory is captured"),
-        }
+        Ok(self.renderer.frame(input, target)?)
     }
 }
 

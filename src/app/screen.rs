@@ -126,7 +126,7 @@ impl Screen {
         match self.renderer.frame(frame, Target::Window(swapchain, ui))? {
             Drawn::Shown { fits } => self.stale |= !fits,
             Drawn::NoImage => self.stale = true,
-            Drawn::Captured(_) => {}
+            Drawn::Captured(_) | Drawn::Finished => {}
         }
         if std::mem::take(&mut self.first) {
             // SYNC: once, so that the time is that of a finished frame.

@@ -1,13 +1,251 @@
-//! `specula bench`.
+//! `specula bench reload|frame|load`: medians on this machine, with its name.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::ValueEnum;
+use crossbeam_channel::unbounded;
+use serde_json::{Value, json};
+use specula::gpu::{Gpu, SetLayouts};
+use specula::headless::Headless;
+use specula::render::{GpuScene, Outcome};
+use specula::scene::Model;
+use specula::shader::{Batch, Compiler, Source, Watcher};
+
 use super::Failure;
-use super::common::Common;
+use super::common::{Common, check_validation, compiler};
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum What {
+    /// From a save to the end of the first frame with the new shader
+    Reload,
+    /// A frame, and the first frame in each debug mode
+    Frame,
+    /// From the model's file to its first frame
+    Load,
+}
+
 /// Options of `bench`.
 #[derive(clap::Args)]
 pub struct Args {
+    /// What to measure
+    #[arg(value_enum)]
+    what: What,
+    /// glTF model [default: the built-in shader ball]
+    model: Option<PathBuf>,
+    /// How often
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    samples: u32,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     common: Common,
 }
+
 /// Runs the command.
-pub fn run(args: Args, _start: std::time::Instant) -> Result<(), Failure> {
-    args.common.settings().map(|_| ())
+pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
+    let gpu = args.common.gpu()?;
+    let compiler = compiler()?;
+    compiler.warm();
+    let mut result = match args.what {
+        What::Reload => reload(&args, &gpu, &compiler)?,
+        What::Frame => frame(&args, &gpu, &compiler)?,
+        What::Load => load(&args, &gpu, &compiler, start)?,
+    };
+    result["device"] = json!(gpu.info().name);
+    result["samples"] = json!(args.samples);
+    if args.json {
+        println!("{result:#}");
+    } else {
+        print_table(&result);
+    }
+    check_validation(&gpu)
+}
+
+/// Saves an edited `pbr.frag` in a copy of the tree, waits for the watcher, reloads and renders; times every step.
+fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+    let folder = TempFolder::new()?;
+    copy_tree(&args.common.source()?, &folder.0)?;
+    let source = Source::Disk(folder.0.clone());
+    let (sender, batches) = unbounded::<Batch>();
+    let on_batch = move |batch| {
+        let _ = sender.send(batch);
+    };
+    let _watcher = Watcher::new(Some(&folder.0), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
+    let model = args.common.model(args.model.as_deref())?;
+    let settings = args.common.settings()?;
+    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    headless.render()?;
+
+    let path = folder.0.join("pbr.frag");
+    let original = std::fs::read_to_string(&path).map_err(|e| Failure::Input(e.to_string()))?;
+    let names = ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms", "total_ms", "overhead_ms"];
+    let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+    for sample in 0..args.samples {
+        // Real code that changes nothing: no fragment lies left of the picture.
+        let edit = format!("void main() {{\n    if (gl_FragCoord.x < -{}.0) discard;", sample + 1);
+        let text = original.replacen("void main() {", &edit, 1);
+        let begin = Instant::now();
+        std::fs::write(&path, text).map_err(|e| Failure::Input(e.to_string()))?;
+        let batch = batches.recv().map_err(|e| Failure::Input(e.to_string()))?;
+        let detect_ms = ms(begin);
+        let change = headless.reloader().library().change_of(&batch.paths);
+        let reload = headless.update(change);
+        match reload.outcome {
+            Outcome::Ready(_) => {}
+            Outcome::Failed(diagnostics) => return Err(Failure::Shaders(diagnostics)),
+            Outcome::Unchanged { .. } => return Err(Failure::Input("the edit of pbr.frag changed nothing".into())),
+        }
+        let frame = Instant::now();
+        headless.draw()?;
+        let (first_frame_ms, total_ms) = (ms(frame), ms(begin));
+        let (compile_ms, pipeline_ms) = (reload.report.compile_ms, reload.pipeline_ms);
+        let overhead_ms = total_ms - compile_ms - pipeline_ms - first_frame_ms;
+        let values = [detect_ms, compile_ms, pipeline_ms, first_frame_ms, total_ms, overhead_ms];
+        samples.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
+    }
+    let table = names.iter().zip(samples).map(|(name, list)| ((*name).to_owned(), summary(list)));
+    Ok(Value::Object(table.collect()))
+}
+
+/// Frames of the mode that is set, and for every mode the first frame and a later one.
+fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+    let model = args.common.model(args.model.as_deref())?;
+    let (source, settings) = (args.common.source()?, args.common.settings()?);
+    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    headless.draw()?;
+    let (mut wall, mut device) = (Vec::new(), Vec::new());
+    for _ in 0..args.samples {
+        let begin = Instant::now();
+        headless.draw()?;
+        wall.push(ms(begin));
+        device.extend(headless.device_ms());
+    }
+    let slugs: Vec<String> = headless.pipelines().shaders.modes.iter().map(|m| m.slug.clone()).collect();
+    let (mut first, mut again, mut modes) = (Vec::new(), Vec::new(), Vec::new());
+    for slug in slugs {
+        headless.settings_mut().mode.clone_from(&slug);
+        let begin = Instant::now();
+        headless.draw()?;
+        let first_ms = ms(begin);
+        let begin = Instant::now();
+        headless.draw()?;
+        let again_ms = ms(begin);
+        first.push(first_ms);
+        again.push(again_ms);
+        modes.push(json!({ "slug": slug, "first_ms": round(first_ms), "again_ms": round(again_ms) }));
+    }
+    Ok(json!({
+        "size": [args.common.size.0, args.common.size.1],
+        "frame_ms": summary(wall),
+        "device_ms": summary(device),
+        "mode_first_ms": summary(first),
+        "mode_again_ms": summary(again),
+        "modes": modes,
+    }))
+}
+
+/// Loads the model again and again; the first time's total counts from the start of the program.
+fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -> Result<Value, Failure> {
+    let layouts = SetLayouts::new(gpu)?;
+    let device_ms = ms(start);
+    let names =
+        ["parse_ms", "decode_ms", "tangents_ms", "load_ms", "upload_ms", "shaders_ms", "first_frame_ms", "total_ms"];
+    let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+    let mut cold_ms = 0.0;
+    for sample in 0..args.samples {
+        let begin = Instant::now();
+        let model: Model = args.common.model(args.model.as_deref())?;
+        let load_ms = ms(begin);
+        let upload = Instant::now();
+        drop(GpuScene::upload(gpu, &layouts, &model).map_err(|e| Failure::Input(e.to_string()))?);
+        let upload_ms = ms(upload);
+        let timing = model.timing;
+        let shaders = Instant::now();
+        let (source, settings) = (args.common.source()?, args.common.settings()?);
+        let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+        let shaders_ms = ms(shaders) - upload_ms;
+        let frame = Instant::now();
+        headless.draw()?;
+        let first_frame_ms = ms(frame);
+        let total_ms = load_ms + upload_ms + shaders_ms + first_frame_ms;
+        if sample == 0 {
+            cold_ms = device_ms + total_ms;
+        }
+        let values = [
+            timing.parse_ms,
+            timing.decode_ms,
+            timing.tangents_ms,
+            load_ms,
+            upload_ms,
+            shaders_ms.max(0.0),
+            first_frame_ms,
+            total_ms,
+        ];
+        samples.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
+    }
+    let table = names.iter().zip(samples).map(|(name, list)| ((*name).to_owned(), summary(list)));
+    let mut result = Value::Object(table.collect());
+    result["start_to_device_ms"] = json!(round(device_ms));
+    result["start_to_first_frame_ms"] = json!(round(cold_ms));
+    Ok(result)
+}
+
+fn ms(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}
+
+fn round(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
+
+/// Median and 95th percentile; null without samples.
+fn summary(mut values: Vec<f64>) -> Value {
+    values.sort_by(f64::total_cmp);
+    let at = |part: f64| values.get(((values.len() as f64 - 1.0).max(0.0) * part).round() as usize).copied();
+    match (at(0.5), at(0.95)) {
+        (Some(median), Some(p95)) => json!({ "median": round(median), "p95": round(p95) }),
+        _ => Value::Null,
+    }
+}
+
+fn print_table(result: &Value) {
+    for (name, value) in result.as_object().into_iter().flatten() {
+        match (value.get("median"), value.get("p95")) {
+            (Some(median), Some(p95)) => println!("{name:24} median {median:>10}   p95 {p95:>10}"),
+            _ if value.is_array() && name == "modes" => {}
+            _ => println!("{name:24} {value}"),
+        }
+    }
+}
+
+/// Writes every file of a tree into an empty folder.
+fn copy_tree(source: &Source, folder: &Path) -> Result<(), Failure> {
+    for path in source.list() {
+        let to = folder.join(path.as_str());
+        let text = source.read(&path).map_err(|e| Failure::Input(e.to_string()))?;
+        let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
+        made.and_then(|()| std::fs::write(&to, text)).map_err(|e| Failure::Input(format!("{}: {e}", to.display())))?;
+    }
+    Ok(())
+}
+
+/// A folder of our own, removed with everything in it.
+struct TempFolder(PathBuf);
+
+impl TempFolder {
+    fn new() -> Result<Self, Failure> {
+        let path = std::env::temp_dir().join(format!("specula-bench-{}", std::process::id()));
+        std::fs::create_dir_all(&path).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for TempFolder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
 }

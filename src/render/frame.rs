@@ -47,6 +47,8 @@ pub enum Target<'a> {
     Window(&'a mut Swapchain, UiFrame<'a>),
     /// To memory: picture and raw HDR values.
     Memory,
+    /// Nowhere: drawn and waited for, to measure.
+    Nowhere,
 }
 
 /// What became of a frame.
@@ -60,6 +62,8 @@ pub enum Drawn {
     NoImage,
     /// It is in memory.
     Captured(Capture),
+    /// It is drawn.
+    Finished,
 }
 
 /// Draws frames.
@@ -139,7 +143,7 @@ impl Renderer {
                     return Ok(Drawn::NoImage);
                 }
             },
-            Target::Memory => None,
+            Target::Memory | Target::Nowhere => None,
         };
         let output = match &acquired {
             Some(acquired) => acquired.image.clone(),
@@ -191,6 +195,11 @@ impl Renderer {
                 encoder.transition(&output, Use::Color, Use::Present);
                 self.frames.submit(encoder, acquired.submission)?;
                 Ok(Drawn::Shown { fits: swapchain.present(&acquired)? })
+            }
+            (Target::Nowhere, _) => {
+                self.frames.submit(encoder, Default::default())?;
+                self.frames.wait()?;
+                Ok(Drawn::Finished)
             }
             _ => {
                 encoder.transition(&output, Use::Color, Use::CopyFrom);

@@ -14,8 +14,11 @@ use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 
 use super::fingerprint::{Fingerprint, fingerprint, walk};
 
-/// A batch is delivered when nothing happened for this long.
-const SETTLE: Duration = Duration::from_millis(15);
+/// A save of one file that is there and closed is complete; this long covers an editor's own backup file beside it.
+const SETTLE_SAVE: Duration = Duration::from_millis(3);
+/// A batch with more files (a checkout), or with one that is gone (an editor that deletes and creates), is delivered when nothing
+/// happened for this long.
+const SETTLE: Duration = Duration::from_millis(30);
 /// A batch is delivered at the latest this long after its first event.
 const SETTLE_CAP: Duration = Duration::from_millis(150);
 
@@ -116,7 +119,7 @@ fn run(mut state: State, inbox: &Receiver<Message>, mut on_batch: impl FnMut(Bat
     loop {
         let message = match first {
             None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            Some(first) => inbox.recv_deadline((last + SETTLE).min(first + SETTLE_CAP)),
+            Some(first) => inbox.recv_deadline((last + settle(&pending)).min(first + SETTLE_CAP)),
         };
         match message {
             Ok(Message::Event(Ok(event))) => {
@@ -138,6 +141,11 @@ fn run(mut state: State, inbox: &Receiver<Message>, mut on_batch: impl FnMut(Bat
             }
         }
     }
+}
+
+fn settle(pending: &BTreeSet<PathBuf>) -> Duration {
+    let is_save = pending.len() <= 2 && pending.iter().all(|path| path.is_file());
+    if is_save { SETTLE_SAVE } else { SETTLE }
 }
 
 struct State {

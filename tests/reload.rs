@@ -1,0 +1,293 @@
+//! A reload is a transaction: a good edit shows, a bad one says why and changes no pixel.
+
+mod support;
+
+use std::fs;
+
+use specula::render::Outcome;
+use specula::settings::ShaderValue;
+use specula::shader::{Change, Severity};
+use support::{
+    Session, assert_differ, assert_same, failed, glb, line_of, lines, load, model, ready, settings, stages,
+};
+
+/// A lit sphere: one kind of material, so that a reload builds one pipeline.
+fn sphere() -> Session {
+    Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings(&[]))
+}
+
+const NDF: &str = "brdf/ndf.glsl";
+const USER: &str = "user.glsl";
+const SQUARED: &str = "float a2 = alpha * alpha;";
+
+#[test]
+fn a_b_a_by_pixels() {
+    let mut session = Session::new(model("shader-ball"), settings(&[]));
+    let original = session.tree.read(NDF);
+    let a = session.render();
+    ready(&session.edit(NDF, SQUARED, "float a2 = alpha;"));
+    let b = session.render();
+    assert_differ(&a, &b, "another NDF");
+    ready(&session.save(NDF, &original));
+    assert_same(&a, &session.render(), "back at A");
+}
+
+#[test]
+fn a_broken_edit_changes_no_pixel_and_says_where() {
+    let mut session = sphere();
+    let before = session.render();
+    let reload = session.edit(NDF, SQUARED, "float a2 = alpha * alfa;");
+    let text = session.tree.read(NDF);
+    let error = &failed(&reload)[0];
+    let line = line_of(&text, "alfa");
+    let source = text.lines().nth(line as usize - 1).unwrap();
+    assert_eq!(error.file, session.tree.path(NDF).display().to_string(), "{error}");
+    assert_eq!((error.line, error.severity), (Some(line), Severity::Error), "{error}");
+    assert_eq!(error.column, Some(source.find("alfa").unwrap() as u32 + 1), "{error}");
+    assert_eq!((error.length, error.excerpt.as_deref()), (4, Some(source)), "{error}");
+    assert!(error.message.contains("alfa") && error.render().contains("^^^^"), "{}", error.render());
+    assert_same(&before, &session.render(), "after a broken edit");
+
+    // Taken back, the text is the one on screen: nothing is compiled, and the message is void.
+    let reload = session.edit(NDF, "alpha * alfa", "alpha * alpha");
+    assert!(matches!(reload.outcome, Outcome::Unchanged { cleared: true }), "{:?}", stages(&reload));
+    assert!(stages(&reload).is_empty(), "{:?}", stages(&reload));
+    assert_same(&before, &session.render(), "after the edit was taken back");
+}
+
+#[test]
+fn an_edit_compiles_only_the_stages_that_use_it() {
+    let mut session = sphere();
+    for (file, from, to, expected) in [
+        (NDF, SQUARED, "float a2 = alpha;", &["pbr.frag"][..]),
+        ("common/tonemap.glsl", "x / (1.0 + x)", "x / (1.5 + x)", &["tonemap.frag"]),
+        ("common/fragment.glsl", "vec2 uv1;", "vec2 uv1;\n    vec2 uv2;", &["pbr.frag", "pbr.vert"]),
+        ("common/color.glsl", "0.0031308", "0.0031309", &["pbr.frag", "tonemap.frag"]),
+        ("tonemap.vert", "void main() {", "void main() {\n    float unused = 1.0;", &["tonemap.vert"]),
+    ] {
+        let reload = session.edit(file, from, to);
+        ready(&reload);
+        assert_eq!(stages(&reload), expected, "after {file}");
+        session.render();
+    }
+}
+
+#[test]
+fn a_save_that_changes_nothing_compiles_nothing() {
+    let mut session = sphere();
+    let text = session.tree.read(NDF);
+    let reload = session.save(NDF, &text);
+    assert!(matches!(reload.outcome, Outcome::Unchanged { cleared: false }));
+    assert!(stages(&reload).is_empty(), "{:?}", stages(&reload));
+    let reload = session.headless.update(Change::All);
+    assert!(stages(&reload).is_empty(), "{:?}", stages(&reload));
+    // A file that no stage includes.
+    let reload = session.save("notes.glsl", "not even GLSL\n");
+    assert!(matches!(reload.outcome, Outcome::Unchanged { cleared: false }), "{:?}", stages(&reload));
+}
+
+#[test]
+fn includes_may_come_late_move_and_go() {
+    let mut session = sphere();
+    let before = session.render();
+    let original = session.tree.read(USER);
+    let with_include = |file: &str| {
+        let include = format!("#include \"common/color.glsl\"\n#include \"{file}\"");
+        let text = original.replace("#include \"common/color.glsl\"", &include);
+        text.replace("    return radiance;", "    return radiance * mine();")
+    };
+
+    // Included before it exists: both places that were looked at are named.
+    let reload = session.save(USER, &with_include("lib/mine.glsl"));
+    let found = lines(failed(&reload));
+    let line = line_of(&session.tree.read(USER), "lib/mine.glsl");
+    let place = format!("{}:{line}", session.tree.path(USER).display());
+    assert!(found[0].starts_with(&place) && found[0].contains("lib/mine.glsl"), "{found:#?}");
+    assert_same(&before, &session.render(), "with an include missing");
+
+    // Created later, in a folder that is new as well.
+    fs::create_dir(session.tree.path("lib")).unwrap();
+    ready(&session.save("lib/mine.glsl", "vec3 mine() { return vec3(0.2, 1.0, 0.2); }\n"));
+    let green = session.render();
+    assert_differ(&before, &green, "the include is there");
+
+    // Renamed, and the include with it.
+    fs::rename(session.tree.path("lib/mine.glsl"), session.tree.path("lib/yours.glsl")).unwrap();
+    let reload = session.changed(&["lib/mine.glsl", "lib/yours.glsl"]);
+    assert!(lines(failed(&reload))[0].contains("lib/mine.glsl"), "{:#?}", lines(failed(&reload)));
+    assert_same(&green, &session.render(), "while the include is gone");
+    let reload = session.save(USER, &with_include("lib/yours.glsl"));
+    assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(&reload)));
+    assert_same(&green, &session.render(), "under its new name");
+
+    // Deleted, then no longer included.
+    fs::remove_file(session.tree.path("lib/yours.glsl")).unwrap();
+    assert!(lines(failed(&session.changed(&["lib/yours.glsl"])))[0].contains("lib/yours.glsl"));
+    assert_same(&green, &session.render(), "after the include was deleted");
+    ready(&session.save(USER, &original));
+    assert_same(&before, &session.render(), "without the include");
+}
+
+#[test]
+fn an_include_cycle_is_named() {
+    let mut session = sphere();
+    let before = session.render();
+    session.tree.write("ring.glsl", "#include \"user.glsl\"\n");
+    let reload = session.edit(USER, "#include \"common/color.glsl\"", "#include \"ring.glsl\"");
+    let found = lines(failed(&reload)).join("\n");
+    for part in ["cycle", "user.glsl -> ring.glsl -> user.glsl"] {
+        assert!(found.contains(part), "no `{part}` in:\n{found}");
+    }
+    assert_same(&before, &session.render(), "with a cycle");
+}
+
+#[test]
+fn a_shader_that_contradicts_the_contract_is_refused_with_both_sides_named() {
+    let mut session = sphere();
+    let before = session.render();
+    let original = session.tree.read(USER);
+    let declared = |declaration: &str, value: &str| {
+        let text = original.replace("// The surface before", &format!("{declaration}\n\n// The surface before"));
+        text.replace("    return radiance;", &format!("    return radiance + {value};"))
+    };
+    let wrong_kind = declared(
+        "layout(set = SET_MATERIAL, binding = BINDING_NORMAL_TEXTURE) uniform samplerCube wrong;",
+        "texture(wrong, v).rgb",
+    );
+    let unknown = declared("layout(set = SET_MATERIAL, binding = 31) uniform sampler2D wrong;", "texture(wrong, v.xy).rgb");
+    let taken_id = declared("layout(constant_id = 7) const float wrong = 1.0;", "vec3(wrong)");
+    for (text, parts) in [
+        (wrong_kind, ["samplerCube `wrong`", "Specula says BINDING_NORMAL_TEXTURE is sampler2D"]),
+        (unknown, ["set 1, binding 31 is sampler2D `wrong`", "Specula has nothing there"]),
+        (taken_id, ["constant_id 7 is `wrong`", "Specula keeps the ids below 32"]),
+    ] {
+        let reload = session.save(USER, &text);
+        let error = &failed(&reload)[0];
+        for part in parts {
+            assert!(error.message.contains(part), "no `{part}` in {error}");
+        }
+        assert_eq!(error.file, session.tree.path(USER).display().to_string(), "{error}");
+        assert_eq!(error.line, Some(line_of(&text, " wrong")), "{error}");
+        assert_same(&before, &session.render(), "refused");
+    }
+}
+
+#[test]
+fn interface_glsl_is_held_against_this_program() {
+    let mut session = sphere();
+    let before = session.render();
+    let original = session.tree.read("interface.glsl");
+    let file = session.tree.path("interface.glsl").display().to_string();
+
+    // Written by another version: named, with what to do.
+    let reload = session.edit("interface.glsl", "INTERFACE_VERSION = 1u", "INTERFACE_VERSION = 77u");
+    let error = failed(&reload).iter().find(|d| d.file == file && d.message.contains("77")).expect("a diagnostic");
+    assert_eq!(error.line, Some(line_of(&original, "INTERFACE_VERSION")), "{error}");
+    assert!(error.help.as_ref().is_some_and(|help| help.contains("specula new")), "{error:?}");
+
+    // A member moved, and push constants that do not fit.
+    for (from, to, parts) in [
+        ("    vec3 eye_ws;\n    float exposure;", "    float exposure;\n    vec3 eye_ws;", ["exposure", "Specula"]),
+        ("    uint node_id;", "    uint node_id;\n    mat4 more[2];", ["push constants `Draw`", "at most 128"]),
+    ] {
+        session.tree.write("interface.glsl", &original);
+        let reload = session.edit("interface.glsl", from, to);
+        let found = lines(failed(&reload)).join("\n");
+        assert!(parts.iter().all(|part| found.contains(part)), "no {parts:?} in:\n{found}");
+        assert_same(&before, &session.render(), "refused");
+    }
+
+    // Another text of the same version is used, with a warning.
+    session.tree.write("interface.glsl", &original);
+    let reload = session.edit("interface.glsl", "// Printed by", "// Once printed by");
+    assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(&reload)));
+    let warnings = lines(&session.headless.pipelines().shaders.warnings);
+    assert!(warnings.iter().any(|line| line.starts_with(&file) && line.contains("differs")), "{warnings:#?}");
+}
+
+#[test]
+fn an_annotation_that_does_not_parse_is_a_diagnostic_with_its_line() {
+    let mut session = sphere();
+    let before = session.render();
+    for (file, from, to, part) in [
+        (USER, "//@ui \"Rim\" 0..1 = 0.0", "//@ui \"Rim\" 0..one = 0.0", "one"),
+        (USER, "Off=0 Two=2", "Off=0 Two", "Two"),
+        ("debug/modes.glsl", "//@mode clay \"Clay\" group=\"Picture\" encode=color", "//@mode clay \"Clay\" group=\"Picture\" encode=colour", "colour"),
+        ("debug/modes.glsl", "//@mode depth ", "//@mode position ", "position"),
+    ] {
+        let original = session.tree.read(file);
+        let reload = session.edit(file, from, to);
+        let error = &failed(&reload)[0];
+        assert_eq!(error.file, session.tree.path(file).display().to_string(), "{error}");
+        let text = session.tree.read(file);
+        // Of two modes of one name the second is at fault.
+        let (at, _) = text.lines().enumerate().filter(|(_, line)| line.contains(to)).last().unwrap();
+        assert_eq!(error.line, Some(at as u32 + 1), "{error}");
+        assert!(error.full().contains(part), "{}", error.full());
+        assert_same(&before, &session.render(), "after a wrong annotation");
+        session.save(file, &original);
+    }
+}
+
+#[test]
+fn a_mode_added_to_modes_glsl_works_at_the_next_save() {
+    let mut session = sphere();
+    let modes = "//@mode facing \"Facing\" group=\"Mine\" encode=data doc=\"N dot V, squared.\"\n\
+                 const uint MODE_FACING = 1000u;\n\n#endif";
+    session.tree.write("debug/modes.glsl", &session.tree.edited("debug/modes.glsl", "#endif", modes));
+    let line = "else if (MODE == MODE_FACING) value = vec3(dot(s.n, v) * dot(s.n, v), 0.25, 2.0);\n    else known = false;";
+    session.tree.write("debug/terms.glsl", &session.tree.edited("debug/terms.glsl", "else known = false;", line));
+    ready(&session.changed(&["debug/modes.glsl", "debug/terms.glsl"]));
+
+    let mode = session.headless.pipelines().shaders.modes.iter().find(|mode| mode.slug == "facing").cloned();
+    let mode = mode.expect("the new mode is listed");
+    assert_eq!((mode.id, mode.name.as_str(), mode.group.as_str()), (1000, "Facing", "Mine"));
+    let n_dot_v = session.mode("n-dot-v");
+    let facing = session.mode("facing");
+    let (x, y) = (facing.width / 2, facing.height / 2);
+    let (expected, found) = (n_dot_v.raw_at(x, y).unwrap()[0].powi(2), facing.raw_at(x, y).unwrap());
+    assert!((found[0] - expected).abs() < 1e-4 && found[1..3] == [0.25, 2.0], "{found:?}, {expected}");
+    let at = 4 * (y * facing.width + x) as usize;
+    assert_eq!(facing.rgba8[at + 1..at + 3], [64, 255], "data is stored as it is, and clipped");
+}
+
+#[test]
+fn a_parameter_added_appears_and_values_survive_by_name() {
+    let mut session = sphere();
+    let plain = session.render();
+    session.set("rim_strength=1.0");
+    session.set("rim_color=[0.0, 1.0, 0.0]");
+    let rim = session.render();
+    assert_differ(&plain, &rim, "a rim");
+
+    // In front of the others: every offset moves, and no value with it.
+    let first = "    float roughness_scale;";
+    ready(&session.edit(USER, first, &format!("    float glow;                //@ui \"Glow\" 0..1 = 0.0\n{first}")));
+    let names: Vec<String> =
+        session.headless.pipelines().shaders.parameters.iter().map(|parameter| parameter.name.clone()).collect();
+    assert_eq!(names[0], "glow", "{names:?}");
+    assert_same(&rim, &session.render(), "values go by name");
+
+    ready(&session.edit(USER, "    return radiance;", "    return radiance + glow;"));
+    assert_same(&rim, &session.render(), "the default of the new parameter");
+    let generation = session.headless.pipelines().shaders.generation;
+    session.set("glow=0.5");
+    assert_differ(&rim, &session.render(), "the new parameter");
+    assert_eq!(session.headless.pipelines().shaders.generation, generation, "a parameter compiles nothing");
+}
+
+#[test]
+fn a_specialization_constant_changes_the_picture_without_a_compile() {
+    let mut session = sphere();
+    let smooth = session.render();
+    let generation = session.headless.pipelines().shaders.generation;
+    session.set("TOON_BANDS=Three");
+    let toon = session.render();
+    assert_differ(&smooth, &toon, "bands");
+    session.headless.settings_mut().shader.insert("TOON_BANDS".into(), ShaderValue::Int(0));
+    assert_same(&smooth, &session.render(), "bands off");
+    assert_eq!(session.headless.pipelines().shaders.generation, generation);
+    session.set("TOON_BANDS=Seven");
+    let error = session.headless.render().unwrap_err().to_string();
+    assert!(["TOON_BANDS", "Seven", "Three"].iter().all(|part| error.contains(part)), "{error}");
+}

@@ -1,0 +1,129 @@
+//! glTF binaries made in code.
+
+use serde_json::{Value, json};
+
+/// Triangles with normals.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Metres.
+    pub positions: Vec<[f32; 3]>,
+    /// Unit; empty for a mesh without.
+    pub normals: Vec<[f32; 3]>,
+    /// Three a triangle, counterclockwise from the front.
+    pub indices: Vec<u32>,
+}
+
+/// A square in the plane z = 0 that faces +Z.
+pub fn quad(half: f32) -> Mesh {
+    Mesh {
+        positions: vec![[-half, -half, 0.0], [half, -half, 0.0], [half, half, 0.0], [-half, half, 0.0]],
+        normals: vec![[0.0, 0.0, 1.0]; 4],
+        indices: vec![0, 1, 2, 0, 2, 3],
+    }
+}
+
+/// A unit sphere around the origin. Normals equal positions, so that interpolated and normalized they still do.
+pub fn sphere(rings: u32, sectors: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for ring in 0..=rings {
+        let polar = std::f32::consts::PI * ring as f32 / rings as f32;
+        for sector in 0..=sectors {
+            let azimuth = std::f32::consts::TAU * sector as f32 / sectors as f32;
+            let position = [polar.sin() * azimuth.sin(), polar.cos(), polar.sin() * azimuth.cos()];
+            mesh.positions.push(position);
+        }
+    }
+    mesh.normals.clone_from(&mesh.positions);
+    for ring in 0..rings {
+        for sector in 0..sectors {
+            let a = ring * (sectors + 1) + sector;
+            let b = a + sectors + 1;
+            mesh.indices.extend([a, b, a + 1, a + 1, b, b + 1]);
+        }
+    }
+    mesh
+}
+
+/// A GLB container around any JSON.
+pub fn container(json: &Value, bin: &[u8]) -> Vec<u8> {
+    let padded = |bytes: &[u8], with: u8| {
+        let mut bytes = bytes.to_vec();
+        bytes.resize(bytes.len().next_multiple_of(4), with);
+        bytes
+    };
+    let chunks = [(b"JSON", padded(json.to_string().as_bytes(), b' ')), (b"BIN\0", padded(bin, 0))];
+    let mut out = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
+    for (kind, bytes) in chunks {
+        out.extend((bytes.len() as u32).to_le_bytes());
+        out.extend(kind);
+        out.extend(bytes);
+    }
+    let length = (out.len() as u32).to_le_bytes();
+    out[8..12].copy_from_slice(&length);
+    out
+}
+
+/// The document of one mesh, one material and one node, and its buffer; tests bend it before they pack it.
+pub fn document(mesh: &Mesh, material: &Value) -> (Value, Vec<u8>) {
+    let mut bin = Vec::new();
+    let mut views = Vec::new();
+    let mut accessors = Vec::new();
+    let mut attributes = json!({});
+    let floats = |values: &[[f32; 3]]| values.iter().flatten().flat_map(|f| f.to_le_bytes()).collect::<Vec<u8>>();
+    for (name, values) in [("POSITION", &mesh.positions), ("NORMAL", &mesh.normals)] {
+        if values.is_empty() {
+            continue;
+        }
+        let bytes = floats(values);
+        views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": bytes.len() }));
+        bin.extend(bytes);
+        attributes[name] = json!(accessors.len());
+        let bound = |pick: fn(f32, f32) -> f32| {
+            let mut bound = values[0];
+            values.iter().for_each(|v| (0..3).for_each(|i| bound[i] = pick(bound[i], v[i])));
+            bound
+        };
+        accessors.push(json!({ "bufferView": accessors.len(), "componentType": 5126, "count": values.len(),
+            "type": "VEC3", "min": bound(f32::min), "max": bound(f32::max) }));
+    }
+    views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": mesh.indices.len() * 4, "target": 34963 }));
+    bin.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
+    let indices = accessors.len();
+    accessors.push(json!({ "bufferView": indices, "componentType": 5125, "count": mesh.indices.len(), "type": "SCALAR" }));
+    let json = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": bin.len() }],
+        "bufferViews": views,
+        "accessors": accessors,
+        "meshes": [{ "primitives": [{ "attributes": attributes, "indices": indices, "material": 0 }] }],
+        "materials": [material],
+        "nodes": [{ "mesh": 0 }],
+        "scenes": [{ "nodes": [0] }],
+        "scene": 0,
+    });
+    (json, bin)
+}
+
+/// A model of one mesh and one material.
+pub fn model(mesh: &Mesh, material: &Value) -> Vec<u8> {
+    let (json, bin) = document(mesh, material);
+    container(&json, &bin)
+}
+
+/// The same with a light: a KHR_lights_punctual light on a node with this placement.
+pub fn model_with_light(mesh: &Mesh, material: &Value, light: &Value, node: &Value) -> Vec<u8> {
+    let (mut json, bin) = document(mesh, material);
+    json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+    json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+    let mut node = node.clone();
+    node["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    json["nodes"] = json!([{ "mesh": 0 }, node]);
+    json["scenes"] = json!([{ "nodes": [0, 1] }]);
+    container(&json, &bin)
+}
+
+/// A gray dielectric.
+pub fn gray() -> Value {
+    json!({ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.5, 0.5, 1.0], "metallicFactor": 0.0,
+        "roughnessFactor": 0.5 } })
+}

@@ -1,0 +1,176 @@
+//! The program as a child process: run to its end, or driven by its events.
+
+use std::ffi::OsStr;
+use std::io::{BufRead as _, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+/// How long anything may take before a test gives up. Nothing waits this long unless it hangs.
+pub const PATIENCE: Duration = Duration::from_secs(90);
+
+/// What a finished program left.
+#[derive(Debug)]
+pub struct Finished {
+    /// Exit code; `None` when a signal ended it.
+    pub code: Option<i32>,
+    /// Standard output.
+    pub stdout: String,
+    /// Standard error.
+    pub stderr: String,
+}
+
+impl Finished {
+    /// Fails unless the program ended with `code` and said all of `parts` on stderr, without a panic.
+    #[track_caller]
+    pub fn expect(&self, code: i32, parts: &[&str]) -> &Self {
+        assert_eq!(self.code, Some(code), "{self:#?}");
+        assert!(!self.stderr.contains("panicked"), "{self:#?}");
+        for part in parts {
+            assert!(self.stderr.contains(part), "stderr lacks `{part}`: {self:#?}");
+        }
+        self
+    }
+
+    /// Standard output as JSON.
+    #[track_caller]
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("stdout is no JSON ({error}): {self:#?}"))
+    }
+}
+
+/// The program, to be run in `directory`.
+pub fn specula(directory: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_specula"));
+    command.current_dir(directory).stdin(Stdio::null());
+    command
+}
+
+/// Runs the program to its end.
+pub fn run<S: AsRef<OsStr>>(directory: &Path, args: &[S]) -> Finished {
+    finish(specula(directory).args(args))
+}
+
+/// Runs a command to its end; one that hangs is killed and fails the test.
+pub fn finish(command: &mut Command) -> Finished {
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let collect = |mut pipe: Box<dyn Read + Send>| {
+        let (sender, text) = channel();
+        std::thread::spawn(move || {
+            let mut bytes = Vec::new();
+            let _ = pipe.read_to_end(&mut bytes);
+            let _ = sender.send(String::from_utf8_lossy(&bytes).into_owned());
+        });
+        text
+    };
+    let stdout = collect(Box::new(child.stdout.take().unwrap()));
+    let stderr = collect(Box::new(child.stderr.take().unwrap()));
+    // The pipe closes when the program ends.
+    let Ok(stdout) = stdout.recv_timeout(PATIENCE) else {
+        let _ = child.kill();
+        panic!("{command:?} did not end; stderr: {}", stderr.recv().unwrap_or_default());
+    };
+    let status = child.wait().unwrap();
+    Finished { code: status.code(), stdout, stderr: stderr.recv_timeout(PATIENCE).unwrap_or_default() }
+}
+
+/// A program that runs with `--events json`. Dropping it kills it.
+pub struct Running {
+    child: Child,
+    events: Receiver<String>,
+    seen: Vec<String>,
+    stderr: Arc<Mutex<String>>,
+}
+
+impl Running {
+    /// Starts a command, which must print events.
+    pub fn start(command: &mut Command) -> Self {
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let (sender, events) = channel();
+        forward(child.stdout.take().unwrap(), sender);
+        let (sender, lines) = channel();
+        forward(child.stderr.take().unwrap(), sender);
+        let stderr = Arc::<Mutex<String>>::default();
+        let log = stderr.clone();
+        std::thread::spawn(move || lines.iter().for_each(|line| *log.lock().unwrap() += &(line + "\n")));
+        Self { child, events, seen: Vec::new(), stderr }
+    }
+
+    /// The next event, of any kind.
+    #[track_caller]
+    pub fn next(&mut self, what: &str, deadline: Instant) -> Value {
+        let left = deadline.saturating_duration_since(Instant::now());
+        match self.events.recv_timeout(left) {
+            Ok(line) => {
+                self.seen.push(line.clone());
+                serde_json::from_str(&line).unwrap_or_else(|error| panic!("`{line}` is no JSON: {error}"))
+            }
+            Err(RecvTimeoutError::Timeout) => panic!("waited in vain for {what}. {}", self.story()),
+            Err(RecvTimeoutError::Disconnected) => panic!("the program ended before {what}. {}", self.story()),
+        }
+    }
+
+    /// Waits for the first event that `is` accepts.
+    #[track_caller]
+    pub fn until(&mut self, what: &str, is: impl Fn(&Value) -> bool) -> Value {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let event = self.next(what, deadline);
+            if is(&event) {
+                return event;
+            }
+        }
+    }
+
+    /// Waits for an event of a kind.
+    #[track_caller]
+    pub fn event(&mut self, kind: &str) -> Value {
+        self.until(kind, |event| event["event"] == kind)
+    }
+
+    /// Waits for a reload that ended well or did not.
+    #[track_caller]
+    pub fn reload(&mut self, ok: bool) -> Value {
+        self.until(&format!("a reload with ok={ok}"), |event| event["event"] == "reload" && event["ok"] == ok)
+    }
+
+    /// Waits for the end of the program.
+    #[track_caller]
+    pub fn end(&mut self) -> ExitStatus {
+        let deadline = Instant::now() + PATIENCE;
+        // Its output closes with it.
+        loop {
+            match self.events.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+                Ok(line) => self.seen.push(line),
+                Err(RecvTimeoutError::Timeout) => panic!("the program did not end. {}", self.story()),
+                Err(RecvTimeoutError::Disconnected) => return self.child.wait().unwrap(),
+            }
+        }
+    }
+
+    /// What the program said so far, for messages.
+    pub fn story(&self) -> String {
+        format!("Events so far:\n{}\nstderr so far:\n{}", self.seen.join("\n"), self.stderr.lock().unwrap())
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn forward(pipe: impl Read + Send + 'static, to: Sender<String>) {
+    std::thread::spawn(move || {
+        for line in BufReader::new(pipe).lines().map_while(Result::ok) {
+            if to.send(line).is_err() {
+                return;
+            }
+        }
+    });
+}
