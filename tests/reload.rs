@@ -7,9 +7,7 @@ use std::fs;
 use specula::render::Outcome;
 use specula::settings::ShaderValue;
 use specula::shader::{Change, Severity};
-use support::{
-    Session, assert_differ, assert_same, failed, glb, line_of, lines, load, model, ready, settings, stages,
-};
+use support::{Session, assert_differ, assert_same, failed, glb, line_of, lines, load, model, ready, settings, stages};
 
 /// A lit sphere: one kind of material, so that a reload builds one pipeline.
 fn sphere() -> Session {
@@ -154,7 +152,8 @@ fn a_shader_that_contradicts_the_contract_is_refused_with_both_sides_named() {
         "layout(set = SET_MATERIAL, binding = BINDING_NORMAL_TEXTURE) uniform samplerCube wrong;",
         "texture(wrong, v).rgb",
     );
-    let unknown = declared("layout(set = SET_MATERIAL, binding = 31) uniform sampler2D wrong;", "texture(wrong, v.xy).rgb");
+    let unknown =
+        declared("layout(set = SET_MATERIAL, binding = 31) uniform sampler2D wrong;", "texture(wrong, v.xy).rgb");
     let taken_id = declared("layout(constant_id = 7) const float wrong = 1.0;", "vec3(wrong)");
     for (text, parts) in [
         (wrong_kind, ["samplerCube `wrong`", "Specula says BINDING_NORMAL_TEXTURE is sampler2D"]),
@@ -212,7 +211,12 @@ fn an_annotation_that_does_not_parse_is_a_diagnostic_with_its_line() {
     for (file, from, to, part) in [
         (USER, "//@ui \"Rim\" 0..1 = 0.0", "//@ui \"Rim\" 0..one = 0.0", "one"),
         (USER, "Off=0 Two=2", "Off=0 Two", "Two"),
-        ("debug/modes.glsl", "//@mode clay \"Clay\" group=\"Picture\" encode=color", "//@mode clay \"Clay\" group=\"Picture\" encode=colour", "colour"),
+        (
+            "debug/modes.glsl",
+            "//@mode clay \"Clay\" group=\"Picture\" encode=color",
+            "//@mode clay \"Clay\" group=\"Picture\" encode=colour",
+            "colour",
+        ),
         ("debug/modes.glsl", "//@mode depth ", "//@mode position ", "position"),
     ] {
         let original = session.tree.read(file);
@@ -235,7 +239,8 @@ fn a_mode_added_to_modes_glsl_works_at_the_next_save() {
     let modes = "//@mode facing \"Facing\" group=\"Mine\" encode=data doc=\"N dot V, squared.\"\n\
                  const uint MODE_FACING = 1000u;\n\n#endif";
     session.tree.write("debug/modes.glsl", &session.tree.edited("debug/modes.glsl", "#endif", modes));
-    let line = "else if (MODE == MODE_FACING) value = vec3(dot(s.n, v) * dot(s.n, v), 0.25, 2.0);\n    else known = false;";
+    let line =
+        "else if (MODE == MODE_FACING) value = vec3(dot(s.n, v) * dot(s.n, v), 0.25, 2.0);\n    else known = false;";
     session.tree.write("debug/terms.glsl", &session.tree.edited("debug/terms.glsl", "else known = false;", line));
     ready(&session.changed(&["debug/modes.glsl", "debug/terms.glsl"]));
 

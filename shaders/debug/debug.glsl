@@ -7,12 +7,14 @@
 #include "common/fragment.glsl"
 #include "debug/geometry.glsl"
 #include "debug/light.glsl"
+#include "debug/modes.glsl"
 #include "debug/surface.glsl"
 #include "debug/terms.glsl"
 #include "debug/truth.glsl"
 
 // Whether MODE shows a value of its own; if not, the picture is shown. Each function answers for one group of modes.
 bool debug_value(Fragment f, Surface s, vec3 v, out vec3 value) {
+    if (your_mode(f, s, v, value)) return true;
     if (debug_geometry(f, s, v, value)) return true;
     if (debug_surface(f, s, value)) return true;
     if (debug_terms(s, v, value)) return true;

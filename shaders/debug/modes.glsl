@@ -1,6 +1,6 @@
 // The debug modes. Each is one value of the specialization constant MODE, so a pipeline holds the code of one only.
 //
-// To add one: an annotation and a constant here, a line that gives its value in debug.glsl's functions, save.
+// To add one: an annotation and a constant here, its value in `your_mode` at the end of this file, save.
 //
 //   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [key=d] doc="One sentence."       in a comment
 //   const uint MODE_NAME = 1000u;                                              any number that no other mode has
@@ -12,6 +12,9 @@
 // Values are raw: a depth is in meters, D exceeds 1. A checkerboard means that the model or the light has no such data.
 #ifndef DEBUG_MODES_GLSL
 #define DEBUG_MODES_GLSL
+
+#include "brdf/surface.glsl"
+#include "common/fragment.glsl"
 
 //@mode final "Final" group="Picture" encode=color tonemap key=p doc="All lights, ambient light and emission."
 const uint MODE_FINAL = 0u;
@@ -141,5 +144,12 @@ const uint MODE_FALSE_COLOR = 503u;
 const uint MODE_ALBEDO_RANGE = 504u;
 //@mode f0-range "F0 range" group="Truth" encode=color doc="Red: neither dielectric (to 5 %) nor metal (sRGB 180 up)."
 const uint MODE_F0_RANGE = 505u;
+
+// Yours: the value of a mode of your own, from the fragment, the surface as it is shaded and the direction to the eye.
+//
+//     if (MODE == MODE_HEIGHT) { value = vec3(f.position_ws.y); return true; }
+bool your_mode(Fragment f, Surface s, vec3 v, out vec3 value) {
+    return false;
+}
 
 #endif

@@ -28,6 +28,16 @@ pub(super) struct Shown {
     pub(super) settings: Settings,
 }
 
+/// The raw value under the mouse.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Hover {
+    /// Pixels from the picture's left edge.
+    pub(super) x: u32,
+    /// Pixels from its upper edge.
+    pub(super) y: u32,
+    pub(super) value: [f32; 4],
+}
+
 /// A reload whose first frame is still to come.
 pub(super) struct FirstFrame {
     pub(super) generation: u64,
@@ -56,6 +66,7 @@ pub(super) struct Document {
     pub(super) notice: Option<(String, Instant)>,
     pub(super) hand: CameraHand,
     pub(super) mouse: Mouse,
+    pub(super) hover: Option<Hover>,
     pub(super) show_ui: bool,
     pub(super) quit: bool,
     pub(super) screenshot: bool,
@@ -107,6 +118,7 @@ impl Document {
             notice: None,
             hand: CameraHand::default(),
             mouse: Mouse::default(),
+            hover: None,
             show_ui: true,
             quit: false,
             screenshot: false,
@@ -140,6 +152,11 @@ impl Document {
     /// The debug mode that is set, as the tree describes it.
     pub(super) fn mode(&self) -> Option<&Mode> {
         self.shaders()?.modes.iter().find(|m| m.slug == self.settings.mode)
+    }
+
+    /// Whether the picture moves by itself: the lights orbit, or a shader reads the time.
+    pub(super) fn moves(&self) -> bool {
+        self.settings.lights.spin != 0.0 || self.shaders().is_some_and(|s| s.animated)
     }
 
     /// Tells the user something for a few seconds.
@@ -191,10 +208,7 @@ impl Document {
             "hdr" | "exr" => {
                 self.say(format!("{}: environments are not supported yet; the ambient light stays", path.display()));
             }
-            _ => self.say(format!(
-                "{}: expected a .gltf or .glb model or a folder with a shader tree",
-                path.display()
-            )),
+            _ => self.say(format!("{}: expected a .gltf or .glb model or a folder with a shader tree", path.display())),
         }
     }
 

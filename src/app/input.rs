@@ -13,7 +13,10 @@ use super::screen::Screen;
 /// The mouse over the picture.
 #[derive(Default)]
 pub(super) struct Mouse {
-    at: Vec2,
+    /// Pixels of the window.
+    pub(super) at: Vec2,
+    /// Whether it is over the picture, and not over a panel.
+    pub(super) over: bool,
     left: bool,
     middle: bool,
     right: bool,
@@ -52,9 +55,11 @@ pub(super) fn on_window_event(document: &mut Document, event: &WindowEvent, scre
         WindowEvent::CursorMoved { position, .. } => {
             let at = Vec2::new(position.x as f32, position.y as f32);
             let delta = (at - document.mouse.at) / screen.rect.height.max(1) as f32;
+            let was_over = std::mem::replace(&mut document.mouse.over, inside(screen, at));
             document.mouse.at = at;
-            drag(document, screen, delta)
+            drag(document, screen, delta) || was_over || document.mouse.over
         }
+        WindowEvent::CursorLeft { .. } => std::mem::take(&mut document.mouse.over),
         WindowEvent::MouseWheel { delta, .. } if !taken && inside(screen, document.mouse.at) => {
             let steps = match delta {
                 MouseScrollDelta::LineDelta(_, lines) => *lines,

@@ -14,7 +14,7 @@ use crate::render::{Drawn, FrameInput, Renderer, Shot, Target, UiFrame};
 use crate::scene::View;
 
 use super::camera::CameraHand;
-use super::document::{Document, SCENE_FORMAT};
+use super::document::{Document, Hover, SCENE_FORMAT};
 use super::panels;
 
 /// The screen. Fields drop in order: what draws, then what it draws to.
@@ -87,11 +87,12 @@ impl Screen {
         if self.stale || self.swapchain.is_none() {
             let old = self.swapchain.take();
             let vsync = document.gpu_is_fast();
-            self.swapchain =
-                Swapchain::new(&self.surface, (size.width, size.height), Renderer::IN_FLIGHT, vsync, old)?;
+            self.swapchain = Swapchain::new(&self.surface, (size.width, size.height), Renderer::IN_FLIGHT, vsync, old)?;
             self.stale = false;
         }
         let Some(extent) = self.swapchain.as_ref().map(Swapchain::extent) else { return Ok(None) };
+
+        document.hover = self.hover(document)?;
 
         // The user interface, which also tells where the picture goes.
         let input = self.input.take_egui_input(window);
@@ -117,11 +118,7 @@ impl Screen {
         };
         let generation = shown.map_or(0, |s| s.pipelines.shaders.generation);
         let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
-        let ui = UiFrame {
-            renderer: &mut self.ui,
-            primitives: &primitives,
-            pixels_per_point: output.pixels_per_point,
-        };
+        let ui = UiFrame { renderer: &mut self.ui, primitives: &primitives, pixels_per_point: output.pixels_per_point };
         let begin = Instant::now();
         match self.renderer.frame(frame, Target::Window(swapchain, ui))? {
             Drawn::Shown { fits } => self.stale |= !fits,
@@ -142,11 +139,24 @@ impl Screen {
             self.renderer.wait_for_frames()?;
             document.frame_done(generation, begin.elapsed().as_secs_f64() * 1e3);
         }
-        if self.stale || moving || document.settings.lights.spin != 0.0 {
+        // The value under the mouse belongs to the picture before this one: once more, when this one differs.
+        let hover_is_old = document.hover.is_some() && self.hover(document)? != document.hover;
+        if self.stale || moving || hover_is_old || document.moves() {
             return Ok(Some(Duration::ZERO));
         }
         let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|v| v.repaint_delay);
         Ok(delay.filter(|delay| *delay < Duration::from_secs(3600)))
+    }
+
+    /// The raw value under the mouse in the picture on screen.
+    fn hover(&self, document: &Document) -> Result<Option<Hover>, GpuError> {
+        let at = document.mouse.at;
+        let (x, y) = (at.x - self.rect.x as f32, at.y - self.rect.y as f32);
+        if x < 0.0 || y < 0.0 || !document.mouse.over {
+            return Ok(None);
+        }
+        let value = self.renderer.raw_at(x as u32, y as u32)?;
+        Ok(value.filter(|value| value[3] > 0.0).map(|value| Hover { x: x as u32, y: y as u32, value }))
     }
 
     /// Moves a flying camera on; returns whether it moved.
@@ -160,7 +170,9 @@ impl Screen {
 
     /// Camera, lights and values of this frame. The mode is the one whose pipelines are shown.
     fn shot(&self, document: &mut Document, aspect: f32) -> Option<Shot> {
-        let (time_s, mut settings) = (document.start.elapsed().as_secs_f32(), document.settings.clone());
+        // A picture that does not move by itself is kept, so its time stands still.
+        let time_s = if document.moves() { document.start.elapsed().as_secs_f32() } else { 0.0 };
+        let mut settings = document.settings.clone();
         let pipelines = document.shown().map(|s| (s.pipelines.clone(), s.settings.mode.clone()));
         if let Some((_, mode)) = &pipelines {
             settings.mode.clone_from(mode);

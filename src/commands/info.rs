@@ -40,7 +40,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         Ok(devices) => {
             for device in devices {
                 let note = device.refused.map(|why| format!("  (not usable: {why})")).unwrap_or_default();
-                println!("device     {} ({}), Vulkan {}, {}{note}", device.name, device.kind, device.api, device.driver);
+                println!(
+                    "device     {} ({}), Vulkan {}, {}{note}",
+                    device.name, device.kind, device.api, device.driver
+                );
             }
         }
         Err(error) => println!("device     none: {error}"),

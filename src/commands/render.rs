@@ -46,7 +46,8 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
         watch.follow(&model);
     }
     let opened = loop {
-        let opened = Headless::new(&gpu, &compiler()?, source.clone(), model.clone(), settings.clone(), args.common.size);
+        let opened =
+            Headless::new(&gpu, &compiler()?, source.clone(), model.clone(), settings.clone(), args.common.size);
         match (opened, &mut watch) {
             (Err(HeadlessError::Shaders(diagnostics)), Some(watch)) => {
                 tell(&args, &diagnostics);
@@ -73,13 +74,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
 }
 
 /// Takes a batch of changes in and writes the picture again when anything in it has changed.
-fn again(
-    headless: &mut Headless,
-    args: &Args,
-    all: bool,
-    watch: &mut Watch,
-    changes: &Changes,
-) -> Result<(), Failure> {
+fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, changes: &Changes) -> Result<(), Failure> {
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
     let new_model = changes.model && take_model(headless, args, watch)?;
     let change = headless.reloader().library().change_of(&changes.paths);

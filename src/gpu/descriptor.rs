@@ -138,13 +138,8 @@ impl DescriptorSet {
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
         // SAFETY: the device is live.
         let pool = unsafe { device.create_descriptor_pool(&info, None) }.context("creating a descriptor pool")?;
-        let mut this = Self {
-            layouts: layouts.clone(),
-            pool,
-            raw: vk::DescriptorSet::null(),
-            index: set,
-            _kept: writer.kept,
-        };
+        let mut this =
+            Self { layouts: layouts.clone(), pool, raw: vk::DescriptorSet::null(), index: set, _kept: writer.kept };
         let wanted = [layouts.sets[set as usize]];
         let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&wanted);
         // SAFETY: the pool is new, unshared and large enough.

@@ -77,8 +77,7 @@ impl Gpu {
         };
         let queue_family = graphics_family(&instance, physical)
             .ok_or_else(|| GpuError::NoDevice(format!("{} has no graphics queue", info.name)))?;
-        let device =
-            create_device(&instance, physical, queue_family, options.display.is_some(), &supported)?;
+        let device = create_device(&instance, physical, queue_family, options.display.is_some(), &supported)?;
         // SAFETY: the family was asked for at device creation with one queue.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -207,7 +206,8 @@ fn create_instance(
         extensions.push(ext::debug_utils::NAME.as_ptr());
     }
     if let Some(display) = display {
-        let required = ash_window::enumerate_required_extensions(display).context("asking for the window's extensions")?;
+        let required =
+            ash_window::enumerate_required_extensions(display).context("asking for the window's extensions")?;
         extensions.extend_from_slice(required);
     }
     let name = CString::new("specula").unwrap_or_default();
@@ -362,8 +362,7 @@ fn create_device(
         geometry_shader: vk::TRUE,
         ..Default::default()
     };
-    let mut v12 =
-        vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true).scalar_block_layout(true);
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true).scalar_block_layout(true);
     let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)
         .synchronization2(true)

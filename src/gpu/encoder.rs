@@ -143,9 +143,7 @@ impl Encoder {
             .image_view(to.color.view)
             .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
             .load_op(if to.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD })
-            .clear_value(vk::ClearValue {
-                color: vk::ClearColorValue { float32: to.clear.unwrap_or_default() },
-            });
+            .clear_value(vk::ClearValue { color: vk::ClearColorValue { float32: to.clear.unwrap_or_default() } });
         self.keep(to.color);
         let color = match to.resolve {
             Some(resolve) => {
@@ -167,7 +165,8 @@ impl Encoder {
                 .load_op(vk::AttachmentLoadOp::CLEAR)
                 .store_op(vk::AttachmentStoreOp::DONT_CARE)
         });
-        let mut info = vk::RenderingInfo::default().render_area(to.area.vulkan()).layer_count(1).color_attachments(&colors);
+        let mut info =
+            vk::RenderingInfo::default().render_area(to.area.vulkan()).layer_count(1).color_attachments(&colors);
         if let Some(depth) = &depth {
             info = info.depth_attachment(depth);
         }
@@ -299,14 +298,31 @@ impl Encoder {
 
     /// Reads mip level 0, in [`Use::CopyFrom`], into tightly packed rows.
     pub fn copy_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>) {
+        self.copy_region(from, whole_level(from, 0, 0), to);
+    }
+
+    /// Reads one pixel of an image in [`Use::CopyFrom`].
+    pub fn copy_pixel(&mut self, from: &Arc<Image>, at: (u32, u32), to: &Arc<Buffer>) {
+        self.copy_region(from, one_pixel(from, at), to);
+    }
+
+    fn copy_region(&mut self, from: &Arc<Image>, region: vk::BufferImageCopy, to: &Arc<Buffer>) {
         self.keep(from);
         self.keep(to);
-        let region = [whole_level(from, 0, 0)];
-        // SAFETY: recording into our own buffer; buffer and image are kept.
+        // SAFETY: recording into our own buffer; buffer and image are kept, and the buffer holds the region.
         unsafe {
             let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-            self.gpu.device.cmd_copy_image_to_buffer(self.raw, from.raw, layout, to.raw, &region);
+            self.gpu.device.cmd_copy_image_to_buffer(self.raw, from.raw, layout, to.raw, &[region]);
         }
+    }
+}
+
+/// One pixel of mip level 0.
+fn one_pixel(image: &Image, (x, y): (u32, u32)) -> vk::BufferImageCopy {
+    vk::BufferImageCopy {
+        image_offset: vk::Offset3D { x: x as i32, y: y as i32, z: 0 },
+        image_extent: vk::Extent3D { width: 1, height: 1, depth: 1 },
+        ..whole_level(image, 0, 0)
     }
 }
 

@@ -14,7 +14,9 @@ pub enum GpuError {
     #[error("no usable Vulkan device: {0}")]
     NoDevice(String),
     /// The validation layers were asked for and are missing.
-    #[error("the Vulkan validation layers are not installed; on Debian and Ubuntu: apt-get install vulkan-validationlayers")]
+    #[error(
+        "the Vulkan validation layers are not installed; on Debian and Ubuntu: apt-get install vulkan-validationlayers"
+    )]
     NoValidation,
     /// The driver gave up on the device.
     #[error(

@@ -39,8 +39,7 @@ impl Slot {
         slot.pool = unsafe { gpu.device.create_command_pool(&info, None) }.context("creating a command pool")?;
         let info = vk::CommandBufferAllocateInfo::default().command_pool(slot.pool).command_buffer_count(1);
         // SAFETY: the pool is live and only this slot uses it.
-        slot.buffer =
-            unsafe { gpu.device.allocate_command_buffers(&info) }.context("allocating a command buffer")?[0];
+        slot.buffer = unsafe { gpu.device.allocate_command_buffers(&info) }.context("allocating a command buffer")?[0];
         let info = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
         // SAFETY: the device is live.
         slot.fence = unsafe { gpu.device.create_fence(&info, None) }.context("creating a fence")?;
@@ -213,10 +212,7 @@ impl Frames {
 ///
 /// # Errors
 /// What `commands` returns, or a lost device.
-pub fn one_shot<T>(
-    gpu: &Arc<Gpu>,
-    commands: impl FnOnce(&mut Encoder) -> Result<T, GpuError>,
-) -> Result<T, GpuError> {
+pub fn one_shot<T>(gpu: &Arc<Gpu>, commands: impl FnOnce(&mut Encoder) -> Result<T, GpuError>) -> Result<T, GpuError> {
     let mut slot = Slot::new(gpu)?;
     let mut encoder = slot.begin()?;
     let result = commands(&mut encoder)?;

@@ -22,7 +22,8 @@ impl Surface {
     /// # Errors
     /// A device that cannot show this window, or that was opened without a display.
     pub fn new(gpu: &Arc<Gpu>, display: RawDisplayHandle, window: RawWindowHandle) -> Result<Arc<Self>, GpuError> {
-        let loader = gpu.surface.as_ref().ok_or_else(|| GpuError::NoDevice("it was opened without a display".into()))?;
+        let loader =
+            gpu.surface.as_ref().ok_or_else(|| GpuError::NoDevice("it was opened without a display".into()))?;
         // SAFETY: the handles come from a live window; the instance has the extensions of this display.
         let raw = unsafe { ash_window::create_surface(&gpu.entry, &gpu.instance, display, window, None) }
             .context("creating the window's surface")?;
@@ -194,8 +195,7 @@ impl Swapchain {
     pub fn present(&mut self, acquired: &Acquired) -> Result<bool, GpuError> {
         let Some(swapchains) = &self.gpu.swapchain else { return Ok(false) };
         let (wait, chains, indices) = ([self.rendered[acquired.index as usize]], [self.raw], [acquired.index]);
-        let info =
-            vk::PresentInfoKHR::default().wait_semaphores(&wait).swapchains(&chains).image_indices(&indices);
+        let info = vk::PresentInfoKHR::default().wait_semaphores(&wait).swapchains(&chains).image_indices(&indices);
         let queue = self.gpu.lock_queue();
         // SAFETY: the image was acquired and its rendering signals the semaphore; the queue is locked.
         match unsafe { swapchains.queue_present(*queue, &info) } {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, vk};
+use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, one_shot, vk};
 
 /// A frame in memory.
 #[derive(Clone, Debug)]
@@ -62,16 +62,36 @@ impl Readback {
     pub(super) fn finish(self) -> Capture {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
-        let bytes = self.raw.read();
-        let raw = if self.half {
-            let halves = bytes.chunks_exact(2).map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32());
-            let floats: Vec<f32> = halves.collect();
-            floats.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect()
-        } else {
-            let floats = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-            let floats: Vec<f32> = floats.collect();
-            floats.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect()
-        };
+        let raw = floats(&self.raw.read(), self.half);
         Capture { width: self.width, height: self.height, rgba8, raw }
     }
+}
+
+/// One pixel of an HDR image in `Use::Sampled`.
+pub(super) fn raw_at(gpu: &Arc<Gpu>, hdr: &Arc<Image>, x: u32, y: u32) -> Result<Option<[f32; 4]>, GpuError> {
+    let desc = hdr.desc();
+    if x >= desc.width || y >= desc.height {
+        return Ok(None);
+    }
+    let buffer = Buffer::new(gpu, "pixel", 16, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
+    one_shot(gpu, |encoder| {
+        encoder.transition(hdr, Use::Sampled, Use::CopyFrom);
+        encoder.copy_pixel(hdr, (x, y), &buffer);
+        encoder.transition(hdr, Use::CopyFrom, Use::Sampled);
+        encoder.copies_done();
+        Ok(())
+    })?;
+    let half = desc.format == vk::Format::R16G16B16A16_SFLOAT;
+    Ok(floats(&buffer.read(), half).first().copied())
+}
+
+/// RGBA pixels of half or full floats.
+fn floats(bytes: &[u8], half: bool) -> Vec<[f32; 4]> {
+    let decode = |pixel: &[u8]| -> [f32; 4] {
+        std::array::from_fn(|c| match half {
+            true => half::f16::from_le_bytes([pixel[2 * c], pixel[2 * c + 1]]).to_f32(),
+            false => f32::from_le_bytes([pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]]),
+        })
+    };
+    bytes.chunks_exact(if half { 8 } else { 16 }).map(decode).collect()
 }

@@ -10,7 +10,7 @@ use crate::gpu::{
 };
 use crate::interface::{ALPHA_BLEND, SET_PASS};
 
-use super::capture::{Capture, Readback};
+use super::capture::{self, Capture, Readback};
 use super::pipelines::PipelineSet;
 use super::scene::{GpuDraw, GpuScene};
 use super::shot::Shot;
@@ -66,6 +66,30 @@ pub enum Drawn {
     Finished,
 }
 
+/// What an HDR picture was drawn from. The same again gives the same, so it is kept: only the panels are drawn anew then.
+#[derive(PartialEq)]
+struct Drawing {
+    uniforms: Vec<u8>,
+    wanted: Wanted,
+    generation: u64,
+    scene: usize,
+}
+
+impl Drawing {
+    fn of(input: &FrameInput<'_>) -> Option<Self> {
+        let (pipelines, wanted) = input.pipelines?;
+        let mut uniforms = bytemuck::bytes_of(&input.shot.uniforms(input.rect)).to_vec();
+        uniforms.extend_from_slice(bytemuck::cast_slice(&input.shot.lights));
+        uniforms.extend_from_slice(&input.shot.params);
+        Some(Self {
+            uniforms,
+            wanted: wanted.clone(),
+            generation: pipelines.shaders.generation,
+            scene: input.scene.map_or(0, |scene| std::ptr::from_ref(scene).addr()),
+        })
+    }
+}
+
 /// Draws frames.
 pub struct Renderer {
     gpu: Arc<Gpu>,
@@ -75,6 +99,7 @@ pub struct Renderer {
     targets: Option<(Targets, Arc<DescriptorSet>)>,
     nearest: Arc<Sampler>,
     scene_format: vk::Format,
+    kept: Option<Drawing>,
 }
 
 impl Renderer {
@@ -105,6 +130,7 @@ impl Renderer {
             targets: None,
             nearest: Sampler::new(gpu, &nearest)?,
             scene_format,
+            kept: None,
         })
     }
 
@@ -116,6 +142,17 @@ impl Renderer {
     /// Device time of the newest finished frame, milliseconds.
     pub fn device_ms(&self) -> Option<f64> {
         self.frames.last_device_ms()
+    }
+
+    /// Raw value at a pixel of the last picture on screen, counted from its upper left corner; `None` outside, or without one.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn raw_at(&self, x: u32, y: u32) -> Result<Option<[f32; 4]>, GpuError> {
+        match (&self.targets, &self.kept) {
+            (Some((targets, _)), Some(_)) => capture::raw_at(&self.gpu, &targets.color, x, y),
+            _ => Ok(None),
+        }
     }
 
     /// SYNC: waits for all frames in flight, before egui's textures change.
@@ -160,12 +197,16 @@ impl Renderer {
         uniforms.write(&input.shot.uniforms(input.rect), &input.shot.lights, &input.shot.params);
         encoder.bind_set(&self.layouts, &uniforms.set);
 
-        // The model, to HDR.
+        // The model, to HDR; in a window only when something about it has changed.
         let Some((targets, hdr_set)) = &self.targets else { return Ok(Drawn::NoImage) };
-        draw_model(&mut encoder, &self.layouts, targets, &input);
+        let drawing = Drawing::of(&input).filter(|_| acquired.is_some());
+        if drawing.is_none() || drawing != self.kept {
+            draw_model(&mut encoder, &self.layouts, targets, &input);
+            encoder.transition(&targets.color, Use::Color, Use::Sampled);
+        }
+        self.kept = drawing;
 
         // HDR to the picture: exposure, tone map, sRGB.
-        encoder.transition(&targets.color, Use::Color, Use::Sampled);
         let before = if acquired.is_some() { Use::Acquired } else { Use::Undefined };
         encoder.transition(&output, before, Use::Color);
         let whole = Rect { x: 0, y: 0, width: output.desc().width, height: output.desc().height };
@@ -221,6 +262,7 @@ impl Renderer {
         if self.targets.as_ref().is_some_and(|(targets, _)| targets.fits(size, samples)) {
             return Ok(());
         }
+        self.kept = None;
         let targets = Targets::new(&self.gpu, size, samples, self.scene_format)?;
         let writer = SetWriter::default().texture(0, &targets.color, &self.nearest);
         let set = DescriptorSet::new(&self.layouts, SET_PASS, writer)?;

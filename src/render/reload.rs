@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::gpu::{Gpu, SetLayouts};
 use crate::events::ReloadEvent;
+use crate::gpu::{Gpu, SetLayouts};
 use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, Update};
 
 use super::pipelines::{PipelineSet, STAGES};
@@ -87,9 +87,8 @@ impl Reloader {
             return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
         }
         let start = Instant::now();
-        let built = wanted(&shaders).and_then(|wanted| {
-            PipelineSet::new(&self.gpu, &self.layouts, shaders, &wanted).map_err(|e| e.to_string())
-        });
+        let built = wanted(&shaders)
+            .and_then(|wanted| PipelineSet::new(&self.gpu, &self.layouts, shaders, &wanted).map_err(|e| e.to_string()));
         let pipeline_ms = start.elapsed().as_secs_f64() * 1e3;
         let outcome = match built {
             Ok(set) => {

@@ -106,9 +106,8 @@ struct Staging<'a> {
     images: Vec<(u64, Arc<Image>)>,
 }
 
-const TEXTURE_USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
-    vk::ImageUsageFlags::SAMPLED.as_raw() | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
-);
+const TEXTURE_USAGE: vk::ImageUsageFlags =
+    vk::ImageUsageFlags::from_raw(vk::ImageUsageFlags::SAMPLED.as_raw() | vk::ImageUsageFlags::TRANSFER_DST.as_raw());
 
 /// Images that stand in for missing textures: white, and a flat normal.
 const WHITE: (usize, bool) = (usize::MAX, false);
@@ -198,7 +197,8 @@ impl<'a> Staging<'a> {
     ) -> Result<Arc<Image>, UploadError> {
         let format = if srgb { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
         let mips = mips::count(width, height);
-        let image = Image::new(self.gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?;
+        let image =
+            Image::new(self.gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?;
         let offset = self.push(rgba8);
         // The levels follow each other without a gap, each a multiple of 4 bytes.
         self.buffer.write(self.used, below);

@@ -15,11 +15,7 @@ pub(super) struct Uniforms {
 
 impl Uniforms {
     /// With room for `lights` lights.
-    pub(super) fn new(
-        gpu: &Arc<crate::gpu::Gpu>,
-        layouts: &Arc<SetLayouts>,
-        lights: usize,
-    ) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Arc<crate::gpu::Gpu>, layouts: &Arc<SetLayouts>, lights: usize) -> Result<Self, GpuError> {
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let light_bytes = (lights.max(8) * size_of::<Light>()) as u64;

@@ -84,11 +84,8 @@ impl Wanted {
     }
 
     pub(super) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
-        let mut specialization = vec![
-            (SPEC_MODE, self.mode),
-            (SPEC_ALPHA_MODE, material.alpha),
-            (SPEC_FEATURES, material.features),
-        ];
+        let mut specialization =
+            vec![(SPEC_MODE, self.mode), (SPEC_ALPHA_MODE, material.alpha), (SPEC_FEATURES, material.features)];
         specialization.extend_from_slice(&self.constants);
         PipelineKey {
             pass: Pass::Model { blend: material.alpha == interface::ALPHA_BLEND, class: material.class },

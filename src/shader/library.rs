@@ -75,6 +75,8 @@ pub struct ShaderSet {
     pub parameters: Vec<Parameter>,
     /// What the compiler warns of.
     pub warnings: Vec<Diagnostic>,
+    /// Whether a shader reads the time, so that its picture moves by itself.
+    pub animated: bool,
 }
 
 /// What an update did.
@@ -256,7 +258,10 @@ impl Library {
         let linked = self.link(&snapshot);
         report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
         match linked {
-            Ok((annotations, warnings)) => self.commit(annotations, warnings, report),
+            Ok((annotations, warnings)) => {
+                let animated = self.reads_time(&snapshot);
+                self.commit(annotations, warnings, animated, report)
+            }
             Err(diagnostics) => {
                 self.failed = true;
                 Update::Failed(unique(diagnostics), report)
@@ -336,7 +341,20 @@ impl Library {
         Ok((annotations, unique(warnings)))
     }
 
-    fn commit(&mut self, annotations: Annotations, warnings: Vec<Diagnostic>, report: Report) -> Update {
+    /// Whether any file but the contract names the time.
+    fn reads_time(&self, snapshot: &Snapshot<'_>) -> bool {
+        let names_it = |path: &TreePath| snapshot.read(path).is_ok_and(|text| text.contains("frame.time_s"));
+        let contract = TreePath::from(contract::INTERFACE_FILE);
+        self.dependencies().iter().any(|path| *path != contract && names_it(path))
+    }
+
+    fn commit(
+        &mut self,
+        annotations: Annotations,
+        warnings: Vec<Diagnostic>,
+        animated: bool,
+        report: Report,
+    ) -> Update {
         let cleared = std::mem::replace(&mut self.failed, false);
         let mut stages = BTreeMap::new();
         for slot in &mut self.slots {
@@ -354,7 +372,7 @@ impl Library {
             }
         }
         let generation = self.set.as_ref().map_or(0, |set| set.generation) + 1;
-        let set = Arc::new(ShaderSet { generation, stages, modes, constants, parameters, warnings });
+        let set = Arc::new(ShaderSet { generation, stages, modes, constants, parameters, warnings, animated });
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }

@@ -119,7 +119,7 @@ fn run(mut state: State, inbox: &Receiver<Message>, mut on_batch: impl FnMut(Bat
     loop {
         let message = match first {
             None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            Some(first) => inbox.recv_deadline((last + settle(&pending)).min(first + SETTLE_CAP)),
+            Some(first) => inbox.recv_deadline((last + state.settle(&pending)).min(first + SETTLE_CAP)),
         };
         match message {
             Ok(Message::Event(Ok(event))) => {
@@ -141,11 +141,6 @@ fn run(mut state: State, inbox: &Receiver<Message>, mut on_batch: impl FnMut(Bat
             }
         }
     }
-}
-
-fn settle(pending: &BTreeSet<PathBuf>) -> Duration {
-    let is_save = pending.len() <= 2 && pending.iter().all(|path| path.is_file());
-    if is_save { SETTLE_SAVE } else { SETTLE }
 }
 
 struct State {
@@ -194,6 +189,14 @@ impl State {
                 self.known.entry(path.clone()).or_insert(found);
             }
         }
+    }
+
+    /// How long to wait for more after these. A file that is gone and was never known is an editor's temporary one.
+    fn settle(&self, pending: &BTreeSet<PathBuf>) -> Duration {
+        let mut real = pending.iter().filter(|path| path.is_file() || self.known.contains_key(*path));
+        let (one, two, more) = (real.next(), real.next(), real.next());
+        let is_save = more.is_none() && [one, two].into_iter().flatten().all(|path| path.is_file());
+        if is_save { SETTLE_SAVE } else { SETTLE }
     }
 
     /// Takes the present content as known.

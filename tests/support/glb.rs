@@ -89,7 +89,8 @@ pub fn document(mesh: &Mesh, material: &Value) -> (Value, Vec<u8>) {
     views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": mesh.indices.len() * 4, "target": 34963 }));
     bin.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
     let indices = accessors.len();
-    accessors.push(json!({ "bufferView": indices, "componentType": 5125, "count": mesh.indices.len(), "type": "SCALAR" }));
+    accessors
+        .push(json!({ "bufferView": indices, "componentType": 5125, "count": mesh.indices.len(), "type": "SCALAR" }));
     let json = json!({
         "asset": { "version": "2.0" },
         "buffers": [{ "byteLength": bin.len() }],

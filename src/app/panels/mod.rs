@@ -37,7 +37,7 @@ pub(super) fn style(egui: &egui::Context) {
         style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
         style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
         style.spacing.item_spacing = egui::vec2(6.0, 4.0);
-        style.spacing.slider_width = 110.0;
+        style.spacing.slider_width = 100.0;
     });
 }
 
@@ -46,13 +46,12 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>)
     let whole = ui.max_rect();
     let frame = egui::Frame::new().fill(PANEL).inner_margin(Margin::symmetric(8, 6));
     // On a window too narrow for both, the picture goes first.
-    let wide = whole.width() > 700.0;
-    if document.show_ui {
-        if wide {
+    if document.show_ui && whole.width() > 460.0 {
+        if whole.width() > 760.0 {
             let panel = egui::Panel::left("modes").frame(frame).default_size(170.0).min_size(120.0).max_size(320.0);
             panel.show(ui, |ui| modes::show(ui, document));
         }
-        let panel = egui::Panel::right("settings").frame(frame).default_size(280.0).min_size(220.0).max_size(480.0);
+        let panel = egui::Panel::right("settings").frame(frame).default_size(286.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 shaders::show(ui, document, device_ms);
@@ -79,10 +78,13 @@ fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
 /// A row: name on the left, control on the right.
 fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        let width = 92.0;
-        let (rect, _) = ui.allocate_exact_size(egui::vec2(width, 18.0), egui::Sense::hover());
-        let label = egui::Label::new(name).truncate();
-        let response = ui.put(rect, label);
+        let size = egui::vec2(104.0, 18.0);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let label = |ui: &mut Ui| {
+            ui.set_min_size(size);
+            ui.add(egui::Label::new(name).truncate())
+        };
+        let response = ui.allocate_ui_with_layout(size, layout, label).inner;
         if !doc.is_empty() {
             response.on_hover_text(doc);
         }

@@ -27,10 +27,18 @@ pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui:
         });
     }
     if document.show_ui {
-        let mode = document.mode().map(|mode| (mode.name.clone(), mode.slug != "final"));
-        if let Some((name, true)) = mode {
+        let mode = document.mode().filter(|mode| mode.slug != "final").map(|mode| mode.name.clone());
+        let value = document.hover.map(|hover| {
+            let [r, g, b, _] = hover.value.map(number);
+            format!("{r} {g} {b}   at {}, {}", hover.x, hover.y)
+        });
+        if mode.is_some() || value.is_some() {
             area("mode", Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
-                card(Color32::from_gray(60)).show(ui, |ui| ui.label(name));
+                card(Color32::from_gray(60)).show(ui, |ui| {
+                    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+                    mode.map(|name| ui.label(RichText::new(name).strong()));
+                    value.map(|value| ui.label(RichText::new(value).monospace()));
+                });
             });
         }
     }
@@ -67,12 +75,23 @@ fn one(ui: &mut egui::Ui, diagnostic: &Diagnostic) {
         ui.ctx().copy_text(place);
     }
     let full = diagnostic.full();
-    let rest = full.split_once('\n').map_or("", |(_, rest)| rest);
+    // Without the first two lines: message and place stand above.
+    let rest = full.lines().skip(2).collect::<Vec<_>>().join("\n");
     ui.label(RichText::new(&diagnostic.message).monospace());
     if !rest.is_empty() {
         ui.add(egui::Label::new(RichText::new(rest).monospace().color(Color32::from_gray(215))).extend());
     }
     ui.add_space(6.0);
+}
+
+/// Five digits that count, and room for a sign, so that the numbers do not dance.
+fn number(value: f32) -> String {
+    let magnitude = value.abs();
+    match magnitude {
+        _ if !value.is_finite() => format!("{value:>8}"),
+        m if m != 0.0 && !(1e-3..1e5).contains(&m) => format!("{value:>8.2e}"),
+        m => format!("{value:>8.*}", 4 - (m.max(1.0).log10() as usize).min(4)),
+    }
 }
 
 fn area(id: &str, corner: Align2, picture: egui::Rect) -> Area {

@@ -27,8 +27,8 @@ use self::buffers::{Buffers, Files, read_regular};
 use self::mesh::Geometry;
 use super::LoadOptions;
 use super::error::Problem;
-use super::outline::outline;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
+use super::outline::outline;
 
 /// Largest coordinate of a mesh and of the scene, metres: a camera that frames it can still be squared in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;

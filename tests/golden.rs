@@ -1,0 +1,84 @@
+//! A few pictures of the shader ball against those in `tests/golden/`, as an eye would compare them.
+//!
+//! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m at a 4K screen: one gray level is about
+//! 0.005, an edge moved by a pixel up to 0.5 along that edge. Drivers may differ in the last bit of a color, in texture
+//! filtering and in which of four samples an edge covers; over such a picture that comes to a mean under 0.005. A wrong term, a
+//! missing light or a flipped normal is a mean of 0.05 and more. The threshold of 0.02 stands between the two.
+
+mod support;
+
+use std::path::{Path, PathBuf};
+
+use image::RgbImage;
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
+use specula::render::Capture;
+use support::{embedded, model, render, settings};
+
+const SIZE: (u32, u32) = (160, 120);
+const MOST_MEAN: f32 = 0.02;
+const BLESS: &str = "SPECULA_BLESS=1 cargo test --release --test golden";
+
+#[test]
+fn pictures_are_as_they_were() {
+    // The camera is given, so that a change of framing changes no golden; lights and look are the defaults.
+    let settings = settings(&[
+        "camera.eye=[2.45, 2.3, 4.25]",
+        "camera.target=[0, 1.1, 0]",
+        "camera.fovy=35",
+        "view.background='#1b1d21'",
+        "view.tonemap=aces",
+    ]);
+    let mut headless = embedded(model("shader-ball"), settings, SIZE);
+    let mut wrong = Vec::new();
+    for slug in ["final", "shading-normal", "metallic", "light-2", "diffuse-lobe"] {
+        let capture = render(&mut headless, slug);
+        if std::env::var_os("SPECULA_BLESS").is_some() {
+            picture(&capture).save(golden(slug)).unwrap();
+        } else if let Err(message) = compare(slug, &picture(&capture)) {
+            wrong.push(message);
+        }
+    }
+    assert!(wrong.is_empty(), "{}\nIf the change is meant: {BLESS}", wrong.join("\n"));
+}
+
+fn golden(slug: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{slug}.png"))
+}
+
+fn picture(capture: &Capture) -> RgbImage {
+    let rgb = capture.rgba8.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    RgbImage::from_raw(capture.width, capture.height, rgb).unwrap()
+}
+
+/// Compares with the golden; on failure leaves the actual picture and the difference in cargo's folder for tests.
+fn compare(slug: &str, actual: &RgbImage) -> Result<(), String> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
+    std::fs::create_dir_all(&folder).unwrap();
+    let keep = |image: &RgbImage, kind: &str| {
+        let path = folder.join(format!("{slug}.{kind}.png"));
+        image.save(&path).unwrap();
+        path.display().to_string()
+    };
+    let expected = image::open(golden(slug)).map_err(|error| {
+        let kept = keep(actual, "actual");
+        format!("{slug}: there is no golden {} ({error}); the picture is {kept}", golden(slug).display())
+    })?;
+    let expected = expected.into_rgb8();
+    if expected.dimensions() != actual.dimensions() {
+        return Err(format!(
+            "{slug}: the golden has {:?} pixels, not {:?}",
+            expected.dimensions(),
+            actual.dimensions()
+        ));
+    }
+    let image = |of: &RgbImage| FlipImageRgb8::with_data(of.width(), of.height(), of);
+    let error = flip(image(&expected), image(actual), DEFAULT_PIXELS_PER_DEGREE);
+    let mean = FlipPool::from_image(&error).mean();
+    if mean <= MOST_MEAN {
+        return Ok(());
+    }
+    let colors = error.apply_color_lut(&magma_lut());
+    let difference = RgbImage::from_raw(colors.width(), colors.height(), colors.to_vec()).unwrap();
+    let (kept, difference) = (keep(actual, "actual"), keep(&difference, "difference"));
+    Err(format!("{slug}: FLIP mean {mean:.4}, at most {MOST_MEAN}; see {kept} and {difference}"))
+}
