@@ -168,7 +168,7 @@ fn no_vulkan_device() {
 fn no_display() {
     let directory = directory();
     let mut command = specula(directory.path());
-    ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].iter().for_each(|name| drop(command.env_remove(name)));
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
     finish(command.arg("view")).expect(3, &["no display", "render --watch"]);
 }
 

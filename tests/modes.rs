@@ -8,7 +8,7 @@ use specula::render::Capture;
 use specula::scene::{BUILT_IN, Model};
 use specula::settings::Settings;
 use specula::shader::Encode;
-use support::{SIZE, embedded, glb, load, model, render, settings, srgb};
+use support::{SIZE, glb, load, model, render, renderer, settings, srgb};
 
 /// The slugs that programs outside rely on.
 const FIXED: &str = "final base-color alpha metallic roughness occlusion emissive normal-texture geometric-normal \
@@ -22,7 +22,7 @@ const SAME_ALL_OVER: [&str; 4] = ["alpha", "f90", "face-orientation", "tangent-s
 fn sharp(model: Model, more: &[&str]) -> Headless {
     let mut settings: Settings = settings(&["view.msaa=1", "view.background=none"]);
     more.iter().for_each(|assignment| settings.assign(assignment).unwrap());
-    embedded(model, settings, SIZE)
+    renderer(model, settings, SIZE)
 }
 
 fn slugs(headless: &Headless) -> Vec<String> {

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Mat4, Vec3};
 use serde_json::{Value, json};
 use specula::headless::Headless;
-use support::{SIZE, embedded, glb, load, render, settings};
+use support::{SIZE, glb, load, render, renderer, settings};
 
 /// Relative to the value, or to 1 where the value is smaller than its own rounding.
 const TOLERANCE: f64 = 1e-3;
@@ -46,6 +46,7 @@ struct Lamp {
 
 const COLOR: [f64; 3] = [1.0, 0.8, 0.6];
 const PLACE: DVec3 = DVec3::new(1.5, 1.2, 2.0);
+const SPOT: DVec3 = DVec3::new(0.2, 0.3, 3.0);
 
 fn lamps() -> [Lamp; 4] {
     let place = json!({ "translation": [PLACE.x, PLACE.y, PLACE.z] });
@@ -59,7 +60,7 @@ fn lamps() -> [Lamp; 4] {
         Lamp {
             name: "point with a range",
             json: json!({ "type": "point", "color": COLOR, "intensity": 12.0, "range": 2.5 }),
-            node: place.clone(),
+            node: place,
             at: |p| {
                 let d = (PLACE - p).length();
                 ((PLACE - p).normalize(), 12.0 * (1.0 - (d / 2.5).powi(4)).clamp(0.0, 1.0) / (d * d))
@@ -75,13 +76,13 @@ fn lamps() -> [Lamp; 4] {
         Lamp {
             name: "spot",
             json: json!({ "type": "spot", "color": COLOR, "intensity": 12.0,
-                "spot": { "innerConeAngle": 0.1, "outerConeAngle": 0.6 } }),
-            // Without a rotation it shines along -Z.
-            node: place,
+                "spot": { "innerConeAngle": 0.1, "outerConeAngle": 0.3 } }),
+            // Without a rotation it shines along -Z; the outer cone ends on the sphere.
+            node: json!({ "translation": [SPOT.x, SPOT.y, SPOT.z] }),
             at: |p| {
-                let l = (PLACE - p).normalize();
-                let ramp = ((l.z - 0.6_f64.cos()) / (0.1_f64.cos() - 0.6_f64.cos())).clamp(0.0, 1.0);
-                (l, 12.0 * ramp * ramp / (PLACE - p).length_squared())
+                let l = (SPOT - p).normalize();
+                let ramp = ((l.z - 0.3_f64.cos()) / (0.1_f64.cos() - 0.3_f64.cos())).clamp(0.0, 1.0);
+                (l, 12.0 * ramp * ramp / (SPOT - p).length_squared())
             },
         },
     ]
@@ -153,7 +154,7 @@ fn open(bytes: &[u8]) -> Headless {
         "camera.target=[0, 0, 0]",
         "camera.fovy=45",
     ]);
-    embedded(load(bytes), settings, SIZE)
+    renderer(load(bytes), settings, SIZE)
 }
 
 fn model(material: &Material, lamp: &Lamp) -> Vec<u8> {
@@ -282,7 +283,7 @@ fn straight_down_the_normal_the_terms_have_closed_forms() {
             "camera.eye=[0, 0, 3]",
             "camera.target=[0, 0, 0]",
         ]);
-        let mut headless = embedded(load(&bytes), settings, (33, 33));
+        let mut headless = renderer(load(&bytes), settings, (33, 33));
         let mut center = |slug: &str| render(&mut headless, slug).raw_at(16, 16).unwrap();
         let alpha = roughness * roughness;
         let (d, f) = (1.0 / (PI * alpha * alpha), 0.04);

@@ -83,10 +83,18 @@ enum Message {
 /// # Errors
 /// No display, no device, or a device that fails.
 pub fn run(options: AppOptions) -> Result<(), AppError> {
-    let event_loop = EventLoop::<Message>::with_user_event().build().map_err(|e| AppError::NoDisplay(e.to_string()))?;
+    let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
     let mut app = App { proxy: event_loop.create_proxy(), options: Some(options), open: None, result: Ok(()) };
-    event_loop.run_app(&mut app).map_err(|e| AppError::NoDisplay(e.to_string()))?;
+    event_loop.run_app(&mut app).map_err(no_display)?;
     app.result
+}
+
+/// winit's reason without the place in its source that it puts in front.
+fn no_display(error: winit::error::EventLoopError) -> AppError {
+    let text = error.to_string();
+    AppError::NoDisplay(
+        text.rsplit("rs:").next().and_then(|t| t.split_once(": ")).map_or(text.clone(), |(_, t)| t.into()),
+    )
 }
 
 struct App {

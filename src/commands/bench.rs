@@ -75,7 +75,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
         let _ = sender.send(batch);
     };
     let _watcher = Watcher::new(Some(&folder.0), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
-    let model = args.common.model(args.model.as_deref())?;
+    let model = args.common.model_silently(args.model.as_deref())?;
     let settings = args.common.settings()?;
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     headless.render()?;
@@ -113,7 +113,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
 
 /// Frames of the mode that is set, and for every mode the first frame and a later one.
 fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
-    let model = args.common.model(args.model.as_deref())?;
+    let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     headless.draw()?;
@@ -158,7 +158,7 @@ fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -
     let mut cold_ms = 0.0;
     for sample in 0..args.samples {
         let begin = Instant::now();
-        let model: Model = args.common.model(args.model.as_deref())?;
+        let model: Model = args.common.model_silently(args.model.as_deref())?;
         let load_ms = ms(begin);
         let upload = Instant::now();
         drop(GpuScene::upload(gpu, &layouts, &model).map_err(|e| Failure::Input(e.to_string()))?);

@@ -116,14 +116,19 @@ impl Common {
         }
     }
 
-    /// The model at `path`, or the built-in shader ball.
+    /// The model at `path`, or the built-in shader ball; prints its warnings.
     pub fn model(&self, path: Option<&Path>) -> Result<Model, Failure> {
-        let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
-        let model = loaded.map_err(|e| Failure::Input(e.to_string()))?;
+        let model = self.model_silently(path)?;
         for warning in &model.warnings {
             eprintln!("specula: warning: {}: {warning}", model.name);
         }
         Ok(model)
+    }
+
+    /// The same without printing its warnings.
+    pub fn model_silently(&self, path: Option<&Path>) -> Result<Model, Failure> {
+        let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
+        loaded.map_err(|e| Failure::Input(e.to_string()))
     }
 
     /// Opens the device without a window.

@@ -4,12 +4,22 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::gpu::{Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, SetLayouts, ShaderModule};
-use crate::shader::ShaderSet;
+use crate::shader::{ShaderSet, Stage};
 
 use super::wanted::{Pass, PipelineKey, Wanted};
 
 /// The stages that a shader tree must have, as paths from its root.
 pub const STAGES: [&str; 4] = ["pbr.vert", "pbr.frag", "tonemap.vert", "tonemap.frag"];
+
+impl Pass {
+    /// Vertex and fragment stage.
+    fn stages(self) -> [&'static str; 2] {
+        match self {
+            Self::Model { .. } => [STAGES[0], STAGES[1]],
+            Self::Tonemap => [STAGES[2], STAGES[3]],
+        }
+    }
+}
 
 /// Compiled shaders and every pipeline made of them so far. Pipelines are only ever added.
 pub struct PipelineSet {
@@ -22,7 +32,8 @@ pub struct PipelineSet {
 }
 
 impl PipelineSet {
-    /// Makes the set and the pipelines of `wanted`, all or nothing.
+    /// Makes the set and the pipelines of `wanted`, all or nothing. What an edit left alone is taken over from the set before:
+    /// a stage that is the same object there, and the pipelines made of two such stages.
     ///
     /// # Errors
     /// The driver refuses a stage or a pipeline.
@@ -31,13 +42,29 @@ impl PipelineSet {
         layouts: &Arc<SetLayouts>,
         shaders: Arc<ShaderSet>,
         wanted: &Wanted,
+        before: Option<&Self>,
     ) -> Result<Arc<Self>, GpuError> {
-        let modules = shaders
-            .stages
-            .iter()
-            .map(|(path, stage)| Ok((path.clone(), ShaderModule::new(gpu, &stage.spirv)?)))
-            .collect::<Result<_, GpuError>>()?;
-        let set = Self { gpu: gpu.clone(), layouts: layouts.clone(), shaders, modules, made: Mutex::default() };
+        let kept = |path: &str| {
+            let before = before?;
+            let same = Arc::ptr_eq(before.shaders.stages.get(path)?, shaders.stages.get(path)?);
+            before.modules.get(path).filter(|_| same).cloned()
+        };
+        let module = |(path, stage): (&String, &Arc<Stage>)| match kept(path) {
+            Some(module) => Ok((path.clone(), module)),
+            None => Ok((path.clone(), ShaderModule::new(gpu, &stage.spirv)?)),
+        };
+        let modules = shaders.stages.iter().map(module).collect::<Result<_, GpuError>>()?;
+        let pipelines = before.map(|set| set.made.lock().unwrap_or_else(PoisonError::into_inner));
+        let is_kept = |pass: Pass| pass.stages().iter().all(|path| kept(path).is_some());
+        let made = pipelines.iter().flat_map(|made| made.iter()).filter(|(key, _)| is_kept(key.pass));
+        let made = made.map(|(key, pipeline)| (key.clone(), pipeline.clone())).collect();
+        let set = Self {
+            gpu: gpu.clone(),
+            layouts: layouts.clone(),
+            shaders: shaders.clone(),
+            modules,
+            made: Mutex::new(made),
+        };
         set.build(wanted)?;
         Ok(Arc::new(set))
     }
@@ -68,9 +95,10 @@ impl PipelineSet {
     fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
         let missing = |path: &str| GpuError::NoDevice(format!("the shader tree has no {path}"));
         let module = |path: &str| self.modules.get(path).ok_or_else(|| missing(path));
-        let (vertex, fragment, depth, blend, class) = match key.pass {
-            Pass::Model { blend, class } => (STAGES[0], STAGES[1], true, blend, class),
-            Pass::Tonemap => (STAGES[2], STAGES[3], false, false, PrimitiveClass::Triangles),
+        let [vertex, fragment] = key.pass.stages();
+        let (depth, blend, class) = match key.pass {
+            Pass::Model { blend, class } => (true, blend, class),
+            Pass::Tonemap => (false, false, PrimitiveClass::Triangles),
         };
         let desc = PipelineDesc {
             vertex: module(vertex)?,

@@ -15,6 +15,7 @@ pub struct Reloader {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
     library: Library,
+    current: Option<Arc<PipelineSet>>,
     unbuilt: bool,
 }
 
@@ -48,6 +49,7 @@ impl Reloader {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             library: Library::new(source, compiler.clone(), &STAGES),
+            current: None,
             unbuilt: false,
         }
     }
@@ -87,12 +89,15 @@ impl Reloader {
             return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
         }
         let start = Instant::now();
-        let built = wanted(&shaders)
-            .and_then(|wanted| PipelineSet::new(&self.gpu, &self.layouts, shaders, &wanted).map_err(|e| e.to_string()));
+        let before = self.current.as_deref();
+        let built = wanted(&shaders).and_then(|wanted| {
+            PipelineSet::new(&self.gpu, &self.layouts, shaders, &wanted, before).map_err(|e| e.to_string())
+        });
         let pipeline_ms = start.elapsed().as_secs_f64() * 1e3;
         let outcome = match built {
             Ok(set) => {
                 self.unbuilt = false;
+                self.current = Some(set.clone());
                 Outcome::Ready(set)
             }
             Err(message) => Outcome::Failed(vec![Diagnostic::error(tree_name(self.library.source()), message)]),

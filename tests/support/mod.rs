@@ -147,7 +147,7 @@ impl Session {
 }
 
 /// Opens the embedded tree; nothing is written to disk.
-pub fn embedded(model: Model, settings: Settings, size: (u32, u32)) -> Headless {
+pub fn renderer(model: Model, settings: Settings, size: (u32, u32)) -> Headless {
     Headless::new(gpu(), compiler(), Source::embedded(), model, settings, size).unwrap_or_else(explain).0
 }
 

@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>)
                 last.detect_ms
             ));
         }
-        let frame = device_ms.map(|ms| format!("{ms:.1} ms a frame on ")).unwrap_or_default();
+        let frame = device_ms.map(|ms| format!("Last frame {ms:.1} ms, ")).unwrap_or_default();
         ui.label(RichText::new(format!("{frame}{}", document.device())).small().color(QUIET));
     });
 }

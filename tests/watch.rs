@@ -1,0 +1,274 @@
+//! `render --watch` as a child process: every way of saving shows, nothing costs the picture.
+
+mod support;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use notify::{RecursiveMode, Watcher as _};
+use support::process::{PATIENCE, Running, specula};
+use support::{Tree, glb, line_of, srgb};
+
+const USER: &str = "user.glsl";
+
+/// `specula render --watch` on a tree of its own, with a square that fills the picture.
+struct Watched {
+    tree: Tree,
+    running: Running,
+    original: String,
+    pictures: Receiver<()>,
+    _watcher: notify::RecommendedWatcher,
+}
+
+impl Watched {
+    fn new() -> Self {
+        let tree = Tree::new();
+        let original = tree.read(USER);
+        fs::write(tree.beside("quad.glb"), glb::model(&glb::quad(9.0), &glb::gray())).unwrap();
+        fs::create_dir(tree.beside("out")).unwrap();
+        let (sender, pictures) = channel();
+        let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
+            // Reading the picture is an event too.
+            if event.is_ok_and(|event| !event.kind.is_access()) {
+                let _ = sender.send(());
+            }
+        })
+        .unwrap();
+        watcher.watch(&tree.beside("out"), RecursiveMode::NonRecursive).unwrap();
+        let mut command = specula(&tree.beside(""));
+        command.args(["render", "quad.glb", "--shaders", "shaders", "--out", "out/picture.png", "--size", "32x24"]);
+        command.args(["--watch", "--events", "json", "--validate", "--tonemap", "none", "--set", "view.msaa=1"]);
+        command.args(["--eye", "0,0,3", "--target", "0,0,0"]);
+        let mut running = Running::start(&mut command);
+        running.event("ready");
+        Self { tree, running, original, pictures, _watcher: watcher }
+    }
+
+    /// user.glsl such that the whole picture has this encoded gray.
+    fn text(&self, gray: u8) -> String {
+        let value = format!("    return vec3({:?} / 255.0) / frame.exposure;", f32::from(gray));
+        self.original.replace("    return radiance;", &value)
+    }
+
+    fn picture(&self) -> PathBuf {
+        self.tree.beside("out/picture.png")
+    }
+
+    /// Waits until the picture shows this gray.
+    #[track_caller]
+    fn shows(&self, gray: u8, how: &str) {
+        let expected = (srgb(f64::from(gray) / 255.0) * 255.0).round() as u8;
+        self.until(&format!("gray {gray} ({expected} encoded) after {how}"), |pixel| {
+            pixel.iter().all(|channel| channel.abs_diff(expected) <= 1)
+        });
+    }
+
+    /// Waits until the pixel in the middle is as it should be; looks again whenever the file changes.
+    #[track_caller]
+    fn until(&self, what: &str, is: impl Fn([u8; 3]) -> bool) {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let pixel = center(&self.picture());
+            if is(pixel) {
+                return;
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            if self.pictures.recv_timeout(left).is_err() {
+                panic!("the picture never showed {what}; it is {pixel:?}. {}", self.running.story());
+            }
+        }
+    }
+}
+
+/// The middle pixel. The file must always be there and whole.
+#[track_caller]
+fn center(path: &Path) -> [u8; 3] {
+    let png = support::open_image(path).into_rgb8();
+    assert_eq!(png.dimensions(), (32, 24));
+    png.get_pixel(16, 12).0
+}
+
+fn rename_over(path: &Path, text: &str) {
+    let new = path.with_extension("glsl.new");
+    fs::write(&new, text).unwrap();
+    fs::rename(&new, path).unwrap();
+}
+
+#[test]
+fn every_way_of_saving_shows() {
+    let mut watched = Watched::new();
+    let path = watched.tree.path(USER);
+    rename_over(&path, &watched.text(10));
+    let event = watched.running.reload(true);
+    watched.shows(10, "a rename over the file");
+    assert!(event["changed"][0].as_str().unwrap().ends_with("user.glsl"), "{event}");
+    assert_eq!(event["stages"], serde_json::json!(["pbr.frag"]), "{event}");
+    for time in ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms"] {
+        assert!(event[time].as_f64().is_some_and(|ms| ms >= 0.0), "{time} in {event}");
+    }
+
+    fs::write(&path, watched.text(20)).unwrap();
+    watched.running.reload(true);
+    watched.shows(20, "truncate and write");
+
+    fs::remove_file(&path).unwrap();
+    fs::write(&path, watched.text(30)).unwrap();
+    watched.shows(30, "delete and create");
+
+    // vim with a backup: the old file is moved away first.
+    fs::rename(&path, path.with_extension("glsl~")).unwrap();
+    fs::write(&path, watched.text(40)).unwrap();
+    watched.shows(40, "a backup by rename");
+}
+
+#[test]
+fn a_broken_edit_keeps_the_picture_and_says_why() {
+    let mut watched = Watched::new();
+    watched.tree.write(USER, &watched.text(50));
+    watched.running.reload(true);
+    watched.shows(50, "a good edit");
+    let before = fs::read(watched.picture()).unwrap();
+
+    let broken = watched.text(60).replace("frame.exposure;", "frame.exposures;");
+    watched.tree.write(USER, &broken);
+    let diagnostic = watched.running.event("diagnostic");
+    assert_eq!(diagnostic["severity"], "error", "{diagnostic}");
+    assert!(diagnostic["file"].as_str().unwrap().ends_with("shaders/user.glsl"), "{diagnostic}");
+    assert_eq!(diagnostic["line"], line_of(&broken, "exposures"), "{diagnostic}");
+    assert!(diagnostic["column"].is_u64() && diagnostic["message"].is_string(), "{diagnostic}");
+    let failed = watched.running.reload(false);
+    assert_eq!(fs::read(watched.picture()).unwrap(), before, "a broken edit wrote the picture");
+
+    watched.tree.write(USER, &watched.text(70));
+    let good = watched.running.reload(true);
+    assert!(good["generation"].as_u64() > failed["generation"].as_u64(), "{failed} {good}");
+    watched.shows(70, "the fix");
+
+    // Broken, then taken back: nothing to draw, and yet the program says that all is well.
+    watched.tree.write(USER, &broken);
+    watched.running.reload(false);
+    watched.tree.write(USER, &watched.text(70));
+    watched.running.reload(true);
+}
+
+#[test]
+fn the_picture_is_never_half_written_and_a_storm_of_saves_ends_with_the_last() {
+    let watched = Watched::new();
+    let (reader, stop) = read_all_the_time(watched.picture());
+    // An editor that saves at every key, some saves half way through a word.
+    for save in 0..50_u8 {
+        let text = watched.text(100 + save);
+        let text = if save % 3 == 1 { text.replace("exposure;", "expo") } else { text };
+        watched.tree.write(USER, &text);
+    }
+    // Each of these is written, so the reader meets the writer.
+    for gray in [200, 210, 220] {
+        rename_over(&watched.tree.path(USER), &watched.text(gray));
+        watched.shows(gray, "a storm of saves");
+    }
+    drop(stop);
+    let reads = reader.join().expect("every read found a whole picture");
+    assert!(reads > 10, "only {reads} reads");
+}
+
+/// Decodes a picture again and again until the sender is dropped; the thread counts, and panics at half a picture.
+fn read_all_the_time(path: PathBuf) -> (JoinHandle<usize>, Sender<()>) {
+    let (stop, stopped) = channel();
+    let reader = std::thread::spawn(move || {
+        let mut reads = 0;
+        while stopped.try_recv() != Err(TryRecvError::Disconnected) {
+            center(&path);
+            reads += 1;
+        }
+        reads
+    });
+    (reader, stop)
+}
+
+#[test]
+fn two_hundred_files_at_once() {
+    let watched = Watched::new();
+    let count = 200;
+    let includes: String = (0..count).map(|i| format!("#include \"many/f{i}.glsl\"\n")).collect();
+    let sum: String = (0..count).map(|i| format!("+ ONE_{i}")).collect();
+    let value = format!("    return vec3((0.0 {sum}) / 255.0) / frame.exposure;");
+    let text = watched.original.replace("    return radiance;", &value);
+    let text = text.replace("#include \"common/color.glsl\"\n", &format!("#include \"common/color.glsl\"\n{includes}"));
+    // As git checkout does: in some order, each file as fast as the disk takes it.
+    watched.tree.write(USER, &text);
+    fs::create_dir(watched.tree.path("many")).unwrap();
+    for i in 0..count {
+        watched.tree.write(&format!("many/f{i}.glsl"), &format!("const float ONE_{i} = 1.0;\n"));
+    }
+    watched.shows(200, "200 new files");
+    for i in 0..count {
+        watched.tree.write(&format!("many/f{i}.glsl"), &format!("const float ONE_{i} = 0.5;\n"));
+    }
+    watched.shows(100, "200 changed files");
+}
+
+#[test]
+fn the_tree_may_go_away_and_come_back() {
+    let mut watched = Watched::new();
+    watched.tree.write(USER, &watched.text(80));
+    watched.running.reload(true);
+    watched.shows(80, "an edit");
+    let before = fs::read(watched.picture()).unwrap();
+
+    let away = watched.tree.beside("away");
+    fs::rename(watched.tree.root(), &away).unwrap();
+    watched.running.reload(false);
+    assert_eq!(fs::read(watched.picture()).unwrap(), before, "the picture stays while the tree is away");
+    fs::rename(&away, watched.tree.root()).unwrap();
+    watched.running.reload(true);
+
+    watched.tree.write(USER, &watched.text(90));
+    watched.shows(90, "an edit after the tree came back");
+    // A branch switch by whole folders: another tree takes the place at once.
+    let other = watched.tree.beside("other");
+    specula::shader::embedded::write_to(&other).unwrap();
+    fs::write(other.join(USER), watched.text(120)).unwrap();
+    fs::rename(watched.tree.root(), &away).unwrap();
+    fs::rename(&other, watched.tree.root()).unwrap();
+    watched.shows(120, "another tree in its place");
+}
+
+#[test]
+fn the_model_is_watched_too() {
+    let watched = Watched::new();
+    let path = watched.tree.beside("quad.glb");
+    let replace = |bytes: &[u8]| {
+        let new = watched.tree.beside("new.glb");
+        fs::write(&new, bytes).unwrap();
+        fs::rename(&new, &path).unwrap();
+    };
+    let colored = |r: f32, g: f32, b: f32| {
+        let mut material = glb::gray();
+        material["pbrMetallicRoughness"]["baseColorFactor"] = serde_json::json!([r, g, b, 1.0]);
+        glb::model(&glb::quad(9.0), &material)
+    };
+    replace(&colored(1.0, 0.0, 0.0));
+    watched.until("red after the model was replaced", |[r, g, _]| r > 60 && g < r / 2);
+    // A model that is wrong keeps the last good one, and is read again when it is whole.
+    replace(b"glTF");
+    replace(&colored(0.0, 1.0, 0.0));
+    watched.until("green after a damaged file", |[r, g, _]| g > 60 && r < g / 2);
+}
+
+#[test]
+fn shaders_that_are_broken_from_the_start_are_waited_for() {
+    let tree = Tree::new();
+    let original = tree.read(USER);
+    tree.write(USER, &original.replace("return radiance;", "return radianc;"));
+    let mut command = specula(&tree.beside(""));
+    command.args(["render", "sphere-grid", "--shaders", "shaders", "--out", "late.png", "--size", "32x24"]);
+    let mut running = Running::start(command.args(["--watch", "--events", "json", "--validate"]));
+    running.event("diagnostic");
+    assert!(!tree.beside("late.png").exists());
+    tree.write(USER, &original);
+    running.event("ready");
+    assert!(tree.beside("late.png").exists());
+}

@@ -1,0 +1,216 @@
+//! The window, on a display of its own (Xvfb): open, resize, edit, break, screenshot, close. Keys and sizes come from xdotool,
+//! through the X server, as a person's do.
+
+mod support;
+
+use std::io::{BufRead as _, BufReader, ErrorKind};
+use std::process::{Child, Command, Stdio};
+
+use image::RgbaImage;
+use support::process::{Finished, Running, finish, specula};
+use support::{Tree, open_image};
+
+const NDF: &str = "brdf/ndf.glsl";
+
+/// An X server that ends with the test.
+struct Display {
+    server: Child,
+    name: String,
+}
+
+impl Display {
+    /// Starts a server on a display that is free; it says which, once it takes connections.
+    fn new() -> Self {
+        if let Err(error) = Command::new("xdotool").stdout(Stdio::null()).stderr(Stdio::null()).status() {
+            missing::<()>("xdotool", "xdotool", &error);
+        }
+        let mut command = Command::new("Xvfb");
+        command.args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp"]);
+        let mut server = command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap_or_else(|error| missing("Xvfb", "xvfb", &error));
+        let mut line = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        assert!(!line.trim().is_empty(), "Xvfb ended before it had a display");
+        Self { server, name: format!(":{}", line.trim()) }
+    }
+
+    /// Runs xdotool; it must succeed.
+    #[track_caller]
+    fn xdotool(&self, args: &[&str]) -> Finished {
+        let mut command = Command::new("xdotool");
+        let finished = finish(command.args(args).env("DISPLAY", &self.name));
+        assert_eq!(finished.code, Some(0), "xdotool {args:?}: {finished:#?}");
+        finished
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+fn missing<T>(program: &str, package: &str, error: &std::io::Error) -> T {
+    assert_eq!(error.kind(), ErrorKind::NotFound, "{program}: {error}");
+    panic!("{program} is not installed, and the window is not tested without it: apt-get install {package}");
+}
+
+/// `specula view` on a tree of its own, under validation. Fields drop in order: the program goes before its display.
+struct Viewer {
+    running: Running,
+    tree: Tree,
+    window: String,
+    display: Display,
+}
+
+impl Viewer {
+    /// Opens the window; it may still be empty.
+    fn open(tree: Tree, more: &[&str]) -> Self {
+        let display = Display::new();
+        let mut command = specula(&tree.beside(""));
+        command.env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command.args(["view", "sphere-grid", "--shaders", "shaders", "--size", "640x480", "--validate"]);
+        let mut running = Running::start(command.args(["--events", "json", "--set", "view.msaa=1"]).args(more));
+        running.event("window");
+        let found = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
+        let window = found.stdout.lines().next().unwrap().to_owned();
+        // There is no window manager to give it the keyboard.
+        display.xdotool(&["windowfocus", "--sync", &window]);
+        Self { running, tree, window, display }
+    }
+
+    #[track_caller]
+    fn key(&self, key: &str) {
+        self.display.xdotool(&["key", key]);
+    }
+
+    #[track_caller]
+    fn resize(&self, width: u32, height: u32) {
+        self.display.xdotool(&["windowsize", "--sync", &self.window, &width.to_string(), &height.to_string()]);
+    }
+
+    /// The picture that is on screen.
+    #[track_caller]
+    fn screenshot(&mut self) -> RgbaImage {
+        self.key("F12");
+        let event = self.running.event("screenshot");
+        let path = self.tree.beside(event["file"].as_str().unwrap());
+        open_image(&path).into_rgba8()
+    }
+
+    /// Ctrl+Q; the program must end well, which it does not after a validation message.
+    #[track_caller]
+    fn quit(mut self) {
+        self.key("ctrl+q");
+        let status = self.running.end();
+        assert_eq!(status.code(), Some(0), "{}", self.running.story());
+    }
+}
+
+#[test]
+fn open_resize_edit_break_screenshot_close() {
+    let mut viewer = Viewer::open(Tree::new(), &[]);
+    let ready = viewer.running.event("ready");
+    assert!(ready["device"].is_string() && ready["ms"].as_f64() > Some(0.0), "{ready}");
+    let first = viewer.screenshot();
+    assert!(first.pixels().any(|pixel| pixel != first.get_pixel(0, 0)), "an empty picture");
+
+    // Without its panels the picture is the window.
+    viewer.key("h");
+    assert_eq!(viewer.screenshot().dimensions(), (640, 480));
+    viewer.resize(700, 500);
+    assert_eq!(viewer.screenshot().dimensions(), (700, 500));
+    viewer.key("h");
+    let resized = viewer.screenshot();
+    let (width, height) = (resized.width(), resized.height());
+    assert!(
+        width < 700 && height <= 500 && width > first.width(),
+        "{:?}, {:?}",
+        first.dimensions(),
+        resized.dimensions()
+    );
+
+    let original = viewer.tree.read(NDF);
+    viewer.tree.write(NDF, &original.replace("float a2 = alpha * alpha;", "float a2 = alpha;"));
+    let reload = viewer.running.reload(true);
+    assert!(reload["first_frame_ms"].as_f64() > Some(0.0), "{reload}");
+    let edited = viewer.screenshot();
+    assert_ne!(edited, resized, "the edit shows");
+
+    viewer.tree.write(NDF, &original.replace("alpha * alpha;", "alpha * alfa;"));
+    let diagnostic = viewer.running.event("diagnostic");
+    assert!(diagnostic["message"].as_str().is_some_and(|message| message.contains("alfa")), "{diagnostic}");
+    assert!(diagnostic["line"].is_u64() && diagnostic["column"].is_u64(), "{diagnostic}");
+    viewer.running.reload(false);
+    assert!(viewer.screenshot() == edited, "a broken edit changed the picture");
+
+    viewer.tree.write(NDF, &original);
+    viewer.running.reload(true);
+    assert!(viewer.screenshot() == resized, "the first shader again shows the first picture again");
+    viewer.quit();
+}
+
+#[test]
+fn any_size_and_any_number_of_sizes() {
+    let mut viewer = Viewer::open(Tree::new(), &[]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    // Smaller than the panels, a single pixel, and a drag at a window's corner.
+    for (width, height) in [(90, 60), (1, 1), (1, 400), (400, 1)] {
+        viewer.resize(width, height);
+        let picture = viewer.screenshot();
+        assert!(picture.width() <= width && picture.height() <= height, "{:?}", picture.dimensions());
+    }
+    for step in 1..20 {
+        viewer.resize(400 + 10 * step, 300 + 5 * step);
+    }
+    viewer.resize(640, 480);
+    assert!(viewer.screenshot() == first, "back at the first size");
+    viewer.quit();
+}
+
+#[test]
+fn keys_choose_modes_and_hide_the_panels() {
+    let mut viewer = Viewer::open(Tree::new(), &[]);
+    viewer.running.event("ready");
+    let picture = viewer.screenshot();
+    // The old mode stays on screen until the new one is ready, so it may take some screenshots.
+    let until = |viewer: &mut Viewer, what: &str, is: &dyn Fn(&RgbaImage) -> bool| {
+        let deadline = std::time::Instant::now() + support::process::PATIENCE;
+        while !is(&viewer.screenshot()) {
+            assert!(std::time::Instant::now() < deadline, "{what} never showed. {}", viewer.running.story());
+        }
+    };
+    viewer.key("n");
+    until(&mut viewer, "shading normals", &|shot| *shot != picture);
+    viewer.key("n");
+    until(&mut viewer, "the picture, by the same key again", &|shot| *shot == picture);
+    viewer.key("bracketright");
+    until(&mut viewer, "the next mode", &|shot| *shot != picture);
+    viewer.key("Escape");
+    until(&mut viewer, "the picture, by Escape", &|shot| *shot == picture);
+    viewer.key("h");
+    until(&mut viewer, "the whole window", &|shot| shot.dimensions() == (640, 480));
+    viewer.quit();
+}
+
+#[test]
+fn shaders_that_are_broken_from_the_start_are_waited_for() {
+    let tree = Tree::new();
+    let original = tree.read(NDF);
+    tree.write(NDF, &original.replace("alpha * alpha;", "alpha * alfa;"));
+    let mut viewer = Viewer::open(tree, &[]);
+    // The first compile may have failed before or after the window was found.
+    viewer.key("F5");
+    viewer.running.reload(false);
+    viewer.tree.write(NDF, &original);
+    viewer.running.event("ready");
+    let picture = viewer.screenshot();
+    assert!(picture.pixels().any(|pixel| pixel != picture.get_pixel(0, 0)), "an empty picture");
+    viewer.quit();
+}
