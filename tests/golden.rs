@@ -1,9 +1,10 @@
 //! A few pictures of the shader ball against those in `tests/golden/`, as an eye would compare them.
 //!
-//! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m at a 4K screen: one gray level is about
-//! 0.005, an edge moved by a pixel up to 0.5 along that edge. Drivers may differ in the last bit of a color, in texture
-//! filtering and in which of four samples an edge covers; over such a picture that comes to a mean under 0.005. A wrong term, a
-//! missing light or a flipped normal is a mean of 0.05 and more. The threshold of 0.02 stands between the two.
+//! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m on a 4K screen; its mean is judged.
+//! Measured on these pictures: one sample a pixel in place of four, or a camera moved by 1 cm, 0.006 to 0.023; exposure
+//! off by a tenth of a stop 0.04; roughness times 0.7 0.07; a light or the ambient light missing 0.09 to 0.14. Drivers
+//! differ in the last bit of a color, in filtering and in which samples an edge covers, which is less than the first of
+//! these. So the threshold is 0.02. A slip in a BRDF term that no eye sees is for `tests/shading.rs` to find.
 
 mod support;
 
@@ -22,8 +23,8 @@ const BLESS: &str = "SPECULA_BLESS=1 cargo test --release --test golden";
 fn pictures_are_as_they_were() {
     // The camera is given, so that a change of framing changes no golden; lights and look are the defaults.
     let settings = settings(&[
-        "camera.eye=[1.84, 2.0, 3.19]",
-        "camera.target=[0, 1.1, 0]",
+        "camera.eye=[2.0, 2.0, 3.4]",
+        "camera.target=[0, 1.0, 0]",
         "camera.fovy=35",
         "view.background='#1b1d21'",
         "view.tonemap=aces",

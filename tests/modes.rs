@@ -1,4 +1,5 @@
-//! Every debug mode shows what it says: data where there are some, a checkerboard where there are none, encoded as promised.
+//! Every debug mode shows what it says: data where there are some, a checkerboard where there are none, encoded as
+//! promised.
 
 mod support;
 
@@ -147,7 +148,8 @@ fn a_png_stores_colors_in_srgb_data_as_they_are_and_vectors_shifted() {
 #[test]
 fn the_picture_is_exposed_tone_mapped_and_encoded() {
     let mut headless = sharp(model("shader-ball"), &["view.ev=1"]);
-    let curves: [(&str, fn(f64) -> f64); 3] = [
+    type Curve = fn(f64) -> f64;
+    let curves: [(&str, Curve); 3] = [
         ("none", |x| x),
         ("reinhard", |x| x / (1.0 + x)),
         // Narkowicz 2015, ACES Filmic Tone Mapping Curve.

@@ -1,5 +1,5 @@
-//! The window, on a display of its own (Xvfb): open, resize, edit, break, screenshot, close. Keys and sizes come from xdotool,
-//! through the X server, as a person's do.
+//! The window, on a display of its own (Xvfb): open, resize, edit, break, screenshot, close. Keys and sizes come from
+//! xdotool, through the X server, as a person's do.
 
 mod support;
 

@@ -2,10 +2,11 @@
 //
 // To add one: an annotation and a constant here, its value in `your_mode` at the end of this file, save.
 //
-//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [key=d] doc="One sentence."       in a comment
+//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [draw=lines|layers] [key=d] doc="One sentence."       in a comment
 //   const uint MODE_NAME = 1000u;                                              any number that no other mode has
 //
 //   encode    how a PNG and the window store the value: color: sRGB curve; data: as it is; vector: v * 0.5 + 0.5
+//   draw      lines: the edges of triangles; layers: every fragment added up, hidden ones too
 //   tonemap   the value is light: exposure and tone map apply
 //   key       a letter that shows the mode in the window
 //
@@ -57,6 +58,10 @@ const uint MODE_MATERIAL_ID = 215u;
 const uint MODE_MIP_LEVEL = 216u;
 //@mode texel-density "Texel density" group="Geometry" encode=color doc="Base color: blue 16 texels a meter, red 16384."
 const uint MODE_TEXEL_DENSITY = 217u;
+//@mode wireframe "Wireframe" group="Geometry" encode=color draw=lines key=w doc="The edges of the triangles."
+const uint MODE_WIREFRAME = 218u;
+//@mode overdraw "Overdraw" group="Geometry" encode=data draw=layers doc="Each fragment drawn at a pixel adds 0.1."
+const uint MODE_OVERDRAW = 219u;
 
 //@mode base-color "Base color" group="Material" encode=color key=b doc="Texture, factor and vertex color, linear RGB."
 const uint MODE_BASE_COLOR = 100u;

@@ -196,7 +196,7 @@ impl Thread {
                 return;
             }
             // A neighbor that the driver refuses is told about when it is asked for.
-            let _ = set.build(&wanted.with_mode(modes[neighbor].id));
+            let _ = set.build(&wanted.with_mode(&modes[neighbor]));
         }
     }
 }

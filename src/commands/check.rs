@@ -1,9 +1,17 @@
 //! `specula check`: every stage with every declared choice, and every library alone; for CI.
 
-use specula::events::{Event, emit};
-use specula::shader::{Library, Severity, check};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
-use super::common::{Common, compiler};
+use specula::events::{Event, emit};
+use specula::gpu::{SetLayouts, vk};
+use specula::interface::FEATURE_NORMAL_TEXTURE;
+use specula::render::{MaterialVariant, PipelineSet, Renderer, Wanted};
+use specula::settings::{Settings, ShaderValue};
+use specula::shader::reflect::Scalar;
+use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
+
+use super::common::{Common, check_validation, compiler};
 use super::{Failure, print_diagnostics};
 
 /// Options of `check`.
@@ -16,12 +24,18 @@ pub struct Args {
     common: Common,
 }
 
-/// Runs the command. Compiling needs no device.
+/// Runs the command. Compiling needs no device; where there is one, every mode and choice is built on it too.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let source = args.common.source()?;
     let mut library = Library::new(source, compiler()?, &specula::render::STAGES);
     let start = std::time::Instant::now();
-    let diagnostics = check::check(&mut library);
+    let mut diagnostics = check::check(&mut library);
+    let built = match library.set().cloned() {
+        Some(shaders) if diagnostics.iter().all(|d| d.severity != Severity::Error) => {
+            build_choices(args, &shaders, &mut diagnostics)?
+        }
+        _ => None,
+    };
     let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
     for diagnostic in &diagnostics {
         emit(args.common.emits(), &Event::Diagnostic(diagnostic));
@@ -37,7 +51,55 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if !args.json && !args.common.emits() {
         let files = library.source().list().len();
         let modes = library.set().map_or(0, |set| set.modes.len());
-        println!("checked {files} files, {modes} modes: no errors ({:.0} ms)", start.elapsed().as_secs_f64() * 1e3);
+        let built = built.map_or("no device, so no pipelines built".to_owned(), |n| format!("{n} pipelines built"));
+        let seconds = start.elapsed().as_secs_f64();
+        println!("checked {files} files, {modes} modes, {built}: no errors ({seconds:.1} s)");
     }
     Ok(())
+}
+
+/// Builds the pipelines of every mode, and of the picture with every declared choice: a specialization can be wrong where the
+/// text is right. Returns how many, or `None` without a device.
+fn build_choices(
+    args: &Args,
+    shaders: &Arc<ShaderSet>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Result<Option<usize>, Failure> {
+    let gpu = match args.common.gpu() {
+        Ok(gpu) => gpu,
+        Err(_) if args.common.device.is_none() => return Ok(None),
+        Err(failure) => return Err(failure),
+    };
+    let layouts = SetLayouts::new(&gpu)?;
+    let settings = args.common.settings()?;
+    let materials = BTreeSet::from([MaterialVariant { features: FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
+    let format = vk::Format::R16G16B16A16_SFLOAT;
+    let wanted = |settings: &Settings| {
+        Wanted::new(settings, shaders, &materials, 1, format, Renderer::OUTPUT_FORMAT).map_err(Failure::Input)
+    };
+    let plain = wanted(&settings)?;
+    let set = PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None)?;
+    let mut count = 1;
+    let mut build = |wanted: &Wanted, file: &str, line: u32, what: String| {
+        count += 1;
+        if let Err(error) = set.build(wanted) {
+            diagnostics
+                .push(Diagnostic::error(file, format!("{what} builds no pipeline: {error}")).on_line(line, None));
+        }
+    };
+    for mode in &shaders.modes {
+        build(&plain.with_mode(mode), &mode.file, mode.line, format!("mode {}", mode.slug));
+    }
+    for constant in &shaders.constants {
+        let named = constant.choices.iter().map(|(name, value)| (name.clone(), ShaderValue::Int(*value)));
+        let bools = [true, false].map(|on| (on.to_string(), ShaderValue::Bool(on)));
+        let bools = bools.into_iter().filter(|_| constant.scalar == Scalar::Bool);
+        for (name, value) in named.chain(bools) {
+            let mut chosen = settings.clone();
+            chosen.shader.insert(constant.name.clone(), value);
+            build(&wanted(&chosen)?, &constant.file, constant.line, format!("{} = {name}", constant.name));
+        }
+    }
+    check_validation(&gpu)?;
+    Ok(Some(count))
 }

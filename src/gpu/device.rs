@@ -55,6 +55,7 @@ pub struct Gpu {
     pub(super) pipeline_cache: vk::PipelineCache,
     pub(super) properties: vk::PhysicalDeviceProperties,
     pub(super) anisotropy: bool,
+    pub(super) wireframe: bool,
     info: AdapterInfo,
 }
 
@@ -108,6 +109,7 @@ impl Gpu {
             pipeline_cache,
             properties,
             anisotropy: supported.sampler_anisotropy == vk::TRUE,
+            wireframe: supported.fill_mode_non_solid == vk::TRUE,
             info,
         }))
     }
@@ -359,6 +361,7 @@ fn create_device(
     let core = vk::PhysicalDeviceFeatures {
         sampler_anisotropy: supported.sampler_anisotropy,
         large_points: supported.large_points,
+        fill_mode_non_solid: supported.fill_mode_non_solid,
         geometry_shader: vk::TRUE,
         ..Default::default()
     };

@@ -22,7 +22,7 @@ pub use encoder::{Attachments, Encoder, Rect, Use};
 pub use error::GpuError;
 pub use frames::{Frames, Submission, one_shot};
 pub use image::{Image, ImageDesc, Sampler, SamplerDesc};
-pub use pipeline::{Pipeline, PipelineDesc, PrimitiveClass, ShaderModule, Specialization};
+pub use pipeline::{Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization};
 pub use surface::{Acquired, Surface, Swapchain};
 pub use ui::UiRenderer;
 

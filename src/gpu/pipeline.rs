@@ -52,6 +52,20 @@ pub enum PrimitiveClass {
     Triangles,
 }
 
+/// What becomes of a pipeline's fragments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Raster {
+    /// They replace what is there.
+    #[default]
+    Solid,
+    /// Premultiplied alpha blending, without depth writes.
+    Blended,
+    /// The edges of triangles alone, where the device can; else as [`Raster::Solid`].
+    Lines,
+    /// They add up, without depth test; alpha is the largest.
+    Added,
+}
+
 /// What a graphics pipeline is made of.
 pub struct PipelineDesc<'a> {
     /// Vertex stage.
@@ -64,8 +78,8 @@ pub struct PipelineDesc<'a> {
     pub color: vk::Format,
     /// Whether there is a D32 depth target, tested reversed (greater is nearer).
     pub depth: bool,
-    /// Premultiplied alpha blending, without depth writes.
-    pub blend: bool,
+    /// What becomes of the fragments.
+    pub raster: Raster,
     /// Samples a pixel.
     pub samples: u32,
     /// Kind of primitive.
@@ -105,23 +119,19 @@ impl Pipeline {
             PrimitiveClass::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
         });
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let lines = desc.raster == Raster::Lines && gpu.wireframe;
+        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).polygon_mode(if lines {
+            vk::PolygonMode::LINE
+        } else {
+            vk::PolygonMode::FILL
+        });
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(desc.samples));
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
-            .depth_test_enable(desc.depth)
-            .depth_write_enable(desc.depth && !desc.blend)
+            .depth_test_enable(desc.depth && desc.raster != Raster::Added)
+            .depth_write_enable(desc.depth && matches!(desc.raster, Raster::Solid | Raster::Lines))
             .depth_compare_op(vk::CompareOp::GREATER_OR_EQUAL);
-        let mut attachment =
-            vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
-        if desc.blend {
-            attachment = attachment
-                .blend_enable(true)
-                .src_color_blend_factor(vk::BlendFactor::ONE)
-                .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
-                .src_alpha_blend_factor(vk::BlendFactor::ONE)
-                .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA);
-        }
+        let attachment = blending(desc.raster).color_write_mask(vk::ColorComponentFlags::RGBA);
         let attachments = [attachment];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let mut dynamic_states = vec![vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
@@ -155,6 +165,26 @@ impl Pipeline {
         let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None) };
         let raw = made.map_err(|(_, result)| result).context("creating a pipeline")?[0];
         Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw }))
+    }
+}
+
+fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
+    let state = vk::PipelineColorBlendAttachmentState::default();
+    match raster {
+        Raster::Solid | Raster::Lines => state,
+        Raster::Blended => state
+            .blend_enable(true)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA),
+        Raster::Added => state
+            .blend_enable(true)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(vk::BlendFactor::ONE)
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE)
+            .alpha_blend_op(vk::BlendOp::MAX),
     }
 }
 

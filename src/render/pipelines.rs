@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::gpu::{Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, SetLayouts, ShaderModule};
+use crate::gpu::{Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule};
 use crate::shader::{ShaderSet, Stage};
 
 use super::wanted::{Pass, PipelineKey, Wanted};
@@ -96,9 +96,9 @@ impl PipelineSet {
         let missing = |path: &str| GpuError::NoDevice(format!("the shader tree has no {path}"));
         let module = |path: &str| self.modules.get(path).ok_or_else(|| missing(path));
         let [vertex, fragment] = key.pass.stages();
-        let (depth, blend, class) = match key.pass {
-            Pass::Model { blend, class } => (true, blend, class),
-            Pass::Tonemap => (false, false, PrimitiveClass::Triangles),
+        let (depth, raster, class) = match key.pass {
+            Pass::Model { raster, class } => (true, raster, class),
+            Pass::Tonemap => (false, Raster::Solid, PrimitiveClass::Triangles),
         };
         let desc = PipelineDesc {
             vertex: module(vertex)?,
@@ -106,7 +106,7 @@ impl PipelineSet {
             specialization: &key.specialization,
             color: key.format,
             depth,
-            blend,
+            raster,
             samples: key.samples,
             class,
         };

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use crate::gpu::{PrimitiveClass, Specialization, vk};
+use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
 use crate::interface::{self, SPEC_ALPHA_MODE, SPEC_FEATURES, SPEC_MODE};
 use crate::settings::Settings;
-use crate::shader::{Mode, ShaderSet};
+use crate::shader::{DrawAs, Mode, ShaderSet};
 
 use super::values;
 
@@ -21,10 +21,12 @@ pub struct MaterialVariant {
 }
 
 /// Everything that selects the pipelines of a picture.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// Id of the debug mode.
     pub mode: u32,
+    /// How the mode draws the model.
+    pub draw: DrawAs,
     /// Values of the author's specialization constants.
     pub constants: Specialization,
     /// Samples a pixel.
@@ -50,7 +52,7 @@ pub(super) struct PipelineKey {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Pass {
     /// The model: `pbr.vert`, `pbr.frag`.
-    Model { blend: bool, class: PrimitiveClass },
+    Model { raster: Raster, class: PrimitiveClass },
     /// HDR to picture: `tonemap.vert`, `tonemap.frag`.
     Tonemap,
 }
@@ -68,8 +70,10 @@ impl Wanted {
         scene_format: vk::Format,
         output_format: vk::Format,
     ) -> Result<Self, String> {
+        let mode = mode(shaders, &settings.mode);
         Ok(Self {
-            mode: mode(shaders, &settings.mode).map_or(0, |m| m.id),
+            mode: mode.map_or(0, |m| m.id),
+            draw: mode.map(|m| m.draw).unwrap_or_default(),
             constants: values::constants(&settings.shader, &shaders.constants)?,
             samples,
             scene_format,
@@ -79,16 +83,22 @@ impl Wanted {
     }
 
     /// The same picture in another mode.
-    pub fn with_mode(&self, mode: u32) -> Self {
-        Self { mode, ..self.clone() }
+    pub fn with_mode(&self, mode: &Mode) -> Self {
+        Self { mode: mode.id, draw: mode.draw, ..self.clone() }
     }
 
     pub(super) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
         let mut specialization =
             vec![(SPEC_MODE, self.mode), (SPEC_ALPHA_MODE, material.alpha), (SPEC_FEATURES, material.features)];
         specialization.extend_from_slice(&self.constants);
+        let raster = match self.draw {
+            DrawAs::Lines => Raster::Lines,
+            DrawAs::Layers => Raster::Added,
+            DrawAs::Surfaces if material.alpha == interface::ALPHA_BLEND => Raster::Blended,
+            DrawAs::Surfaces => Raster::Solid,
+        };
         PipelineKey {
-            pass: Pass::Model { blend: material.alpha == interface::ALPHA_BLEND, class: material.class },
+            pass: Pass::Model { raster, class: material.class },
             format: self.scene_format,
             samples: self.samples,
             specialization,

@@ -48,6 +48,19 @@ impl Encode {
     }
 }
 
+/// How a mode draws the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DrawAs {
+    /// As it is.
+    #[default]
+    Surfaces,
+    /// The edges of its triangles.
+    Lines,
+    /// Every fragment added to those before it, whatever lies in front: overdraw.
+    Layers,
+}
+
 /// A debug mode.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mode {
@@ -63,6 +76,8 @@ pub struct Mode {
     pub encode: Encode,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
+    /// How the model is drawn.
+    pub draw: DrawAs,
     /// Key in the window.
     pub key: Option<char>,
     /// What it shows.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::annotation::{Encode, Mode, ParameterType};
+use super::annotation::{DrawAs, Encode, Mode, ParameterType};
 use super::annotation_cursor::{Cursor, Place};
 use super::diagnostic::Diagnostic;
 use super::text::{Line, is_word, lines, tokens};
@@ -98,6 +98,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         group: String::new(),
         encode: Encode::Color,
         tonemap: false,
+        draw: DrawAs::Surfaces,
         key: None,
         doc: String::new(),
         file: cursor.place().file.clone(),
@@ -126,6 +127,18 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                     }
                 };
             }
+            "draw" => {
+                let (bytes, value) = cursor.value(key)?;
+                mode.draw = match value.as_str() {
+                    "surfaces" => DrawAs::Surfaces,
+                    "lines" => DrawAs::Lines,
+                    "layers" => DrawAs::Layers,
+                    other => {
+                        let message = format!("expected draw=surfaces, draw=lines or draw=layers, found `{other}`");
+                        return Err(cursor.error(bytes, message));
+                    }
+                };
+            }
             "key" => {
                 let (bytes, value) = cursor.value(key)?;
                 let mut chars = value.chars();
@@ -135,7 +148,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 mode.key = Some(one);
             }
             other => {
-                let message = format!("expected group=, encode=, tonemap, key= or doc=, found `{other}`");
+                let message = format!("expected group=, encode=, tonemap, draw=, key= or doc=, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }
         }

@@ -25,7 +25,7 @@ pub mod source;
 mod text;
 pub mod watch;
 
-pub use annotation::{Constant, Encode, Mode, Parameter};
+pub use annotation::{Constant, DrawAs, Encode, Mode, Parameter};
 pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update};
