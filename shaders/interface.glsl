@@ -78,7 +78,7 @@ struct Light {
     vec3 position_ws;
     uint kind;                 // LIGHT_*
     vec3 direction_ws;         // where it shines to
-    float range;               // metres, 0 without end
+    float range;               // meters, 0 without end
     vec3 intensity;            // linear RGB times candela (point, spot) or lux (directional)
     float cos_inner;
     float cos_outer;

@@ -36,7 +36,7 @@ pub enum Event<'a> {
 pub struct ReloadEvent {
     /// Generation on screen afterwards.
     pub generation: u64,
-    /// Changed files, relative to the tree.
+    /// Changed files, as diagnostics name them.
     pub changed: Vec<String>,
     /// Stages that were compiled.
     pub stages: Vec<String>,

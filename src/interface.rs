@@ -169,7 +169,7 @@ pub const TONEMAP_OFF: u32 = 0xffff_ffff;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Frame {
-    /// World (metres, +Y up) to Vulkan clip space (+Y down, depth 0 far to 1 near: reversed).
+    /// World (meters, +Y up) to Vulkan clip space (+Y down, depth 0 far to 1 near: reversed).
     pub clip_from_world: [[f32; 4]; 4],
     /// Inverse of `clip_from_world`.
     pub world_from_clip: [[f32; 4]; 4],
@@ -187,15 +187,15 @@ pub struct Frame {
     pub background: [f32; 4],
     /// Center of the model's bounds, world space.
     pub scene_center_ws: [f32; 3],
-    /// Radius of the model's bounds, metres.
+    /// Radius of the model's bounds, meters.
     pub scene_radius: f32,
     /// Width and height of the picture in pixels.
     pub viewport_px: [f32; 2],
     /// Upper left corner of the picture in the output image, pixels.
     pub viewport_origin_px: [f32; 2],
-    /// Near plane distance, metres.
+    /// Near plane distance, meters.
     pub near: f32,
-    /// Far plane distance, metres (debug views only: the projection is infinite).
+    /// Far plane distance, meters (debug views only: the projection is infinite).
     pub far: f32,
     /// Lights in `BINDING_LIGHTS`.
     pub light_count: u32,
@@ -221,7 +221,7 @@ pub struct Light {
     pub kind: u32,
     /// Where the light shines to, unit (directional, spot).
     pub direction_ws: [f32; 3],
-    /// Distance at which it ends, metres; 0 is without end.
+    /// Distance at which it ends, meters; 0 is without end.
     pub range: f32,
     /// Linear RGB times candela (point, spot) or lux (directional).
     pub intensity: [f32; 3],
@@ -281,7 +281,7 @@ pub struct Draw {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct Vertex {
-    /// Object space, metres.
+    /// Object space, meters.
     pub position: [f32; 3],
     /// Object space, unit.
     pub normal: [f32; 3],
@@ -386,7 +386,7 @@ struct Light {
     vec3 position_ws;
     uint kind;                 // LIGHT_*
     vec3 direction_ws;         // where it shines to
-    float range;               // metres, 0 without end
+    float range;               // meters, 0 without end
     vec3 intensity;            // linear RGB times candela (point, spot) or lux (directional)
     float cos_inner;
     float cos_outer;

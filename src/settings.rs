@@ -52,10 +52,10 @@ pub enum ShaderValue {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraSettings {
-    /// World position, metres.
+    /// World position, meters.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub eye: Option<[f32; 3]>,
-    /// Looked-at point, metres.
+    /// Looked-at point, meters.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<[f32; 3]>,
     /// Vertical field of view, degrees.
@@ -167,7 +167,7 @@ pub struct ViewSettings {
     pub tonemap: Tonemap,
     /// EV100: exposure is 1 / (1.2 * 2^ev).
     pub ev: f32,
-    /// `none`, `env` or `#rrggbb`.
+    /// `none` or `#rrggbb`.
     pub background: String,
     /// Samples a pixel, 1 or 4.
     pub msaa: u32,

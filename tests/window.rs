@@ -5,10 +5,11 @@ mod support;
 
 use std::io::{BufRead as _, BufReader, ErrorKind};
 use std::process::{Child, Command, Stdio};
+use std::time::Instant;
 
 use image::RgbaImage;
-use support::process::{Finished, Running, finish, specula};
-use support::{Tree, open_image};
+use support::process::{Finished, PATIENCE, Running, finish, specula};
+use support::{Tree, glb, open_image};
 
 const NDF: &str = "brdf/ndf.glsl";
 
@@ -72,10 +73,9 @@ impl Viewer {
     /// Opens the window; it may still be empty.
     fn open(tree: Tree, more: &[&str]) -> Self {
         let display = Display::new();
-        let mut command = specula(&tree.beside(""));
-        command.env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
-        command.args(["view", "sphere-grid", "--shaders", "shaders", "--size", "640x480", "--validate"]);
-        let mut running = Running::start(command.args(["--events", "json", "--set", "view.msaa=1"]).args(more));
+        let mut command = view(&tree, &display);
+        command.args(["--shaders", "shaders", "--size", "640x480", "--set", "view.msaa=1"]);
+        let mut running = Running::start(command.args(more));
         running.event("window");
         let found = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
         let window = found.stdout.lines().next().unwrap().to_owned();
@@ -103,18 +103,36 @@ impl Viewer {
         open_image(&path).into_rgba8()
     }
 
-    /// Ctrl+Q; the program must end well, which it does not after a validation message.
+    /// Takes screenshots until one is as it should be: what is new is shown only when it is complete.
     #[track_caller]
-    fn quit(mut self) {
+    fn until(&mut self, what: &str, is: impl Fn(&RgbaImage) -> bool) {
+        let deadline = Instant::now() + PATIENCE;
+        while !is(&self.screenshot()) {
+            assert!(Instant::now() < deadline, "{what} never showed. {}", self.running.story());
+        }
+    }
+
+    /// Ctrl+Q; the program must end well, which it does not after a validation message. What it said on stderr.
+    #[track_caller]
+    fn quit(mut self) -> String {
         self.key("ctrl+q");
         let status = self.running.end();
         assert_eq!(status.code(), Some(0), "{}", self.running.story());
+        self.running.stderr()
     }
+}
+
+/// `specula view` on this display.
+fn view(tree: &Tree, display: &Display) -> Command {
+    let mut command = specula(&tree.beside(""));
+    command.env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+    command.args(["view", "--validate", "--events", "json"]);
+    command
 }
 
 #[test]
 fn open_resize_edit_break_screenshot_close() {
-    let mut viewer = Viewer::open(Tree::new(), &[]);
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     let ready = viewer.running.event("ready");
     assert!(ready["device"].is_string() && ready["ms"].as_f64() > Some(0.0), "{ready}");
     let first = viewer.screenshot();
@@ -157,7 +175,7 @@ fn open_resize_edit_break_screenshot_close() {
 
 #[test]
 fn any_size_and_any_number_of_sizes() {
-    let mut viewer = Viewer::open(Tree::new(), &[]);
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let first = viewer.screenshot();
     // Smaller than the panels, a single pixel, and a drag at a window's corner.
@@ -176,26 +194,19 @@ fn any_size_and_any_number_of_sizes() {
 
 #[test]
 fn keys_choose_modes_and_hide_the_panels() {
-    let mut viewer = Viewer::open(Tree::new(), &[]);
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let picture = viewer.screenshot();
-    // The old mode stays on screen until the new one is ready, so it may take some screenshots.
-    let until = |viewer: &mut Viewer, what: &str, is: &dyn Fn(&RgbaImage) -> bool| {
-        let deadline = std::time::Instant::now() + support::process::PATIENCE;
-        while !is(&viewer.screenshot()) {
-            assert!(std::time::Instant::now() < deadline, "{what} never showed. {}", viewer.running.story());
-        }
-    };
     viewer.key("n");
-    until(&mut viewer, "shading normals", &|shot| *shot != picture);
+    viewer.until("shading normals", |shot| *shot != picture);
     viewer.key("n");
-    until(&mut viewer, "the picture, by the same key again", &|shot| *shot == picture);
+    viewer.until("the picture, by the same key again", |shot| *shot == picture);
     viewer.key("bracketright");
-    until(&mut viewer, "the next mode", &|shot| *shot != picture);
+    viewer.until("the next mode", |shot| *shot != picture);
     viewer.key("Escape");
-    until(&mut viewer, "the picture, by Escape", &|shot| *shot == picture);
+    viewer.until("the picture, by Escape", |shot| *shot == picture);
     viewer.key("h");
-    until(&mut viewer, "the whole window", &|shot| shot.dimensions() == (640, 480));
+    viewer.until("the whole window", |shot| shot.dimensions() == (640, 480));
     viewer.quit();
 }
 
@@ -204,7 +215,7 @@ fn shaders_that_are_broken_from_the_start_are_waited_for() {
     let tree = Tree::new();
     let original = tree.read(NDF);
     tree.write(NDF, &original.replace("alpha * alpha;", "alpha * alfa;"));
-    let mut viewer = Viewer::open(tree, &[]);
+    let mut viewer = Viewer::open(tree, &["sphere-grid"]);
     // The first compile may have failed before or after the window was found.
     viewer.key("F5");
     viewer.running.reload(false);
@@ -213,4 +224,37 @@ fn shaders_that_are_broken_from_the_start_are_waited_for() {
     let picture = viewer.screenshot();
     assert!(picture.pixels().any(|pixel| pixel != picture.get_pixel(0, 0)), "an empty picture");
     viewer.quit();
+}
+
+#[test]
+fn the_model_is_watched_and_a_damaged_one_costs_nothing() {
+    let tree = Tree::new();
+    let path = tree.beside("model.glb");
+    std::fs::write(&path, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let mut viewer = Viewer::open(tree, &["model.glb"]);
+    viewer.running.event("ready");
+    let quad = viewer.screenshot();
+    std::fs::write(&path, glb::model(&glb::sphere(8, 16), &glb::gray())).unwrap();
+    viewer.until("the new model", |shot| *shot != quad);
+    std::fs::write(&path, b"glTF").unwrap();
+    std::fs::write(&path, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    viewer.until("the first model", |shot| *shot == quad);
+    viewer.quit();
+}
+
+#[test]
+fn names_that_do_not_exist_are_told() {
+    for (option, name) in [("--mode", "metal-ness"), ("--set", "no_such_name=1"), ("--set", "TOON_BANDS=Nine")] {
+        let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", option, name]);
+        viewer.running.event("ready");
+        let stderr = viewer.quit();
+        let name = name.split('=').next().unwrap();
+        assert!(stderr.contains(name), "no word of {name} in: {stderr}");
+    }
+}
+
+#[test]
+fn a_window_too_large_is_refused() {
+    let (tree, display) = (Tree::new(), Display::new());
+    finish(view(&tree, &display).args(["--size", "99999x99999"])).expect(1, &["99999x99999"]);
 }

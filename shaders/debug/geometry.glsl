@@ -58,7 +58,7 @@ bool debug_geometry(Fragment f, Surface s, vec3 v, out vec3 value) {
     else if (MODE == MODE_MATERIAL_ID) value = color_from_id(material.id);
     else if (MODE == MODE_MIP_LEVEL) value = if_present(has_base_color, mip_level_color(f));
     else if (MODE == MODE_TEXEL_DENSITY) value = if_present(has_base_color, texel_density_color(f));
-    else if (MODE == MODE_WIREFRAME) value = vec3(0.8);
+    else if (MODE == MODE_WIREFRAME) value = vec3(0.02 + 0.6 * pow(abs(dot(s.n, v)), 3.0));
     else if (MODE == MODE_OVERDRAW) value = vec3(0.1);
     else known = false;
     return known;

@@ -2,8 +2,10 @@
 //
 // To add one: an annotation and a constant here, its value in `your_mode` at the end of this file, save.
 //
-//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [draw=lines|layers] [key=d] doc="One sentence."       in a comment
-//   const uint MODE_NAME = 1000u;                                              any number that no other mode has
+//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [draw=lines|layers] [key=d] doc="One sentence."
+//   const uint MODE_NAME = 1000u;
+//
+// The first line in a comment that starts with the at sign; any number that no other mode has.
 //
 //   encode    how a PNG and the window store the value: color: sRGB curve; data: as it is; vector: v * 0.5 + 0.5
 //   draw      lines: the edges of triangles; layers: every fragment added up, hidden ones too
@@ -14,6 +16,7 @@
 #ifndef DEBUG_MODES_GLSL
 #define DEBUG_MODES_GLSL
 
+#include "interface.glsl"
 #include "brdf/surface.glsl"
 #include "common/fragment.glsl"
 
@@ -60,7 +63,7 @@ const uint MODE_MIP_LEVEL = 216u;
 const uint MODE_TEXEL_DENSITY = 217u;
 //@mode wireframe "Wireframe" group="Geometry" encode=color draw=lines key=w doc="The edges of the triangles."
 const uint MODE_WIREFRAME = 218u;
-//@mode overdraw "Overdraw" group="Geometry" encode=data draw=layers doc="Each fragment drawn at a pixel adds 0.1."
+//@mode overdraw "Overdraw" group="Geometry" encode=color draw=layers doc="Each fragment drawn at a pixel adds 0.1, hidden ones too."
 const uint MODE_OVERDRAW = 219u;
 
 //@mode base-color "Base color" group="Material" encode=color key=b doc="Texture, factor and vertex color, linear RGB."

@@ -67,6 +67,8 @@ pub(super) struct Document {
     pub(super) hand: CameraHand,
     pub(super) mouse: Mouse,
     pub(super) hover: Option<Hover>,
+    /// The mode that the list was last scrolled to.
+    pub(super) shown_in_list: String,
     pub(super) show_ui: bool,
     pub(super) quit: bool,
     pub(super) screenshot: bool,
@@ -119,6 +121,7 @@ impl Document {
             hand: CameraHand::default(),
             mouse: Mouse::default(),
             hover: None,
+            shown_in_list: String::new(),
             show_ui: true,
             quit: false,
             screenshot: false,

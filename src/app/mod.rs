@@ -60,7 +60,7 @@ pub struct AppOptions {
 pub enum AppError {
     /// No display.
     #[error(
-        "no display to open a window on ({0}). Without one, `specula render --watch` writes a PNG again at every save"
+        "no display to open a window on: {0}. Without one, `specula render --watch` writes a PNG again at every save"
     )]
     NoDisplay(String),
     /// The device.
@@ -92,9 +92,9 @@ pub fn run(options: AppOptions) -> Result<(), AppError> {
 /// winit's reason without the place in its source that it puts in front.
 fn no_display(error: winit::error::EventLoopError) -> AppError {
     let text = error.to_string();
-    AppError::NoDisplay(
-        text.rsplit("rs:").next().and_then(|t| t.split_once(": ")).map_or(text.clone(), |(_, t)| t.into()),
-    )
+    let reason =
+        text.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": ")).map_or(&*text, |(_, reason)| reason);
+    AppError::NoDisplay(reason.trim_end_matches([')', '.']).to_owned())
 }
 
 struct App {

@@ -58,7 +58,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);
     if args.json {
-        println!("{result:#}");
+        out!("{result:#}");
     } else {
         print_table(&result);
     }
@@ -215,9 +215,9 @@ fn summary(mut values: Vec<f64>) -> Value {
 fn print_table(result: &Value) {
     for (name, value) in result.as_object().into_iter().flatten() {
         match (value.get("median"), value.get("p95")) {
-            (Some(median), Some(p95)) => println!("{name:24} median {median:>10}   p95 {p95:>10}"),
+            (Some(median), Some(p95)) => out!("{name:24} median {median:>10}   p95 {p95:>10}"),
             _ if value.is_array() && name == "modes" => {}
-            _ => println!("{name:24} {value}"),
+            _ => out!("{name:24} {value}"),
         }
     }
 }

@@ -41,7 +41,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         emit(args.common.emits(), &Event::Diagnostic(diagnostic));
     }
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&diagnostics).unwrap_or_default());
+        out!("{}", serde_json::to_string_pretty(&diagnostics).unwrap_or_default());
     }
     print_diagnostics(&diagnostics);
     if errors > 0 {
@@ -53,7 +53,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let modes = library.set().map_or(0, |set| set.modes.len());
         let built = built.map_or("no device, so no pipelines built".to_owned(), |n| format!("{n} pipelines built"));
         let seconds = start.elapsed().as_secs_f64();
-        println!("checked {files} files, {modes} modes, {built}: no errors ({seconds:.1} s)");
+        out!("checked {files} files, {modes} modes, {built}: no errors ({seconds:.1} s)");
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 use specula::gpu::{Gpu, GpuOptions};
-use specula::scene::{self, LoadOptions, Model};
+use specula::scene::{self, BUILT_IN, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::{Compiler, ShaderSet, Source, is_specula_tree};
 
@@ -20,7 +20,7 @@ pub struct Common {
     /// Which lights shine
     #[arg(long, value_enum)]
     lights: Option<LightSource>,
-    /// Camera position in metres, as 0,1,3 [default: the model is framed]
+    /// Camera position in meters, as 0,1,3 [default: the model is framed]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     eye: Option<[f32; 3]>,
     /// Point the camera looks at
@@ -38,7 +38,7 @@ pub struct Common {
     /// Exposure value (EV100): exposure is 1 / (1.2 * 2^N)
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     ev: Option<f32>,
-    /// Behind the model: none (transparent), env or #rrggbb
+    /// Behind the model: none (transparent) or #rrggbb
     #[arg(long, value_name = "WHAT")]
     background: Option<String>,
     /// Debug mode; `specula modes` lists them
@@ -127,6 +127,7 @@ impl Common {
 
     /// The same without printing its warnings.
     pub fn model_silently(&self, path: Option<&Path>) -> Result<Model, Failure> {
+        check_model_path(path)?;
         let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
         loaded.map_err(|e| Failure::Input(e.to_string()))
     }
@@ -143,6 +144,18 @@ impl Common {
     }
 }
 
+/// Fails when there is neither such a file nor a built-in model of that name.
+pub fn check_model_path(path: Option<&Path>) -> Result<(), Failure> {
+    let Some(path) = path.filter(|path| !path.exists()) else { return Ok(()) };
+    let name = path.to_string_lossy();
+    if BUILT_IN.contains(&&*name) {
+        return Ok(());
+    }
+    let hint = closest(&name, BUILT_IN.into_iter()).map(|c| format!(" Did you mean {c}?")).unwrap_or_default();
+    let list = BUILT_IN.join(" and ");
+    Err(Failure::Input(format!("{name}: there is no such file, and the built-in models are {list}.{hint}")))
+}
+
 /// The shader compiler.
 pub fn compiler() -> Result<Arc<Compiler>, Failure> {
     Compiler::new().map(Arc::new).map_err(Failure::Input)
@@ -153,10 +166,18 @@ pub fn check_mode(shaders: &ShaderSet, slug: &str) -> Result<(), Failure> {
     if shaders.modes.iter().any(|m| m.slug == slug) {
         return Ok(());
     }
-    let close: Vec<&str> =
-        shaders.modes.iter().map(|m| m.slug.as_str()).filter(|s| s.contains(slug) || slug.contains(s)).collect();
-    let hint = if close.is_empty() { String::new() } else { format!(" Close: {}.", close.join(", ")) };
+    let hint = match closest(slug, shaders.modes.iter().map(|m| m.slug.as_str())) {
+        Some(close) => format!(" Did you mean {close}?"),
+        None => String::new(),
+    };
     Err(Failure::Input(format!("there is no mode '{slug}'.{hint} `specula modes` lists them all")))
+}
+
+/// The candidate that is most like what was typed, if one is.
+fn closest<'a>(typed: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let likeness = |candidate: &str| strsim::normalized_damerau_levenshtein(typed, candidate);
+    let best = candidates.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+    (likeness(best) > 0.4).then_some(best)
 }
 
 /// Fails when the validation layers said something.

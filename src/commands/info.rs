@@ -31,26 +31,23 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let devices = devices.unwrap_or_default();
         let value = json!({ "version": env!("CARGO_PKG_VERSION"), "devices": devices, "shaders": tree,
             "model": summary(&model) });
-        println!("{value:#}");
+        out!("{value:#}");
         return Ok(());
     }
-    println!("specula {}", env!("CARGO_PKG_VERSION"));
-    println!("shaders    {tree}");
+    out!("specula {}", env!("CARGO_PKG_VERSION"));
+    out!("shaders    {tree}");
     match devices {
         Ok(devices) => {
             for device in devices {
                 let note = device.refused.map(|why| format!("  (not usable: {why})")).unwrap_or_default();
-                println!(
-                    "device     {} ({}), Vulkan {}, {}{note}",
-                    device.name, device.kind, device.api, device.driver
-                );
+                out!("device     {} ({}), Vulkan {}, {}{note}", device.name, device.kind, device.api, device.driver);
             }
         }
-        Err(error) => println!("device     none: {error}"),
+        Err(error) => out!("device     none: {error}"),
     }
     for (key, value) in summary(&model).as_object().into_iter().flatten() {
         let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        println!("{:10} {text}", key.replace('_', " "));
+        out!("{:10} {text}", key.replace('_', " "));
     }
     Ok(())
 }
@@ -73,8 +70,13 @@ fn summary(model: &Model) -> serde_json::Value {
         "images": model.images.iter().map(|i| format!("{} {}x{}", i.name, i.width, i.height)).collect::<Vec<_>>(),
         "lights": model.lights.len(),
         "cameras": model.cameras.len(),
-        "size_m": [size.x, size.y, size.z],
-        "center_m": model.bounds.center().to_array(),
+        "size_m": rounded(size),
+        "center_m": rounded(model.bounds.center()),
         "warnings": model.warnings,
     })
+}
+
+/// To the millimeter.
+fn rounded(v: glam::Vec3) -> [f64; 3] {
+    v.to_array().map(|c| (f64::from(c) * 1e3).round() / 1e3)
 }

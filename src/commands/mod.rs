@@ -1,5 +1,13 @@
 //! Parsing, dispatch, and what all commands share: common options, exit codes, the way errors are printed.
 
+/// `println!` that does not mind a reader who went away, as `specula modes | head` does.
+macro_rules! out {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout().lock(), $($text)*);
+    }};
+}
+
 mod bench;
 mod check;
 mod common;
@@ -10,6 +18,7 @@ mod render;
 mod view;
 mod watch;
 
+use std::io::IsTerminal as _;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -80,8 +89,15 @@ impl From<HeadlessError> for Failure {
 /// Runs the program that started at `start`.
 pub fn main(start: Instant) -> ExitCode {
     use tracing_subscriber::EnvFilter;
-    let filter = EnvFilter::try_from_env("SPECULA_LOG").unwrap_or_else(|_| EnvFilter::new("warn"));
-    tracing_subscriber::fmt().with_writer(std::io::stderr).with_env_filter(filter).without_time().init();
+    // winit warns of every oddity of a display at every start.
+    let filter = EnvFilter::try_from_env("SPECULA_LOG").unwrap_or_else(|_| EnvFilter::new("warn,winit=error"));
+    let color = std::io::stderr().is_terminal();
+    tracing_subscriber::fmt()
+        .with_writer(std::io::stderr)
+        .with_ansi(color)
+        .with_env_filter(filter)
+        .without_time()
+        .init();
     let cli = Cli::parse();
     let result = match cli.command {
         None => view::run(cli.view, start),

@@ -25,29 +25,29 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     if args.json {
         let json = serde_json::to_string_pretty(&shaders.modes).map_err(|e| Failure::Input(e.to_string()))?;
-        println!("{json}");
+        out!("{json}");
         return Ok(());
     }
     let width = shaders.modes.iter().map(|m| m.slug.len()).max().unwrap_or(0);
     let mut group = "";
     for mode in &shaders.modes {
         if mode.group != group {
-            println!("\n{}", mode.group);
+            out!("\n{}", mode.group);
             group = &mode.group;
         }
-        println!("  {:width$}  {}", mode.slug, mode.doc);
+        out!("  {:width$}  {}", mode.slug, mode.doc);
     }
     if !shaders.constants.is_empty() || !shaders.parameters.is_empty() {
-        println!("\nFor --set");
+        out!("\nFor --set");
     }
     for constant in &shaders.constants {
         let choices: Vec<&str> = constant.choices.iter().map(|(name, _)| name.as_str()).collect();
-        println!("  {:width$}  {} {}", constant.name, constant.label, choices.join(" | "));
+        out!("  {:width$}  {} {}", constant.name, constant.label, choices.join(" | "));
     }
     for parameter in &shaders.parameters {
         let range = parameter.range.map(|(low, high)| format!("{low}..{high} ")).unwrap_or_default();
         let default: Vec<String> = parameter.default.iter().map(f64::to_string).collect();
-        println!("  {:width$}  {} {range}= {}", parameter.name, parameter.label, default.join(" "));
+        out!("  {:width$}  {} {range}= {}", parameter.name, parameter.label, default.join(" "));
     }
     Ok(())
 }

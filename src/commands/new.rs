@@ -17,7 +17,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let written = embedded::write_to(&args.dir)
         .map_err(|e| Failure::Input(format!("cannot write the shader tree to {}: {e}", args.dir.display())))?;
-    println!("wrote {} files to {}", written.len(), args.dir.display());
-    println!("try: specula --shaders {}   and edit user.glsl or brdf/ndf.glsl", args.dir.display());
+    out!("wrote {} files to {}", written.len(), args.dir.display());
+    out!("try: specula --shaders {}   and edit user.glsl or brdf/ndf.glsl", args.dir.display());
     Ok(())
 }

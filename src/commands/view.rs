@@ -6,7 +6,7 @@ use std::time::Instant;
 use specula::app::{self, AppError, AppOptions};
 
 use super::Failure;
-use super::common::{Common, compiler};
+use super::common::{Common, check_model_path, compiler};
 
 /// Options of `view`.
 #[derive(clap::Args)]
@@ -20,6 +20,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     let events = args.common.emits();
+    check_model_path(args.model.as_deref())?;
     let options = AppOptions {
         source: args.common.source()?,
         compiler: compiler()?,

@@ -114,12 +114,17 @@ impl Reload {
             changed: self.report.changed.clone(),
             stages: self.report.stages.iter().map(|(stage, _)| stage.clone()).collect(),
             ok: !matches!(self.outcome, Outcome::Failed(_)),
-            detect_ms,
-            compile_ms: self.report.compile_ms,
-            pipeline_ms: self.pipeline_ms,
-            first_frame_ms,
+            detect_ms: microseconds(detect_ms),
+            compile_ms: microseconds(self.report.compile_ms),
+            pipeline_ms: microseconds(self.pipeline_ms),
+            first_frame_ms: microseconds(first_frame_ms),
         }
     }
+}
+
+/// Milliseconds to three digits behind the point: no clock here knows more.
+fn microseconds(ms: f64) -> f64 {
+    (ms * 1e3).round() / 1e3
 }
 
 /// What a tree is called in messages.

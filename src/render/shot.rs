@@ -48,7 +48,7 @@ impl Shot {
             exposure,
             ambient,
             time_s,
-            background: background(&settings.view.background, ambient.map(|c| c * exposure))?,
+            background: background(&settings.view.background)?,
             scene_center_ws: model.bounds.center().to_array(),
             scene_radius: model.bounds.radius(),
             near: view.near,
@@ -78,15 +78,14 @@ fn tonemap(tonemap: Tonemap, mode: Option<&Mode>) -> u32 {
     if mode.is_some_and(|m| m.tonemap) { tonemap as u32 } else { TONEMAP_OFF }
 }
 
-/// The linear color and alpha behind the model: `none`, `env` (the ambient light) or `#rrggbb`.
+/// The linear color and alpha behind the model: `none` or `#rrggbb`.
 ///
 /// # Errors
 /// Anything else, in words.
-pub fn background(text: &str, ambient: [f32; 3]) -> Result<[f32; 4], String> {
-    let expected = || format!("background '{text}' is none of: none, env, #rrggbb (as #1b1d21)");
+pub fn background(text: &str) -> Result<[f32; 4], String> {
+    let expected = || format!("background '{text}' is neither none nor #rrggbb (as #1b1d21)");
     match text {
         "none" => Ok([0.0; 4]),
-        "env" => Ok([ambient[0].min(1.0), ambient[1].min(1.0), ambient[2].min(1.0), 1.0]),
         hex => {
             let digits = hex.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii()).ok_or_else(expected)?;
             let rgb = u32::from_str_radix(digits, 16).map_err(|_| expected())?;

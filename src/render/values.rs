@@ -91,7 +91,9 @@ pub fn unknown_names(values: &Values, shaders: &ShaderSet) -> Option<String> {
         shaders.constants.iter().map(|c| &*c.name).chain(shaders.parameters.iter().map(|p| &*p.name)).collect();
     let unknown = values.keys().find(|name| !known.contains(&name.as_str()))?;
     let list = if known.is_empty() { "none".into() } else { known.join(", ") };
-    Some(format!("there is no setting or shader parameter '{unknown}'; this shader tree's own are: {list}"))
+    Some(format!(
+        "there is no setting or shader parameter '{unknown}'. This shader tree's own are: {list}. Settings have paths, as view.ev or lights.orbit.0.strength"
+    ))
 }
 
 fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {

@@ -12,7 +12,7 @@ const FARTHEST: f32 = 1e18;
 /// Field of view when the setting is not a number, degrees.
 const DEFAULT_FOVY_DEG: f32 = 35.0;
 
-/// A perspective view in world space: right-handed, +Y up, metres. Made by [`View::new`] or [`frame`], it is never
+/// A perspective view in world space: right-handed, +Y up, meters. Made by [`View::new`] or [`frame`], it is never
 /// degenerate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
@@ -26,9 +26,9 @@ pub struct View {
     pub fovy_rad: f32,
     /// Width by height.
     pub aspect: f32,
-    /// Near plane distance, metres.
+    /// Near plane distance, meters.
     pub near: f32,
-    /// Distance behind which nothing of the model is, metres (the projection itself is infinite).
+    /// Distance behind which nothing of the model is, meters (the projection itself is infinite).
     pub far: f32,
 }
 

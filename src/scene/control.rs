@@ -15,7 +15,7 @@ const STEEPEST: f32 = FRAC_PI_2 - 1e-3;
 pub struct OrbitCamera {
     /// The center, world space.
     pub target: Vec3,
-    /// From the target to the eye, metres, above 0.
+    /// From the target to the eye, meters, above 0.
     pub distance: f32,
     /// Around +Y, from +Z towards +X, radians.
     pub azimuth_rad: f32,
@@ -69,7 +69,7 @@ pub struct FlyCamera {
     pub azimuth_rad: f32,
     /// Direction of view above the horizon, radians.
     pub elevation_rad: f32,
-    /// Distance to the target that it hands over, metres.
+    /// Distance to the target that it hands over, meters.
     pub distance: f32,
 }
 
@@ -96,7 +96,7 @@ impl FlyCamera {
         turn(&mut self.azimuth_rad, &mut self.elevation_rad, Vec2::new(-delta_rad.x, delta_rad.y));
     }
 
-    /// Flies for `seconds`: `velocity` in metres a second, x right, y up in the world, z ahead.
+    /// Flies for `seconds`: `velocity` in meters a second, x right, y up in the world, z ahead.
     pub fn fly(&mut self, velocity: Vec3, seconds: f32) {
         let right = direction(self.azimuth_rad - FRAC_PI_2, 0.0);
         let step = (right * velocity.x + Vec3::Y * velocity.y + self.forward() * velocity.z) * seconds;
@@ -106,7 +106,7 @@ impl FlyCamera {
     }
 }
 
-/// Azimuth, elevation and length of a vector; of one without direction those of +Z and a metre.
+/// Azimuth, elevation and length of a vector; of one without direction those of +Z and a meter.
 fn angles(vector: Vec3) -> (f32, f32, f32) {
     let (unit, length) = match vector.try_normalize() {
         Some(unit) => (unit, vector.length()),

@@ -48,7 +48,7 @@ pub struct LoadTiming {
     pub tangents_ms: f64,
 }
 
-/// Axis-aligned bounds in world space, metres. Empty when `min > max`.
+/// Axis-aligned bounds in world space, meters. Empty when `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Smallest corner.
@@ -311,13 +311,13 @@ pub struct Light {
     pub name: String,
     /// Kind and cone.
     pub kind: LightKind,
-    /// World position, metres.
+    /// World position, meters.
     pub position: Vec3,
     /// Where it shines to, unit.
     pub direction: Vec3,
     /// Linear RGB times candela or lux.
     pub intensity: Vec3,
-    /// Distance at which it ends, metres; `None` is without end.
+    /// Distance at which it ends, meters; `None` is without end.
     pub range: Option<f32>,
 }
 

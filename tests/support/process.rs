@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
@@ -84,6 +85,7 @@ pub struct Running {
     events: Receiver<String>,
     seen: Vec<String>,
     stderr: Arc<Mutex<String>>,
+    stderr_ends: Option<JoinHandle<()>>,
 }
 
 impl Running {
@@ -96,8 +98,8 @@ impl Running {
         forward(child.stderr.take().unwrap(), sender);
         let stderr = Arc::<Mutex<String>>::default();
         let log = stderr.clone();
-        std::thread::spawn(move || lines.iter().for_each(|line| *log.lock().unwrap() += &(line + "\n")));
-        Self { child, events, seen: Vec::new(), stderr }
+        let ends = std::thread::spawn(move || lines.iter().for_each(|line| *log.lock().unwrap() += &(line + "\n")));
+        Self { child, events, seen: Vec::new(), stderr, stderr_ends: Some(ends) }
     }
 
     /// The next event, of any kind.
@@ -147,9 +149,19 @@ impl Running {
             match self.events.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
                 Ok(line) => self.seen.push(line),
                 Err(RecvTimeoutError::Timeout) => panic!("the program did not end. {}", self.story()),
-                Err(RecvTimeoutError::Disconnected) => return self.child.wait().unwrap(),
+                Err(RecvTimeoutError::Disconnected) => break,
             }
         }
+        let status = self.child.wait().unwrap();
+        if let Some(thread) = self.stderr_ends.take() {
+            thread.join().unwrap();
+        }
+        status
+    }
+
+    /// What the program said on stderr so far; all of it after [`Self::end`].
+    pub fn stderr(&self) -> String {
+        self.stderr.lock().unwrap().clone()
     }
 
     /// What the program said so far, for messages.

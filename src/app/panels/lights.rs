@@ -18,7 +18,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
             }
             ui.selectable_value(&mut lights.source, LightSource::None, "None");
         });
-        row(ui, "BRDF terms of", "Which light the BRDF term modes show", |ui| {
+        row(ui, "Terms of light", "Which light the BRDF term modes show", |ui| {
             ui.selectable_value(&mut lights.chosen, 0, "All");
             let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
             for light in 1..=count {

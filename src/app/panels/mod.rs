@@ -51,7 +51,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>)
             let panel = egui::Panel::left("modes").frame(frame).default_size(170.0).min_size(120.0).max_size(320.0);
             panel.show(ui, |ui| modes::show(ui, document));
         }
-        let panel = egui::Panel::right("settings").frame(frame).default_size(286.0).min_size(220.0).max_size(480.0);
+        let panel = egui::Panel::right("settings").frame(frame).default_size(304.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 shaders::show(ui, document, device_ms);
@@ -78,7 +78,7 @@ fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
 /// A row: name on the left, control on the right.
 fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        let size = egui::vec2(104.0, 18.0);
+        let size = egui::vec2(120.0, 18.0);
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         let label = |ui: &mut Ui| {
             ui.set_min_size(size);

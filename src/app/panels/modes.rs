@@ -31,6 +31,10 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
                 })
                 .inner
                 .on_hover_text(format!("{}\n\n--mode {}", mode.doc, mode.slug));
+            if on && document.shown_in_list != mode.slug {
+                document.shown_in_list.clone_from(&mode.slug);
+                response.scroll_to_me(None);
+            }
             if response.clicked() {
                 document.settings.mode.clone_from(&mode.slug);
             }

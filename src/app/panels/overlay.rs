@@ -16,14 +16,23 @@ pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui:
         diagnostics(egui, &document.diagnostics, picture);
     }
     let loading = document.loading.then(|| "Loading the model…".to_owned());
-    let notice = document.notice.as_ref().filter(|(_, since)| since.elapsed() < NOTICE);
-    if let Some((_, since)) = notice {
+    // Without a model the reason stays; anything else is said for a while.
+    let stays = document.model.instances.is_empty() && !document.loading;
+    let notice = document.notice.as_ref().filter(|(_, since)| stays || since.elapsed() < NOTICE);
+    if let Some((_, since)) = notice.filter(|_| !stays) {
         egui.request_repaint_after(NOTICE.saturating_sub(since.elapsed()));
     }
     let text = notice.map(|(text, _)| text.clone()).or(loading);
     if let Some(text) = text {
         area("notice", Align2::CENTER_BOTTOM, picture).show(egui, |ui| {
-            card(Color32::from_gray(90)).show(ui, |ui| ui.label(text));
+            card(Color32::from_gray(90)).show(ui, |ui| {
+                ui.set_max_width((picture.width() - 60.0).clamp(200.0, 560.0));
+                ui.add(egui::Label::new(text).wrap_mode(if picture.width() > 500.0 {
+                    egui::TextWrapMode::Wrap
+                } else {
+                    egui::TextWrapMode::Truncate
+                }));
+            });
         });
     }
     if document.show_ui {
@@ -77,7 +86,7 @@ fn one(ui: &mut egui::Ui, diagnostic: &Diagnostic) {
     let full = diagnostic.full();
     // Without the first two lines: message and place stand above.
     let rest = full.lines().skip(2).collect::<Vec<_>>().join("\n");
-    ui.label(RichText::new(&diagnostic.message).monospace());
+    ui.label(RichText::new(&diagnostic.message).monospace().color(Color32::WHITE));
     if !rest.is_empty() {
         ui.add(egui::Label::new(RichText::new(rest).monospace().color(Color32::from_gray(215))).extend());
     }

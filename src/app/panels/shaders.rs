@@ -26,14 +26,15 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>)
         if let Some(last) = &document.shader.last {
             let changed = if last.changed.is_empty() { "start".into() } else { last.changed.join(" ") };
             let names: Vec<&str> = changed.split(' ').map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
-            let text = format!(
-                "{} -> {}\n{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
-                names.join(" "),
-                if last.stages.is_empty() { "nothing to do".into() } else { last.stages.join(" ") },
-                last.compile_ms,
-                last.pipeline_ms,
-                last.first_frame_ms,
-            );
+            let stages = if last.stages.is_empty() { "nothing to do".into() } else { last.stages.join(" ") };
+            let times = match last.ok {
+                true => format!(
+                    "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
+                    last.compile_ms, last.pipeline_ms, last.first_frame_ms
+                ),
+                false => format!("failed after {:.0} ms", last.compile_ms),
+            };
+            let text = format!("{} -> {stages}\n{times}", names.join(" "));
             ui.label(RichText::new(text).monospace().small()).on_hover_text(format!(
                 "{changed}\nSeen {:.1} ms after the first file event. The frame is the first with the new shaders.",
                 last.detect_ms

@@ -30,7 +30,7 @@ use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 use super::outline::outline;
 
-/// Largest coordinate of a mesh and of the scene, metres: a camera that frames it can still be squared in `f32`.
+/// Largest coordinate of a mesh and of the scene, meters: a camera that frames it can still be squared in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
 
 /// Loads a file.

@@ -17,7 +17,9 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
         primitive.attributes |= contract::ATTRIBUTE_TANGENT_FRAME;
     }
     let replaced = primitive.vertices.iter_mut().filter_map(repair).count();
-    if replaced > 0 && (from_file || made) {
+    // A few made ones fail where texture coordinates meet in a point; that is the author's business only when it shows.
+    let shows = replaced * 100 > primitive.vertices.len();
+    if replaced > 0 && (from_file || (made && shows)) {
         let (name, total) = (&primitive.name, primitive.vertices.len());
         geometry.warnings.push(format!(
             "{name}: {replaced} of {total} tangents are zero or not finite: any direction \
