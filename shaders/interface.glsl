@@ -71,7 +71,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint tonemap;
     uint encode;
     uint mode;
-    uint frame_index;
+    float largest_value;       // of the HDR target: 65504 for half floats
 } frame;
 
 struct Light {

@@ -11,10 +11,6 @@
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;
 
-// The scene color may be kept in half floats: beyond this they are infinite, and the mean of a pixel's samples with
-// them.
-const float LARGEST_HALF = 65504.0;
-
 void main() {
     vec3 v = safe_normalize(frame.eye_ws - fragment.position_ws, vec3(0.0, 0.0, 1.0));
     Surface surface = make_surface(fragment, v);
@@ -27,5 +23,7 @@ void main() {
         value = outgoing_radiance(surface, v, all_lights());
         if (ALPHA_MODE == ALPHA_BLEND) coverage = surface.coverage;
     }
-    out_color = vec4(min(value, LARGEST_HALF) * coverage, coverage);
+    // Beyond what the target holds lies infinity, and the mean of a pixel's samples with it.
+    value = clamp(value, -frame.largest_value, frame.largest_value);
+    out_color = vec4(value * coverage, coverage);
 }

@@ -1,11 +1,12 @@
 //! Rendering without a window: the same reload and the same frame as on screen, called one after the other.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use crate::gpu::{Gpu, GpuError, Rect, SetLayouts, vk};
 use crate::render::{
     Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload, Reloader, Renderer, Shot, Target, UploadError,
-    Wanted, unknown_names,
+    Wanted, misfits, unknown_names,
 };
 use crate::scene::{self, Model};
 use crate::settings::Settings;
@@ -38,7 +39,9 @@ pub struct Headless {
     model: Model,
     scene: Arc<GpuScene>,
     settings: Settings,
+    samples: u32,
     size: (u32, u32),
+    upload_ms: f64,
 }
 
 impl Headless {
@@ -62,31 +65,26 @@ impl Headless {
             let message = format!("{}x{} is too large; this device draws at most {most} pixels a side", size.0, size.1);
             return Err(HeadlessError::Settings(message));
         }
+        let upload = Instant::now();
         let scene = GpuScene::upload(gpu, &layouts, &model)?;
+        let upload_ms = upload.elapsed().as_secs_f64() * 1e3;
+        let samples = samples(gpu, &settings).map_err(HeadlessError::Settings)?;
         let mut reloader = Reloader::new(gpu, &layouts, compiler, source);
-        let mut problem = None;
-        let wanted = |shaders: &_| match wanted(gpu, &settings, shaders, &scene) {
-            Ok(wanted) => Ok(wanted),
-            Err(message) => {
-                problem = Some(message.clone());
-                Err(message)
-            }
-        };
-        let mut reload = reloader.update(Change::All, wanted, || false);
-        if let Some(message) = problem {
-            return Err(HeadlessError::Settings(message));
-        }
+        let mut reload = reloader.update(Change::All, |shaders| wanted(&settings, samples, shaders, &scene), || false);
         let pipelines = match std::mem::replace(&mut reload.outcome, Outcome::Unchanged { cleared: false }) {
             Outcome::Ready(pipelines) => pipelines,
             Outcome::Failed(diagnostics) => return Err(HeadlessError::Shaders(diagnostics)),
             Outcome::Unchanged { .. } => return Err(HeadlessError::Shaders(Vec::new())),
         };
         reload.outcome = Outcome::Ready(pipelines.clone());
-        if let Some(message) = unknown_names(&settings.shader, &pipelines.shaders) {
+        let misfit = misfits(&settings.shader, &pipelines.shaders).into_iter().next();
+        if let Some(message) = unknown_names(&settings.shader, &pipelines.shaders).or(misfit) {
             return Err(HeadlessError::Settings(message));
         }
         let (gpu, layouts) = (gpu.clone(), layouts);
-        Ok((Self { gpu, layouts, renderer, reloader, pipelines, model, scene, settings, size }, reload))
+        let this =
+            Self { gpu, layouts, renderer, reloader, pipelines, model, scene, settings, samples, size, upload_ms };
+        Ok((this, reload))
     }
 
     /// The pipelines on screen, with their shaders.
@@ -109,6 +107,11 @@ impl Headless {
         &mut self.settings
     }
 
+    /// What the upload of the first model took, milliseconds.
+    pub fn upload_ms(&self) -> f64 {
+        self.upload_ms
+    }
+
     /// Device time of the last frame in milliseconds, where the device can tell.
     pub fn device_ms(&self) -> Option<f64> {
         self.renderer.device_ms()
@@ -116,8 +119,8 @@ impl Headless {
 
     /// Takes changed shaders in. On failure the last good ones stay.
     pub fn update(&mut self, change: Change) -> Reload {
-        let (gpu, settings, scene) = (&self.gpu, &self.settings, &self.scene);
-        let reload = self.reloader.update(change, |shaders| wanted(gpu, settings, shaders, scene), || false);
+        let (settings, samples, scene) = (&self.settings, self.samples, &self.scene);
+        let reload = self.reloader.update(change, |shaders| wanted(settings, samples, shaders, scene), || false);
         if let Outcome::Ready(pipelines) = &reload.outcome {
             self.pipelines = pipelines.clone();
         }
@@ -154,14 +157,12 @@ impl Headless {
     }
 
     fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
-        let wanted =
-            wanted(&self.gpu, &self.settings, &self.pipelines.shaders, &self.scene).map_err(HeadlessError::Settings)?;
+        let wanted = wanted(&self.settings, self.samples, &self.pipelines.shaders, &self.scene);
         self.pipelines.build(&wanted)?;
         let (width, height) = self.size;
         let aspect = width as f32 / height as f32;
         let view = scene::frame(&self.model.bounds, &self.model.outline, &self.settings.camera, aspect);
-        let shot = Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0)
-            .map_err(HeadlessError::Settings)?;
+        let shot = Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0);
         let input = FrameInput {
             shot: &shot,
             pipelines: Some((&self.pipelines, &wanted)),
@@ -173,13 +174,7 @@ impl Headless {
 }
 
 /// What the settings ask of these shaders for this scene, when the HDR target has full floats.
-fn wanted(
-    gpu: &Gpu,
-    settings: &Settings,
-    shaders: &crate::shader::ShaderSet,
-    scene: &GpuScene,
-) -> Result<Wanted, String> {
-    let samples = samples(gpu, settings)?;
+fn wanted(settings: &Settings, samples: u32, shaders: &crate::shader::ShaderSet, scene: &GpuScene) -> Wanted {
     let format = vk::Format::R32G32B32A32_SFLOAT;
     Wanted::new(settings, shaders, scene.variants(), samples, format, Renderer::OUTPUT_FORMAT)
 }

@@ -207,8 +207,8 @@ pub struct Frame {
     pub encode: u32,
     /// Debug mode on screen, for passes that are not specialized by mode.
     pub mode: u32,
-    /// Counts frames since the last change of anything, for accumulation.
-    pub frame_index: u32,
+    /// Largest value that the HDR target holds: 65504 for half floats.
+    pub largest_value: f32,
 }
 
 /// A light, in world space. `SET_FRAME`, `BINDING_LIGHTS`.
@@ -379,7 +379,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint tonemap;
     uint encode;
     uint mode;
-    uint frame_index;
+    float largest_value;       // of the HDR target: 65504 for half floats
 } frame;
 
 struct Light {

@@ -6,10 +6,11 @@
 //! - [`interface`]: the contract between Rust and GLSL.
 //! - [`settings`]: everything a user can set.
 //! - [`shader`]: files to SPIR-V. Knows no device and no scene.
+//! - [`events`]: what happened, as JSON lines.
 //! - [`gpu`]: Vulkan objects, the only `unsafe`. Knows no files and no glTF.
 //! - [`scene`]: CPU data: glTF, tangents, camera, lights.
 //! - [`render`]: where shaders, device and scene meet.
-//! - [`events`], [`picture`], [`headless`]: what happened as JSON lines; captures as files; rendering without a window.
+//! - [`picture`], [`headless`]: captures as files; rendering without a window.
 //! - [`app`]: the window.
 //!
 //! The way of an edit: a file event becomes a settled set of changed paths ([`shader::watch`]), the set becomes dirty stages and new

@@ -179,6 +179,29 @@ impl Default for ViewSettings {
     }
 }
 
+impl ViewSettings {
+    /// Linear color and alpha behind the model.
+    ///
+    /// # Errors
+    /// A text that is neither `none` nor a color, in words.
+    pub fn background_linear(&self) -> Result<[f32; 4], String> {
+        let text = self.background.as_str();
+        if text == "none" {
+            return Ok([0.0; 4]);
+        }
+        let expected = || format!("background '{text}' is neither none nor #rrggbb (as #1b1d21)");
+        let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii()).ok_or_else(expected)?;
+        let rgb = u32::from_str_radix(digits, 16).map_err(|_| expected())?;
+        let channel = |shift: u32| linear_from_srgb(((rgb >> shift) & 255) as f32 / 255.0);
+        Ok([channel(16), channel(8), channel(0), 1.0])
+    }
+}
+
+/// sRGB electro-optical transfer function (IEC 61966-2-1): linear light from an encoded value, both 0..1.
+pub fn linear_from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
 impl Settings {
     /// Reads a look file.
     ///
@@ -206,11 +229,22 @@ impl Settings {
             ("view.ev", self.view.ev, -30.0, 30.0),
             ("lights.ambient_strength", self.lights.ambient_strength, 0.0, 1e9),
             ("lights.spin", self.lights.spin, -1e4, 1e4),
+            ("lights.ambient_color.0", self.lights.ambient_color[0], 0.0, 1e6),
+            ("lights.ambient_color.1", self.lights.ambient_color[1], 0.0, 1e6),
+            ("lights.ambient_color.2", self.lights.ambient_color[2], 0.0, 1e6),
         ];
         let orbit = self.lights.orbit.iter().enumerate();
         let lights = orbit.flat_map(|(i, l)| {
-            [("strength", l.strength, 0.0, 1e9), ("distance", l.distance, 1e-3, 1e6)]
-                .map(|(name, value, low, high)| (format!("lights.orbit.{i}.{name}"), value, low, high))
+            [
+                ("strength", l.strength, 0.0, 1e9),
+                ("distance", l.distance, 1e-3, 1e6),
+                ("azimuth", l.azimuth, -1e6, 1e6),
+                ("polar", l.polar, -1e6, 1e6),
+                ("color.0", l.color[0], 0.0, 1e6),
+                ("color.1", l.color[1], 0.0, 1e6),
+                ("color.2", l.color[2], 0.0, 1e6),
+            ]
+            .map(|(name, value, low, high)| (format!("lights.orbit.{i}.{name}"), value, low, high))
         });
         let named = numbers.map(|(name, value, low, high)| (name.to_owned(), value, low, high));
         for (name, value, low, high) in named.into_iter().chain(lights) {
@@ -224,6 +258,7 @@ impl Settings {
                 return Err(format!("{name} must have finite numbers"));
             }
         }
+        self.view.background_linear()?;
         match self.view.msaa {
             1 | 4 => Ok(()),
             other => Err(format!("view.msaa is {other}; it can be 1 or 4")),

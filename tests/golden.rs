@@ -1,6 +1,6 @@
 //! A few pictures of the shader ball against those in `tests/golden/`, as an eye would compare them.
 //!
-//! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m on a 4K screen; its mean is judged.
+//! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m on a 4K screen; we take the mean.
 //! Measured on these pictures: one sample a pixel in place of four, or a camera moved by 1 cm, 0.006 to 0.023; exposure
 //! off by a tenth of a stop 0.04; roughness times 0.7 0.07; a light or the ambient light missing 0.09 to 0.14. Drivers
 //! differ in the last bit of a color, in filtering and in which samples an edge covers, which is less than the first of

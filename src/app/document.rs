@@ -1,7 +1,9 @@
 //! What the window shows and what the user has set. Only the window's thread touches it.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::thread::JoinHandle;
 use std::time::Instant;
 
 use winit::event_loop::EventLoopProxy;
@@ -9,7 +11,8 @@ use winit::event_loop::EventLoopProxy;
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, SetLayouts, vk};
 use crate::headless;
-use crate::render::{GpuScene, Outcome, PipelineSet, Reload, Wanted};
+use crate::interface::FEATURE_NORMAL_TEXTURE;
+use crate::render::{GpuScene, MaterialVariant, Outcome, PipelineSet, Reload, Wanted, misfits, unknown_names};
 use crate::scene::{LoadOptions, Model};
 use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Mode, ShaderSet, Source, TreePath, Watcher, is_specula_tree};
@@ -21,11 +24,13 @@ use super::worker::{Needs, Worker, WorkerMessage};
 use super::{AppOptions, Message};
 
 /// What the last frame was drawn with, and the next one is until something better is complete.
+#[derive(Clone)]
 pub(super) struct Shown {
     pub(super) pipelines: Arc<PipelineSet>,
     pub(super) wanted: Wanted,
     pub(super) scene: Option<Arc<GpuScene>>,
-    pub(super) settings: Settings,
+    /// Slug of the mode that `wanted` draws.
+    pub(super) mode: String,
 }
 
 /// The raw value under the mouse.
@@ -40,8 +45,8 @@ pub(super) struct Hover {
 
 /// A reload whose first frame is still to come.
 pub(super) struct FirstFrame {
-    pub(super) generation: u64,
-    pub(super) event: ReloadEvent,
+    pipelines: Arc<PipelineSet>,
+    event: ReloadEvent,
 }
 
 /// The shader tree's state, for the panel.
@@ -78,7 +83,7 @@ pub(super) struct Document {
     scene: Option<Arc<GpuScene>>,
     next_scene: Option<(Model, Arc<GpuScene>)>,
     shown: Option<Shown>,
-    asked: Option<(u64, Wanted)>,
+    asked: Option<(Arc<PipelineSet>, Wanted)>,
     ready: bool,
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -88,6 +93,19 @@ pub(super) struct Document {
     model_watcher: Option<Watcher>,
     allow_outside: bool,
     ticket: u64,
+    /// The model that was asked for last; `model_path` is the one on screen.
+    requested: Option<PathBuf>,
+    loaders: Vec<JoinHandle<()>>,
+}
+
+impl Drop for Document {
+    fn drop(&mut self) {
+        // The watcher sends to the worker, and no thread may still be inside the driver when the process ends.
+        self.tree_watcher = None;
+        for loader in self.loaders.drain(..) {
+            let _ = loader.join();
+        }
+    }
 }
 
 /// Format of the window's HDR target: half floats hold every picture, at half the cost.
@@ -100,9 +118,11 @@ impl Document {
         options: AppOptions,
         proxy: &EventLoopProxy<Message>,
     ) -> Self {
+        // What most models have, built while the model loads.
+        let likely = MaterialVariant { features: FEATURE_NORMAL_TEXTURE, ..Default::default() };
         let needs = Needs {
             settings: options.settings.clone(),
-            materials: Default::default(),
+            materials: BTreeSet::from([likely]),
             samples: headless::samples(gpu, &options.settings).unwrap_or(1),
             scene_format: SCENE_FORMAT,
         };
@@ -141,8 +161,12 @@ impl Document {
             model_watcher: None,
             allow_outside: options.allow_outside,
             ticket: 0,
+            requested: None,
+            loaders: Vec::new(),
         };
         document.watch_tree(&tree);
+        // Watched before it is read, so that no save falls between.
+        document.watch_model(options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect());
         document.load_model(options.model);
         document
     }
@@ -155,6 +179,14 @@ impl Document {
     /// The debug mode that is set, as the tree describes it.
     pub(super) fn mode(&self) -> Option<&Mode> {
         self.shaders()?.modes.iter().find(|m| m.slug == self.settings.mode)
+    }
+
+    /// Lets the lights go on orbiting for `seconds`.
+    pub(super) fn turn_lights(&mut self, seconds: f32) {
+        let lights = &mut self.settings.lights;
+        for light in &mut lights.orbit {
+            light.azimuth = (light.azimuth + lights.spin * seconds + 180.0).rem_euclid(360.0) - 180.0;
+        }
     }
 
     /// Whether the picture moves by itself: the lights orbit, or a shader reads the time.
@@ -220,12 +252,16 @@ impl Document {
         self.ticket += 1;
         self.loading = true;
         let options = LoadOptions { allow_outside: self.allow_outside };
-        loader::load(&self.gpu, &self.layouts, &self.proxy, path, options, self.ticket);
+        self.requested = path.clone();
+        self.loaders.retain(|loader| !loader.is_finished());
+        self.loaders.push(loader::load(&self.gpu, &self.layouts, &self.proxy, path, options, self.ticket));
     }
 
-    /// The model's file has changed.
-    pub(super) fn reload_model(&mut self) {
-        self.load_model(self.model_path.clone());
+    /// Files of the model have changed, or files of one that could not be loaded.
+    pub(super) fn reload_model(&mut self, changed: &BTreeSet<PathBuf>) {
+        let of_model = self.model.files.iter().any(|file| changed.contains(file));
+        let path = if of_model && !self.loading { self.model_path.clone() } else { self.requested.clone() };
+        self.load_model(path);
     }
 
     pub(super) fn on_loaded(&mut self, loaded: Loaded) {
@@ -244,14 +280,13 @@ impl Document {
                     self.settings.camera.target = None;
                 }
                 self.model_path = loaded.path;
-                self.watch_model(&model.files);
+                self.watch_model(model.files.clone());
                 self.next_scene = Some((model, scene));
             }
-            Err(message) => {
-                // A file that was half written is read again at its next event.
-                if let Some(path) = &loaded.path {
-                    self.watch_model(std::slice::from_ref(path));
-                }
+            Err((message, tried)) => {
+                // The model on screen stays watched, and so is what must be repaired.
+                let files = self.model.files.iter().cloned().chain(tried).collect();
+                self.watch_model(files);
                 self.say(message);
             }
         }
@@ -291,10 +326,27 @@ impl Document {
                     eprintln!("{}", warning.full());
                 }
                 let event = reload.event(set.shaders.generation, detect_ms, 0.0);
-                self.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
-                self.pipelines = Some(set.clone());
-                self.asked = None;
+                self.first_frame = Some(FirstFrame { pipelines: set.clone(), event });
+                let is_first = self.pipelines.replace(set.clone()).is_none();
+                self.check_names(is_first);
             }
+        }
+    }
+
+    /// Tells of values and modes that these shaders do not have; they are kept for the next edit. Names from the command line that
+    /// never existed are told of once.
+    fn check_names(&mut self, is_first: bool) {
+        let Some(set) = &self.pipelines else { return };
+        let mut problems = misfits(&self.settings.shader, &set.shaders);
+        let slug = &self.settings.mode;
+        if !set.shaders.modes.iter().any(|m| m.slug == *slug) {
+            problems.push(format!("there is no mode '{slug}'; `specula modes` lists them all"));
+        }
+        if is_first {
+            problems.extend(unknown_names(&self.settings.shader, &set.shaders));
+        }
+        if !problems.is_empty() {
+            self.say(problems.join("\n"));
         }
     }
 
@@ -304,7 +356,7 @@ impl Document {
     }
 
     /// Works out what the next frame is drawn with: what the user asks for once it is complete, what was shown before until then.
-    pub(super) fn shown(&mut self) -> Option<&Shown> {
+    pub(super) fn shown(&mut self) -> Option<Shown> {
         if let Some(set) = self.pipelines.clone() {
             let scene = self.next_scene.as_ref().map(|(_, scene)| scene).or(self.scene.as_ref());
             let needs = Needs {
@@ -313,24 +365,18 @@ impl Document {
                 samples: headless::samples(&self.gpu, &self.settings).unwrap_or(1),
                 scene_format: SCENE_FORMAT,
             };
-            match needs.wanted(&set.shaders) {
-                Ok(wanted) if set.has(&wanted) => self.show(set, wanted),
-                Ok(wanted) => {
-                    let asked = Some((set.shaders.generation, wanted.clone()));
-                    if self.asked != asked {
-                        self.worker.need(needs.clone());
-                        self.worker.build(&set, &wanted);
-                        self.asked = asked;
-                    }
-                }
-                Err(message) => {
-                    self.settings.shader.clear();
-                    self.say(format!("{message}; the shader's own values are back to their defaults"));
-                }
-            }
+            let wanted = needs.wanted(&set.shaders);
             self.worker.need(needs);
+            let is_asked =
+                |(asked, for_this): &(Arc<PipelineSet>, Wanted)| Arc::ptr_eq(asked, &set) && *for_this == wanted;
+            if set.has(&wanted) {
+                self.show(set, wanted);
+            } else if !self.asked.as_ref().is_some_and(is_asked) {
+                self.worker.build(&set, &wanted);
+                self.asked = Some((set, wanted));
+            }
         }
-        self.shown.as_ref()
+        self.shown.clone()
     }
 
     fn show(&mut self, pipelines: Arc<PipelineSet>, wanted: Wanted) {
@@ -338,12 +384,15 @@ impl Document {
             self.model = model;
             self.scene = Some(scene);
         }
-        self.shown = Some(Shown { pipelines, wanted, scene: self.scene.clone(), settings: self.settings.clone() });
+        self.asked = None;
+        let mode = self.settings.mode.clone();
+        self.shown = Some(Shown { pipelines, wanted, scene: self.scene.clone(), mode });
     }
 
-    /// A frame of this generation is finished, `ms` after it was begun.
-    pub(super) fn frame_done(&mut self, generation: u64, ms: f64) {
-        if let Some(first) = self.first_frame.take_if(|first| first.generation == generation) {
+    /// A frame with these pipelines is finished, `ms` after it was begun.
+    pub(super) fn frame_done(&mut self, shown: Option<&Shown>, ms: f64) {
+        let is_shown = |first: &mut FirstFrame| shown.is_some_and(|s| Arc::ptr_eq(&s.pipelines, &first.pipelines));
+        if let Some(first) = self.first_frame.take_if(is_shown) {
             self.emit_reload(ReloadEvent { first_frame_ms: ms, ..first.event });
         }
         if !self.ready && self.scene.is_some() {
@@ -376,19 +425,19 @@ impl Document {
         }
     }
 
-    fn watch_model(&mut self, files: &[PathBuf]) {
+    fn watch_model(&mut self, files: Vec<PathBuf>) {
         if let Some(watcher) = &self.model_watcher {
-            watcher.set_files(files);
+            watcher.set_files(&files);
             return;
         }
         if files.is_empty() {
             return;
         }
         let proxy = self.proxy.clone();
-        let on_batch = move |_: Batch| {
-            let _ = proxy.send_event(Message::ModelChanged);
+        let on_batch = move |batch: Batch| {
+            let _ = proxy.send_event(Message::ModelChanged(batch.paths));
         };
-        match Watcher::new(None, files, on_batch) {
+        match Watcher::new(None, &files, on_batch) {
             Ok(watcher) => self.model_watcher = Some(watcher),
             Err(error) => self.say(error.to_string()),
         }

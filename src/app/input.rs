@@ -37,7 +37,8 @@ pub(super) fn on_window_event(document: &mut Document, event: &WindowEvent, scre
             {
                 return true;
             }
-            pressed && !taken && on_key(document, &event.logical_key)
+            let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
+            pressed && !taken && (steps || !event.repeat) && on_key(document, &event.logical_key)
         }
         WindowEvent::MouseInput { state, button, .. } => {
             let pressed = *state == ElementState::Pressed && !taken && inside(screen, document.mouse.at);

@@ -11,6 +11,7 @@ mod panels;
 mod screen;
 mod worker;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -75,7 +76,7 @@ pub enum AppError {
 enum Message {
     Worker(WorkerMessage),
     Loaded(Box<Loaded>),
-    ModelChanged,
+    ModelChanged(BTreeSet<PathBuf>),
 }
 
 /// Opens the window and runs until it is closed.
@@ -133,9 +134,17 @@ impl App {
 
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
         if let Some(open) = self.open.take() {
-            let messages = open.gpu.validation_messages().len();
-            drop(open.screen);
-            drop(open.document);
+            if let Err(AppError::Gpu(GpuError::DeviceLost(_))) = &result {
+                // A lost device may never again be idle: taking it down would wait for that forever.
+                std::mem::forget(open);
+                self.result = result;
+                return event_loop.exit();
+            }
+            let Open { document, screen, gpu, window } = open;
+            drop(screen);
+            drop(document);
+            drop(window);
+            let messages = gpu.validation_messages().len();
             self.result = match result {
                 Ok(()) if messages > 0 => Err(AppError::Validation(messages)),
                 other => other,
@@ -170,7 +179,7 @@ impl ApplicationHandler<Message> for App {
         match message {
             Message::Worker(message) => open.document.on_worker(message),
             Message::Loaded(loaded) => open.document.on_loaded(*loaded),
-            Message::ModelChanged => open.document.reload_model(),
+            Message::ModelChanged(paths) => open.document.reload_model(&paths),
         }
         open.window.request_redraw();
     }

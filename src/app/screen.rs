@@ -14,7 +14,7 @@ use crate::render::{Drawn, FrameInput, Renderer, Shot, Target, UiFrame};
 use crate::scene::View;
 
 use super::camera::CameraHand;
-use super::document::{Document, Hover, SCENE_FORMAT};
+use super::document::{Document, Hover, SCENE_FORMAT, Shown};
 use super::panels;
 
 /// The screen. Fields drop in order: what draws, then what it draws to.
@@ -106,17 +106,11 @@ impl Screen {
 
         // The picture behind it.
         let aspect = self.rect.width as f32 / self.rect.height.max(1) as f32;
-        let moving = self.fly(document, aspect);
-        let Some(shot) = self.shot(document, aspect) else { return Ok(None) };
-        self.view = Some(shot.view);
+        let moving = self.move_on(document, aspect);
         let shown = document.shown();
-        let frame = FrameInput {
-            shot: &shot,
-            pipelines: shown.map(|s| (&*s.pipelines, &s.wanted)),
-            scene: shown.and_then(|s| s.scene.as_deref()),
-            rect: self.rect,
-        };
-        let generation = shown.map_or(0, |s| s.pipelines.shaders.generation);
+        let shot = shot(document, shown.as_ref(), aspect);
+        self.view = Some(shot.view);
+        let frame = frame_input(&shot, shown.as_ref(), self.rect);
         let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
         let ui = UiFrame { renderer: &mut self.ui, primitives: &primitives, pixels_per_point: output.pixels_per_point };
         let begin = Instant::now();
@@ -132,15 +126,15 @@ impl Screen {
         }
         if document.screenshot {
             document.screenshot = false;
-            self.screenshot(document, &shot)?;
+            self.screenshot(document, &shot, shown.as_ref())?;
         }
         if document.times_next_frame() {
             // SYNC: once a reload, so that its first frame's time is that of the finished frame.
             self.renderer.wait_for_frames()?;
-            document.frame_done(generation, begin.elapsed().as_secs_f64() * 1e3);
+            document.frame_done(shown.as_ref(), begin.elapsed().as_secs_f64() * 1e3);
         }
         // The value under the mouse belongs to the picture before this one: once more, when this one differs.
-        let hover_is_old = document.hover.is_some() && self.hover(document)? != document.hover;
+        let hover_is_old = document.mouse.over && self.renderer.redrawn();
         if self.stale || moving || hover_is_old || document.moves() {
             return Ok(Some(Duration::ZERO));
         }
@@ -159,35 +153,15 @@ impl Screen {
         Ok(value.filter(|value| value[3] > 0.0).map(|value| Hover { x: x as u32, y: y as u32, value }))
     }
 
-    /// Moves a flying camera on; returns whether it moved.
-    fn fly(&mut self, document: &mut Document, aspect: f32) -> bool {
+    /// Moves a flying camera and orbiting lights on; returns whether the camera moved.
+    fn move_on(&mut self, document: &mut Document, aspect: f32) -> bool {
         let seconds = self.last_frame.elapsed().as_secs_f32();
         self.last_frame = Instant::now();
+        // A pause is no movement: the first frame after one continues where the last one was.
+        document.turn_lights(seconds.min(0.5));
         let view = CameraHand::view(&document.settings.camera, &document.model, aspect);
         let bounds = document.model.bounds;
         document.hand.step(&mut document.settings.camera, &view, &bounds, seconds)
-    }
-
-    /// Camera, lights and values of this frame. The mode is the one whose pipelines are shown.
-    fn shot(&self, document: &mut Document, aspect: f32) -> Option<Shot> {
-        // A picture that does not move by itself is kept, so its time stands still.
-        let time_s = if document.moves() { document.start.elapsed().as_secs_f32() } else { 0.0 };
-        let mut settings = document.settings.clone();
-        let pipelines = document.shown().map(|s| (s.pipelines.clone(), s.settings.mode.clone()));
-        if let Some((_, mode)) = &pipelines {
-            settings.mode.clone_from(mode);
-        }
-        let view = CameraHand::view(&settings.camera, &document.model, aspect);
-        let shaders = pipelines.as_ref().map(|(set, _)| &*set.shaders);
-        match Shot::new(&settings, shaders, &document.model, view, time_s) {
-            Ok(shot) => Some(shot),
-            Err(message) => {
-                document.settings.shader.clear();
-                document.settings.view.background = crate::settings::ViewSettings::default().background;
-                document.say(format!("{message}; it is back to its default"));
-                Shot::new(&document.settings, shaders, &document.model, view, time_s).ok()
-            }
-        }
     }
 
     /// Hands egui's textures to the device. They change when a glyph or an image is new, so waiting costs nothing that shows.
@@ -205,15 +179,8 @@ impl Screen {
     }
 
     /// Writes the picture, without panels, to `specula-N.png` in the working directory.
-    fn screenshot(&mut self, document: &mut Document, shot: &Shot) -> Result<(), GpuError> {
-        let Some(shown) = document.shown() else { return Ok(()) };
-        let rect = Rect { x: 0, y: 0, ..self.rect };
-        let frame = FrameInput {
-            shot,
-            pipelines: Some((&shown.pipelines, &shown.wanted)),
-            scene: shown.scene.as_deref(),
-            rect,
-        };
+    fn screenshot(&mut self, document: &mut Document, shot: &Shot, shown: Option<&Shown>) -> Result<(), GpuError> {
+        let frame = frame_input(shot, shown, Rect { x: 0, y: 0, ..self.rect });
         if let Drawn::Captured(capture) = self.renderer.frame(frame, Target::Memory)? {
             let free = (1..).map(|n| std::path::PathBuf::from(format!("specula-{n}.png"))).find(|p| !p.exists());
             let path = free.unwrap_or_else(|| "specula.png".into());
@@ -233,6 +200,23 @@ impl Drop for Screen {
     fn drop(&mut self) {
         self.to_free.clear();
     }
+}
+
+/// Camera, lights and values of a frame. The mode is the one whose pipelines are shown.
+fn shot(document: &Document, shown: Option<&Shown>, aspect: f32) -> Shot {
+    // A picture that does not move by itself is kept, so its time stands still.
+    let time_s = if document.moves() { document.start.elapsed().as_secs_f32() } else { 0.0 };
+    let mut settings = document.settings.clone();
+    if let Some(shown) = shown {
+        settings.mode.clone_from(&shown.mode);
+    }
+    let view = CameraHand::view(&settings.camera, &document.model, aspect);
+    Shot::new(&settings, shown.map(|s| &*s.pipelines.shaders), &document.model, view, time_s)
+}
+
+fn frame_input<'a>(shot: &'a Shot, shown: Option<&'a Shown>, rect: Rect) -> FrameInput<'a> {
+    let pipelines = shown.map(|s| (&s.pipelines, &s.wanted));
+    FrameInput { shot, pipelines, scene: shown.and_then(|s| s.scene.as_ref()), rect }
 }
 
 /// A rectangle of egui's points as whole pixels inside the window, at least one pixel large.

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use specula::events::{Event, emit};
-use specula::gpu::{SetLayouts, vk};
-use specula::interface::FEATURE_NORMAL_TEXTURE;
-use specula::render::{MaterialVariant, PipelineSet, Renderer, Wanted};
+use specula::gpu::{PrimitiveClass, SetLayouts, vk};
+use specula::interface::{ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE, FEATURE_NORMAL_TEXTURE, FEATURE_UNLIT};
+use specula::render::{MaterialVariant, PipelineSet, Renderer, Wanted, tree_name};
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
@@ -73,20 +73,35 @@ fn build_choices(
     let layouts = SetLayouts::new(&gpu)?;
     let settings = args.common.settings()?;
     let materials = BTreeSet::from([MaterialVariant { features: FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
+    let all_materials: BTreeSet<_> =
+        [ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND]
+            .into_iter()
+            .flat_map(|alpha| [0, FEATURE_UNLIT, FEATURE_NORMAL_TEXTURE].map(|features| (alpha, features)))
+            .flat_map(|(alpha, features)| {
+                [PrimitiveClass::Points, PrimitiveClass::Lines, PrimitiveClass::Triangles]
+                    .map(|class| MaterialVariant { alpha, features, class })
+            })
+            .collect();
     let format = vk::Format::R16G16B16A16_SFLOAT;
-    let wanted = |settings: &Settings| {
-        Wanted::new(settings, shaders, &materials, 1, format, Renderer::OUTPUT_FORMAT).map_err(Failure::Input)
+    let wanted = |settings: &Settings| Wanted::new(settings, shaders, &materials, 1, format, Renderer::OUTPUT_FORMAT);
+    let plain = wanted(&settings);
+    let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None) {
+        Ok(set) => set,
+        Err(error) => {
+            diagnostics.push(Diagnostic::error(tree_name(&args.common.source()?), error.to_string()));
+            return Ok(None);
+        }
     };
-    let plain = wanted(&settings)?;
-    let set = PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None)?;
     let mut count = 1;
     let mut build = |wanted: &Wanted, file: &str, line: u32, what: String| {
-        count += 1;
+        count += wanted.materials.len();
         if let Err(error) = set.build(wanted) {
             diagnostics
                 .push(Diagnostic::error(file, format!("{what} builds no pipeline: {error}")).on_line(line, None));
         }
     };
+    let every_material = Wanted { materials: all_materials, samples: 4, ..plain.clone() };
+    build(&every_material, &tree_name(&args.common.source()?), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
         build(&plain.with_mode(mode), &mode.file, mode.line, format!("mode {}", mode.slug));
     }
@@ -97,9 +112,10 @@ fn build_choices(
         for (name, value) in named.chain(bools) {
             let mut chosen = settings.clone();
             chosen.shader.insert(constant.name.clone(), value);
-            build(&wanted(&chosen)?, &constant.file, constant.line, format!("{} = {name}", constant.name));
+            build(&wanted(&chosen), &constant.file, constant.line, format!("{} = {name}", constant.name));
         }
     }
+    drop(set);
     check_validation(&gpu)?;
     Ok(Some(count))
 }

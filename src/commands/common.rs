@@ -17,6 +17,9 @@ pub struct Common {
     /// Shader tree [default: ./shaders when it is Specula's, else the built-in one]
     #[arg(long, value_name = "DIR")]
     pub shaders: Option<PathBuf>,
+    /// Environment; only `none` so far: light comes from the lights and the ambient light
+    #[arg(long, value_parser = ["none"])]
+    env: Option<String>,
     /// Which lights shine
     #[arg(long, value_enum)]
     lights: Option<LightSource>,

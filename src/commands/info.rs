@@ -28,8 +28,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let source = args.common.source()?;
     let tree = source.root().map_or_else(|| "built in".to_owned(), |root| root.display().to_string());
     if args.json {
-        let devices = devices.unwrap_or_default();
-        let value = json!({ "version": env!("CARGO_PKG_VERSION"), "devices": devices, "shaders": tree,
+        let (devices, why_none) = devices.map_or_else(|e| (Vec::new(), Some(e.to_string())), |d| (d, None));
+        let value = json!({ "version": env!("CARGO_PKG_VERSION"), "devices": devices, "why_no_device": why_none, "shaders": tree,
             "model": summary(&model) });
         out!("{value:#}");
         return Ok(());

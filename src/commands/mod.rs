@@ -25,6 +25,7 @@ use std::time::Instant;
 use clap::{Parser, Subcommand};
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
+use specula::render::UploadError;
 use specula::shader::Diagnostic;
 
 /// A shader playground: save GLSL, see the model change.
@@ -80,7 +81,7 @@ impl From<HeadlessError> for Failure {
     fn from(error: HeadlessError) -> Self {
         match error {
             HeadlessError::Shaders(diagnostics) => Self::Shaders(diagnostics),
-            HeadlessError::Gpu(error) => error.into(),
+            HeadlessError::Gpu(error) | HeadlessError::Upload(UploadError::Gpu(error)) => error.into(),
             other => Self::Input(other.to_string()),
         }
     }

@@ -8,6 +8,9 @@ use specula::app::{self, AppError, AppOptions};
 use super::Failure;
 use super::common::{Common, check_model_path, compiler};
 
+/// Beyond any screen, and within what window systems can count.
+const LARGEST_WINDOW: u32 = 16384;
+
 /// Options of `view`.
 #[derive(clap::Args)]
 pub struct Args {
@@ -21,6 +24,11 @@ pub struct Args {
 pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     let events = args.common.emits();
     check_model_path(args.model.as_deref())?;
+    let (width, height) = args.common.size;
+    if width.max(height) > LARGEST_WINDOW {
+        let message = format!("a window of {width}x{height} is too large; at most {LARGEST_WINDOW} pixels a side");
+        return Err(Failure::Input(message));
+    }
     let options = AppOptions {
         source: args.common.source()?,
         compiler: compiler()?,

@@ -124,7 +124,7 @@ impl Gpu {
         self.messages.all()
     }
 
-    /// Whether `format` can be a multisampled, blended color target with `samples` samples.
+    /// Whether color and depth targets can have `samples` samples.
     pub fn supports_samples(&self, samples: u32) -> bool {
         let limits = &self.properties.limits;
         let counts = limits.framebuffer_color_sample_counts & limits.framebuffer_depth_sample_counts;

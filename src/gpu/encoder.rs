@@ -266,13 +266,13 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
     }
 
-    /// SYNC: copies before this are visible to every shader and index read after it.
+    /// SYNC: copies before this are visible to every shader and index read after it, and to the CPU after the fence.
     pub fn copies_done(&mut self) {
         let barrier = [vk::MemoryBarrier2::default()
             .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
             .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
-            .dst_access_mask(vk::AccessFlags2::MEMORY_READ)];
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::HOST_READ)];
         let info = vk::DependencyInfo::default().memory_barriers(&barrier);
         // SAFETY: recording into our own buffer.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };

@@ -43,6 +43,9 @@ pub enum GpuError {
         /// The allocator's own message.
         message: String,
     },
+    /// A pipeline needs a stage that the shader tree does not have.
+    #[error("the shader tree has no {0}")]
+    NoStage(String),
     /// The user-interface renderer failed.
     #[error("drawing the user interface failed: {0}")]
     Ui(String),

@@ -24,9 +24,9 @@ pub struct FrameInput<'a> {
     /// Camera, lights and values.
     pub shot: &'a Shot,
     /// One generation of shaders, and which of its pipelines; it has them all. `None`, at the start, draws the background alone.
-    pub pipelines: Option<(&'a PipelineSet, &'a Wanted)>,
+    pub pipelines: Option<(&'a Arc<PipelineSet>, &'a Wanted)>,
     /// The model, or none yet.
-    pub scene: Option<&'a GpuScene>,
+    pub scene: Option<&'a Arc<GpuScene>>,
     /// Where in the output the picture goes.
     pub rect: Rect,
 }
@@ -67,26 +67,32 @@ pub enum Drawn {
 }
 
 /// What an HDR picture was drawn from. The same again gives the same, so it is kept: only the panels are drawn anew then.
-#[derive(PartialEq)]
 struct Drawing {
     uniforms: Vec<u8>,
     wanted: Wanted,
-    generation: u64,
-    scene: usize,
+    pipelines: Arc<PipelineSet>,
+    scene: Option<Arc<GpuScene>>,
 }
 
 impl Drawing {
-    fn of(input: &FrameInput<'_>) -> Option<Self> {
+    fn of(input: &FrameInput<'_>, largest: f32) -> Option<Self> {
         let (pipelines, wanted) = input.pipelines?;
-        let mut uniforms = bytemuck::bytes_of(&input.shot.uniforms(input.rect)).to_vec();
+        let mut uniforms = bytemuck::bytes_of(&input.shot.uniforms(input.rect, largest)).to_vec();
         uniforms.extend_from_slice(bytemuck::cast_slice(&input.shot.lights));
         uniforms.extend_from_slice(&input.shot.params);
-        Some(Self {
-            uniforms,
-            wanted: wanted.clone(),
-            generation: pipelines.shaders.generation,
-            scene: input.scene.map_or(0, |scene| std::ptr::from_ref(scene).addr()),
-        })
+        Some(Self { uniforms, wanted: wanted.clone(), pipelines: pipelines.clone(), scene: input.scene.cloned() })
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        let same_scene = match (&self.scene, &other.scene) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        same_scene
+            && Arc::ptr_eq(&self.pipelines, &other.pipelines)
+            && self.wanted == other.wanted
+            && self.uniforms == other.uniforms
     }
 }
 
@@ -100,6 +106,7 @@ pub struct Renderer {
     nearest: Arc<Sampler>,
     scene_format: vk::Format,
     kept: Option<Drawing>,
+    redrawn: bool,
 }
 
 impl Renderer {
@@ -131,6 +138,7 @@ impl Renderer {
             nearest: Sampler::new(gpu, &nearest)?,
             scene_format,
             kept: None,
+            redrawn: false,
         })
     }
 
@@ -142,6 +150,11 @@ impl Renderer {
     /// Device time of the newest finished frame, milliseconds.
     pub fn device_ms(&self) -> Option<f64> {
         self.frames.last_device_ms()
+    }
+
+    /// Whether the last frame drew the model, and not only the panels over the picture before.
+    pub fn redrawn(&self) -> bool {
+        self.redrawn
     }
 
     /// Raw value at a pixel of the last picture on screen, counted from its upper left corner; `None` outside, or without one.
@@ -188,19 +201,22 @@ impl Renderer {
         };
 
         // What the shaders read.
+        let largest = if self.scene_format == vk::Format::R16G16B16A16_SFLOAT { 65504.0 } else { f32::MAX };
         self.resize_targets(size, input.pipelines.map_or(1, |(_, wanted)| wanted.samples))?;
         let slot = self.frames.current();
         if self.uniforms[slot].light_capacity() < input.shot.lights.len() {
             self.uniforms[slot] = Uniforms::new(&self.gpu, &self.layouts, input.shot.lights.len())?;
         }
         let uniforms = &self.uniforms[slot];
-        uniforms.write(&input.shot.uniforms(input.rect), &input.shot.lights, &input.shot.params);
+        uniforms.write(&input.shot.uniforms(input.rect, largest), &input.shot.lights, &input.shot.params);
         encoder.bind_set(&self.layouts, &uniforms.set);
 
         // The model, to HDR; in a window only when something about it has changed.
         let Some((targets, hdr_set)) = &self.targets else { return Ok(Drawn::NoImage) };
-        let drawing = Drawing::of(&input).filter(|_| acquired.is_some());
-        if drawing.is_none() || drawing != self.kept {
+        let drawing = Drawing::of(&input, largest).filter(|_| acquired.is_some());
+        let is_kept = drawing.as_ref().zip(self.kept.as_ref()).is_some_and(|(new, kept)| new.is_same(kept));
+        self.redrawn = !is_kept;
+        if !is_kept {
             draw_model(&mut encoder, &self.layouts, targets, &input);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
         }

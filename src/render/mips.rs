@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use crate::settings::linear_from_srgb;
+
 /// Number of levels down to 1x1.
 pub(super) fn count(width: u32, height: u32) -> u32 {
     width.max(height).max(1).ilog2() + 1
@@ -78,10 +80,9 @@ struct Curve {
 }
 
 static CURVE: LazyLock<Curve> = LazyLock::new(|| {
-    let decode = |e: f32| if e <= 0.04045 { e / 12.92 } else { ((e + 0.055) / 1.055).powf(2.4) };
     let encode = |l: f32| if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
     Curve {
-        linear: std::array::from_fn(|i| (decode(i as f32 / 255.0) * 65535.0).round() as u32),
+        linear: std::array::from_fn(|i| (linear_from_srgb(i as f32 / 255.0) * 65535.0).round() as u32),
         encoded: (0..=65535u32).map(|l| (encode(l as f32 / 65535.0) * 255.0).round() as u8).collect(),
     }
 });

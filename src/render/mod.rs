@@ -20,6 +20,6 @@ pub use frame::{Drawn, FrameInput, Renderer, Target, UiFrame};
 pub use pipelines::{PipelineSet, STAGES};
 pub use reload::{Outcome, Reload, Reloader, tree_name};
 pub use scene::{GpuScene, UploadError};
-pub use shot::{Shot, background};
-pub use values::unknown_names;
+pub use shot::Shot;
+pub use values::{misfits, number, unknown_names};
 pub use wanted::{MaterialVariant, Wanted};

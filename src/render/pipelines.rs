@@ -93,7 +93,7 @@ impl PipelineSet {
     }
 
     fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
-        let missing = |path: &str| GpuError::NoDevice(format!("the shader tree has no {path}"));
+        let missing = |path: &str| GpuError::NoStage(path.to_owned());
         let module = |path: &str| self.modules.get(path).ok_or_else(|| missing(path));
         let [vertex, fragment] = key.pass.stages();
         let (depth, raster, class) = match key.pass {

@@ -66,7 +66,7 @@ impl Reloader {
     pub fn update(
         &mut self,
         change: Change,
-        wanted: impl FnOnce(&ShaderSet) -> Result<Wanted, String>,
+        wanted: impl FnOnce(&ShaderSet) -> Wanted,
         superseded: impl Fn() -> bool,
     ) -> Reload {
         let (shaders, report) = match self.library.update(&change) {
@@ -90,9 +90,8 @@ impl Reloader {
         }
         let start = Instant::now();
         let before = self.current.as_deref();
-        let built = wanted(&shaders).and_then(|wanted| {
-            PipelineSet::new(&self.gpu, &self.layouts, shaders, &wanted, before).map_err(|e| e.to_string())
-        });
+        let wanted = wanted(&shaders);
+        let built = PipelineSet::new(&self.gpu, &self.layouts, shaders, &wanted, before);
         let pipeline_ms = start.elapsed().as_secs_f64() * 1e3;
         let outcome = match built {
             Ok(set) => {
@@ -100,7 +99,7 @@ impl Reloader {
                 self.current = Some(set.clone());
                 Outcome::Ready(set)
             }
-            Err(message) => Outcome::Failed(vec![Diagnostic::error(tree_name(self.library.source()), message)]),
+            Err(error) => Outcome::Failed(vec![Diagnostic::error(tree_name(self.library.source()), error.to_string())]),
         };
         Reload { report, pipeline_ms, outcome }
     }

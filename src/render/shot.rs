@@ -24,18 +24,11 @@ pub struct Shot {
 impl Shot {
     /// Works out a shot of `model` (or of nothing) `time_s` seconds after the start.
     ///
-    /// # Errors
-    /// A value in the settings that does not fit, in words.
-    pub fn new(
-        settings: &Settings,
-        shaders: Option<&ShaderSet>,
-        model: &Model,
-        view: View,
-        time_s: f32,
-    ) -> Result<Self, String> {
-        let lights = scene::lights(&settings.lights, model, time_s);
+    /// A value of the author's that does not fit its parameter leaves the parameter's default; see [`super::misfits`].
+    pub fn new(settings: &Settings, shaders: Option<&ShaderSet>, model: &Model, view: View, time_s: f32) -> Self {
+        let lights = scene::lights(&settings.lights, model, 0.0);
         let mode = shaders.and_then(|s| wanted::mode(s, &settings.mode));
-        let params = shaders.map_or(Ok(Vec::new()), |s| values::params(&settings.shader, &s.parameters))?;
+        let params = shaders.map(|s| values::params(&settings.shader, &s.parameters)).unwrap_or_default();
         let ambient = settings.lights.ambient_color.map(|c| c * settings.lights.ambient_strength);
         let exposure = 1.0 / (1.2 * settings.view.ev.exp2());
         let view_from_world = view.view_from_world();
@@ -48,7 +41,7 @@ impl Shot {
             exposure,
             ambient,
             time_s,
-            background: background(&settings.view.background)?,
+            background: settings.view.background_linear().unwrap_or_default(),
             scene_center_ws: model.bounds.center().to_array(),
             scene_radius: model.bounds.radius(),
             near: view.near,
@@ -60,12 +53,13 @@ impl Shot {
             mode: mode.map_or(0, |m| m.id),
             ..Default::default()
         };
-        Ok(Self { view, lights, params, frame })
+        Self { view, lights, params, frame }
     }
 
-    /// The frame's uniforms for a picture in this part of the output.
-    pub(super) fn uniforms(&self, rect: Rect) -> Frame {
+    /// The frame's uniforms for a picture in this part of the output, whose HDR target holds values up to `largest`.
+    pub(super) fn uniforms(&self, rect: Rect, largest: f32) -> Frame {
         Frame {
+            largest_value: largest,
             viewport_px: [rect.width as f32, rect.height as f32],
             viewport_origin_px: [rect.x as f32, rect.y as f32],
             ..self.frame
@@ -76,26 +70,4 @@ impl Shot {
 /// Exposure and tone map are for light; other values are shown as they are.
 fn tonemap(tonemap: Tonemap, mode: Option<&Mode>) -> u32 {
     if mode.is_some_and(|m| m.tonemap) { tonemap as u32 } else { TONEMAP_OFF }
-}
-
-/// The linear color and alpha behind the model: `none` or `#rrggbb`.
-///
-/// # Errors
-/// Anything else, in words.
-pub fn background(text: &str) -> Result<[f32; 4], String> {
-    let expected = || format!("background '{text}' is neither none nor #rrggbb (as #1b1d21)");
-    match text {
-        "none" => Ok([0.0; 4]),
-        hex => {
-            let digits = hex.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii()).ok_or_else(expected)?;
-            let rgb = u32::from_str_radix(digits, 16).map_err(|_| expected())?;
-            let channel = |shift: u32| linear_from_srgb(((rgb >> shift) & 255) as f32 / 255.0);
-            Ok([channel(16), channel(8), channel(0), 1.0])
-        }
-    }
-}
-
-/// sRGB electro-optical transfer function (IEC 61966-2-1).
-fn linear_from_srgb(encoded: f32) -> f32 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

@@ -11,13 +11,19 @@ use crate::shader::{Constant, Parameter, ShaderSet};
 
 type Values = BTreeMap<String, ShaderValue>;
 
-/// Specialization constants: all of them, in the order of their ids, so that equal values give equal pipelines.
-pub(super) fn constants(values: &Values, constants: &[Constant]) -> Result<Specialization, String> {
-    let bits = |c: &Constant| match values.get(&c.name) {
-        None => Ok((c.id, c.default)),
-        Some(value) => constant_bits(c, value).map(|bits| (c.id, bits)),
-    };
-    constants.iter().map(bits).collect()
+/// Specialization constants: all of them, in the order of their ids, so that equal values give equal pipelines. A value that
+/// does not fit leaves the default.
+pub(super) fn constants(values: &Values, constants: &[Constant]) -> Specialization {
+    let set = |c: &Constant| values.get(&c.name).and_then(|value| constant_bits(c, value).ok());
+    constants.iter().map(|c| (c.id, set(c).unwrap_or(c.default))).collect()
+}
+
+/// What is wrong with the values that do not fit their constant or parameter, a sentence each. They are kept: the next edit may
+/// make them fit again.
+pub fn misfits(values: &Values, shaders: &ShaderSet) -> Vec<String> {
+    let constants = shaders.constants.iter().filter_map(|c| constant_bits(c, values.get(&c.name)?).err());
+    let parameters = shaders.parameters.iter().filter_map(|p| parameter_numbers(p, values.get(&p.name)).err());
+    constants.chain(parameters).collect()
 }
 
 fn constant_bits(constant: &Constant, value: &ShaderValue) -> Result<u32, String> {
@@ -43,11 +49,12 @@ fn constant_bits(constant: &Constant, value: &ShaderValue) -> Result<u32, String
     }
 }
 
-/// The author's parameter block, `PARAMS_SIZE` bytes.
-pub(super) fn params(values: &Values, parameters: &[Parameter]) -> Result<Vec<u8>, String> {
+/// The author's parameter block, `PARAMS_SIZE` bytes. A value that does not fit leaves the default.
+pub(super) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
     let mut block = vec![0; PARAMS_SIZE as usize];
     for parameter in parameters {
-        let numbers = parameter_numbers(parameter, values.get(&parameter.name))?;
+        let numbers = parameter_numbers(parameter, values.get(&parameter.name));
+        let numbers = numbers.unwrap_or_else(|_| parameter.default.clone());
         for (i, number) in numbers.into_iter().enumerate() {
             let bits = match parameter.kind {
                 ParameterType::Int => (number as i32).cast_unsigned(),
@@ -61,7 +68,7 @@ pub(super) fn params(values: &Values, parameters: &[Parameter]) -> Result<Vec<u8
             }
         }
     }
-    Ok(block)
+    block
 }
 
 fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Result<Vec<f64>, String> {
@@ -96,7 +103,8 @@ pub fn unknown_names(values: &Values, shaders: &ShaderSet) -> Option<String> {
     ))
 }
 
-fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
+/// A value as one number; a name is looked up in `choices`. `None` for vectors and unknown names.
+pub fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
     match value {
         ShaderValue::Bool(b) => Some(f64::from(u8::from(*b))),
         ShaderValue::Int(i) => Some(*i as f64),

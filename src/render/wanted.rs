@@ -59,9 +59,6 @@ pub(super) enum Pass {
 
 impl Wanted {
     /// What `settings` ask of `shaders` for a scene with these materials. A mode that the tree lost falls back to its first.
-    ///
-    /// # Errors
-    /// A value for a constant that does not fit it, in words.
     pub fn new(
         settings: &Settings,
         shaders: &ShaderSet,
@@ -69,17 +66,17 @@ impl Wanted {
         samples: u32,
         scene_format: vk::Format,
         output_format: vk::Format,
-    ) -> Result<Self, String> {
+    ) -> Self {
         let mode = mode(shaders, &settings.mode);
-        Ok(Self {
+        Self {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
-            constants: values::constants(&settings.shader, &shaders.constants)?,
+            constants: values::constants(&settings.shader, &shaders.constants),
             samples,
             scene_format,
             output_format,
             materials: materials.clone(),
-        })
+        }
     }
 
     /// The same picture in another mode.

@@ -57,10 +57,11 @@ impl View {
         }
     }
 
-    /// The view of one of the model's cameras. Its target is at the depth of the model's center, for orbiting.
+    /// The view of one of the model's cameras. Its target is at the depth of the model's center, where orbiting feels
+    /// right; a radius ahead when the center is behind the camera, or so close that orbiting would stand still.
     pub fn of_camera(camera: &Camera, aspect: f32, bounds: &Bounds) -> Self {
         let depth = camera.forward.dot(bounds.center() - camera.eye);
-        let depth = if depth > 0.0 { depth } else { bounds.radius() };
+        let depth = if depth > bounds.radius() * 1e-2 { depth } else { bounds.radius() };
         let mut view = Self::new(camera.eye, camera.eye + camera.forward * depth, camera.fovy, aspect, bounds);
         view.up = camera.up.reject_from_normalized(view.forward()).normalize_or(view.up);
         view
@@ -232,6 +233,19 @@ mod tests {
         assert_eq!(view.target, Vec3::new(9.0, 0.0, 0.0));
         let only_eye = CameraSettings { eye: Some([9.0, 0.0, 0.0]), ..CameraSettings::default() };
         assert_eq!(frame(&cube(), &[], &only_eye, 1.5).target, cube().center());
+    }
+
+    #[test]
+    fn a_camera_of_the_model_looks_as_it_did_and_orbits_the_model() {
+        let camera = |eye, forward| Camera { name: String::new(), eye, forward, up: Vec3::X, fovy: 0.7 };
+        let view = View::of_camera(&camera(Vec3::new(1.0, 1.0, 9.0), Vec3::NEG_Z), 1.5, &cube());
+        assert_eq!((view.eye, view.target), (Vec3::new(1.0, 1.0, 9.0), Vec3::new(1.0, 1.0, 0.0)));
+        assert_eq!((view.up, view.fovy_rad, view.aspect), (Vec3::X, 0.7, 1.5));
+        for (eye, forward) in [(Vec3::new(1.0, 1.0, 9.0), Vec3::Z), (cube().center(), Vec3::Y)] {
+            let view = View::of_camera(&camera(eye, forward), 1.0, &cube());
+            assert_eq!(view.eye, eye);
+            assert!(view.target.distance(eye + forward * cube().radius()) < 1e-5);
+        }
     }
 
     #[test]

@@ -11,6 +11,9 @@ pub struct LoadError {
     pub file: PathBuf,
     /// What is wrong with it.
     pub problem: Problem,
+    /// Absolute paths of all files that were read or looked for, the model's own first: whoever waits for the repair
+    /// watches these. Empty for a model in memory.
+    pub files: Vec<PathBuf>,
 }
 
 /// What is wrong with a model.
@@ -93,7 +96,7 @@ pub enum Problem {
     },
     /// A path out of the model's folder.
     #[error(
-        "names `{uri}` at {place}: expected a file in the model's folder, found a path that leaves it. \
+        "names `{uri}` at {place}: expected a file in the model's folder, found {found}. \
          Give --allow-outside to read it if you trust this model."
     )]
     Outside {
@@ -101,6 +104,8 @@ pub enum Problem {
         place: String,
         /// The URI, decoded.
         uri: String,
+        /// How it leaves: by its own words, or through a link.
+        found: String,
     },
     /// A file that the model names cannot be read.
     #[error(

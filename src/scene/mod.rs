@@ -47,7 +47,8 @@ pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadErr
 /// When the file or one that it names cannot be read, is invalid, or needs what Specula lacks. Never panics on any
 /// content.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
-    gltf::load_file(path, options).map_err(|problem| LoadError { file: path.to_owned(), problem })
+    let mut files = Vec::new();
+    gltf::load_file(path, options, &mut files).map_err(|problem| LoadError { file: path.to_owned(), problem, files })
 }
 
 /// Loads a self-contained model from memory: a `.glb`, or JSON with data URIs. `name` is for messages and the model.
@@ -55,5 +56,9 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
 /// # Errors
 /// As [`load`]; external files are refused.
 pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Model, LoadError> {
-    gltf::load_memory(name, bytes).map_err(|problem| LoadError { file: PathBuf::from(name), problem })
+    gltf::load_memory(name, bytes).map_err(|problem| LoadError {
+        file: PathBuf::from(name),
+        problem,
+        files: Vec::new(),
+    })
 }

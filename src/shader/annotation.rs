@@ -19,7 +19,7 @@ use serde::Serialize;
 use crate::interface;
 
 use super::annotation_cursor::Place;
-use super::annotation_parse::{Declared, Found, Ui, parse_file};
+use super::annotation_parse::{Declared, Found, Ui, outside_of_choices, parse_file};
 use super::diagnostic::Diagnostic;
 use super::reflect::{Reflection, Scalar};
 use super::snapshot::Snapshot;
@@ -137,6 +137,16 @@ pub enum ParameterType {
 }
 
 impl ParameterType {
+    /// The type of each of its numbers.
+    pub fn scalar(self) -> Scalar {
+        match self {
+            Self::Int => Scalar::Int,
+            Self::Uint => Scalar::Uint,
+            Self::Bool => Scalar::Bool,
+            Self::Float | Self::Vec2 | Self::Vec3 | Self::Vec4 => Scalar::Float,
+        }
+    }
+
     /// How many numbers a value has.
     pub fn components(self) -> usize {
         match self {
@@ -260,23 +270,28 @@ fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(),
     let Ui { name, label, range, choices, color, default, declared, place } = ui;
     let (file, line) = (place.file.clone(), place.line);
     match declared {
-        Declared::Constant => {
+        Declared::Constant(_) => {
             let found = modules.iter().flat_map(|module| &module.constants).find(|constant| constant.name == name);
             let Some(found) = found else {
                 return Err(place.error(None, format!("`{name}` is in no compiled stage, so //@ui cannot set it")));
             };
-            if found.scalar == Scalar::Bool && (range.is_some() || !choices.is_empty()) {
-                return Err(place.error(None, format!("`{name}` is a bool: expected only a label")));
-            }
-            if found.scalar == Scalar::Float && !choices.is_empty() {
-                return Err(place.error(None, format!("`{name}` is a float: a choice needs int or uint")));
+            let value = match found.scalar {
+                Scalar::Int => f64::from(found.default.cast_signed()),
+                _ => f64::from(found.default),
+            };
+            if let Some(message) = outside_of_choices(&choices, value) {
+                return Err(place.error(None, message));
             }
             let (id, scalar, default) = (found.id, found.scalar, found.default);
             out.constants.push(Constant { name, id, label, scalar, default, range, choices, file, line });
         }
         Declared::Member(kind) => {
             let offset = offset_in_params(&name, modules, &place)?;
-            let default = default.unwrap_or_else(|| vec![0.0; kind.components()]);
+            let default = default.unwrap_or_else(|| match choices.first() {
+                // Without a word of the author's it is 0, where that may be chosen.
+                Some((_, first)) if outside_of_choices(&choices, 0.0).is_some() => vec![*first as f64],
+                _ => vec![0.0; kind.components()],
+            });
             out.parameters.push(Parameter { name, label, offset, kind, range, default, color, choices, file, line });
         }
     }

@@ -4,8 +4,13 @@ use std::ops::Range;
 
 use super::annotation::{DrawAs, Encode, Mode, ParameterType};
 use super::annotation_cursor::{Cursor, Place};
+use super::annotation_value::{choices, default, range};
 use super::diagnostic::Diagnostic;
+use super::reflect::Scalar;
 use super::text::{Line, is_word, lines, tokens};
+
+/// The keys that the window uses itself.
+const WINDOW_KEYS: &str = "h r l q 0-9 [ ]";
 
 /// An annotation with its declaration's text.
 #[derive(Debug)]
@@ -19,8 +24,8 @@ pub enum Found {
 /// What a `//@ui` stands on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Declared {
-    /// A specialization constant.
-    Constant,
+    /// A specialization constant of a type.
+    Constant(Scalar),
     /// A member of `Params`.
     Member(ParameterType),
 }
@@ -145,6 +150,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 let (Some(one), None) = (chars.next(), chars.next()) else {
                     return Err(cursor.error(bytes, format!("expected one character after key=, found `{value}`")));
                 };
+                check_key(one).map_err(|message| cursor.error(bytes, message))?;
                 mode.key = Some(one);
             }
             other => {
@@ -154,6 +160,24 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         }
     }
     Ok(mode)
+}
+
+/// Whether a mode may have this key. The window compares without case, and takes its own keys first.
+fn check_key(key: char) -> Result<(), String> {
+    let taken = match key {
+        'a'..='z' if !WINDOW_KEYS.contains(key) => return Ok(()),
+        'A'..='Z' => return Err(format!("expected a lowercase letter after key=, found `{key}`")),
+        'h' => "hides the panels",
+        'r' => "frames the model",
+        'l' => "stops the lights",
+        'q' => "quits, with Ctrl",
+        '0'..='9' => "chooses a mode by its place in the list",
+        '[' | ']' => "steps through the modes",
+        _ => return Err(format!("expected a letter a-z after key=, found `{key}`")),
+    };
+    Err(format!(
+        "expected a key that the window does not use itself (it uses {WINDOW_KEYS}), found `{key}`, which {taken}"
+    ))
 }
 
 /// The number of `const uint MODE_X = 120u;`.
@@ -180,16 +204,33 @@ fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box
     let label = label.unwrap_or_else(|| label_of(&name));
     let place = cursor.place().clone();
     let mut ui = Ui { name, label, range: None, choices: Vec::new(), color: false, default: None, declared, place };
+    let scalar = match declared {
+        Declared::Constant(scalar) => scalar,
+        Declared::Member(kind) => kind.scalar(),
+    };
+    let mut default_bytes = None;
     while !cursor.at_end() {
-        if cursor.take('=') {
-            ui.default = Some(default(cursor, declared)?);
+        if cursor.peek('=') {
+            let Declared::Member(kind) = declared else {
+                let message = "a constant's default stands in its declaration, not after //@ui";
+                return Err(cursor.place().error(None, message));
+            };
+            cursor.take('=');
+            let (bytes, values) = default(cursor, kind)?;
+            (ui.default, default_bytes) = (Some(values), Some(bytes));
             continue;
         }
         let (bytes, word) = cursor.word();
         match word {
             "color" => ui.color = true,
-            "choice" => ui.choices = choices(cursor)?,
-            word if word.contains("..") => ui.range = Some(range(cursor, bytes, word)?),
+            "choice" if matches!(scalar, Scalar::Bool | Scalar::Float) => {
+                return Err(cursor.error(bytes, "a choice must be int or uint"));
+            }
+            "choice" => ui.choices = choices(cursor, scalar)?,
+            word if word.contains("..") && scalar == Scalar::Bool => {
+                return Err(cursor.error(bytes, "a bool has no range"));
+            }
+            word if word.contains("..") => ui.range = Some(range(cursor, bytes, word, scalar)?),
             word => {
                 let message = format!("expected \"Label\", lo..hi, choice A=0 B=1, color or = default, found `{word}`");
                 return Err(cursor.error(bytes, message));
@@ -200,16 +241,25 @@ fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box
         Declared::Member(kind) if ui.color && !matches!(kind, ParameterType::Vec3 | ParameterType::Vec4) => {
             "a color must be vec3 or vec4"
         }
-        Declared::Constant if ui.color => "a constant cannot be a color",
-        Declared::Constant if ui.default.is_some() => "a constant's default stands in its declaration, not after //@ui",
-        Declared::Member(kind)
-            if !ui.choices.is_empty() && !matches!(kind, ParameterType::Int | ParameterType::Uint) =>
-        {
-            "a choice must be int or uint"
+        Declared::Constant(_) if ui.color => "a constant cannot be a color",
+        _ => {
+            let given = ui.default.as_deref().and_then(|values| values.first());
+            return match given.and_then(|value| outside_of_choices(&ui.choices, *value)) {
+                Some(message) => Err(cursor.error(default_bytes.unwrap_or_default(), message)),
+                None => Ok(ui),
+            };
         }
-        _ => return Ok(ui),
     };
     Err(cursor.place().error(None, message))
+}
+
+/// What to say when choices are given and a default is none of them.
+pub fn outside_of_choices(choices: &[(String, i64)], default: f64) -> Option<String> {
+    if choices.is_empty() || choices.iter().any(|(_, value)| *value as f64 == default) {
+        return None;
+    }
+    let list: Vec<String> = choices.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    Some(format!("expected a default among the choices {}, found {default}", list.join(" ")))
 }
 
 /// `layout(constant_id = ...) const TYPE NAME` or the member `TYPE NAME;`.
@@ -218,9 +268,22 @@ fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result
     let words: Vec<&str> = declaration.map(|line| tokens(&line.code)).unwrap_or_default().iter().map(|t| t.1).collect();
     if words.contains(&"constant_id") {
         let at = words.iter().position(|word| *word == "const");
-        return match at.and_then(|at| words.get(at + 2)) {
-            Some(name) if name.starts_with(is_word) => Ok((Declared::Constant, (*name).to_owned())),
-            _ => error("expected `layout(constant_id = ...) const TYPE NAME = DEFAULT;` on one line".to_owned()),
+        let scalar = match at.and_then(|at| words.get(at + 1).copied()) {
+            Some("bool") => Some(Scalar::Bool),
+            Some("int") => Some(Scalar::Int),
+            Some("uint") => Some(Scalar::Uint),
+            Some("float") => Some(Scalar::Float),
+            _ => None,
+        };
+        return match (scalar, at.and_then(|at| words.get(at + 2))) {
+            (Some(scalar), Some(name)) if name.starts_with(is_word) => {
+                Ok((Declared::Constant(scalar), (*name).to_owned()))
+            }
+            _ => error(
+                "expected `layout(constant_id = ...) const TYPE NAME = DEFAULT;` on one line, of type bool, int, uint or \
+                 float"
+                    .to_owned(),
+            ),
         };
     }
     let end = words.iter().position(|word| *word == ";");
@@ -244,63 +307,6 @@ fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result
         }
     };
     Ok((Declared::Member(kind), (*name).to_owned()))
-}
-
-/// The numbers after `=`.
-fn default(cursor: &mut Cursor<'_>, declared: Declared) -> Result<Vec<f64>, Box<Diagnostic>> {
-    let start = cursor.position();
-    let mut out = Vec::new();
-    while !cursor.at_end() {
-        let (bytes, word) = cursor.word();
-        out.push(match word {
-            "true" => 1.0,
-            "false" => 0.0,
-            word => number(word).ok_or_else(|| cursor.error(bytes, format!("expected a number, found `{word}`")))?,
-        });
-    }
-    let Declared::Member(kind) = declared else { return Ok(out) };
-    let bytes = start..cursor.position();
-    if out.len() != kind.components() {
-        let message = format!("expected {} number(s) after `=`, found {}", kind.components(), out.len());
-        return Err(cursor.error(bytes, message));
-    }
-    let whole = out.iter().all(|value| value.fract() == 0.0);
-    match kind {
-        ParameterType::Int | ParameterType::Uint | ParameterType::Bool if !whole => {
-            Err(cursor.error(bytes, "expected a whole number after `=`"))
-        }
-        ParameterType::Uint if out[0] < 0.0 => Err(cursor.error(bytes, "expected a number of at least 0 after `=`")),
-        _ => Ok(out),
-    }
-}
-
-/// `A=0 B=1` up to something that is no choice.
-fn choices(cursor: &mut Cursor<'_>) -> Result<Vec<(String, i64)>, Box<Diagnostic>> {
-    let mut out: Vec<(String, i64)> = Vec::new();
-    while !cursor.at_end() && !cursor.peek('=') {
-        let (bytes, word) = cursor.word();
-        let choice = word.split_once('=').and_then(|(name, value)| Some((name, value.parse().ok()?)));
-        let Some((name, value)) = choice.filter(|(name, _)| !name.is_empty()) else {
-            return Err(cursor.error(bytes, format!("expected NAME=NUMBER after `choice`, found `{word}`")));
-        };
-        if out.iter().any(|(known, number)| known == name || *number == value) {
-            return Err(cursor.error(bytes, format!("choice `{word}` repeats a name or a number")));
-        }
-        out.push((name.to_owned(), value));
-    }
-    if out.is_empty() { Err(cursor.expected("NAME=NUMBER after `choice`")) } else { Ok(out) }
-}
-
-fn range(cursor: &Cursor<'_>, bytes: Range<usize>, word: &str) -> Result<(f64, f64), Box<Diagnostic>> {
-    let ends = word.split_once("..").and_then(|(lo, hi)| Some((number(lo)?, number(hi)?)));
-    match ends {
-        Some((lo, hi)) if lo < hi => Ok((lo, hi)),
-        _ => Err(cursor.error(bytes, format!("expected a range lo..hi with lo < hi, found `{word}`"))),
-    }
-}
-
-fn number(word: &str) -> Option<f64> {
-    word.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
 /// `Rim strength` of `rim_strength`, `Wrap diffuse` of `WRAP_DIFFUSE`.

@@ -27,14 +27,14 @@ fn modes_in_the_order_of_their_ids() {
     let modes = read_text(
         "//@mode d \"Normal distribution D\" group=\"BRDF terms\" encode=data doc=\"GGX: eq. 33\"\n\
          const uint MODE_BRDF_D = 120u;\n\
-         const uint MODE_FINAL = 0u; //@mode final \"Final\" encode=color tonemap key=1\n\
+         const uint MODE_FINAL = 0u; //@mode final \"Final\" encode=color tonemap key=p\n\
          // not one: //@mode nonsense\n/*\n//@mode nonsense\n*/",
     )
     .unwrap()
     .modes;
     let rows: Vec<_> =
         modes.iter().map(|mode| (mode.id, mode.slug.as_str(), mode.line, mode.tonemap, mode.key)).collect();
-    assert_eq!(rows, [(0, "final", 5, true, Some('1')), (120, "d", 3, false, None)]);
+    assert_eq!(rows, [(0, "final", 5, true, Some('p')), (120, "d", 3, false, None)]);
     assert_eq!(
         (modes[1].group.as_str(), modes[1].encode, modes[1].doc.as_str()),
         ("BRDF terms", Encode::Data, "GGX: eq. 33")
@@ -110,6 +110,66 @@ fn what_does_not_parse_says_what_was_expected() {
         &format!("{ui} = 1"),
         "m.frag:3:45: error: a constant's default stands in its declaration, not after //@ui",
     );
+}
+
+#[test]
+fn values_must_fit_their_types_and_choices() {
+    let constant = |kind: &str, ui: &str| format!("layout(constant_id = 40) const {kind} C = {kind}(0); //@ui {ui}");
+    let refused_constant = |kind: &str, ui: &str, found: &str| refused(&constant(kind, ui), found);
+    refused_constant(
+        "uint",
+        "choice A=-1",
+        "m.frag:3:63: error: expected a value of the type uint, 0 to 4294967295, found -1",
+    );
+    refused_constant(
+        "int",
+        "choice A=0 B=3000000000",
+        "m.frag:3:65: error: expected a value of the type int, -2147483648 to 2147483647, found 3000000000",
+    );
+    refused_constant(
+        "uint",
+        "-1..4",
+        "m.frag:3:56: error: expected a value of the type uint, 0 to 4294967295, found -1",
+    );
+    refused_constant("bool", "0..1", "m.frag:3:56: error: a bool has no range");
+    refused_constant("float", "choice A=1", "m.frag:3:58: error: a choice must be int or uint");
+    refused_constant(
+        "uint",
+        "choice A=1 B=2",
+        "m.frag:3:50: error: expected a default among the choices A=1 B=2, found 0",
+    );
+    let negative = "layout(constant_id = 40) const int C = -1; //@ui choice A=-1 B=2";
+    assert_eq!(read_text(negative).unwrap().constants[0].choices[0].1, -1);
+
+    let member = |text: &str| format!("{PARAMS}\n{text}\n}};");
+    refused(
+        &member("uint a; //@ui choice A=1 B=2 = 3"),
+        "m.frag:4:33: error: expected a default among the choices A=1 B=2, found 3",
+    );
+    refused(
+        &member("int a; //@ui = 1e10"),
+        "m.frag:4:16: error: expected a value of the type int, -2147483648 to 2147483647, found 10000000000",
+    );
+    refused(&member("bool a; //@ui = 2"), "m.frag:4:17: error: expected a value of the type bool, 0 to 1, found 2");
+    refused(&member("int a; //@ui = 0.5"), "m.frag:4:15: error: expected a whole number after `=`");
+    assert!(read_text(&member("float a; //@ui = 1e39")).unwrap_err()[0].message.contains("of the type float"));
+    let found = read_text(&member("uint a; //@ui choice A=1 B=2\nuint b; //@ui choice A=1 B=0")).unwrap();
+    assert_eq!((&found.parameters[0].default, &found.parameters[1].default), (&vec![1.0], &vec![0.0]));
+}
+
+#[test]
+fn keys_of_the_window_are_refused() {
+    let errors = |key: &str| {
+        let text = format!("const uint A = 1u; //@mode a \"A\" key={key}");
+        read_text(&text).map_err(|errors| errors[0].one_line())
+    };
+    for key in ["h", "r", "l", "q", "0", "7", "[", "]"] {
+        let error = errors(key).unwrap_err();
+        assert!(error.starts_with("m.frag:3:38: error: expected a key that the window does not use itself"), "{error}");
+    }
+    assert_eq!(errors("D").unwrap_err(), "m.frag:3:38: error: expected a lowercase letter after key=, found `D`");
+    assert_eq!(errors("?").unwrap_err(), "m.frag:3:38: error: expected a letter a-z after key=, found `?`");
+    assert_eq!(errors("d").unwrap().modes[0].key, Some('d'));
 }
 
 #[test]

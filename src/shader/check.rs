@@ -58,12 +58,12 @@ mod tests {
     #[test]
     fn libraries_must_stand_alone() {
         let source = Source::memory([
-            ("a.frag", "#version 460\n#include \"types.glsl\"\n#include \"use.glsl\"\nvoid main() {}\n"),
+            ("a.vert", "#version 460\n#include \"types.glsl\"\n#include \"use.glsl\"\nvoid main() {}\n"),
             ("types.glsl", "struct S { float x; };\n"),
             ("use.glsl", "float f(S s) { return s.x; }\n"),
             ("other.frag", "#version 460\nvoid main() { nope; }\n"),
         ]);
-        let mut library = Library::new(source, Arc::new(Compiler::new().unwrap()), &["a.frag"]);
+        let mut library = Library::new(source, Arc::new(Compiler::new().unwrap()), &["a.vert"]);
         let lines: Vec<String> = check(&mut library).iter().map(Diagnostic::one_line).collect();
         assert!(lines.iter().any(|line| line.starts_with("use.glsl:1:")), "{lines:#?}");
         assert!(lines.iter().any(|line| line.starts_with("other.frag:2:15: error: 'nope'")), "{lines:#?}");

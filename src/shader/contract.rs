@@ -1,9 +1,12 @@
 //! Holds compiled stages against `interface.rs`, so that a live edit cannot misread memory. Every message names both sides.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use crate::interface::{self, BindingKind};
 
+use super::capability;
+use super::compile::StageKind;
 use super::diagnostic::Diagnostic;
 use super::layout::{Layout, layout};
 use super::reflect::{Block, Descriptor, Location, Reflection, Scalar};
@@ -29,23 +32,34 @@ impl Texts<'_> {
     /// An error at the first line of code that holds all `words`, with the caret under the first word; at the stage's
     /// file when there is none (a macro made the declaration).
     fn error(&self, words: &[&str], message: String) -> Diagnostic {
-        let files = std::iter::once(self.stage).chain(self.dependencies.iter().filter(|path| *path != self.stage));
-        for path in files {
-            let Ok(text) = self.snapshot.read(path) else { continue };
-            for line in lines(&text) {
-                let found: Option<Vec<_>> = words.iter().map(|word| find_word(&line.code, word)).collect();
-                if let Some([first, ..]) = found.as_deref() {
-                    return Diagnostic::error(self.snapshot.display_path(path), message)
-                        .on_line(line.number, Some(line.raw))
-                        .under(first.clone());
-                }
-            }
-        }
-        match words {
-            // The keywords beside a name may stand on another line than the name.
-            [name, _, ..] => self.error(&[*name], message),
-            _ => Diagnostic::error(self.snapshot.display_path(self.stage), message),
-        }
+        let all = |code: &str| {
+            let found: Option<Vec<_>> = words.iter().map(|word| find_word(code, word)).collect();
+            found?.into_iter().next()
+        };
+        // The keywords beside a name may stand on another line than the name.
+        let name = |code: &str| find_word(code, words.first()?);
+        self.error_at(all, &message).or_else(|| self.error_at(name, &message)).unwrap_or_else(|| self.on_file(message))
+    }
+
+    /// An error at the first of `words` in the code; at the stage's file when none is there.
+    fn error_at_any(&self, words: &[&str], message: String) -> Diagnostic {
+        let any = |code: &str| words.iter().find_map(|word| find_word(code, word));
+        self.error_at(any, &message).unwrap_or_else(|| self.on_file(message))
+    }
+
+    fn on_file(&self, message: String) -> Diagnostic {
+        Diagnostic::error(self.snapshot.display_path(self.stage), message)
+    }
+
+    /// An error at the first line of code in which `find` finds something, the stage's own file first.
+    fn error_at(&self, find: impl Fn(&str) -> Option<Range<usize>>, message: &str) -> Option<Diagnostic> {
+        let included = self.dependencies.iter().filter(|path| *path != self.stage);
+        std::iter::once(self.stage).chain(included).find_map(|path| {
+            let text = self.snapshot.read(path).ok()?;
+            let (bytes, line) = lines(&text).into_iter().find_map(|line| Some((find(&line.code)?, line)))?;
+            let error = Diagnostic::error(self.snapshot.display_path(path), message);
+            Some(error.on_line(line.number, Some(line.raw)).under(bytes))
+        })
     }
 }
 
@@ -80,7 +94,56 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
         }
     }
     out.extend(check_constants(reflection, texts));
+    match StageKind::of(texts.stage) {
+        Some(StageKind::Vertex) => out.extend(check_vertex_inputs(&reflection.inputs, texts)),
+        Some(StageKind::Fragment) => out.extend(check_fragment_outputs(&reflection.outputs, texts)),
+        _ => {}
+    }
+    out.extend(check_capabilities(&reflection.capabilities, texts));
     out
+}
+
+fn check_vertex_inputs(inputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
+    let refuse = |Location { location, name, type_name }: &Location| {
+        let message = format!(
+            "shader reads `{type_name} {name}` at location {location}, Specula has no vertex buffers: vertices are read by \
+             address"
+        );
+        let help = format!("read `draw.vertices.at[gl_VertexIndex]` of {INTERFACE_FILE}");
+        texts.error(&[last_part(name), "in"], message).with_help(help)
+    };
+    inputs.iter().map(refuse).collect()
+}
+
+/// One color image is drawn to. A component that is not written has no defined value, so `vec3` will not do, nor nothing.
+fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
+    const EXPECTED: &str = "`layout(location = 0) out vec4`";
+    if outputs.is_empty() {
+        let message = format!("shader writes no color, Specula draws to {EXPECTED}");
+        return vec![texts.error(&["main", "void"], message)];
+    }
+    let mut is_first = true;
+    let mut refuse = |Location { location, name, type_name }: &Location| {
+        let is_color = *location == 0 && type_name == "vec4" && std::mem::take(&mut is_first);
+        let message =
+            format!("shader writes `{type_name} {name}` at location {location}, Specula has {EXPECTED} alone");
+        (!is_color).then(|| texts.error(&[last_part(name), "out"], message))
+    };
+    outputs.iter().filter_map(&mut refuse).collect()
+}
+
+/// `b` of `Block.b`: what the declaration's line holds.
+fn last_part(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+fn check_capabilities(capabilities: &[u32], texts: Texts<'_>) -> Vec<Diagnostic> {
+    let refuse = |capability::Missing { name, glsl }: capability::Missing| {
+        let message = format!("shader needs the device feature {name} (SPIR-V capability), Specula does not enable it");
+        let error = texts.error_at_any(glsl, message);
+        if glsl.is_empty() { error } else { error.with_note(format!("what needs it in GLSL: {}", glsl.join(", "))) }
+    };
+    capability::missing(capabilities).into_iter().map(refuse).collect()
 }
 
 fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> {
@@ -199,7 +262,7 @@ pub fn check_pair(vertex: (&Reflection, Texts<'_>), fragment: (&Reflection, Text
             Some(output) => format!("{read}, {writer} writes `{} {}` there", output.type_name, output.name),
             None => format!("{read}, {writer} writes nothing there"),
         };
-        out.push(texts.error(&[name.rsplit('.').next().unwrap_or(name), "in"], message));
+        out.push(texts.error(&[last_part(name), "in"], message));
     }
     out
 }

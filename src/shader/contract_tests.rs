@@ -7,10 +7,17 @@ use crate::shader::source::Source;
 
 /// Compiles `text` after an include of `interface` and returns the stage's complaints.
 fn complaints(interface: &str, text: &str) -> Vec<Diagnostic> {
-    let text = format!("#version 460\n#include \"interface.glsl\"\n{text}\nvoid main() {{}}\n");
-    let source = Source::memory([("m.frag", text.as_str()), ("interface.glsl", interface)]);
+    let text = format!(
+        "#version 460\n#include \"interface.glsl\"\n{text}\nlayout(location = 0) out vec4 o;\nvoid main() {{ o = vec4(0); }}\n"
+    );
+    complaints_of("m.frag", &[("m.frag", text.as_str()), ("interface.glsl", interface)])
+}
+
+/// Compiles a stage and returns its complaints.
+fn complaints_of(stage: &str, files: &[(&str, &str)]) -> Vec<Diagnostic> {
+    let source = Source::memory(files.iter().copied());
     let snapshot = Snapshot::new(&source);
-    let stage = TreePath::from("m.frag");
+    let stage = TreePath::from(stage);
     let compiled = Compiler::new().unwrap().compile(&snapshot, &stage);
     let reflection = Reflection::of(&compiled.result.unwrap());
     check(&reflection, Texts { snapshot: &snapshot, stage: &stage, dependencies: &compiled.dependencies })
@@ -94,6 +101,77 @@ fn edited_structs_are_refused_by_member() {
     }
     let longer = interface::glsl().replace("    uint node_id;\n", "    uint node_id;\n    mat4 more;\n");
     assert!(complaints(&longer, "").iter().any(|found| found.message.contains("Specula says at most 128")));
+}
+
+#[track_caller]
+fn expect_stage(stage: &str, text: &str, expected: &[&str]) {
+    let text = format!("#version 460\n{text}\n");
+    let found: Vec<String> = complaints_of(stage, &[(stage, &text)]).iter().map(Diagnostic::one_line).collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn vertices_come_by_address_alone() {
+    let error = "m.vert:2:31: error: shader reads `vec3 position` at location 0, Specula has no vertex buffers: vertices are \
+                 read by address";
+    let body = "void main() { gl_Position = vec4(position, 1); }";
+    expect_stage("m.vert", &format!("layout(location = 0) in  vec3 position;\n{body}"), &[error]);
+    expect_stage("m.vert", "void main() { gl_Position = vec4(gl_VertexIndex); }", &[]);
+}
+
+#[test]
+fn a_fragment_stage_writes_one_color() {
+    let out = "Specula has `layout(location = 0) out vec4` alone";
+    let write = |declared: &str, body: &str, expected: &[&str]| {
+        expect_stage("m.frag", &format!("{declared}\nvoid main() {{ {body} }}"), expected);
+    };
+    write("layout(location = 0) out vec4 o;", "o = vec4(0);", &[]);
+    write("layout(location = 0) out vec4 o;", "", &[]);
+    write(
+        "layout(location = 0) out vec3 o;",
+        "o = vec3(0);",
+        &[&format!("m.frag:2:31: error: shader writes `vec3 o` at location 0, {out}")],
+    );
+    write(
+        "layout(location = 0) out vec4 o; layout(location = 1) out uint id;",
+        "o = vec4(0); id = 1;",
+        &[&format!("m.frag:2:64: error: shader writes `uint id` at location 1, {out}")],
+    );
+    write(
+        "layout(location = 0) out uvec4 o;",
+        "o = uvec4(0);",
+        &[&format!("m.frag:2:32: error: shader writes `uvec4 o` at location 0, {out}")],
+    );
+    write("", "", &["m.frag:3:6: error: shader writes no color, Specula draws to `layout(location = 0) out vec4`"]);
+}
+
+#[test]
+fn features_that_are_not_enabled_are_named() {
+    let cases = [
+        ("double d = o.x; o = vec4(float(d * d));", "Float64", "m.frag:5:"),
+        ("o = vec4(float(gl_SampleID));", "SampleRateShading", "m.frag:5:30:"),
+        ("o = vec4(float(int64_t(o.x) * 3));", "Int64", "m.frag:5:30:"),
+        ("float16_t h = float16_t(o.x); o = vec4(float(h * h));", "Float16", "m.frag:5:15:"),
+        ("o = vec4(interpolateAtOffset(x, vec2(0.1)));", "InterpolationFunction", "m.frag:5:24:"),
+        ("o = vec4(subgroupAdd(1.0));", "GroupNonUniformArithmetic", "m.frag:5:24:"),
+        ("o = vec4(float(gl_PrimitiveID), dFdxFine(o.y), 0, 0);", "", ""),
+        ("if (o.x > 0.5) discard;", "", ""),
+    ];
+    let extensions = "#extension GL_EXT_shader_explicit_arithmetic_types : require\n\
+                      #extension GL_KHR_shader_subgroup_arithmetic : require\n";
+    for (body, feature, place) in cases {
+        let head = "layout(location = 0) out vec4 o; layout(location = 0) in float x;";
+        let text = format!("#version 460\n{extensions}{head}\nvoid main() {{ {body} }}\n");
+        let found: Vec<String> =
+            complaints_of("m.frag", &[("m.frag", &text)]).iter().map(Diagnostic::one_line).collect();
+        match found.as_slice() {
+            [] => assert_eq!(feature, "", "{body}"),
+            [only] => {
+                assert!(only.contains(place) && only.contains(&format!("the device feature {feature} (")), "{only}")
+            }
+            more => panic!("{more:#?}"),
+        }
+    }
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod op {
     pub const NAME: u32 = 5;
     pub const MEMBER_NAME: u32 = 6;
     pub const ENTRY_POINT: u32 = 15;
+    pub const CAPABILITY: u32 = 17;
     pub const TYPE_BOOL: u32 = 20;
     pub const TYPE_INT: u32 = 21;
     pub const TYPE_FLOAT: u32 = 22;
@@ -84,6 +85,7 @@ pub struct Module {
     specialization: Vec<(Id, Id, u32)>,
     variables: Vec<(Id, Id, u32)>,
     interface: Vec<Id>,
+    capabilities: Vec<u32>,
 }
 
 impl Module {
@@ -121,6 +123,7 @@ impl Module {
                 let (_, words) = string(operands.get(2..)?);
                 self.interface = operands.get(2 + words..)?.to_vec();
             }
+            op::CAPABILITY => self.capabilities.push(at(0)?),
             op::DECORATE => {
                 self.decorations.insert((at(0)?, at(1)?), at(2).unwrap_or(0));
             }
@@ -151,7 +154,7 @@ impl Module {
 
     /// Everything at once.
     pub fn reflect(&self) -> Reflection {
-        let mut out = Reflection::default();
+        let mut out = Reflection { capabilities: self.capabilities.clone(), ..Reflection::default() };
         for (pointer, variable, class) in &self.variables {
             let Some(Type::Pointer { to, .. }) = self.types.get(pointer) else { continue };
             match *class {

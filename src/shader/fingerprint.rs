@@ -1,13 +1,10 @@
 //! Tells a file's content from another's, cheaply.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Larger files (models, images) are told apart by size and time instead of content.
 const MAX_HASHED_BYTES: u64 = 4 << 20;
-
-/// Deep enough for any tree, and an end for directories that link to themselves.
-const MAX_DEPTH: u32 = 16;
 
 /// Equal for equal content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,22 +22,4 @@ pub fn fingerprint(path: &Path) -> Option<Fingerprint> {
         std::fs::read(path).ok().hash(&mut hasher);
     }
     Some(Fingerprint(hasher.finish()))
-}
-
-/// All files below a directory. `.git` is left out: it changes with every command and holds no shader.
-pub fn walk(directory: &Path) -> Vec<PathBuf> {
-    let mut out = Vec::new();
-    descend(directory, 0, &mut out);
-    out
-}
-
-fn descend(directory: &Path, depth: u32, out: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(directory) else { return };
-    for path in entries.flatten().map(|entry| entry.path()) {
-        if path.is_file() {
-            out.push(path);
-        } else if depth < MAX_DEPTH && path.is_dir() && !path.ends_with(".git") {
-            descend(&path, depth + 1, out);
-        }
-    }
 }

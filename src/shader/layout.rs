@@ -29,7 +29,7 @@ macro_rules! layout {
 pub const LAYOUTS: &[Layout] = &[
     layout!(Frame {
         clip_from_world world_from_clip view_from_world eye_ws exposure ambient time_s background scene_center_ws
-        scene_radius viewport_px viewport_origin_px near far light_count chosen_light tonemap encode mode frame_index
+        scene_radius viewport_px viewport_origin_px near far light_count chosen_light tonemap encode mode largest_value
     }),
     layout!(Light { position_ws kind direction_ws range intensity cos_inner cos_outer }),
     layout!(Material {

@@ -10,16 +10,19 @@ use serde::Serialize;
 
 use super::annotation::{self, Annotations, Constant, Mode, Parameter};
 use super::compile::{Compiler, StageKind};
-use super::contract::{self, Texts};
+use super::contract;
 use super::diagnostic::{Diagnostic, Severity, unique};
 use super::reflect::Reflection;
+use super::slot::{Outcome, Slot, Stage, build};
 use super::snapshot::Snapshot;
 use super::source::{Source, TreePath};
+use super::text::{find_word, lines};
 
 /// What may have changed since the last update.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Anything: the first update, and the reload key.
+    /// Anything: the first update, and the reload key. Every stage compiles, whatever is known about its text; one whose
+    /// module comes out the same stays the same object.
     All,
     /// These files.
     Paths(BTreeSet<TreePath>),
@@ -36,27 +39,6 @@ impl Change {
             }
             _ => Self::All,
         }
-    }
-}
-
-/// A compiled stage.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stage {
-    /// The file with its `main()`.
-    pub path: TreePath,
-    /// Vertex, fragment or compute.
-    pub kind: StageKind,
-    /// The module, unoptimized.
-    pub spirv: Vec<u32>,
-    /// What it declares.
-    pub reflection: Reflection,
-    /// Its files, and the paths looked for in vain.
-    pub dependencies: BTreeSet<TreePath>,
-}
-
-impl Stage {
-    fn texts<'a>(&'a self, snapshot: &'a Snapshot<'a>) -> Texts<'a> {
-        Texts { snapshot, stage: &self.path, dependencies: &self.dependencies }
     }
 }
 
@@ -104,57 +86,6 @@ pub enum Update {
     Failed(Vec<Diagnostic>, Report),
 }
 
-/// A successful compilation.
-#[derive(Clone)]
-struct Built {
-    stage: Arc<Stage>,
-    hash: u64,
-    warnings: Vec<Diagnostic>,
-}
-
-/// A failed one.
-#[derive(Clone)]
-struct Broken {
-    hash: u64,
-    dependencies: BTreeSet<TreePath>,
-    diagnostics: Vec<Diagnostic>,
-}
-
-type Outcome = Result<Built, Broken>;
-
-/// What is known about one stage.
-struct Slot {
-    path: TreePath,
-    /// The outcome for the files as last seen.
-    current: Option<Outcome>,
-    /// What the last good set holds.
-    good: Option<Built>,
-}
-
-impl Slot {
-    fn depends_on(&self, path: &TreePath) -> bool {
-        let current = self.current.as_ref().map(dependencies_of);
-        let good = self.good.as_ref().map(|built| &built.stage.dependencies);
-        *path == self.path || [current, good].into_iter().flatten().any(|dependencies| dependencies.contains(path))
-    }
-
-    /// An outcome known for exactly the text of the snapshot.
-    fn known(&self, snapshot: &Snapshot<'_>) -> Option<Outcome> {
-        let good = self.good.clone().map(Ok);
-        [self.current.clone(), good].into_iter().flatten().find(|outcome| {
-            let hash = outcome.as_ref().map_or_else(|broken| broken.hash, |built| built.hash);
-            snapshot.closure_hash(dependencies_of(outcome)) == hash
-        })
-    }
-}
-
-fn dependencies_of(outcome: &Outcome) -> &BTreeSet<TreePath> {
-    match outcome {
-        Ok(built) => &built.stage.dependencies,
-        Err(broken) => &broken.dependencies,
-    }
-}
-
 /// Holds the stages of one tree, the last good set, and what failed since.
 pub struct Library {
     source: Arc<Source>,
@@ -168,7 +99,7 @@ pub struct Library {
 }
 
 impl Library {
-    /// A library of the entry points `stages`. `NAME.vert` feeds `NAME.frag`; other pairs are named with [`Self::pair`].
+    /// A library of the entry points `stages`. `NAME.vert` feeds `NAME.frag`.
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
         let paths: Vec<TreePath> = stages.iter().map(|path| TreePath::from(*path)).collect();
         let root = source.root().map(|root| root.canonicalize().unwrap_or_else(|_| root.to_owned()));
@@ -179,15 +110,8 @@ impl Library {
                 fragments.map(|fragment| (vertex.clone(), fragment.clone()))
             })
             .collect();
-        let slots = paths.iter().map(|path| Slot { path: path.clone(), current: None, good: None }).collect();
+        let slots = paths.iter().cloned().map(Slot::new).collect();
         Self { source: Arc::new(source), root, compiler, slots, pairs, set: None, failed: false }
-    }
-
-    /// Names a vertex stage and a fragment stage that make one pipeline.
-    #[must_use]
-    pub fn pair(mut self, vertex: &str, fragment: &str) -> Self {
-        self.pairs.push((vertex.into(), fragment.into()));
-        self
     }
 
     /// The tree.
@@ -213,11 +137,7 @@ impl Library {
     /// Every path whose change can change the outcome, those looked for in vain included.
     pub fn dependencies(&self) -> BTreeSet<TreePath> {
         let mut out = BTreeSet::from([TreePath::from(contract::INTERFACE_FILE)]);
-        for slot in &self.slots {
-            out.insert(slot.path.clone());
-            out.extend(slot.current.iter().flat_map(|outcome| dependencies_of(outcome).iter().cloned()));
-            out.extend(slot.good.iter().flat_map(|built| built.stage.dependencies.iter().cloned()));
-        }
+        out.extend(self.slots.iter().flat_map(Slot::dependencies).cloned());
         out
     }
 
@@ -253,7 +173,7 @@ impl Library {
         for (index, outcome, ms) in compiled {
             let slot = &mut self.slots[index];
             report.stages.push((slot.path.to_string(), ms));
-            slot.current = Some(keep_if_equal(outcome, slot.good.as_ref()));
+            slot.accept(outcome);
         }
         let linked = self.link(&snapshot);
         report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -277,31 +197,26 @@ impl Library {
 
     /// Takes outcomes already known for the text at hand, and lists the stages to compile.
     fn stale(&mut self, change: &Change, snapshot: &Snapshot<'_>) -> Stale {
-        let interface = TreePath::from(contract::INTERFACE_FILE);
-        let mut stale = Stale { moved: false, compile: Vec::new() };
+        let paths = match change {
+            Change::All => {
+                let compile = self.slots.iter().map(|slot| slot.path.clone()).enumerate().collect();
+                return Stale { moved: true, compile };
+            }
+            Change::Paths(paths) => paths,
+        };
+        // No stage may include it, and yet its version counts.
+        let mut stale = Stale { moved: paths.contains(&TreePath::from(contract::INTERFACE_FILE)), compile: Vec::new() };
         for (index, slot) in self.slots.iter_mut().enumerate() {
-            let hit = match change {
-                Change::All => true,
-                Change::Paths(paths) => paths.iter().any(|path| slot.depends_on(path)),
-            };
+            let hit = slot.dependencies().any(|dependency| paths.contains(dependency));
             // A stage that failed is looked at again whatever changed: its dependencies end where it failed.
-            let settled = matches!(slot.current, Some(Ok(_)));
-            if settled && !hit {
+            if matches!(slot.current, Some(Ok(_))) && !hit {
                 continue;
             }
-            match slot.known(snapshot) {
-                Some(known) => {
-                    stale.moved |= !slot.current.as_ref().is_some_and(|current| same(current, &known));
-                    slot.current = Some(known);
-                }
+            match slot.recall(snapshot) {
+                Some(moved) => stale.moved |= moved,
                 None => stale.compile.push((index, slot.path.clone())),
             }
         }
-        stale.moved |= match change {
-            Change::All => true,
-            // No stage may include it, and yet its version counts.
-            Change::Paths(paths) => paths.contains(&interface),
-        };
         stale
     }
 
@@ -341,9 +256,10 @@ impl Library {
         Ok((annotations, unique(warnings)))
     }
 
-    /// Whether any file but the contract names the time.
+    /// Whether the code of any file but the contract names the time.
     fn reads_time(&self, snapshot: &Snapshot<'_>) -> bool {
-        let names_it = |path: &TreePath| snapshot.read(path).is_ok_and(|text| text.contains("frame.time_s"));
+        let in_code = |text: &str| lines(text).iter().any(|line| find_word(&line.code, "frame.time_s").is_some());
+        let names_it = |path: &TreePath| snapshot.read(path).is_ok_and(|text| in_code(&text));
         let contract = TreePath::from(contract::INTERFACE_FILE);
         self.dependencies().iter().any(|path| *path != contract && names_it(path))
     }
@@ -382,44 +298,6 @@ struct Stale {
     /// Whether to join the stages again without a compile: an edit was taken back, say.
     moved: bool,
     compile: Vec<(usize, TreePath)>,
-}
-
-fn same(a: &Outcome, b: &Outcome) -> bool {
-    match (a, b) {
-        (Ok(a), Ok(b)) => a.hash == b.hash,
-        (Err(a), Err(b)) => a.hash == b.hash,
-        _ => false,
-    }
-}
-
-/// A comment changes no module: then the stage stays the same object, and no pipeline need be built.
-fn keep_if_equal(outcome: Outcome, good: Option<&Built>) -> Outcome {
-    match (outcome, good) {
-        (Ok(built), Some(good)) if built.stage == good.stage => Ok(Built { stage: Arc::clone(&good.stage), ..built }),
-        (outcome, _) => outcome,
-    }
-}
-
-/// Compiles, reflects and checks one stage.
-fn build(compiler: &Compiler, snapshot: &Snapshot<'_>, path: &TreePath) -> (Outcome, f64) {
-    let compiled = compiler.compile(snapshot, path);
-    let (dependencies, ms) = (compiled.dependencies, compiled.ms);
-    let hash = snapshot.closure_hash(&dependencies);
-    let broken = |diagnostics| Err(Broken { hash, dependencies: dependencies.clone(), diagnostics });
-    let spirv = match compiled.result {
-        Ok(spirv) => spirv,
-        Err(errors) => return (broken(errors.into_iter().chain(compiled.warnings).collect()), ms),
-    };
-    let reflection = Reflection::of(&spirv);
-    let errors = contract::check(&reflection, Texts { snapshot, stage: path, dependencies: &dependencies });
-    let outcome = match StageKind::of(path) {
-        Some(kind) if errors.is_empty() => {
-            let stage = Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies });
-            Ok(Built { stage, hash, warnings: compiled.warnings })
-        }
-        _ => broken(errors),
-    };
-    (outcome, ms)
 }
 
 // Run against the compiler; see `library_tests.rs`.

@@ -76,6 +76,32 @@ fn a_broken_edit_keeps_the_set_and_taking_it_back_costs_no_compile() {
 }
 
 #[test]
+fn the_reload_key_compiles_everything_and_keeps_what_is_equal() {
+    let mut library = two_stages();
+    let good = Arc::clone(library.set().unwrap());
+    failed(&edit(&mut library, "b.frag", Some("broken")));
+    let update = library.update(&Change::All);
+    assert_eq!(compiled(&update), ["a.frag", "b.frag"]);
+    let update = edit(&mut library, "b.frag", Some(&format!("{HEAD}void main() {{ o = vec4(0.3); }}\n")));
+    let Update::Ready(set, _) = update else { panic!("{update:?}") };
+    assert!(Arc::ptr_eq(&set.stages["a.frag"], &good.stages["a.frag"]));
+}
+
+#[test]
+fn a_comment_about_the_time_moves_nothing() {
+    let mut library = two_stages();
+    let text =
+        |code: &str| format!("struct F {{ float time_s; }};\nfloat color() {{ F frame = F(1.0); return {code}; }}\n");
+    let animated = |library: &mut Library, code: &str| {
+        let update = edit(library, "lib/color.glsl", Some(&text(code)));
+        let Update::Ready(set, _) = update else { panic!("{update:?}") };
+        set.animated
+    };
+    assert!(!animated(&mut library, "0.1 /* frame.time_s */; // frame.time_s\n"));
+    assert!(animated(&mut library, "0.2 * frame.time_s"));
+}
+
+#[test]
 fn all_or_nothing_and_what_compiled_is_remembered() {
     let mut library = two_stages();
     failed(&edit(&mut library, "b.frag", Some("#version 460\nvoid main() { nope }\n")));

@@ -102,6 +102,8 @@ pub struct Reflection {
     pub outputs: Vec<Location>,
     /// Every struct with member offsets, by name: also those behind arrays and buffer references.
     pub structs: BTreeMap<String, Block>,
+    /// SPIR-V's numbers of the capabilities that it asks for.
+    pub capabilities: Vec<u32>,
 }
 
 impl Reflection {

@@ -1,13 +1,14 @@
 //! Where shader text comes from: a directory, the tree inside the binary, or memory (tests).
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::embedded;
+use super::{directory, embedded};
 
 /// Files beyond this many bytes are refused: no shader is that long, and shaderc would hold several copies.
 pub const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -164,8 +165,12 @@ impl Source {
     pub fn list(&self) -> Vec<TreePath> {
         match self {
             Self::Disk(root) => {
-                let mut out = Vec::new();
-                list_directory(root, "", 0, &mut out);
+                let tree_path = |path: &PathBuf| {
+                    let names: Option<Vec<&str>> = path.strip_prefix(root).ok()?.iter().map(OsStr::to_str).collect();
+                    TreePath::parse(&names?.join("/"))
+                };
+                let found = directory::files(root, |name| !name.starts_with('.'));
+                let mut out: Vec<TreePath> = found.iter().filter_map(tree_path).collect();
                 out.sort();
                 out
             }
@@ -226,28 +231,6 @@ fn check_text(bytes: Vec<u8>) -> Result<String, SourceError> {
         Some(rest) => rest.to_owned(),
         None => text,
     })
-}
-
-/// Deep enough for any tree, and an end for directories that link to themselves.
-const MAX_DIRECTORY_DEPTH: u32 = 16;
-
-fn list_directory(directory: &Path, prefix: &str, depth: u32, out: &mut Vec<TreePath>) {
-    if depth > MAX_DIRECTORY_DEPTH {
-        return;
-    }
-    let Ok(entries) = std::fs::read_dir(directory) else { return };
-    for entry in entries.flatten() {
-        let Some(name) = entry.file_name().to_str().map(str::to_owned) else { continue };
-        if name.starts_with('.') {
-            continue;
-        }
-        let path = entry.path();
-        if path.is_dir() {
-            list_directory(&path, &format!("{prefix}{name}/"), depth + 1, out);
-        } else if path.is_file() {
-            out.extend(TreePath::parse(&format!("{prefix}{name}")));
-        }
-    }
 }
 
 #[cfg(test)]

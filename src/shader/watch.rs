@@ -12,7 +12,8 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, unbounded};
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher as _};
 
-use super::fingerprint::{Fingerprint, fingerprint, walk};
+use super::directory;
+use super::fingerprint::{Fingerprint, fingerprint};
 
 /// A save of one file that is there and closed is complete; this long covers an editor's own backup file beside it.
 const SETTLE_SAVE: Duration = Duration::from_millis(3);
@@ -273,6 +274,11 @@ impl State {
         }
         out
     }
+}
+
+/// All files below a directory. `.git` is left out: it changes with every command and holds no shader.
+fn walk(directory: &Path) -> Vec<PathBuf> {
+    directory::files(directory, |name| name != ".git")
 }
 
 /// Whether an event can mean finished content. Reading sends events too, and so does every piece of a long write.

@@ -37,7 +37,7 @@ impl Tree {
         let mut wanted: BTreeSet<PathBuf> = names.iter().map(|name| self.path(name)).collect();
         for count in 1.. {
             let batch = self.batches.recv_timeout(PATIENCE).expect("a batch");
-            assert!(batch.first_event.elapsed() >= SETTLE);
+            assert!(batch.first_event.elapsed() >= SETTLE_SAVE);
             // An editor's temporary file may be seen before it goes.
             for path in batch.paths.into_iter().filter(|path| !path.to_string_lossy().ends_with('~')) {
                 assert!(wanted.remove(&path), "{} was told, but not expected", path.display());

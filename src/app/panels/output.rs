@@ -8,6 +8,7 @@ use crate::app::document::Document;
 use crate::settings::Tonemap;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+    let look = document.settings.to_toml();
     let view = &mut document.settings.view;
     section(ui, "Output", true, |ui| {
         row(ui, "Exposure", "EV100: exposure is 1 / (1.2 * 2^EV) (--ev)", |ui| {
@@ -30,6 +31,9 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
                 view.background = format!("#{:02x}{:02x}{:02x}", srgb[0], srgb[1], srgb[2]);
             }
         });
+        if ui.button("Copy as look file").on_hover_text("All settings as TOML, for --look").clicked() {
+            ui.ctx().copy_text(look);
+        }
         row(ui, "Samples", "Multisampling", |ui| {
             ui.selectable_value(&mut view.msaa, 1, "1x");
             ui.selectable_value(&mut view.msaa, 4, "4x");

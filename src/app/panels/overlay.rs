@@ -9,7 +9,6 @@ use crate::app::document::Document;
 use crate::shader::{Diagnostic, Severity};
 
 const NOTICE: Duration = Duration::from_secs(6);
-const MOST_DIAGNOSTICS: usize = 8;
 
 pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui::Rect) {
     if !document.diagnostics.is_empty() {
@@ -59,11 +58,8 @@ fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::
         card(if failed { ERROR } else { WARNING }).show(ui, |ui| {
             ui.set_max_width((picture.width() - 60.0).max(200.0));
             egui::ScrollArea::vertical().max_height((picture.height() * 0.6).max(80.0)).show(ui, |ui| {
-                for diagnostic in diagnostics.iter().take(MOST_DIAGNOSTICS) {
+                for diagnostic in diagnostics {
                     one(ui, diagnostic);
-                }
-                if diagnostics.len() > MOST_DIAGNOSTICS {
-                    ui.label(format!("and {} more, on stderr", diagnostics.len() - MOST_DIAGNOSTICS));
                 }
                 if failed {
                     ui.label(RichText::new("The picture is the last good one.").small().color(QUIET));

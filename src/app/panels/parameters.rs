@@ -4,6 +4,7 @@ use egui::{Slider, Ui};
 
 use super::{color, row, section};
 use crate::app::document::Document;
+use crate::render::number;
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::reflect::Scalar;
@@ -82,16 +83,6 @@ fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) 
         Scalar::Float => ShaderValue::Float(now),
         Scalar::Int | Scalar::Uint => ShaderValue::Int(now as i64),
     })
-}
-
-fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
-    match value {
-        ShaderValue::Bool(b) => Some(f64::from(u8::from(*b))),
-        ShaderValue::Int(i) => Some(*i as f64),
-        ShaderValue::Float(f) => Some(*f),
-        ShaderValue::Vector(_) => None,
-        ShaderValue::Name(name) => choices.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|(_, v)| *v as f64),
-    }
 }
 
 fn check(ui: &mut Ui, number: f64) -> f64 {

@@ -9,36 +9,50 @@ use super::super::error::Problem;
 use super::place;
 use super::uri::{self, Target};
 
-/// Where a model's files are, and which of them were read.
-pub struct Files {
+/// Where a model's files are, and which of them were asked for.
+pub struct Files<'t> {
     /// The model's folder; `None` for a model in memory, which has no files.
     pub folder: Option<PathBuf>,
     /// `--allow-outside`.
     pub allow_outside: bool,
-    /// Every file read so far.
-    pub read: Vec<PathBuf>,
+    /// Every file read or looked for so far, absolute.
+    pub tried: &'t mut Vec<PathBuf>,
 }
 
-impl Files {
+impl Files<'_> {
     /// The bytes that a URI names. `place` is for messages.
     pub fn load(&mut self, uri: &str, place: &str) -> Result<Vec<u8>, Problem> {
-        let path = match uri::parse(uri, place, self.allow_outside)? {
+        let named = match uri::parse(uri, place, self.allow_outside)? {
             Target::Data(bytes) => return Ok(bytes),
             Target::File(path) => path,
         };
         let Some(folder) = &self.folder else {
-            let found = format!("the external file `{}`", path.display());
+            let found = format!("the external file `{}`", named.display());
             return Err(Problem::invalid(place, "all data inside of a built-in model", found));
         };
-        let path = folder.join(path);
-        match read_regular(&path) {
-            Ok(bytes) => {
-                self.read.push(path);
-                Ok(bytes)
+        let path = folder.join(&named);
+        if !self.tried.contains(&path) {
+            self.tried.push(path.clone());
+        }
+        // The words of a path say nothing of the links on its way.
+        match linked_outside(folder, &path) {
+            Ok(Some(end)) if !self.allow_outside => {
+                let found = format!("a link to {}", end.display());
+                Err(Problem::Outside { place: place.into(), uri: named.display().to_string(), found })
             }
-            Err(source) => Err(Problem::External { place: place.into(), path, source }),
+            found => found.and_then(|_| read_regular(&path)).map_err(|source| Problem::External {
+                place: place.into(),
+                path,
+                source,
+            }),
         }
     }
+}
+
+/// Where `path` really is, when links lead it out of `folder`.
+fn linked_outside(folder: &Path, path: &Path) -> std::io::Result<Option<PathBuf>> {
+    let end = path.canonicalize()?;
+    Ok(if end.starts_with(folder.canonicalize()?) { None } else { Some(end) })
 }
 
 /// Reads a file, but no device or pipe, which might never end.
@@ -52,7 +66,7 @@ pub struct Buffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
 
 impl<'a> Buffers<'a> {
     /// Reads all buffers of a file; `bin` is the GLB's binary chunk.
-    pub fn load(root: &json::Root, bin: Option<&'a [u8]>, files: &mut Files) -> Result<Self, Problem> {
+    pub fn load(root: &json::Root, bin: Option<&'a [u8]>, files: &mut Files<'_>) -> Result<Self, Problem> {
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
             let place = place("buffers", index, buffer.name.as_deref());

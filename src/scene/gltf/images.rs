@@ -29,7 +29,7 @@ pub struct Source<'a> {
 pub fn find<'a>(
     root: &json::Root,
     buffers: &'a Buffers<'_>,
-    files: &mut Files,
+    files: &mut Files<'_>,
     index: usize,
     used_by: String,
 ) -> Result<Source<'a>, Problem> {

@@ -16,7 +16,7 @@ mod uri;
 
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use gltf::json;
@@ -33,23 +33,24 @@ use super::outline::outline;
 /// Largest coordinate of a mesh and of the scene, meters: a camera that frames it can still be squared in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
 
-/// Loads a file.
-pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Model, Problem> {
+/// Loads a file. `tried` gets every file that was read or looked for, also when the load fails.
+pub fn load_file(path: &Path, options: &LoadOptions, tried: &mut Vec<PathBuf>) -> Result<Model, Problem> {
     let start = Instant::now();
     let path = std::path::absolute(path).map_err(Problem::Read)?;
+    tried.push(path.clone());
     let bytes = read_regular(&path).map_err(Problem::Read)?;
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = path.parent().map(Path::to_owned);
-    guarded(&name, &bytes, Files { folder, allow_outside: options.allow_outside, read: vec![path] }, start)
+    guarded(&name, &bytes, Files { folder, allow_outside: options.allow_outside, tried }, start)
 }
 
 /// Loads a self-contained model.
 pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
-    guarded(name, bytes, Files { folder: None, allow_outside: false, read: Vec::new() }, Instant::now())
+    guarded(name, bytes, Files { folder: None, allow_outside: false, tried: &mut Vec::new() }, Instant::now())
 }
 
 /// A panic in here would be a bug of ours or of a decoder; a file that provokes it must not cost the user the session.
-fn guarded(name: &str, bytes: &[u8], files: Files, start: Instant) -> Result<Model, Problem> {
+fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result<Model, Problem> {
     catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start))).unwrap_or_else(|panic| {
         let words =
             panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
@@ -57,7 +58,7 @@ fn guarded(name: &str, bytes: &[u8], files: Files, start: Instant) -> Result<Mod
     })
 }
 
-fn build(name: &str, bytes: &[u8], mut files: Files, start: Instant) -> Result<Model, Problem> {
+fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Result<Model, Problem> {
     let container::Document { root, bin, mut warnings } = container::parse(bytes)?;
     let buffers = Buffers::load(&root, bin, &mut files)?;
     let scene = nodes::walk(&root)?;
@@ -74,7 +75,8 @@ fn build(name: &str, bytes: &[u8], mut files: Files, start: Instant) -> Result<M
 
     warnings.extend(scene.warnings);
     warnings.extend(material_warnings);
-    let mut model = Model { name: name.to_owned(), materials, textures, images, files: files.read, ..Model::default() };
+    let files = files.tried.clone();
+    let mut model = Model { name: name.to_owned(), materials, textures, images, files, ..Model::default() };
     let mut ranges = HashMap::new();
     for (mesh, geometries) in meshes {
         let first = model.primitives.len();

@@ -26,7 +26,8 @@ pub fn parse(uri: &str, place: &str, allow_outside: bool) -> Result<Target, Prob
         return Err(Problem::invalid(place, "a relative path in percent-encoded UTF-8", format!("`{}`", shorten(uri))));
     };
     if !allow_outside && leaves_folder(&path) {
-        return Err(Problem::Outside { place: place.into(), uri: shorten(&path) });
+        let found = "a path that leaves it".to_owned();
+        return Err(Problem::Outside { place: place.into(), uri: shorten(&path), found });
     }
     Ok(Target::File(PathBuf::from(path)))
 }

@@ -188,3 +188,48 @@ fn external_files_and_data_uris() {
     builder.json["buffers"][0]["uri"] = json!("data.bin");
     assert!(load_bytes("ball", builder.json.to_string().as_bytes()).unwrap_err().to_string().contains("built-in"));
 }
+
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_folder_need_leave_too() {
+    let (folder, outside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let mut builder = Builder::square();
+    builder.json["buffers"][0]["uri"] = json!("data.bin");
+    let (path, link) = (folder.path().join("model.gltf"), folder.path().join("data.bin"));
+    std::fs::write(&path, builder.json.to_string()).unwrap();
+    for target in [outside.path().join("data.bin"), folder.path().join("other.bin")] {
+        std::fs::write(&target, &builder.bin).unwrap();
+        let _ = std::fs::remove_file(&link);
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        let refused = load(&path, &LoadOptions::default()).map_err(|error| error.to_string());
+        if target.starts_with(folder.path()) {
+            assert_sound(&refused.unwrap());
+        } else {
+            let message = refused.unwrap_err();
+            assert!(message.contains("found a link to") && message.contains("--allow-outside"), "{message}");
+        }
+        assert_sound(&load(&path, &LoadOptions { allow_outside: true }).unwrap());
+    }
+}
+
+#[test]
+fn a_failed_load_names_the_files_whose_repair_to_wait_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.gltf");
+    let tried = || open(Some(&path), &LoadOptions::default()).unwrap_err().files;
+    assert_eq!(tried(), [path.clone()], "a model that does not exist");
+    let mut builder = Builder::square();
+    builder.image("baseColorTexture", b"");
+    builder.json["images"][0] = json!({ "uri": "picture.png" });
+    builder.json["buffers"][0]["uri"] = json!("data.bin");
+    std::fs::write(&path, builder.json.to_string()).unwrap();
+    assert_eq!(tried(), [path.clone(), folder.path().join("data.bin")], "a buffer that does not exist");
+    std::fs::write(folder.path().join("data.bin"), &builder.bin).unwrap();
+    let all = ["model.gltf", "data.bin", "picture.png"].map(|name| folder.path().join(name));
+    assert_eq!(tried(), all, "a picture that does not exist");
+    std::fs::write(&all[2], b"no picture").unwrap();
+    assert_eq!(tried(), all, "a broken picture");
+    std::fs::write(&all[2], png(2, 2)).unwrap();
+    assert_eq!(open(Some(&path), &LoadOptions::default()).unwrap().files, all);
+    assert!(load_bytes("ball", b"nonsense").unwrap_err().files.is_empty());
+}

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::super::error::{LoadError, Problem};
 use super::super::model::Model;
-use super::super::{LoadOptions, load, load_bytes};
+use super::super::{LoadOptions, load, load_bytes, open};
 
 /// componentType numbers of the specification.
 const I8: u32 = 5120;
