@@ -157,6 +157,9 @@ impl Headless {
     }
 
     fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
+        if let Some(misfit) = misfits(&self.settings.shader, &self.pipelines.shaders).into_iter().next() {
+            return Err(HeadlessError::Settings(misfit));
+        }
         let wanted = wanted(&self.settings, self.samples, &self.pipelines.shaders, &self.scene);
         self.pipelines.build(&wanted)?;
         let (width, height) = self.size;

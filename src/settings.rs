@@ -108,7 +108,7 @@ impl Default for LightSettings {
         Self {
             source: LightSource::Orbit,
             orbit: [
-                OrbitLight { color: [1.0, 0.93, 0.82], strength: 14.0, distance: 2.0, azimuth: -35.0, polar: 50.0 },
+                OrbitLight { color: [1.0, 0.93, 0.82], strength: 14.0, distance: 2.0, azimuth: 0.0, polar: 50.0 },
                 OrbitLight { color: [0.45, 0.65, 1.0], strength: 6.0, distance: 2.2, azimuth: 95.0, polar: 75.0 },
                 OrbitLight { color: [1.0, 0.42, 0.25], strength: 10.0, distance: 2.0, azimuth: 200.0, polar: 55.0 },
             ],

@@ -47,7 +47,7 @@ fn spoiled(spoil: impl FnOnce(&mut Value)) -> Vec<u8> {
 #[test]
 fn no_model() {
     let directory = directory();
-    render(directory.path(), "nowhere.glb", &[]).expect(1, &["nowhere.glb", "cannot be read"]);
+    render(directory.path(), "nowhere.glb", &[]).expect(1, &["nowhere.glb", "no such file", "shader-ball"]);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn an_out_that_cannot_be_written() {
 fn unknown_names_are_told_with_those_that_exist() {
     let directory = directory();
     let render = |more: &[&str]| render(directory.path(), "sphere-grid", more);
-    render(&["--mode", "metal-ness"]).expect(1, &["metal-ness", "Close: metal", "specula modes"]);
+    render(&["--mode", "metal-ness"]).expect(1, &["metal-ness", "Did you mean metal", "specula modes"]);
     render(&["--set", "no_such_name=1"]).expect(1, &["no_such_name", "rim_strength", "TOON_BANDS"]);
     render(&["--set", "view.exposure=1"]).expect(1, &["view.exposure", "ev"]);
     render(&["--set", "TOON_BANDS=Nine"]).expect(1, &["TOON_BANDS", "Nine", "Two"]);

@@ -1,6 +1,6 @@
 //! `specula render`: a picture, or one of every mode, in a file; again at every save with `--watch`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use specula::events::{Event, emit};
@@ -36,12 +36,11 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
         "final".clone_into(&mut settings.mode);
     }
     picture::check_path(&args.out).map_err(Failure::Input)?;
-    let slug = settings.mode.clone();
     let source = args.common.source()?;
     // Watching starts before anything is read, so that no save falls between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
     let gpu = args.common.gpu()?;
-    let model = args.common.model(args.model.as_deref())?;
+    let mut model = args.common.model(args.model.as_deref())?;
     if let Some(watch) = &mut watch {
         watch.follow(&model);
     }
@@ -52,16 +51,17 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
             (Err(HeadlessError::Shaders(diagnostics)), Some(watch)) => {
                 tell(&args, &diagnostics);
                 eprintln!("specula: no picture yet; waiting for the next save");
-                if watch.next().is_none() {
-                    return Ok(());
+                match watch.next() {
+                    Some(changes) if changes.model => model = args.common.model(args.model.as_deref())?,
+                    Some(_) => {}
+                    None => return Ok(()),
                 }
             }
             (opened, _) => break opened?,
         }
     };
     let (mut headless, _) = opened;
-    check_mode(&headless.pipelines().shaders, &slug)?;
-    write(&mut headless, &args.out, all)?;
+    write(&mut headless, &args, all)?;
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     if let Some(mut watch) = watch {
         eprintln!("specula: wrote {}; watching, Ctrl+C ends", args.out.display());
@@ -84,9 +84,10 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
     let mut first_frame_ms = 0.0;
     if new_model || matches!(reload.outcome, Outcome::Ready(_)) {
         let begin = Instant::now();
-        headless.draw()?;
+        let drawn = headless.draw().map_err(Failure::from);
         first_frame_ms = begin.elapsed().as_secs_f64() * 1e3;
-        match write(headless, &args.out, all) {
+        // A value, a mode or a place that this edit made wrong may be right after the next.
+        match drawn.and_then(|()| write(headless, args, all)) {
             Err(Failure::Input(message)) => eprintln!("specula: {message}"),
             result => result?,
         }
@@ -97,10 +98,12 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
 
 /// Loads the model again; on failure the last good one stays.
 fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result<bool, Failure> {
-    match args.common.model(args.model.as_deref()) {
-        Ok(model) => {
-            watch.follow(&model);
-            headless.set_model(model)?;
+    let loaded = args.common.model(args.model.as_deref()).and_then(|model| {
+        watch.follow(&model);
+        headless.set_model(model).map_err(Failure::from)
+    });
+    match loaded {
+        Ok(()) => {
             eprintln!("specula: the model was loaded again");
             Ok(true)
         }
@@ -144,8 +147,11 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
 }
 
 /// Writes the picture, or one of each mode.
-fn write(headless: &mut Headless, out: &Path, all: bool) -> Result<(), Failure> {
+fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure> {
+    let out = args.out.as_path();
     if !all {
+        let slug = headless.settings_mut().mode.clone();
+        check_mode(&headless.pipelines().shaders, &slug)?;
         let capture = headless.render()?;
         return picture::write(&capture, out).map_err(Failure::Input);
     }

@@ -10,7 +10,7 @@ pub struct LoadError {
     /// The file as the user gave it, or the name of a built-in model.
     pub file: PathBuf,
     /// What is wrong with it.
-    pub problem: Problem,
+    pub problem: Box<Problem>,
     /// Absolute paths of all files that were read or looked for, the model's own first: whoever waits for the repair
     /// watches these. Empty for a model in memory.
     pub files: Vec<PathBuf>,

@@ -48,7 +48,8 @@ pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadErr
 /// content.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
     let mut files = Vec::new();
-    gltf::load_file(path, options, &mut files).map_err(|problem| LoadError { file: path.to_owned(), problem, files })
+    let loaded = gltf::load_file(path, options, &mut files);
+    loaded.map_err(|problem| LoadError { file: path.to_owned(), problem: Box::new(problem), files })
 }
 
 /// Loads a self-contained model from memory: a `.glb`, or JSON with data URIs. `name` is for messages and the model.
@@ -56,9 +57,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
 /// # Errors
 /// As [`load`]; external files are refused.
 pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Model, LoadError> {
-    gltf::load_memory(name, bytes).map_err(|problem| LoadError {
-        file: PathBuf::from(name),
-        problem,
-        files: Vec::new(),
-    })
+    let file = PathBuf::from(name);
+    let loaded = gltf::load_memory(name, bytes);
+    loaded.map_err(|problem| LoadError { file, problem: Box::new(problem), files: Vec::new() })
 }

@@ -7,7 +7,7 @@ use super::model::{Instance, Model, Primitive};
 
 /// How many directions are asked. More fit closer: with these a sphere's edge is found to 1 %.
 const DIRECTIONS: usize = 192;
-/// With more instances than this, the corners of their boxes stand for them: so many fill a picture without a close fit.
+/// With more instances than this, the corners of their boxes stand for them: among so many, a loose one counts little.
 const MOST_INSTANCES: usize = 2000;
 /// With more points than this over all instances, each primitive is searched once in its own space, and its instances
 /// place what was found: still vertices, a little less close around what is stretched or turned.

@@ -1,7 +1,5 @@
 //! The grammar of `//@` comments. Whatever does not parse is an error with its column and what was expected.
 
-use std::ops::Range;
-
 use super::annotation::{DrawAs, Encode, Mode, ParameterType};
 use super::annotation_cursor::{Cursor, Place};
 use super::annotation_value::{choices, default, range};
@@ -280,8 +278,8 @@ fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result
                 Ok((Declared::Constant(scalar), (*name).to_owned()))
             }
             _ => error(
-                "expected `layout(constant_id = ...) const TYPE NAME = DEFAULT;` on one line, of type bool, int, uint or \
-                 float"
+                "expected `layout(constant_id = ...) const TYPE NAME = DEFAULT;` on one line with TYPE one of \
+                 bool, int, uint and float"
                     .to_owned(),
             ),
         };

@@ -144,7 +144,7 @@ fn values_must_fit_their_types_and_choices() {
     let member = |text: &str| format!("{PARAMS}\n{text}\n}};");
     refused(
         &member("uint a; //@ui choice A=1 B=2 = 3"),
-        "m.frag:4:33: error: expected a default among the choices A=1 B=2, found 3",
+        "m.frag:4:31: error: expected a default among the choices A=1 B=2, found 3",
     );
     refused(
         &member("int a; //@ui = 1e10"),

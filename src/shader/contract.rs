@@ -106,8 +106,8 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
 fn check_vertex_inputs(inputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
     let refuse = |Location { location, name, type_name }: &Location| {
         let message = format!(
-            "shader reads `{type_name} {name}` at location {location}, Specula has no vertex buffers: vertices are read by \
-             address"
+            "shader reads `{type_name} {name}` at location {location}, Specula has no vertex buffers: \
+             vertices are read by address"
         );
         let help = format!("read `draw.vertices.at[gl_VertexIndex]` of {INTERFACE_FILE}");
         texts.error(&[last_part(name), "in"], message).with_help(help)
@@ -115,7 +115,8 @@ fn check_vertex_inputs(inputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic>
     inputs.iter().map(refuse).collect()
 }
 
-/// One color image is drawn to. A component that is not written has no defined value, so `vec3` will not do, nor nothing.
+/// One color image is drawn to. A component that is not written has no defined value, so `vec3` will not do, and nothing
+/// even less.
 fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
     const EXPECTED: &str = "`layout(location = 0) out vec4`";
     if outputs.is_empty() {

@@ -8,7 +8,8 @@ use crate::shader::source::Source;
 /// Compiles `text` after an include of `interface` and returns the stage's complaints.
 fn complaints(interface: &str, text: &str) -> Vec<Diagnostic> {
     let text = format!(
-        "#version 460\n#include \"interface.glsl\"\n{text}\nlayout(location = 0) out vec4 o;\nvoid main() {{ o = vec4(0); }}\n"
+        "#version 460\n#include \"interface.glsl\"\n{text}\n\
+         layout(location = 0) out vec4 o;\nvoid main() {{ o = vec4(0); }}\n"
     );
     complaints_of("m.frag", &[("m.frag", text.as_str()), ("interface.glsl", interface)])
 }
@@ -112,8 +113,8 @@ fn expect_stage(stage: &str, text: &str, expected: &[&str]) {
 
 #[test]
 fn vertices_come_by_address_alone() {
-    let error = "m.vert:2:31: error: shader reads `vec3 position` at location 0, Specula has no vertex buffers: vertices are \
-                 read by address";
+    let error = "m.vert:2:31: error: shader reads `vec3 position` at location 0, Specula has no vertex buffers: \
+                 vertices are read by address";
     let body = "void main() { gl_Position = vec4(position, 1); }";
     expect_stage("m.vert", &format!("layout(location = 0) in  vec3 position;\n{body}"), &[error]);
     expect_stage("m.vert", "void main() { gl_Position = vec4(gl_VertexIndex); }", &[]);

@@ -8,8 +8,8 @@ const MAX_DEPTH: usize = 16;
 /// have exponentially many paths, though none of them is a circle.
 const MAX_NESTED_LINKS: usize = 2;
 
-/// All files below a directory whose names, and those of the directories above them, `keep` takes; unsorted. A link to a
-/// directory is followed unless it leads back to one that it lies in.
+/// All files below a directory whose names, and those of the directories above them, `keep` takes; unsorted. A link to
+/// a directory is followed unless it leads back to one that it lies in.
 pub fn files(directory: &Path, keep: impl Fn(&str) -> bool) -> Vec<PathBuf> {
     let mut out = Vec::new();
     let above = directory.canonicalize().into_iter().collect();

@@ -217,7 +217,7 @@ fn a_failed_load_names_the_files_whose_repair_to_wait_for() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.gltf");
     let tried = || open(Some(&path), &LoadOptions::default()).unwrap_err().files;
-    assert_eq!(tried(), [path.clone()], "a model that does not exist");
+    assert_eq!(tried(), std::slice::from_ref(&path), "a model that does not exist");
     let mut builder = Builder::square();
     builder.image("baseColorTexture", b"");
     builder.json["images"][0] = json!({ "uri": "picture.png" });

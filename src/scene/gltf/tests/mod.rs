@@ -144,7 +144,7 @@ impl Builder {
     #[track_caller]
     fn error(&self) -> String {
         let error = self.load().expect_err("an error");
-        assert!(!matches!(error.problem, Problem::Refused { .. }), "{error}");
+        assert!(!matches!(*error.problem, Problem::Refused { .. }), "{error}");
         error.to_string()
     }
 }
