@@ -1,7 +1,7 @@
 //! The window: an editor on one half of the screen, this on the other.
 //!
-//! Three threads beside the window's own: the watcher (events only), the [`worker`] (compiles and builds pipelines) and a loader
-//! for models. They send [`Message`]s; only the window's thread touches what is on screen.
+//! Three threads beside the window's own: the watcher (events only), the worker (compiles and builds pipelines) and a loader
+//! for models. They send messages; only the window's thread touches what is on screen.
 
 mod camera;
 mod document;

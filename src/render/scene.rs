@@ -64,13 +64,10 @@ impl GpuScene {
     /// # Errors
     /// An image beyond the device's limit, or no memory left.
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, model: &Model) -> Result<Arc<Self>, UploadError> {
-        let start = std::time::Instant::now();
         let mut staging = Staging::new(gpu, model)?;
-        let (vertices, indices, ranges) = staging.geometry(model)?;
+        let Geometry { vertices, indices, ranges } = staging.geometry(model)?;
         let textures = staging.textures(model)?;
-        tracing::debug!("staged in {:?}", start.elapsed());
         staging.submit()?;
-        tracing::debug!("submitted after {:?}", start.elapsed());
         let materials = materials(gpu, layouts, model, &textures)?;
         let draws = draws(model, vertices.address(), &ranges);
         let variants = draws.iter().map(|d| d.variant).collect();
@@ -81,6 +78,13 @@ impl GpuScene {
     pub fn variants(&self) -> &BTreeSet<MaterialVariant> {
         &self.variants
     }
+}
+
+/// All primitives in two buffers.
+struct Geometry {
+    vertices: Arc<Buffer>,
+    indices: Arc<Buffer>,
+    ranges: Vec<Range>,
 }
 
 /// Where a primitive lies in the shared buffers.
@@ -134,7 +138,7 @@ impl<'a> Staging<'a> {
         offset
     }
 
-    fn geometry(&mut self, model: &Model) -> Result<(Arc<Buffer>, Arc<Buffer>, Vec<Range>), UploadError> {
+    fn geometry(&mut self, model: &Model) -> Result<Geometry, UploadError> {
         let (mut ranges, mut first_vertex, mut first_index) = (Vec::new(), 0u64, 0u32);
         for primitive in &model.primitives {
             ranges.push(Range { first_vertex, first_index });
@@ -148,7 +152,7 @@ impl<'a> Staging<'a> {
         let vertices = self.buffer("vertices", bytemuck::cast_slice(&flat), vertex_usage)?;
         let index_usage = Usage::INDEX_BUFFER | Usage::TRANSFER_DST;
         let indices = self.buffer("indices", bytemuck::cast_slice(&indices), index_usage)?;
-        Ok((vertices, indices, ranges))
+        Ok(Geometry { vertices, indices, ranges })
     }
 
     fn buffer(&mut self, name: &str, bytes: &[u8], usage: vk::BufferUsageFlags) -> Result<Arc<Buffer>, UploadError> {
@@ -164,7 +168,6 @@ impl<'a> Staging<'a> {
         let mut textures = Textures::new();
         textures.insert(WHITE, self.image("white", (1, 1), false, &[255; 4], &[])?);
         textures.insert(FLAT_NORMAL, self.image("flat normal", (1, 1), false, &[128, 128, 255, 255], &[])?);
-        let start = std::time::Instant::now();
         let uses: Vec<_> = uses(model).into_iter().collect();
         let chains: Vec<Vec<u8>> = uses
             .par_iter()
@@ -173,7 +176,6 @@ impl<'a> Staging<'a> {
                 mips::below(&image.rgba8, image.width, image.height, *srgb)
             })
             .collect();
-        tracing::debug!("mips in {:?}", start.elapsed());
         for ((index, srgb), chain) in uses.into_iter().zip(chains) {
             let image = &model.images[index];
             let most = self.gpu.max_image_size();

@@ -4,6 +4,7 @@ use egui::{RichText, Slider, Ui};
 
 use super::{QUIET, row, section};
 use crate::app::document::Document;
+use crate::scene::View;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     section(ui, "Camera", false, |ui| {
@@ -18,13 +19,11 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         for camera in document.model.cameras.clone() {
             let name = if camera.name.is_empty() { "Camera of the model" } else { &camera.name };
             if ui.button(name).clicked() {
-                // The target is any point ahead; at the model's depth, orbiting feels right.
-                let depth = (document.model.bounds.center() - camera.eye).dot(camera.forward);
-                let depth = if depth > 0.0 { depth } else { document.model.bounds.radius() };
+                let view = View::of_camera(&camera, 1.0, &document.model.bounds);
                 let settings = &mut document.settings.camera;
-                settings.eye = Some(camera.eye.to_array());
-                settings.target = Some((camera.eye + camera.forward * depth).to_array());
-                settings.fovy = camera.fovy.to_degrees().clamp(1.0, 170.0);
+                settings.eye = Some(view.eye.to_array());
+                settings.target = Some(view.target.to_array());
+                settings.fovy = view.fovy_rad.to_degrees();
             }
         }
         let camera = &document.settings.camera;

@@ -78,11 +78,12 @@ fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) 
         Scalar::Float => slide(ui, &mut now, constant.range, false),
         Scalar::Int | Scalar::Uint => slide(ui, &mut now, constant.range, true),
     }
-    (now != before).then(|| match constant.scalar {
+    let value = match constant.scalar {
         Scalar::Bool => ShaderValue::Bool(now != 0.0),
         Scalar::Float => ShaderValue::Float(now),
         Scalar::Int | Scalar::Uint => ShaderValue::Int(now as i64),
-    })
+    };
+    (now != before).then_some(value)
 }
 
 fn check(ui: &mut Ui, number: f64) -> f64 {
