@@ -12,15 +12,14 @@ use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, SetLayouts, vk};
 use crate::headless;
 use crate::interface::FEATURE_NORMAL_TEXTURE;
-use crate::render::{GpuScene, MaterialVariant, Outcome, PipelineSet, Reload, Wanted, misfits, unknown_names};
-use crate::scene::{LoadOptions, Model};
+use crate::render::{GpuScene, MaterialVariant, PipelineSet, Wanted};
+use crate::scene::Model;
 use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Mode, ShaderSet, Source, TreePath, Watcher, is_specula_tree};
 
 use super::camera::CameraHand;
 use super::input::Mouse;
-use super::loader::{self, Loaded};
-use super::worker::{Needs, Worker, WorkerMessage};
+use super::worker::{Needs, Worker};
 use super::{AppOptions, Message};
 
 /// What the last frame was drawn with, and the next one is until something better is complete.
@@ -45,8 +44,8 @@ pub(super) struct Hover {
 
 /// A reload whose first frame is still to come.
 pub(super) struct FirstFrame {
-    pipelines: Arc<PipelineSet>,
-    event: ReloadEvent,
+    pub(super) pipelines: Arc<PipelineSet>,
+    pub(super) event: ReloadEvent,
 }
 
 /// The shader tree's state, for the panel.
@@ -80,22 +79,22 @@ pub(super) struct Document {
     pub(super) events: bool,
     pub(super) start: Instant,
     pub(super) first_frame: Option<FirstFrame>,
-    scene: Option<Arc<GpuScene>>,
-    next_scene: Option<(Model, Arc<GpuScene>)>,
-    shown: Option<Shown>,
-    asked: Option<(Arc<PipelineSet>, Wanted)>,
-    ready: bool,
-    gpu: Arc<Gpu>,
-    layouts: Arc<SetLayouts>,
-    proxy: EventLoopProxy<Message>,
-    worker: Worker,
-    tree_watcher: Option<Watcher>,
-    model_watcher: Option<Watcher>,
-    allow_outside: bool,
-    ticket: u64,
+    pub(super) scene: Option<Arc<GpuScene>>,
+    pub(super) next_scene: Option<(Model, Arc<GpuScene>)>,
+    pub(super) shown: Option<Shown>,
+    pub(super) asked: Option<(Arc<PipelineSet>, Wanted)>,
+    pub(super) ready: bool,
+    pub(super) gpu: Arc<Gpu>,
+    pub(super) layouts: Arc<SetLayouts>,
+    pub(super) proxy: EventLoopProxy<Message>,
+    pub(super) worker: Worker,
+    pub(super) tree_watcher: Option<Watcher>,
+    pub(super) model_watcher: Option<Watcher>,
+    pub(super) allow_outside: bool,
+    pub(super) ticket: u64,
     /// The model that was asked for last; `model_path` is the one on screen.
-    requested: Option<PathBuf>,
-    loaders: Vec<JoinHandle<()>>,
+    pub(super) requested: Option<PathBuf>,
+    pub(super) loaders: Vec<JoinHandle<()>>,
 }
 
 impl Drop for Document {
@@ -247,114 +246,6 @@ impl Document {
         }
     }
 
-    /// Loads a model; the old one stays until it is ready.
-    pub(super) fn load_model(&mut self, path: Option<PathBuf>) {
-        self.ticket += 1;
-        self.loading = true;
-        let options = LoadOptions { allow_outside: self.allow_outside };
-        self.requested = path.clone();
-        self.loaders.retain(|loader| !loader.is_finished());
-        self.loaders.push(loader::load(&self.gpu, &self.layouts, &self.proxy, path, options, self.ticket));
-    }
-
-    /// Files of the model have changed, or files of one that could not be loaded.
-    pub(super) fn reload_model(&mut self, changed: &BTreeSet<PathBuf>) {
-        let of_model = self.model.files.iter().any(|file| changed.contains(file));
-        let path = if of_model && !self.loading { self.model_path.clone() } else { self.requested.clone() };
-        self.load_model(path);
-    }
-
-    pub(super) fn on_loaded(&mut self, loaded: Loaded) {
-        if loaded.ticket != self.ticket {
-            return;
-        }
-        self.loading = false;
-        match loaded.result {
-            Ok((model, scene)) => {
-                for warning in &model.warnings {
-                    eprintln!("specula: warning: {}: {warning}", model.name);
-                }
-                self.load_ms = loaded.ms;
-                if loaded.path != self.model_path {
-                    self.settings.camera.eye = None;
-                    self.settings.camera.target = None;
-                }
-                self.model_path = loaded.path;
-                self.watch_model(model.files.clone());
-                self.next_scene = Some((model, scene));
-            }
-            Err((message, tried)) => {
-                // The model on screen stays watched, and so is what must be repaired.
-                let files = self.model.files.iter().cloned().chain(tried).collect();
-                self.watch_model(files);
-                self.say(message);
-            }
-        }
-    }
-
-    pub(super) fn on_worker(&mut self, message: WorkerMessage) {
-        match message {
-            WorkerMessage::Built(Ok(())) => {}
-            WorkerMessage::Built(Err(message)) => self.say(message),
-            WorkerMessage::Reloaded { reload, detect_ms, tree } => {
-                self.shader.compiling = false;
-                self.shader.tree = tree;
-                self.on_reload(*reload, detect_ms);
-            }
-        }
-    }
-
-    fn on_reload(&mut self, reload: Reload, detect_ms: f64) {
-        let generation = self.shaders().map_or(0, |s| s.generation);
-        match &reload.outcome {
-            Outcome::Unchanged { cleared: false } => {}
-            Outcome::Unchanged { cleared: true } => {
-                self.diagnostics.clear();
-                self.emit_reload(reload.event(generation, detect_ms, 0.0));
-            }
-            Outcome::Failed(diagnostics) => {
-                for diagnostic in diagnostics {
-                    eprintln!("{}", diagnostic.full());
-                    emit(self.events, &Event::Diagnostic(diagnostic));
-                }
-                self.diagnostics.clone_from(diagnostics);
-                self.emit_reload(reload.event(generation, detect_ms, 0.0));
-            }
-            Outcome::Ready(set) => {
-                self.diagnostics.clone_from(&set.shaders.warnings);
-                for warning in &self.diagnostics {
-                    eprintln!("{}", warning.full());
-                }
-                let event = reload.event(set.shaders.generation, detect_ms, 0.0);
-                self.first_frame = Some(FirstFrame { pipelines: set.clone(), event });
-                let is_first = self.pipelines.replace(set.clone()).is_none();
-                self.check_names(is_first);
-            }
-        }
-    }
-
-    /// Tells of values and modes that these shaders do not have; they are kept for the next edit. Names from the command line that
-    /// never existed are told of once.
-    fn check_names(&mut self, is_first: bool) {
-        let Some(set) = &self.pipelines else { return };
-        let mut problems = misfits(&self.settings.shader, &set.shaders);
-        let slug = &self.settings.mode;
-        if !set.shaders.modes.iter().any(|m| m.slug == *slug) {
-            problems.push(format!("there is no mode '{slug}'; `specula modes` lists them all"));
-        }
-        if is_first {
-            problems.extend(unknown_names(&self.settings.shader, &set.shaders));
-        }
-        if !problems.is_empty() {
-            self.say(problems.join("\n"));
-        }
-    }
-
-    fn emit_reload(&mut self, event: ReloadEvent) {
-        emit(self.events, &Event::Reload(event.clone()));
-        self.shader.last = Some(event);
-    }
-
     /// Works out what the next frame is drawn with: what the user asks for once it is complete, what was shown before until then.
     pub(super) fn shown(&mut self) -> Option<Shown> {
         if let Some(set) = self.pipelines.clone() {
@@ -421,24 +312,6 @@ impl Document {
         };
         match Watcher::new(Some(&root), &[], on_batch) {
             Ok(watcher) => self.tree_watcher = Some(watcher),
-            Err(error) => self.say(error.to_string()),
-        }
-    }
-
-    fn watch_model(&mut self, files: Vec<PathBuf>) {
-        if let Some(watcher) = &self.model_watcher {
-            watcher.set_files(&files);
-            return;
-        }
-        if files.is_empty() {
-            return;
-        }
-        let proxy = self.proxy.clone();
-        let on_batch = move |batch: Batch| {
-            let _ = proxy.send_event(Message::ModelChanged(batch.paths));
-        };
-        match Watcher::new(None, &files, on_batch) {
-            Ok(watcher) => self.model_watcher = Some(watcher),
             Err(error) => self.say(error.to_string()),
         }
     }

@@ -7,7 +7,9 @@ mod camera;
 mod document;
 mod input;
 mod loader;
+mod models;
 mod panels;
+mod reloads;
 mod screen;
 mod worker;
 

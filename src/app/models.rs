@@ -1,0 +1,76 @@
+//! The document's model: loading, loading again when a file of it changes, and what is watched meanwhile.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use crate::scene::LoadOptions;
+use crate::shader::{Batch, Watcher};
+
+use super::Message;
+use super::document::Document;
+use super::loader::{self, Loaded};
+
+impl Document {
+    /// Loads a model; the old one stays until it is ready.
+    pub(super) fn load_model(&mut self, path: Option<PathBuf>) {
+        self.ticket += 1;
+        self.loading = true;
+        let options = LoadOptions { allow_outside: self.allow_outside };
+        self.requested = path.clone();
+        self.loaders.retain(|loader| !loader.is_finished());
+        self.loaders.push(loader::load(&self.gpu, &self.layouts, &self.proxy, path, options, self.ticket));
+    }
+
+    /// Files of the model have changed, or files of one that could not be loaded.
+    pub(super) fn reload_model(&mut self, changed: &BTreeSet<PathBuf>) {
+        let of_model = self.model.files.iter().any(|file| changed.contains(file));
+        let path = if of_model && !self.loading { self.model_path.clone() } else { self.requested.clone() };
+        self.load_model(path);
+    }
+
+    pub(super) fn on_loaded(&mut self, loaded: Loaded) {
+        if loaded.ticket != self.ticket {
+            return;
+        }
+        self.loading = false;
+        match loaded.result {
+            Ok((model, scene)) => {
+                for warning in &model.warnings {
+                    eprintln!("specula: warning: {}: {warning}", model.name);
+                }
+                self.load_ms = loaded.ms;
+                if loaded.path != self.model_path {
+                    self.settings.camera.eye = None;
+                    self.settings.camera.target = None;
+                }
+                self.model_path = loaded.path;
+                self.watch_model(model.files.clone());
+                self.next_scene = Some((model, scene));
+            }
+            Err((message, tried)) => {
+                // The model on screen stays watched, and so is what must be repaired.
+                let files = self.model.files.iter().cloned().chain(tried).collect();
+                self.watch_model(files);
+                self.say(message);
+            }
+        }
+    }
+
+    pub(super) fn watch_model(&mut self, files: Vec<PathBuf>) {
+        if let Some(watcher) = &self.model_watcher {
+            watcher.set_files(&files);
+            return;
+        }
+        if files.is_empty() {
+            return;
+        }
+        let proxy = self.proxy.clone();
+        let on_batch = move |batch: Batch| {
+            let _ = proxy.send_event(Message::ModelChanged(batch.paths));
+        };
+        match Watcher::new(None, &files, on_batch) {
+            Ok(watcher) => self.model_watcher = Some(watcher),
+            Err(error) => self.say(error.to_string()),
+        }
+    }
+}
