@@ -236,13 +236,14 @@ fn an_annotation_that_does_not_parse_is_a_diagnostic_with_its_line() {
 #[test]
 fn a_mode_added_to_modes_glsl_works_at_the_next_save() {
     let mut session = sphere();
-    let modes = "//@mode facing \"Facing\" group=\"Mine\" encode=data doc=\"N dot V, squared.\"\n\
-                 const uint MODE_FACING = 1000u;\n\n#endif";
-    session.tree.write("debug/modes.glsl", &session.tree.edited("debug/modes.glsl", "#endif", modes));
-    let line =
-        "else if (MODE == MODE_FACING) value = vec3(dot(s.n, v) * dot(s.n, v), 0.25, 2.0);\n    else known = false;";
-    session.tree.write("debug/terms.glsl", &session.tree.edited("debug/terms.glsl", "else known = false;", line));
-    ready(&session.changed(&["debug/modes.glsl", "debug/terms.glsl"]));
+    let modes = session.tree.edited(
+        "debug/modes.glsl",
+        "    return false;",
+        "    if (MODE == MODE_FACING) { value = vec3(dot(s.n, v) * dot(s.n, v), 0.25, 2.0); return true; }\n    return false;",
+    );
+    let mode = "//@mode facing \"Facing\" group=\"Mine\" encode=data doc=\"N dot V, squared.\"\n\
+                const uint MODE_FACING = 1000u;\nbool your_mode(";
+    ready(&session.save("debug/modes.glsl", &modes.replacen("bool your_mode(", mode, 1)));
 
     let mode = session.headless.pipelines().shaders.modes.iter().find(|mode| mode.slug == "facing").cloned();
     let mode = mode.expect("the new mode is listed");

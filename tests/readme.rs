@@ -1,0 +1,68 @@
+//! The README's own snippets, cut out of it and saved into a tree, do what it says.
+
+mod support;
+
+use specula::scene::BUILT_IN;
+use specula::shader::{Library, Source, check};
+use support::{Session, assert_differ, assert_same, compiler, model, ready, settings};
+
+/// The indented or plain code of the first GLSL block that contains `part`.
+fn snippet(part: &str) -> String {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let mut blocks = readme.split("```glsl\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    blocks.find(|block| block.contains(part)).unwrap_or_else(|| panic!("README.md has no block with {part}")).to_owned()
+}
+
+fn session() -> Session {
+    Session::new(model(BUILT_IN[0]), settings(&[]))
+}
+
+/// `specula check` would pass.
+fn passes_check(session: &Session) {
+    let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &specula::render::STAGES);
+    let found = check::check(&mut library);
+    assert!(found.is_empty(), "{}", support::lines(&found).join("\n"));
+}
+
+#[test]
+fn the_slider_of_the_readme() {
+    let mut session = session();
+    let before = session.render();
+    let member = snippet("//@ui \"Snow\"");
+    let text = session.tree.edited("user.glsl", "};", &format!("{}\n}};", member.trim_end()));
+    let hook = "void user_surface(inout Surface s) {";
+    let text = text.replacen(hook, &format!("{hook}\n{}", snippet("snow * smoothstep")), 1);
+    ready(&session.save("user.glsl", &text));
+    assert_same(&before, &session.render(), "at its default the slider changes nothing");
+    let generation = session.headless.pipelines().shaders.generation;
+    session.set("snow=1.0");
+    assert_differ(&before, &session.render(), "snow");
+    assert_eq!(session.headless.pipelines().shaders.generation, generation, "moving a slider compiles nothing");
+    passes_check(&session);
+}
+
+#[test]
+fn the_debug_mode_of_the_readme() {
+    let mut session = session();
+    let modes = session.tree.read("debug/modes.glsl");
+    let at = modes.find("bool your_mode(").unwrap();
+    ready(&session.save("debug/modes.glsl", &format!("{}{}\n#endif\n", &modes[..at], snippet("MODE_HEIGHT"))));
+    let (height, position) = (session.mode("height"), session.mode("position"));
+    let inside = position.raw.iter().zip(&height.raw).filter(|(p, h)| p[3] == 1.0 && h[3] == 1.0);
+    let mut count = 0;
+    for (position, height) in inside {
+        let expected = (position[1] * 4.0).rem_euclid(1.0);
+        // Multisampling averages both, and a mean across the edge of a band is no band.
+        count += usize::from((height[0] - expected).abs() < 0.02);
+    }
+    assert!(count > 200, "only {count} pixels show their height in bands of 25 cm");
+    passes_check(&session);
+}
+
+#[test]
+fn the_edit_of_the_readme() {
+    let mut session = session();
+    let before = session.render();
+    ready(&session.edit("brdf/ndf.glsl", "float a2 = alpha * alpha;", "float a2 = alpha;"));
+    assert_differ(&before, &session.render(), "the roughness forgot to be squared");
+}
