@@ -288,6 +288,8 @@ impl Document {
         }
         if !self.ready && self.scene.is_some() {
             self.ready = true;
+            // There already; what is built after it is what is likely next.
+            shown.inspect(|s| self.worker.build(&s.pipelines, &s.wanted));
             let ms = self.start.elapsed().as_secs_f64() * 1e3;
             emit(self.events, &Event::Ready { device: &self.gpu.info().name, ms });
         }

@@ -241,7 +241,8 @@ impl Thread {
         let tree = tree_name(self.reloader.library().source());
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
         self.tell(WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, tree });
-        if let Some(set) = ready {
+        // At the start the model needs both cores; the window asks again once it is there.
+        if let Some(set) = ready.filter(|set| set.shaders.generation > 1) {
             self.build_ahead(&set);
         }
     }

@@ -131,10 +131,16 @@ impl<'a> Staging<'a> {
         Ok(Self { gpu, buffer, used: 0, buffers: Vec::new(), images: Vec::new() })
     }
 
-    fn push(&mut self, bytes: &[u8]) -> u64 {
+    /// Sets `length` bytes apart; returns where.
+    fn reserve(&mut self, length: usize) -> u64 {
         let offset = self.used.next_multiple_of(16);
+        self.used = offset + length as u64;
+        offset
+    }
+
+    fn push(&mut self, bytes: &[u8]) -> u64 {
+        let offset = self.reserve(bytes.len());
         self.buffer.write(offset, bytes);
-        self.used = offset + bytes.len() as u64;
         offset
     }
 
@@ -166,45 +172,44 @@ impl<'a> Staging<'a> {
 
     fn textures(&mut self, model: &Model) -> Result<Textures, UploadError> {
         let mut textures = Textures::new();
-        textures.insert(WHITE, self.image("white", (1, 1), false, &[255; 4], &[])?);
-        textures.insert(FLAT_NORMAL, self.image("flat normal", (1, 1), false, &[128, 128, 255, 255], &[])?);
-        let uses: Vec<_> = uses(model).into_iter().collect();
-        let chains: Vec<Vec<u8>> = uses
-            .par_iter()
-            .map(|(index, srgb)| {
-                let image = &model.images[*index];
-                mips::below(&image.rgba8, image.width, image.height, *srgb)
-            })
-            .collect();
-        for ((index, srgb), chain) in uses.into_iter().zip(chains) {
-            let image = &model.images[index];
-            let most = self.gpu.max_image_size();
-            if image.width > most || image.height > most {
-                let (name, width, height) = (image.name.clone(), image.width, image.height);
-                return Err(UploadError::ImageTooLarge { name, width, height, most });
-            }
-            let made = self.image(&image.name, (image.width, image.height), srgb, &image.rgba8, &chain)?;
-            textures.insert((index, srgb), made);
+        for (key, color) in [(WHITE, [255; 4]), (FLAT_NORMAL, [128, 128, 255, 255])] {
+            let offset = self.push(&color);
+            textures.insert(key, self.image("default", (1, 1), false, offset)?);
         }
+        let most = self.gpu.max_image_size();
+        let mut places = Vec::new();
+        for (index, srgb) in uses(model) {
+            let image = &model.images[index];
+            let (name, width, height) = (&image.name, image.width, image.height);
+            if width > most || height > most {
+                return Err(UploadError::ImageTooLarge { name: name.clone(), width, height, most });
+            }
+            let offset = self.reserve(mips::bytes(width, height));
+            textures.insert((index, srgb), self.image(name, (width, height), srgb, offset)?);
+            places.push((image, srgb, offset));
+        }
+        // The first touch of staging memory costs as much as the copy, so that is shared out too.
+        let staging = &self.buffer;
+        places.par_iter().for_each(|(image, srgb, offset)| {
+            staging.write(*offset, &image.rgba8);
+            let below = mips::below(&image.rgba8, image.width, image.height, *srgb);
+            staging.write(offset + image.rgba8.len() as u64, &below);
+        });
         Ok(textures)
     }
 
+    /// Makes an image whose levels will lie at `offset`, one after the other.
     fn image(
         &mut self,
         name: &str,
         (width, height): (u32, u32),
         srgb: bool,
-        rgba8: &[u8],
-        below: &[u8],
+        offset: u64,
     ) -> Result<Arc<Image>, UploadError> {
         let format = if srgb { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
         let mips = mips::count(width, height);
         let image =
             Image::new(self.gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?;
-        let offset = self.push(rgba8);
-        // The levels follow each other without a gap, each a multiple of 4 bytes.
-        self.buffer.write(self.used, below);
-        self.used += below.len() as u64;
         self.images.push((offset, image.clone()));
         Ok(image)
     }
