@@ -183,6 +183,9 @@ impl Document {
     /// Lets the lights go on orbiting for `seconds`.
     pub(super) fn turn_lights(&mut self, seconds: f32) {
         let lights = &mut self.settings.lights;
+        if lights.spin == 0.0 {
+            return;
+        }
         for light in &mut lights.orbit {
             light.azimuth = (light.azimuth + lights.spin * seconds + 180.0).rem_euclid(360.0) - 180.0;
         }
