@@ -20,7 +20,7 @@ use crate::shader::{Batch, Change, Diagnostic, Mode, ShaderSet, Source, TreePath
 use super::camera::CameraHand;
 use super::input::Mouse;
 use super::worker::{Needs, Worker};
-use super::{AppOptions, Message};
+use super::{AppOptions, Early, Message};
 
 /// What the last frame was drawn with, and the next one is until something better is complete.
 #[derive(Clone)]
@@ -115,6 +115,7 @@ impl Document {
         gpu: &Arc<Gpu>,
         layouts: &Arc<SetLayouts>,
         options: AppOptions,
+        early: Early,
         proxy: &EventLoopProxy<Message>,
     ) -> Self {
         // What most models have, built while the model loads.
@@ -164,9 +165,9 @@ impl Document {
             loaders: Vec::new(),
         };
         document.watch_tree(&tree);
-        // Watched before it is read, so that no save falls between.
-        document.watch_model(options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect());
-        document.load_model(options.model);
+        document.requested = options.model;
+        document.model_watcher = early.watcher;
+        document.take_model(early.reading);
         document
     }
 

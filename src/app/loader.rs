@@ -9,7 +9,7 @@ use winit::event_loop::EventLoopProxy;
 
 use crate::gpu::{Gpu, SetLayouts};
 use crate::render::GpuScene;
-use crate::scene::{self, LoadOptions, Model};
+use crate::scene::{self, LoadError, LoadOptions, Model};
 
 use super::Message;
 
@@ -25,20 +25,37 @@ pub(super) struct Loaded {
     pub(super) ms: f64,
 }
 
-/// Starts a load; the result comes as a message. The thread must have ended before the process does.
-pub(super) fn load(
+/// A model that is being read. Needs no device, so the first one is begun before there is a window.
+pub(super) struct Reading {
+    path: Option<PathBuf>,
+    start: Instant,
+    model: JoinHandle<Result<Model, LoadError>>,
+}
+
+/// Begins to read a model: parse, decode, tangents.
+pub(super) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
+    let file = path.clone();
+    let model = std::thread::spawn(move || scene::open(file.as_deref(), &options));
+    Reading { path, start: Instant::now(), model }
+}
+
+/// Uploads what was read; the result comes as a message. The thread must have ended before the process does.
+pub(super) fn upload(
     gpu: &Arc<Gpu>,
     layouts: &Arc<SetLayouts>,
     proxy: &EventLoopProxy<Message>,
-    path: Option<PathBuf>,
-    options: LoadOptions,
+    reading: Reading,
     ticket: u64,
 ) -> JoinHandle<()> {
     let (gpu, layouts, proxy) = (gpu.clone(), layouts.clone(), proxy.clone());
     std::thread::spawn(move || {
-        let start = Instant::now();
-        let model = scene::open(path.as_deref(), &options);
-        let result = model.map_err(|e| (e.to_string(), e.files)).and_then(|model| {
+        let Reading { path, start, model } = reading;
+        let result = match model.join() {
+            Ok(model) => model.map_err(|e| (e.to_string(), e.files)),
+            // What it was has been printed.
+            Err(_) => Err(("the loader failed; please report the model".to_owned(), path.iter().cloned().collect())),
+        };
+        let result = result.and_then(|model| {
             let scene = GpuScene::upload(&gpu, &layouts, &model).map_err(|e| (e.to_string(), model.files.clone()))?;
             Ok((model, scene))
         });

@@ -26,11 +26,12 @@ use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
 use crate::gpu::{Gpu, GpuError, GpuOptions};
+use crate::scene::LoadOptions;
 use crate::settings::Settings;
-use crate::shader::{Compiler, Source};
+use crate::shader::{Compiler, Source, Watcher};
 
 use document::Document;
-use loader::Loaded;
+use loader::{Loaded, Reading};
 use screen::Screen;
 use worker::WorkerMessage;
 
@@ -87,7 +88,9 @@ enum Message {
 /// No display, no device, or a device that fails.
 pub fn run(options: AppOptions) -> Result<(), AppError> {
     let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
-    let mut app = App { proxy: event_loop.create_proxy(), options: Some(options), open: None, result: Ok(()) };
+    let proxy = event_loop.create_proxy();
+    let early = Early::begin(&options, &proxy);
+    let mut app = App { proxy, options: Some((options, early)), open: None, result: Ok(()) };
     event_loop.run_app(&mut app).map_err(no_display)?;
     app.result
 }
@@ -100,9 +103,30 @@ fn no_display(error: winit::error::EventLoopError) -> AppError {
     AppError::NoDisplay(reason.trim_end_matches([')', '.']).to_owned())
 }
 
+/// What needs neither window nor device, and so is under way while those are made.
+struct Early {
+    watcher: Option<Watcher>,
+    reading: Reading,
+}
+
+impl Early {
+    fn begin(options: &AppOptions, proxy: &EventLoopProxy<Message>) -> Self {
+        // Watched before it is read, so that no save falls between.
+        let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
+        let watcher = models::watch(&files, proxy).unwrap_or_else(|message| {
+            eprintln!("specula: {message}");
+            None
+        });
+        let compiler = options.compiler.clone();
+        std::thread::spawn(move || compiler.warm());
+        let reading = loader::read(options.model.clone(), LoadOptions { allow_outside: options.allow_outside });
+        Self { watcher, reading }
+    }
+}
+
 struct App {
     proxy: EventLoopProxy<Message>,
-    options: Option<AppOptions>,
+    options: Option<(AppOptions, Early)>,
     open: Option<Open>,
     result: Result<(), AppError>,
 }
@@ -116,7 +140,7 @@ struct Open {
 }
 
 impl App {
-    fn open(&mut self, event_loop: &ActiveEventLoop, options: AppOptions) -> Result<Open, AppError> {
+    fn open(&mut self, event_loop: &ActiveEventLoop, options: AppOptions, early: Early) -> Result<Open, AppError> {
         let attributes = Window::default_attributes()
             .with_title("Specula")
             .with_inner_size(PhysicalSize::new(options.size.0, options.size.1))
@@ -130,7 +154,7 @@ impl App {
             display: Some(display.as_raw()),
         })?;
         let screen = Screen::new(&gpu, &window)?;
-        let document = Document::new(&gpu, screen.layouts(), options, &self.proxy);
+        let document = Document::new(&gpu, screen.layouts(), options, early, &self.proxy);
         Ok(Open { document, screen, gpu, window })
     }
 
@@ -160,8 +184,8 @@ impl App {
 
 impl ApplicationHandler<Message> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        let Some(options) = self.options.take() else { return };
-        match self.open(event_loop, options) {
+        let Some((options, early)) = self.options.take() else { return };
+        match self.open(event_loop, options, early) {
             Ok(open) => {
                 open.window.request_redraw();
                 self.open = Some(open);

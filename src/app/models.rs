@@ -3,22 +3,29 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use winit::event_loop::EventLoopProxy;
+
 use crate::scene::LoadOptions;
 use crate::shader::{Batch, Watcher};
 
 use super::Message;
 use super::document::Document;
-use super::loader::{self, Loaded};
+use super::loader::{self, Loaded, Reading};
 
 impl Document {
     /// Loads a model; the old one stays until it is ready.
     pub(super) fn load_model(&mut self, path: Option<PathBuf>) {
-        self.ticket += 1;
-        self.loading = true;
         let options = LoadOptions { allow_outside: self.allow_outside };
         self.requested = path.clone();
+        self.take_model(loader::read(path, options));
+    }
+
+    /// Takes a model that is being read.
+    pub(super) fn take_model(&mut self, reading: Reading) {
+        self.ticket += 1;
+        self.loading = true;
         self.loaders.retain(|loader| !loader.is_finished());
-        self.loaders.push(loader::load(&self.gpu, &self.layouts, &self.proxy, path, options, self.ticket));
+        self.loaders.push(loader::upload(&self.gpu, &self.layouts, &self.proxy, reading, self.ticket));
     }
 
     /// Files of the model have changed, or files of one that could not be loaded.
@@ -56,21 +63,26 @@ impl Document {
         }
     }
 
+    /// Watches these files in place of those before.
     pub(super) fn watch_model(&mut self, files: Vec<PathBuf>) {
-        if let Some(watcher) = &self.model_watcher {
-            watcher.set_files(&files);
-            return;
-        }
-        if files.is_empty() {
-            return;
-        }
-        let proxy = self.proxy.clone();
-        let on_batch = move |batch: Batch| {
-            let _ = proxy.send_event(Message::ModelChanged(batch.paths));
-        };
-        match Watcher::new(None, &files, on_batch) {
-            Ok(watcher) => self.model_watcher = Some(watcher),
-            Err(error) => self.say(error.to_string()),
+        match &self.model_watcher {
+            Some(watcher) => watcher.set_files(&files),
+            None => match watch(&files, &self.proxy) {
+                Ok(watcher) => self.model_watcher = watcher,
+                Err(message) => self.say(message),
+            },
         }
     }
+}
+
+/// Watches a model's files, if there are any.
+pub(super) fn watch(files: &[PathBuf], proxy: &EventLoopProxy<Message>) -> Result<Option<Watcher>, String> {
+    if files.is_empty() {
+        return Ok(None);
+    }
+    let proxy = proxy.clone();
+    let on_batch = move |batch: Batch| {
+        let _ = proxy.send_event(Message::ModelChanged(batch.paths));
+    };
+    Watcher::new(None, files, on_batch).map(Some).map_err(|e| e.to_string())
 }

@@ -10,7 +10,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         ui.horizontal(|ui| {
             ui.label(if document.model.name.is_empty() { "none" } else { &document.model.name });
             if document.loading {
-                ui.spinner();
+                ui.label("loading…");
             }
         });
         let model = &document.model;

@@ -10,7 +10,8 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>)
         ui.horizontal(|ui| {
             let errors = document.diagnostics.iter().filter(|d| d.severity == crate::shader::Severity::Error).count();
             match (document.shader.compiling, errors, document.shaders()) {
-                (true, ..) => ui.spinner(),
+                // No spinner: on a software device its frames would slow down what they wait for.
+                (true, ..) => ui.label("Compiling…"),
                 (_, 0, Some(shaders)) => ui.label(format!("Generation {}", shaders.generation)),
                 (_, 0, None) => ui.label("No shaders yet"),
                 (_, 1, _) => ui.colored_label(ERROR, "1 error; showing the last good"),
