@@ -203,7 +203,7 @@ pub struct Frame {
     pub light_count: u32,
     /// Which light the BRDF term modes show: 0 all, else 1-based.
     pub chosen_light: u32,
-    /// Tone map, `TONEMAP_*` in tonemap.frag, or `TONEMAP_OFF`.
+    /// Tone map, `TONEMAP_*` in common/tonemap.glsl, or `TONEMAP_OFF`.
     pub tonemap: u32,
     /// `ENCODE_*` of the mode on screen.
     pub encode: u32,

@@ -136,7 +136,7 @@ pub struct OrbitLight {
     pub polar: f32,
 }
 
-/// Tone maps, in the order of `TONEMAP_*` in tonemap.frag.
+/// Tone maps, in the order of `TONEMAP_*` in common/tonemap.glsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tonemap {

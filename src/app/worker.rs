@@ -125,7 +125,9 @@ impl Worker {
 
     /// Files have changed, first seen at `since`.
     pub(super) fn change(&self, change: Change, since: Instant) {
-        self.send(Request::Edit(Edit { change, since, settled: Instant::now() }));
+        if let Some(outbox) = &self.outbox {
+            outbox.edit(change, since);
+        }
     }
 
     /// The same for the watcher's thread, which must end before the worker does.
