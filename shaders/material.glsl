@@ -1,32 +1,26 @@
-// glTF's metallic-roughness material: textures times factors make a Surface.
+// glTF's materials: textures times factors make a Surface. Extensions read their textures only where FEATURES has them.
 #ifndef MATERIAL_GLSL
 #define MATERIAL_GLSL
 
 #include "interface.glsl"
+#include "brdf/fresnel.glsl"
 #include "brdf/surface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
+#include "material_textures.glsl"
 
-// Where a material has no texture a neutral one is bound (white, or a flat normal): nothing here asks which exist.
-layout(set = SET_MATERIAL, binding = BINDING_BASE_COLOR_TEXTURE) uniform sampler2D base_color_texture;
-layout(set = SET_MATERIAL, binding = BINDING_METALLIC_ROUGHNESS_TEXTURE) uniform sampler2D metallic_roughness_texture;
-layout(set = SET_MATERIAL, binding = BINDING_NORMAL_TEXTURE) uniform sampler2D normal_texture;
-layout(set = SET_MATERIAL, binding = BINDING_OCCLUSION_TEXTURE) uniform sampler2D occlusion_texture;
-layout(set = SET_MATERIAL, binding = BINDING_EMISSIVE_TEXTURE) uniform sampler2D emissive_texture;
+bool has_feature(uint feature) { return (FEATURES & feature) != 0u; }
 
-bool has_texture(uint which) { return (material.texture_mask & 1u << which) != 0u; }
-
-// Where texture `which` is read: its set of coordinates, moved by KHR_texture_transform.
-vec2 texture_uv(Fragment f, uint which) {
-    vec2 uv = (material.uv1_mask & 1u << which) != 0u ? f.uv1 : f.uv0;
-    return material.uv_from_texture[which] * vec3(uv, 1.0);
+// A normal texture's texel, tangent space: 0..1 stands for -1..1, x and y are scaled (glTF 2.0, 3.9.3). Its length is
+// not made 1: what turns it into world space does that.
+vec3 normal_texel(sampler2D normals, vec2 uv, float scale) {
+    return (texture(normals, uv).xyz * 2.0 - 1.0) * vec3(scale, scale, 1.0);
 }
 
-// The normal texture, tangent space: 0..1 stands for -1..1, x and y are scaled (glTF 2.0, 3.9.3), and the length is
-// made 1 again. A texel of no direction is flat.
+// The normal texture, tangent space, unit. A texel of no direction is flat.
 vec3 normal_ts(Fragment f) {
-    vec3 n = texture(normal_texture, texture_uv(f, TEXTURE_NORMAL)).xyz * 2.0 - 1.0;
-    return safe_normalize(n * vec3(material.normal_scale, material.normal_scale, 1.0), vec3(0.0, 0.0, 1.0));
+    vec3 n = normal_texel(normal_texture, texture_uv(f, TEXTURE_NORMAL), material.normal_scale);
+    return safe_normalize(n, vec3(0.0, 0.0, 1.0));
 }
 
 // glTF 2.0, 3.7.2.1. Not normalized: MikkTSpace bakers use the interpolated vectors as they are (Mikkelsen 2008).
@@ -41,21 +35,137 @@ vec3 towards_viewer(vec3 direction_ws) { return gl_FrontFacing ? direction_ws : 
 // The mesh's normal, interpolated. Where normals are zero or cancel out, the surface faces the eye.
 vec3 geometric_normal(Fragment f, vec3 v) { return safe_normalize(towards_viewer(f.normal_ws), v); }
 
-// The normal that is shaded. A zero tangent leaves the geometric normal, since its bitangent is zero too.
-vec3 shading_normal(Fragment f, vec3 v) {
-    vec3 geometric = geometric_normal(f, v);
-    if ((FEATURES & FEATURE_NORMAL_TEXTURE) == 0u) return geometric;
-    vec3 n = normal_ts(f);
-    vec3 n_ws = f.tangent_ws.xyz * n.x + bitangent_ws(f) * n.y + f.normal_ws * n.z;
-    return safe_normalize(towards_viewer(n_ws), geometric);
+// The normal that a texel stands for. A zero tangent leaves the geometric normal, since its bitangent is zero too; so
+// does a texel of no direction. The choice comes first, so that one vector is normalized, not two.
+vec3 mapped_normal(Fragment f, vec3 v, vec3 texel) {
+    vec3 n_ws = f.tangent_ws.xyz * texel.x + bitangent_ws(f) * texel.y + f.normal_ws * texel.z;
+    return safe_normalize(towards_viewer(dot(n_ws, n_ws) > 1e-20 ? n_ws : f.normal_ws), v);
 }
 
-// `v`: unit, towards the eye, world space.
+// The normal that is shaded.
+vec3 shading_normal(Fragment f, vec3 v) {
+    if (!has_feature(FEATURE_NORMAL_TEXTURE)) return geometric_normal(f, v);
+    return mapped_normal(f, v, normal_texel(normal_texture, texture_uv(f, TEXTURE_NORMAL), material.normal_scale));
+}
+
+// The coat does not take over the bumps of what it covers (KHR_materials_clearcoat).
+vec3 clearcoat_normal(Fragment f, vec3 v) {
+    if (!has_feature(FEATURE_CLEARCOAT_NORMAL)) return geometric_normal(f, v);
+    vec2 uv = texture_uv(f, TEXTURE_CLEARCOAT_NORMAL);
+    return mapped_normal(f, v, normal_texel(clearcoat_normal_texture, uv, material.clearcoat_normal_scale));
+}
+
+// KHR_materials_anisotropy: the direction in tangent space, turned by the material's rotation, and laid into the plane
+// of the shading normal. Without a texture it is the tangent.
+void read_anisotropy(Fragment f, inout Surface s) {
+    vec2 direction = vec2(1.0, 0.0);
+    s.anisotropy = material.anisotropy_strength;
+    if (has_texture(TEXTURE_ANISOTROPY)) {
+        vec3 texel = texture(anisotropy_texture, texture_uv(f, TEXTURE_ANISOTROPY)).xyz;
+        direction = texel.xy * 2.0 - 1.0;
+        s.anisotropy *= texel.z;
+    }
+    vec2 turn = material.anisotropy_rotation;
+    direction = mat2(turn.x, turn.y, -turn.y, turn.x) * direction;
+    vec3 t = f.tangent_ws.xyz * direction.x + bitangent_ws(f) * direction.y;
+    s.t = safe_normalize(t - s.n * dot(s.n, t), any_perpendicular(s.n));
+    s.b = cross(s.n, s.t);
+}
+
+// KHR_materials_pbrSpecularGlossiness: the textures of base color and metallic-roughness hold diffuse color, and
+// F0 with glossiness. What the strongest component of F0 leaves enters: metals are materials of a black diffuse color.
+void read_specular_glossiness(vec4 specular_glossiness, inout Surface s) {
+    s.f0 = saturate(specular_glossiness.rgb * material.specular_color);
+    s.base_color *= 1.0 - max_component(s.f0);
+    s.metallic = 0.0;
+    s.roughness = saturate(1.0 - specular_glossiness.a * material.roughness_factor);
+}
+
+// KHR_materials_specular: F0 = min(F0 color, 1) factor, F90 = factor.
+void read_specular(Fragment f, inout Surface s) {
+    float factor = material.specular_factor * texture(specular_texture, texture_uv(f, TEXTURE_SPECULAR)).a;
+    vec3 color = texture(specular_color_texture, texture_uv(f, TEXTURE_SPECULAR_COLOR)).rgb;
+    s.f0 = min(s.f0 * material.specular_color * color, 1.0) * factor;
+    s.f90 = factor;
+}
+
+// The layers: coat, sheen, film.
+void read_layers(Fragment f, vec3 v, inout Surface s) {
+    if (has_feature(FEATURE_CLEARCOAT)) {
+        vec2 roughness_uv = texture_uv(f, TEXTURE_CLEARCOAT_ROUGHNESS);
+        s.clearcoat_n = clearcoat_normal(f, v);
+        s.clearcoat = material.clearcoat_factor * texture(clearcoat_texture, texture_uv(f, TEXTURE_CLEARCOAT)).r;
+        s.clearcoat_roughness = material.clearcoat_roughness * texture(clearcoat_roughness_texture, roughness_uv).g;
+    }
+    if (has_feature(FEATURE_SHEEN)) {
+        vec2 roughness_uv = texture_uv(f, TEXTURE_SHEEN_ROUGHNESS);
+        s.sheen_color = material.sheen_color * texture(sheen_color_texture, texture_uv(f, TEXTURE_SHEEN_COLOR)).rgb;
+        s.sheen_roughness = material.sheen_roughness * texture(sheen_roughness_texture, roughness_uv).a;
+    }
+    if (has_feature(FEATURE_IRIDESCENCE)) {
+        float texel = texture(iridescence_texture, texture_uv(f, TEXTURE_IRIDESCENCE)).r;
+        float thickness = texture(iridescence_thickness_texture, texture_uv(f, TEXTURE_IRIDESCENCE_THICKNESS)).g;
+        s.iridescence = material.iridescence_factor * texel;
+        s.iridescence_ior = material.iridescence_ior;
+        s.iridescence_nm = mix(material.iridescence_thickness_nm.x, material.iridescence_thickness_nm.y, thickness);
+    }
+}
+
+// The mean length of the object's axes in the world: thickness is in the object's meters (KHR_materials_volume).
+float object_scale() {
+    mat4x3 m = draw.world_from_object;
+    return (length(m[0]) + length(m[1]) + length(m[2])) / 3.0;
+}
+
+void read_transmission(Fragment f, inout Surface s) {
+    if (has_feature(FEATURE_TRANSMISSION)) {
+        vec2 uv = texture_uv(f, TEXTURE_TRANSMISSION);
+        s.transmission = material.transmission_factor * texture(transmission_texture, uv).r;
+    }
+    if (has_feature(FEATURE_VOLUME)) {
+        float texel = texture(thickness_texture, texture_uv(f, TEXTURE_THICKNESS)).g;
+        s.thickness = material.thickness * texel * object_scale();
+        s.attenuation_color = material.attenuation_color;
+        s.attenuation_distance = material.attenuation_distance;
+    }
+    if (has_feature(FEATURE_DISPERSION)) s.dispersion = material.dispersion;
+    if (has_feature(FEATURE_DIFFUSE_TRANSMISSION)) {
+        vec2 uv = texture_uv(f, TEXTURE_DIFFUSE_TRANSMISSION);
+        vec2 color_uv = texture_uv(f, TEXTURE_DIFFUSE_TRANSMISSION_COLOR);
+        vec3 color = texture(diffuse_transmission_color_texture, color_uv).rgb;
+        s.diffuse_transmission = material.diffuse_transmission_factor * texture(diffuse_transmission_texture, uv).a;
+        s.diffuse_transmission_color = material.diffuse_transmission_color * color;
+    }
+}
+
+// All that an extension sets, as it is without.
+void clear_extensions(inout Surface s) {
+    s.t = s.b = vec3(0.0);
+    s.anisotropy = 0.0;
+    s.conductor_n = vec3(1.0);
+    s.conductor_k = vec3(0.0);
+    s.clearcoat_n = s.n;
+    s.clearcoat = s.clearcoat_roughness = 0.0;
+    s.sheen_color = vec3(0.0);
+    s.sheen_roughness = 0.0;
+    s.iridescence = s.iridescence_nm = 0.0;
+    s.iridescence_ior = 1.0;
+    s.transmission = s.thickness = s.dispersion = 0.0;
+    s.attenuation_color = vec3(1.0);
+    s.attenuation_distance = 1.0;
+    s.diffuse_transmission = 0.0;
+    s.diffuse_transmission_color = vec3(1.0);
+}
+
+// `v`: unit, towards the eye, world space. Leaves s.dfg to complete_surface (brdf/energy.glsl).
 Surface make_surface(Fragment f, vec3 v) {
     vec4 base_color = texture(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR));
     vec4 metallic_roughness = texture(metallic_roughness_texture, texture_uv(f, TEXTURE_METALLIC_ROUGHNESS));
-    float occlusion = texture(occlusion_texture, texture_uv(f, TEXTURE_OCCLUSION)).r;
     vec3 emissive = texture(emissive_texture, texture_uv(f, TEXTURE_EMISSIVE)).rgb;
+    float occlusion = metallic_roughness.r;
+    if (!has_feature(FEATURE_PACKED_OCCLUSION)) {
+        occlusion = texture(occlusion_texture, texture_uv(f, TEXTURE_OCCLUSION)).r;
+    }
     base_color *= material.base_color_factor * f.color;
 
     Surface s;
@@ -67,6 +177,21 @@ Surface make_surface(Fragment f, vec3 v) {
     s.roughness = saturate(metallic_roughness.g * material.roughness_factor);
     s.occlusion = mix(1.0, occlusion, material.occlusion_strength);
     s.emissive = emissive * material.emissive_factor;
+    s.ior = material.ior;
+    s.f0 = vec3(f0_from_ior(s.ior));
+    s.f90 = 1.0;
+    s.dfg = vec4(0.0);   // of a mirror, along the normal
+    clear_extensions(s);
+
+    if (has_feature(FEATURE_SPECULAR_GLOSSINESS)) read_specular_glossiness(metallic_roughness, s);
+    if (has_feature(FEATURE_SPECULAR)) read_specular(f, s);
+    if (has_feature(FEATURE_ANISOTROPY)) read_anisotropy(f, s);
+    if (has_feature(FEATURE_CONDUCTOR)) {
+        s.conductor_n = material.conductor_n;
+        s.conductor_k = material.conductor_k;
+    }
+    read_layers(f, v, s);
+    read_transmission(f, s);
     return s;
 }
 

@@ -1,8 +1,10 @@
 #version 460
 #include "interface.glsl"
+#include "brdf/energy.glsl"
 #include "common/fragment.glsl"
 #include "debug/debug.glsl"
 #include "lighting/radiance.glsl"
+#include "lighting/shade.glsl"
 #include "material.glsl"
 #include "user.glsl"
 
@@ -16,11 +18,17 @@ void main() {
     Surface surface = make_surface(fragment, v);
     user_surface(surface);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
+    surface = surface_of_mode(surface);
+    complete_surface(surface, v);
 
+    // Shaded once, for the picture and for all modes: each call would cost the driver another copy of it to compile.
+    // What the mode does not show of it, it drops.
+    Lit lit = shade(surface, v, lights_of_mode());
+    vec3 radiance = outgoing_radiance(surface, v, lit);
     vec3 value;
     float coverage = 1.0;
-    if (!debug_value(fragment, surface, v, value)) {
-        value = outgoing_radiance(surface, v, all_lights());
+    if (!debug_value(fragment, surface, v, lit, radiance, value)) {
+        value = radiance;
         if (ALPHA_MODE == ALPHA_BLEND) coverage = surface.coverage;
     }
     // Beyond what the target holds lies infinity, and the mean of a pixel's samples with it.

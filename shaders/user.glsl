@@ -10,6 +10,7 @@
 #include "brdf/surface.glsl"
 #include "common/color.glsl"
 
+// Constants of your own take USER_CONSTANTS + 16 and up; those below belong to brdf/models.glsl and to this file.
 layout(constant_id = USER_CONSTANTS + 1) const uint TOON_BANDS = 0u;   //@ui "Toon" choice Off=0 Two=2 Three=3 Four=4
 
 layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::render::BakeReport;
 use crate::shader::Diagnostic;
 
 /// An event. The field `event` names its kind.
@@ -22,6 +23,8 @@ pub enum Event<'a> {
     },
     /// A reload is finished.
     Reload(ReloadEvent),
+    /// An environment is baked, or came from the disk.
+    Bake(&'a BakeReport),
     /// A screenshot was written.
     Screenshot {
         /// Its path.

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::gpu::{Gpu, GpuError, Rect, SetLayouts, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, Rect, SetLayouts, vk};
 use crate::render::{
-    Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload, Reloader, Renderer, Shot, Target, UploadError,
-    Wanted, misfits, unknown_names,
+    BakeControl, BakeError, BakeReport, Baked, Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload,
+    Reloader, Renderer, Shot, Target, UploadError, Wanted, measured_buffer, misfits, unknown_names,
 };
-use crate::scene::{self, Model};
+use crate::scene::{self, Measured, Model};
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, Diagnostic, Source};
 
@@ -21,6 +21,9 @@ pub enum HeadlessError {
     /// A setting does not fit.
     #[error("{0}")]
     Settings(String),
+    /// The environment cannot be read or baked.
+    #[error(transparent)]
+    Bake(#[from] BakeError),
     /// The model does not fit the device.
     #[error(transparent)]
     Upload(#[from] UploadError),
@@ -38,6 +41,8 @@ pub struct Headless {
     pipelines: Arc<PipelineSet>,
     model: Model,
     scene: Arc<GpuScene>,
+    baked: Baked,
+    measured: (String, Arc<Buffer>),
     settings: Settings,
     samples: u32,
     size: (u32, u32),
@@ -81,10 +86,64 @@ impl Headless {
         if let Some(message) = unknown_names(&settings.shader, &pipelines.shaders).or(misfit) {
             return Err(HeadlessError::Settings(message));
         }
-        let (gpu, layouts) = (gpu.clone(), layouts);
-        let this =
-            Self { gpu, layouts, renderer, reloader, pipelines, model, scene, settings, samples, size, upload_ms };
+        let mut this = Self {
+            gpu: gpu.clone(),
+            layouts,
+            renderer,
+            reloader,
+            pipelines,
+            model,
+            scene,
+            baked: Baked::uniform(gpu, [0.0; 3])?,
+            measured: (String::new(), measured_buffer(gpu, None)?),
+            settings,
+            samples,
+            size,
+            upload_ms,
+        };
+        this.open_files()?;
         Ok((this, reload))
+    }
+
+    /// Bakes the environment and reads the measured BRDF that the settings name, if those in use are others. On failure these
+    /// stay.
+    ///
+    /// # Errors
+    /// A file that is bad, a device that fails.
+    pub fn open_files(&mut self) -> Result<(), HeadlessError> {
+        let environment = &self.settings.environment;
+        if environment.is_lit() && !self.baked.is_for(&environment.name, &self.pipelines) {
+            self.bake()?;
+        }
+        if self.measured.0 != self.settings.measured {
+            let name = self.settings.measured.clone();
+            let measured = match name.as_str() {
+                "" => None,
+                path => Some(Measured::open(path.as_ref()).map_err(|e| HeadlessError::Settings(e.to_string()))?),
+            };
+            self.measured = (name, measured_buffer(&self.gpu, measured.as_ref())?);
+        }
+        Ok(())
+    }
+
+    /// Bakes the environment again, whatever is known of it: its file may have changed.
+    ///
+    /// # Errors
+    /// As [`Headless::open_files`].
+    pub fn bake(&mut self) -> Result<(), HeadlessError> {
+        let control = BakeControl { progress: &|_, _| {}, superseded: &|| false };
+        self.baked = Baked::bake(&self.pipelines, &self.settings.environment.name, &control)?;
+        Ok(())
+    }
+
+    /// What the last bake took.
+    pub fn bake_report(&self) -> &BakeReport {
+        &self.baked.environment.report
+    }
+
+    /// The files of the environment.
+    pub fn environment_files(&self) -> &[std::path::PathBuf] {
+        &self.baked.files
     }
 
     /// The pipelines on screen, with their shaders.
@@ -117,7 +176,7 @@ impl Headless {
         self.renderer.device_ms()
     }
 
-    /// Takes changed shaders in. On failure the last good ones stay.
+    /// Takes changed shaders in, and bakes the environment anew when they say how. On failure the last good ones stay.
     pub fn update(&mut self, change: Change) -> Reload {
         let (settings, samples, scene) = (&self.settings, self.samples, &self.scene);
         let reload = self.reloader.update(change, |shaders| wanted(settings, samples, shaders, scene), || false);
@@ -142,6 +201,12 @@ impl Headless {
     /// # Errors
     /// Settings that do not fit, a device that fails.
     pub fn render(&mut self) -> Result<Capture, HeadlessError> {
+        self.open_files()?;
+        if self.wanted().accumulates {
+            for _ in 1..self.settings.view.frames {
+                self.frame(Target::Nowhere)?;
+            }
+        }
         match self.frame(Target::Memory)? {
             Drawn::Captured(capture) => Ok(capture),
             Drawn::Finished | Drawn::Shown { .. } | Drawn::NoImage => unreachable!("a frame to memory is captured"),
@@ -153,14 +218,19 @@ impl Headless {
     /// # Errors
     /// As [`Headless::render`].
     pub fn draw(&mut self) -> Result<(), HeadlessError> {
+        self.open_files()?;
         self.frame(Target::Nowhere).map(|_| ())
+    }
+
+    fn wanted(&self) -> Wanted {
+        wanted(&self.settings, self.samples, &self.pipelines.shaders, &self.scene)
     }
 
     fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
         if let Some(misfit) = misfits(&self.settings.shader, &self.pipelines.shaders).into_iter().next() {
             return Err(HeadlessError::Settings(misfit));
         }
-        let wanted = wanted(&self.settings, self.samples, &self.pipelines.shaders, &self.scene);
+        let wanted = self.wanted();
         self.pipelines.build(&wanted)?;
         let (width, height) = self.size;
         let aspect = width as f32 / height as f32;
@@ -170,6 +240,8 @@ impl Headless {
             shot: &shot,
             pipelines: Some((&self.pipelines, &wanted)),
             scene: Some(&self.scene),
+            environment: &self.baked.environment,
+            measured: &self.measured.1,
             rect: Rect { x: 0, y: 0, width, height },
         };
         Ok(self.renderer.frame(input, target)?)

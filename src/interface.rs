@@ -12,14 +12,16 @@ use bytemuck::{Pod, Zeroable};
 pub use print::glsl;
 
 /// Raised whenever a shader tree written for the previous contract would misread memory.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Set 0: bound once a frame.
 pub const SET_FRAME: u32 = 0;
 /// Set 1: bound once a material.
 pub const SET_MATERIAL: u32 = 1;
-/// Set 2: the images that a full-screen pass reads.
+/// Set 2: the images that a pass reads.
 pub const SET_PASS: u32 = 2;
+/// Set 3: what a compute task reads and writes.
+pub const SET_TASK: u32 = 3;
 
 /// Push constants available to every graphics pipeline, in bytes (lavapipe and the Vulkan minimum both give 128).
 pub const PUSH_CONSTANT_SIZE: u32 = 128;
@@ -40,6 +42,8 @@ pub enum BindingKind {
     Sampler2D,
     /// `samplerCube`.
     SamplerCube,
+    /// `rgba16f image2DArray`: one level of an image, all its layers.
+    StorageImage,
 }
 
 impl BindingKind {
@@ -50,6 +54,7 @@ impl BindingKind {
             Self::StorageBuffer => "buffer block",
             Self::Sampler2D => "sampler2D",
             Self::SamplerCube => "samplerCube",
+            Self::StorageImage => "rgba16f image2DArray",
         }
     }
 }
@@ -78,13 +83,42 @@ pub const BINDINGS: &[Binding] = &[
     binding(SET_FRAME, 0, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
     binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::StorageBuffer, size_of::<Light>()),
     binding(SET_FRAME, 2, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
+    binding(SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
+    binding(SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::SamplerCube, 0),
+    binding(SET_FRAME, 5, "BINDING_PREFILTERED_SHEEN", BindingKind::SamplerCube, 0),
+    binding(SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 7, "BINDING_DFG", BindingKind::Sampler2D, 0),
+    binding(SET_FRAME, 8, "BINDING_LTC", BindingKind::Sampler2D, 0),
+    binding(SET_FRAME, 9, "BINDING_MEASURED", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 10, "BINDING_SHEEN_ALBEDO", BindingKind::Sampler2D, 0),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
     binding(SET_MATERIAL, 1, "BINDING_BASE_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
     binding(SET_MATERIAL, 2, "BINDING_METALLIC_ROUGHNESS_TEXTURE", BindingKind::Sampler2D, 0),
     binding(SET_MATERIAL, 3, "BINDING_NORMAL_TEXTURE", BindingKind::Sampler2D, 0),
     binding(SET_MATERIAL, 4, "BINDING_OCCLUSION_TEXTURE", BindingKind::Sampler2D, 0),
     binding(SET_MATERIAL, 5, "BINDING_EMISSIVE_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 6, "BINDING_CLEARCOAT_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 7, "BINDING_CLEARCOAT_ROUGHNESS_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 8, "BINDING_CLEARCOAT_NORMAL_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 9, "BINDING_ANISOTROPY_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 10, "BINDING_SHEEN_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 11, "BINDING_SHEEN_ROUGHNESS_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 12, "BINDING_SPECULAR_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 13, "BINDING_SPECULAR_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 14, "BINDING_IRIDESCENCE_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 15, "BINDING_IRIDESCENCE_THICKNESS_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 16, "BINDING_TRANSMISSION_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 17, "BINDING_THICKNESS_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 18, "BINDING_DIFFUSE_TRANSMISSION_TEXTURE", BindingKind::Sampler2D, 0),
+    binding(SET_MATERIAL, 19, "BINDING_DIFFUSE_TRANSMISSION_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
+    binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),
+    binding(SET_TASK, 0, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
+    binding(SET_TASK, 1, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
+    binding(SET_TASK, 2, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
+    binding(SET_TASK, 3, "BINDING_TARGET", BindingKind::StorageImage, 0),
+    binding(SET_TASK, 4, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
+    binding(SET_TASK, 5, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
 ];
 
 /// A specialization constant that Rust sets.
@@ -123,19 +157,77 @@ pub const ALPHA_BLEND: u32 = 2;
 pub const FEATURE_UNLIT: u32 = 1;
 /// The material has a normal texture and the mesh a tangent frame for it.
 pub const FEATURE_NORMAL_TEXTURE: u32 = 2;
+/// KHR_materials_clearcoat.
+pub const FEATURE_CLEARCOAT: u32 = 1 << 2;
+/// The clear coat has a normal texture of its own.
+pub const FEATURE_CLEARCOAT_NORMAL: u32 = 1 << 3;
+/// KHR_materials_anisotropy.
+pub const FEATURE_ANISOTROPY: u32 = 1 << 4;
+/// KHR_materials_sheen.
+pub const FEATURE_SHEEN: u32 = 1 << 5;
+/// KHR_materials_specular.
+pub const FEATURE_SPECULAR: u32 = 1 << 6;
+/// KHR_materials_iridescence.
+pub const FEATURE_IRIDESCENCE: u32 = 1 << 7;
+/// KHR_materials_transmission.
+pub const FEATURE_TRANSMISSION: u32 = 1 << 8;
+/// KHR_materials_volume.
+pub const FEATURE_VOLUME: u32 = 1 << 9;
+/// KHR_materials_dispersion.
+pub const FEATURE_DISPERSION: u32 = 1 << 10;
+/// KHR_materials_diffuse_transmission.
+pub const FEATURE_DIFFUSE_TRANSMISSION: u32 = 1 << 11;
+/// KHR_materials_pbrSpecularGlossiness: diffuse color, F0 and glossiness in place of metallic-roughness.
+pub const FEATURE_SPECULAR_GLOSSINESS: u32 = 1 << 12;
+/// The metal's complex index of refraction is given.
+pub const FEATURE_CONDUCTOR: u32 = 1 << 13;
+/// Occlusion is the red channel of the metallic-roughness texture, read once for both.
+pub const FEATURE_PACKED_OCCLUSION: u32 = 1 << 14;
+/// There is an environment: image-based light in place of `Frame::ambient`. The same for all materials of a frame.
+pub const FEATURE_ENVIRONMENT: u32 = 1 << 15;
+/// There are rectangular lights. The same for all materials of a frame.
+pub const FEATURE_RECT_LIGHTS: u32 = 1 << 16;
 
-/// Index of the base color texture in `Material::uv_from_texture` and in the bit masks.
+/// Index of the base color texture in `Material::uv_from_texture` and in the bit masks. sRGB; glTF specular-glossiness: the diffuse texture.
 pub const TEXTURE_BASE_COLOR: u32 = 0;
-/// Index of the metallic-roughness texture.
+/// Index of the metallic-roughness texture (B, G). glTF specular-glossiness: specular color (sRGB) and glossiness (A).
 pub const TEXTURE_METALLIC_ROUGHNESS: u32 = 1;
 /// Index of the normal texture.
 pub const TEXTURE_NORMAL: u32 = 2;
-/// Index of the occlusion texture.
+/// Index of the occlusion texture (R).
 pub const TEXTURE_OCCLUSION: u32 = 3;
-/// Index of the emissive texture.
+/// Index of the emissive texture (sRGB).
 pub const TEXTURE_EMISSIVE: u32 = 4;
+/// Index of the clear coat factor texture (R).
+pub const TEXTURE_CLEARCOAT: u32 = 5;
+/// Index of the clear coat roughness texture (G).
+pub const TEXTURE_CLEARCOAT_ROUGHNESS: u32 = 6;
+/// Index of the clear coat normal texture.
+pub const TEXTURE_CLEARCOAT_NORMAL: u32 = 7;
+/// Index of the anisotropy texture (RG direction, B strength).
+pub const TEXTURE_ANISOTROPY: u32 = 8;
+/// Index of the sheen color texture (sRGB).
+pub const TEXTURE_SHEEN_COLOR: u32 = 9;
+/// Index of the sheen roughness texture (A).
+pub const TEXTURE_SHEEN_ROUGHNESS: u32 = 10;
+/// Index of the specular factor texture (A).
+pub const TEXTURE_SPECULAR: u32 = 11;
+/// Index of the specular color texture (sRGB).
+pub const TEXTURE_SPECULAR_COLOR: u32 = 12;
+/// Index of the iridescence factor texture (R).
+pub const TEXTURE_IRIDESCENCE: u32 = 13;
+/// Index of the iridescence thickness texture (G).
+pub const TEXTURE_IRIDESCENCE_THICKNESS: u32 = 14;
+/// Index of the transmission texture (R).
+pub const TEXTURE_TRANSMISSION: u32 = 15;
+/// Index of the volume thickness texture (G).
+pub const TEXTURE_THICKNESS: u32 = 16;
+/// Index of the diffuse transmission factor texture (A).
+pub const TEXTURE_DIFFUSE_TRANSMISSION: u32 = 17;
+/// Index of the diffuse transmission color texture (sRGB).
+pub const TEXTURE_DIFFUSE_TRANSMISSION_COLOR: u32 = 18;
 /// How many textures a material has.
-pub const TEXTURE_COUNT: usize = 5;
+pub const TEXTURE_COUNT: usize = 19;
 
 /// `Draw::attributes`: the mesh came with normals (else flat ones were made).
 pub const ATTRIBUTE_NORMAL: u32 = 1;
@@ -156,6 +248,15 @@ pub const LIGHT_DIRECTIONAL: u32 = 0;
 pub const LIGHT_POINT: u32 = 1;
 /// `Light::kind`: spot light, intensity in candela.
 pub const LIGHT_SPOT: u32 = 2;
+/// `Light::kind`: one-sided rectangle, intensity is its radiance.
+pub const LIGHT_RECT: u32 = 3;
+
+/// First word of the measured BRDF's buffer: there is none.
+pub const MEASURED_NONE: u32 = 0;
+/// First word of the measured BRDF's buffer: MERL's grid follows.
+pub const MEASURED_MERL: u32 = 1;
+/// First word of the measured BRDF's buffer: UTIA's grid follows.
+pub const MEASURED_UTIA: u32 = 2;
 
 /// `Frame::encode`: colors, sRGB-encoded on output.
 pub const ENCODE_COLOR: u32 = 0;
@@ -211,6 +312,16 @@ pub struct Frame {
     pub mode: u32,
     /// Largest value that the HDR target holds: 65504 for half floats.
     pub largest_value: f32,
+    /// Cosine and sine of the environment's rotation around +Y: its map's center column is seen looking down -Z turned by it.
+    pub environment_rotation: [f32; 2],
+    /// Factor from what the environment's images hold to radiance.
+    pub environment_intensity: f32,
+    /// Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
+    pub environment_blur: f32,
+    /// For modes that accumulate: number of this frame since the picture changed.
+    pub sample_index: u32,
+    /// For modes that accumulate: paths a pixel in each frame.
+    pub sample_count: u32,
 }
 
 /// A light, in world space. `SET_FRAME`, `BINDING_LIGHTS`.
@@ -225,12 +336,16 @@ pub struct Light {
     pub direction_ws: [f32; 3],
     /// Distance at which it ends, meters; 0 is without end.
     pub range: f32,
-    /// Linear RGB times candela (point, spot) or lux (directional).
+    /// Linear RGB times candela (point, spot), lux (directional) or radiance (rectangle).
     pub intensity: [f32; 3],
     /// Spot: cosine of the angle where the falloff starts.
     pub cos_inner: f32,
     /// Spot: cosine of the angle where it ends.
     pub cos_outer: f32,
+    /// Rectangle: from its center to the middle of one edge, meters.
+    pub half_x_ws: [f32; 3],
+    /// Rectangle: from its center to the middle of a neighboring edge, meters.
+    pub half_y_ws: [f32; 3],
 }
 
 /// A material's numbers. `SET_MATERIAL`, `BINDING_MATERIAL`.
@@ -257,6 +372,50 @@ pub struct Material {
     pub uv1_mask: u32,
     /// Index of the material, for the id view.
     pub id: u32,
+    /// Clear coat factor 0..1.
+    pub clearcoat_factor: f32,
+    /// Perceptual roughness of the clear coat.
+    pub clearcoat_roughness: f32,
+    /// Scale of the clear coat normal texture's x and y.
+    pub clearcoat_normal_scale: f32,
+    /// Anisotropy strength 0..1.
+    pub anisotropy_strength: f32,
+    /// Cosine and sine of the anisotropy's rotation from the tangent towards the bitangent.
+    pub anisotropy_rotation: [f32; 2],
+    /// Perceptual roughness of the sheen.
+    pub sheen_roughness: f32,
+    /// Linear RGB.
+    pub sheen_color: [f32; 3],
+    /// KHR_materials_specular: weight of the dielectric's specular reflection, 0..1.
+    pub specular_factor: f32,
+    /// Linear RGB, tints the dielectric's F0; specular-glossiness: F0 itself.
+    pub specular_color: [f32; 3],
+    /// Index of refraction, at least 1; 0 stands for infinity.
+    pub ior: f32,
+    /// Iridescence factor 0..1.
+    pub iridescence_factor: f32,
+    /// Index of refraction of the thin film.
+    pub iridescence_ior: f32,
+    /// Thickness of the film where its texture is 0 and 1, nanometers.
+    pub iridescence_thickness_nm: [f32; 2],
+    /// Transmission factor 0..1.
+    pub transmission_factor: f32,
+    /// Thickness of the volume beneath the surface, meters in object space; 0 is a thin wall.
+    pub thickness: f32,
+    /// Color that white light has after `attenuation_distance`.
+    pub attenuation_color: [f32; 3],
+    /// Meters; infinite without attenuation.
+    pub attenuation_distance: f32,
+    /// KHR_materials_dispersion: 20 / Abbe number.
+    pub dispersion: f32,
+    /// Part of the diffuse light that is transmitted, 0..1.
+    pub diffuse_transmission_factor: f32,
+    /// Linear RGB.
+    pub diffuse_transmission_color: [f32; 3],
+    /// Real part of the metal's index of refraction at about 650, 550 and 450 nm.
+    pub conductor_n: [f32; 3],
+    /// Imaginary part (extinction), positive.
+    pub conductor_k: [f32; 3],
     /// KHR_texture_transform of each texture: columns of a mat3x2 applied to (u, v, 1).
     pub uv_from_texture: [[[f32; 2]; 3]; TEXTURE_COUNT],
 }
@@ -277,6 +436,34 @@ pub struct Draw {
     pub primitive_id: u32,
     /// Index of the node, for the id views.
     pub node_id: u32,
+}
+
+/// What one compute dispatch works on. `SET_TASK`, `BINDING_TASK`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Task {
+    /// Width and height of what is written: texels, or columns and rows of `BINDING_RESULTS`.
+    pub size: [u32; 2],
+    /// Mip level that is written.
+    pub level: u32,
+    /// How many levels the image has.
+    pub levels: u32,
+    /// Samples for each texel or result.
+    pub samples: u32,
+    /// What radiance is multiplied by to fit into half floats.
+    pub radiance_scale: f32,
+    /// Roughness of the first row.
+    pub roughness_first: f32,
+    /// Roughness of the last row.
+    pub roughness_last: f32,
+    /// Angle to the normal of the first column, degrees.
+    pub theta_first: f32,
+    /// Angle to the normal of the last column, degrees.
+    pub theta_last: f32,
+    /// Linear RGB of the measured surface.
+    pub base_color: [f32; 3],
+    /// 0 dielectric .. 1 metal.
+    pub metallic: f32,
 }
 
 /// A vertex as the shader reads it.

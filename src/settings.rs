@@ -1,8 +1,18 @@
 //! Everything a user can set, as one serde struct. The window, `--set`, look files and the tests all speak it.
 
+mod environment;
+mod lights;
+mod material;
+mod range;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+
+pub use environment::EnvironmentSettings;
+pub use lights::{LightSettings, LightSource, OrbitLight, RectLight};
+pub use material::MaterialOverride;
+use range::Range;
 
 /// All settings. `toml` of this struct is a look file; dotted paths into it are what `--set` takes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,6 +24,14 @@ pub struct Settings {
     pub camera: CameraSettings,
     /// Lights.
     pub lights: LightSettings,
+    /// KHR_materials_variants: name of the model's variant; empty is the model as it comes.
+    pub variant: String,
+    /// One material in place of all of the model's.
+    pub material: MaterialOverride,
+    /// Light from all around.
+    pub environment: EnvironmentSettings,
+    /// File of a measured BRDF for the modes of the group Measured; empty for none.
+    pub measured: String,
     /// Exposure, tone mapping, background, multisampling.
     pub view: ViewSettings,
     /// Values of the shader author's own `//@ui` constants and parameters, by name.
@@ -26,6 +44,10 @@ impl Default for Settings {
             mode: "final".into(),
             camera: CameraSettings::default(),
             lights: LightSettings::default(),
+            variant: String::new(),
+            material: MaterialOverride::default(),
+            environment: EnvironmentSettings::default(),
+            measured: String::new(),
             view: ViewSettings::default(),
             shader: BTreeMap::new(),
         }
@@ -72,70 +94,6 @@ impl Default for CameraSettings {
     }
 }
 
-/// Which lights shine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum LightSource {
-    /// The three orbiting lights.
-    #[default]
-    Orbit,
-    /// The model's own KHR_lights_punctual.
-    Model,
-    /// None.
-    None,
-}
-
-/// Lights.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LightSettings {
-    /// Which lights shine.
-    pub source: LightSource,
-    /// The three orbiting lights.
-    pub orbit: [OrbitLight; 3],
-    /// Whether they move around the model in the window, and how fast: degrees a second.
-    pub spin: f32,
-    /// Which light the BRDF terms show: 0 all, else 1-based.
-    pub chosen: u32,
-    /// Ambient light, linear RGB.
-    pub ambient_color: [f32; 3],
-    /// Its strength (radiance at white).
-    pub ambient_strength: f32,
-}
-
-impl Default for LightSettings {
-    fn default() -> Self {
-        Self {
-            source: LightSource::Orbit,
-            orbit: [
-                OrbitLight { color: [1.0, 0.93, 0.82], strength: 14.0, distance: 2.0, azimuth: 0.0, polar: 50.0 },
-                OrbitLight { color: [0.45, 0.65, 1.0], strength: 6.0, distance: 2.2, azimuth: 95.0, polar: 75.0 },
-                OrbitLight { color: [1.0, 0.42, 0.25], strength: 10.0, distance: 2.0, azimuth: 200.0, polar: 55.0 },
-            ],
-            spin: 0.0,
-            chosen: 0,
-            ambient_color: [0.72, 0.82, 1.0],
-            ambient_strength: 0.12,
-        }
-    }
-}
-
-/// A point light that circles the model. Distances are in radii of the model's bounding sphere, so that every model is lit alike.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OrbitLight {
-    /// Linear RGB.
-    pub color: [f32; 3],
-    /// Irradiance at the model's center times distance^2: intensity in candela for a model of radius 1 m.
-    pub strength: f32,
-    /// Distance from the center in model radii.
-    pub distance: f32,
-    /// Degrees around +Y, from +Z towards +X.
-    pub azimuth: f32,
-    /// Degrees from +Y.
-    pub polar: f32,
-}
-
 /// Tone maps, in the order of `TONEMAP_*` in common/tonemap.glsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
@@ -167,29 +125,34 @@ pub struct ViewSettings {
     pub tonemap: Tonemap,
     /// EV100: exposure is 1 / (1.2 * 2^ev).
     pub ev: f32,
-    /// `none` or `#rrggbb`.
+    /// `none`, `env` or `#rrggbb`.
     pub background: String,
     /// Samples a pixel, 1 or 4.
     pub msaa: u32,
+    /// Frames that a picture without a window is the mean of, in modes that accumulate.
+    pub frames: u32,
 }
+
+/// Behind the model when nothing else is set, and behind modes that show no light when the environment is.
+const BACKGROUND: &str = "#1b1d21";
 
 impl Default for ViewSettings {
     fn default() -> Self {
-        Self { tonemap: Tonemap::default(), ev: 0.0, background: "#1b1d21".into(), msaa: 4 }
+        Self { tonemap: Tonemap::default(), ev: 0.0, background: BACKGROUND.into(), msaa: 4, frames: 64 }
     }
 }
 
 impl ViewSettings {
-    /// Linear color and alpha behind the model.
+    /// Linear color and alpha behind the model. With `env` this is what lies behind modes that show no light.
     ///
     /// # Errors
     /// A text that is neither `none` nor a color, in words.
     pub fn background_linear(&self) -> Result<[f32; 4], String> {
-        let text = self.background.as_str();
+        let text = if self.background == "env" { BACKGROUND } else { self.background.as_str() };
         if text == "none" {
             return Ok([0.0; 4]);
         }
-        let expected = || format!("background '{text}' is neither none nor #rrggbb (as #1b1d21)");
+        let expected = || format!("background '{text}' is neither none, env nor #rrggbb (as #1b1d21)");
         let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii()).ok_or_else(expected)?;
         let rgb = u32::from_str_radix(digits, 16).map_err(|_| expected())?;
         let channel = |shift: u32| linear_from_srgb(((rgb >> shift) & 255) as f32 / 255.0);
@@ -222,36 +185,17 @@ impl Settings {
     /// The setting, what it is and what it can be, in words.
     pub fn check(&self) -> Result<(), String> {
         let camera = &self.camera;
-        let numbers = [
-            ("camera.fovy", camera.fovy, 1.0, 170.0),
-            ("camera.elevation", camera.elevation, -90.0, 90.0),
-            ("camera.azimuth", camera.azimuth, -1e6, 1e6),
-            ("view.ev", self.view.ev, -30.0, 30.0),
-            ("lights.ambient_strength", self.lights.ambient_strength, 0.0, 1e9),
-            ("lights.spin", self.lights.spin, -1e4, 1e4),
-            ("lights.ambient_color.0", self.lights.ambient_color[0], 0.0, 1e6),
-            ("lights.ambient_color.1", self.lights.ambient_color[1], 0.0, 1e6),
-            ("lights.ambient_color.2", self.lights.ambient_color[2], 0.0, 1e6),
+        let mut ranges = vec![
+            Range::new("camera.fovy", camera.fovy, 1.0..=170.0),
+            Range::new("camera.elevation", camera.elevation, -90.0..=90.0),
+            Range::new("camera.azimuth", camera.azimuth, -1e6..=1e6),
+            Range::new("view.ev", self.view.ev, -30.0..=30.0),
         ];
-        let orbit = self.lights.orbit.iter().enumerate();
-        let lights = orbit.flat_map(|(i, l)| {
-            [
-                ("strength", l.strength, 0.0, 1e9),
-                ("distance", l.distance, 1e-3, 1e6),
-                ("azimuth", l.azimuth, -1e6, 1e6),
-                ("polar", l.polar, -1e6, 1e6),
-                ("color.0", l.color[0], 0.0, 1e6),
-                ("color.1", l.color[1], 0.0, 1e6),
-                ("color.2", l.color[2], 0.0, 1e6),
-            ]
-            .map(|(name, value, low, high)| (format!("lights.orbit.{i}.{name}"), value, low, high))
-        });
-        let named = numbers.map(|(name, value, low, high)| (name.to_owned(), value, low, high));
-        for (name, value, low, high) in named.into_iter().chain(lights) {
-            if !(low..=high).contains(&value) {
-                return Err(format!("{name} is {value}; it can be {low} to {high}"));
-            }
-        }
+        ranges.extend(self.lights.ranges());
+        ranges.extend(self.material.ranges());
+        let environment = self.environment.numbers();
+        ranges.extend(environment.map(|(name, value, low, high)| Range::new(name, value, low..=high)));
+        ranges.iter().try_for_each(Range::check)?;
         let vectors = [("camera.eye", camera.eye), ("camera.target", camera.target)];
         for (name, vector) in vectors {
             if vector.is_some_and(|v| !v.iter().all(|c| c.is_finite())) {
@@ -259,6 +203,12 @@ impl Settings {
             }
         }
         self.view.background_linear()?;
+        if self.view.background == "env" && !self.environment.is_lit() {
+            return Err("view.background is env, but environment.name is none: there is nothing to show".into());
+        }
+        if !(1..=100_000).contains(&self.view.frames) {
+            return Err(format!("view.frames is {}; it can be 1 to 100000", self.view.frames));
+        }
         match self.view.msaa {
             1 | 4 => Ok(()),
             other => Err(format!("view.msaa is {other}; it can be 1 or 4")),
@@ -323,6 +273,9 @@ mod tests {
             "view.tonemap=reinhard-luminance",
             "lights.orbit.2.color=[1, 0, 0.5]",
             "camera.eye=[1,2,3]",
+            "variant=midnight",
+            "material.base_color=[1, 0.5, 0]",
+            "lights.rect.enabled=true",
             "shader.rim=0.5",
             "NDF_MODEL=Beckmann",
         ] {
@@ -333,6 +286,8 @@ mod tests {
         assert_eq!(settings.view.tonemap, Tonemap::ReinhardLuminance);
         assert_eq!(settings.lights.orbit[2].color, [1.0, 0.0, 0.5]);
         assert_eq!(settings.camera.eye, Some([1.0, 2.0, 3.0]));
+        assert_eq!((settings.variant.as_str(), settings.material.base_color), ("midnight", [1.0, 0.5, 0.0]));
+        assert!(settings.lights.rect.enabled);
         assert_eq!(settings.shader["rim"], ShaderValue::Float(0.5));
         assert_eq!(settings.shader["NDF_MODEL"], ShaderValue::Name("Beckmann".into()));
     }
@@ -352,6 +307,24 @@ mod tests {
             let error = settings.assign(assignment).unwrap_err();
             assert!(error.contains(part), "{assignment}: {error}");
             assert_eq!(settings, before, "{assignment} left a trace");
+        }
+    }
+
+    #[test]
+    fn check_names_what_no_picture_can_be_made_of() {
+        Settings::default().check().unwrap();
+        for (assignment, words) in [
+            ("material.roughness=1.5", "material.roughness is 1.5; it can be 0 to 1"),
+            ("material.base_color=[0, nan, 0]", "material.base_color.1 is NaN"),
+            ("material.anisotropy_rotation=inf", "material.anisotropy_rotation is inf"),
+            ("lights.rect.width=0", "lights.rect.width is 0; it can be 0.001 to 1000"),
+            ("lights.rect.strength=inf", "lights.rect.strength is inf"),
+            ("lights.orbit.1.color=[1, 1, -1]", "lights.orbit.1.color.2 is -1"),
+        ] {
+            let mut settings = Settings::default();
+            settings.assign(assignment).unwrap();
+            let error = settings.check().unwrap_err();
+            assert!(error.contains(words), "{assignment}: {error}");
         }
     }
 

@@ -7,11 +7,12 @@ import zlib
 import numpy as np
 
 FLOAT, UINT16, UINT32 = 5126, 5123, 5125
+NEAREST, LINEAR, LINEAR_MIPMAP_LINEAR, REPEAT = 9728, 9729, 9987, 10497
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
 def png(pixels):
-    """PNG bytes of a (height, width, 3) uint8 array. Each row takes the filter with the smallest sum of residuals."""
+    """PNG bytes of a (height, width, 3 or 4) uint8 array. A row's filter is the one of the smallest residuals."""
     height, width, channels = pixels.shape
     raw = pixels.reshape(height, width * channels).astype(np.int16)
     up = np.vstack([np.zeros((1, raw.shape[1]), np.int16), raw[:-1]])
@@ -30,7 +31,7 @@ def png(pixels):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    header = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[channels], 0, 0, 0)
     body = zlib.compress(rows.tobytes(), 9)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", body) + chunk(b"IEND", b"")
 
@@ -44,6 +45,7 @@ class Glb:
             "accessors": [], "bufferViews": [], "meshes": [], "materials": [],
         }
         self.binary = bytearray()
+        self._accessors = {}
 
     def _view(self, data, **extra):
         self.binary += b"\0" * (-len(self.binary) % 4)
@@ -53,17 +55,34 @@ class Glb:
         return len(self.document["bufferViews"]) - 1
 
     def _accessor(self, array, component, kind, target, **extra):
-        view = self._view(array.tobytes(), target=target)
-        self.document["accessors"].append(
-            {"bufferView": view, "componentType": component, "count": len(array), "type": kind, **extra})
-        return len(self.document["accessors"]) - 1
+        """An accessor of these values: what two attributes or meshes have in common is written once."""
+        data = array.tobytes()
+        key = (data, component, kind, target)
+        if key not in self._accessors:
+            view = self._view(data, target=target)
+            self._accessors[key] = len(self.document["accessors"])
+            self.document["accessors"].append(
+                {"bufferView": view, "componentType": component, "count": len(array), "type": kind})
+        index = self._accessors[key]
+        self.document["accessors"][index].update(extra)
+        return index
 
-    def primitive(self, surface, material, only=None):
-        """A triangle primitive of a `geometry.Surface`; `only` names the attributes to write."""
+    def primitive(self, surface, material, only=None, compact=False):
+        """A triangle primitive of a `geometry.Surface`; `only` names the attributes to write.
+
+        `compact` stores texture coordinates, which must be within 0..1, in 16 bits, and the rest to six decimals, so
+        that no byte depends on the last bit of a machine's sine.
+        """
         attributes = {}
         for name, array in surface.attributes.items():
             if only is not None and name not in only:
                 continue
+            if compact and name == "TEXCOORD_0":
+                array = np.floor(np.asarray(array) * 65535.0 + 0.5).astype("<u2")
+                attributes[name] = self._accessor(array, UINT16, "VEC2", ARRAY_BUFFER, normalized=True)
+                continue
+            if compact:
+                array = np.round(array, 6) + 0.0  # no negative zeros
             array = np.ascontiguousarray(array, "<f4")
             bounds = {}
             if name == "POSITION":
@@ -84,19 +103,25 @@ class Glb:
         self.document["materials"].append({"name": name, **properties})
         return len(self.document["materials"]) - 1
 
-    def texture(self, name, pixels):
-        """Adds a repeating, trilinear texture and returns its index."""
+    def texture(self, name, pixels, magnified=LINEAR):
+        """Adds a repeating, trilinear texture and returns its index; `magnified` NEAREST keeps texels sharp."""
         d = self.document
-        d.setdefault("samplers", [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}])
+        sampler = {"magFilter": magnified, "minFilter": LINEAR_MIPMAP_LINEAR, "wrapS": REPEAT, "wrapT": REPEAT}
+        samplers = d.setdefault("samplers", [])
+        if sampler not in samplers:
+            samplers.append(sampler)
         view = self._view(png(pixels))
         d.setdefault("images", []).append({"name": name, "mimeType": "image/png", "bufferView": view})
-        d.setdefault("textures", []).append({"name": name, "sampler": 0, "source": len(d["images"]) - 1})
+        d.setdefault("textures", []).append(
+            {"name": name, "sampler": samplers.index(sampler), "source": len(d["images"]) - 1})
         return len(d["textures"]) - 1
 
     def bytes(self):
         """The file: header, JSON chunk, binary chunk."""
         self.binary += b"\0" * (-len(self.binary) % 4)
         document = {**self.document, "buffers": [{"byteLength": len(self.binary)}]}
+        if used := _extensions(self.document):
+            document["extensionsUsed"] = sorted(used)
         text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         total = 12 + 8 + len(text) + 8 + len(self.binary)
@@ -105,3 +130,12 @@ class Glb:
             struct.pack("<I4s", len(text), b"JSON"), text,
             struct.pack("<I4s", len(self.binary), b"BIN\0"), bytes(self.binary),
         ])
+
+
+def _extensions(value):
+    """The names of all extensions anywhere in a document."""
+    if isinstance(value, list):
+        return set().union(*map(_extensions, value))
+    if not isinstance(value, dict):
+        return set()
+    return set(value.get("extensions", ())).union(*map(_extensions, value.values()))

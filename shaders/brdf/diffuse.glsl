@@ -1,11 +1,70 @@
-// Light that enters the surface, loses its direction and comes out again.
+// Light that enters the surface, loses its direction and comes out again: five answers to how it is spread. All give
+// f / albedo, in 1/sr; what enters at all is the coupling's matter (brdf/evaluate.glsl).
 #ifndef BRDF_DIFFUSE_GLSL
 #define BRDF_DIFFUSE_GLSL
 
+#include "brdf/models.glsl"
 #include "common/math.glsl"
 
 // f = albedo / pi (Lambert 1760): the same in all directions. 1 / pi, because the cosine integrates to pi over the
 // hemisphere, so that albedo is the part of the light that leaves again.
 vec3 f_lambert(vec3 albedo) { return albedo / PI; }
+
+// A fit to the MERL materials (Burley 2012, section 5.3): smooth ones darken towards grazing angles, since less light
+// enters; rough ones brighten, and throw light back to where it came from.
+//
+//   f = albedo / pi (1 + (FD90 - 1) (1 - NoL)^5) (1 + (FD90 - 1) (1 - NoV)^5)        FD90 = 1/2 + 2 roughness VoH^2
+//
+// Roughness 1, grazing: FD90 = 2.5, more comes out than went in.
+float f_burley(float n_dot_l, float n_dot_v, float v_dot_h, float roughness) {
+    float rise = 2.0 * roughness * v_dot_h * v_dot_h - 0.5;
+    return (1.0 + rise * pow5(1.0 - n_dot_l)) * (1.0 + rise * pow5(1.0 - n_dot_v)) / PI;
+}
+
+// Burley's, bent until its albedo stays below 1 (Lagarde & de Rousiers 2014, listing 1): FD90 starts at 0 .. 1/2
+// instead of at 1/2, and all of it is divided by 1 .. 1.51.
+float f_renormalized_burley(float n_dot_l, float n_dot_v, float v_dot_h, float roughness) {
+    float rise = roughness * (0.5 + 2.0 * v_dot_h * v_dot_h) - 1.0;
+    float scale = mix(1.0, 1.0 / 1.51, roughness);
+    return scale * (1.0 + rise * pow5(1.0 - n_dot_l)) * (1.0 + rise * pow5(1.0 - n_dot_v)) / PI;
+}
+
+// Oren & Nayar 1994: grooves whose walls are Lambertian, so that rough surfaces look flat. In the form of Fujii 2012,
+// with the light that goes from wall to wall given back (EON, Portsmouth, Kutz & Hill 2025). A, E and E_avg are the
+// albedos of a white surface that loses that light:
+//
+//   f_single = albedo A / pi (1 + r s / t)        s = LoV - NoL NoV        t = s > 0 ? max(NoL, NoV) : 1
+//   f_multi = rho / pi (1 - E(l)) (1 - E(v)) / (1 - E_avg)     rho = albedo^2 E_avg / (1 - albedo (1 - E_avg))
+//
+// E(c) by the paper's polynomial, off by less than 0.1 %. r: roughness, from Lambert at 0 to steep grooves at 1.
+float eon_albedo(float c, float r, float a) {
+    float x = 1.0 - c;
+    return a * (1.0 + r * x * (0.0571085289 + x * (0.491881867 + x * (0.0714429953 * x - 0.332181442))));
+}
+
+vec3 f_oren_nayar(vec3 albedo, float n_dot_l, float n_dot_v, float l_dot_v, float r) {
+    float a = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * r);
+    float average = a * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * PI)) * r);
+    float s = l_dot_v - n_dot_l * n_dot_v;
+    float s_over_t = s > 0.0 ? s / max(n_dot_l, n_dot_v) : s;
+    vec3 single = albedo * (a * (1.0 + r * s_over_t));
+
+    // Lambert loses nothing: 0 / 0, where 1e-6 makes 0 of it.
+    float lost = max(1.0 - average, 1e-6);
+    vec3 rho = albedo * albedo * average / (1.0 - albedo * lost);
+    vec3 multi = rho * ((1.0 - eon_albedo(n_dot_l, r, a)) * (1.0 - eon_albedo(n_dot_v, r, a)) / lost);
+    return (single + multi) / PI;
+}
+
+// A fit to simulated Lambertian microfacets under a Fresnel layer (Chan 2018, "Material Advances in Call of Duty:
+// WWII"): between a smooth and a rough lobe, and a bump of retroreflection. g: glossiness, 0 at alpha 1.
+float f_call_of_duty(float n_dot_l, float n_dot_v, float n_dot_h, float v_dot_h, float alpha) {
+    float g = saturate(log2(2.0 / (alpha * alpha) - 1.0) / 18.0);
+    float rough = v_dot_h + pow5(1.0 - v_dot_h);
+    float smooth_lobe = (1.0 - 0.75 * pow5(1.0 - n_dot_l)) * (1.0 - 0.75 * pow5(1.0 - n_dot_v));
+    float lobe = mix(rough, smooth_lobe, saturate(2.2 * g - 0.5));
+    float bump = ((34.5 * g - 59.0) * g + 24.5) * v_dot_h * exp2(-max(73.2 * g - 21.2, 8.9) * sqrt(n_dot_h));
+    return (lobe + bump) / PI;
+}
 
 #endif

@@ -6,23 +6,33 @@
 //          \ | / .                NoL  max(n . l, 0), likewise NoH, VoH
 //     ______\|/.______            all vectors have unit length and leave the surface, in world space
 //
-//   f = k_d albedo / pi + k_s D V                (Cook & Torrance 1982 over Lambert; glTF 2.0, appendix B)
-//   k_d = (1 - metallic) (1 - F_dielectric)      what is not reflected enters; in a metal it is absorbed
+//   f = k_d f_diffuse + k_s D V + f_multiple     (Cook & Torrance 1982 over a diffuse base; glTF 2.0, appendix B)
 //   k_s = mix(F_dielectric, F_metal, metallic)
+//   k_d = (1 - metallic) (1 - F_dielectric)      what is not reflected enters; in a metal it is absorbed
 //
 // `metallic` mixes the results of two materials, not their F0: the dielectric's diffuse part is weakened by its own
 // Fresnel term, which must not depend on the metal beside it. So f = mix(f_dielectric, f_metal, metallic), exactly.
+//
+// Above this base lie, where the material has them, sheen and then a clear coat; each weakens what is below it. Behind
+// it lies what is transmitted, instead of a part of the diffuse light.
 #ifndef BRDF_EVALUATE_GLSL
 #define BRDF_EVALUATE_GLSL
 
 #include "interface.glsl"
 #include "brdf/diffuse.glsl"
+#include "brdf/energy.glsl"
 #include "brdf/fresnel.glsl"
+#include "brdf/models.glsl"
+#include "brdf/multiscatter.glsl"
 #include "brdf/ndf.glsl"
+#include "brdf/reflectance.glsl"
+#include "brdf/sheen.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/transmission.glsl"
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
+// Lobes in 1/sr, weakened by the layers above them.
 struct Brdf {
     float n_dot_l;
     float n_dot_v;
@@ -31,42 +41,152 @@ struct Brdf {
     float d;
     float g;
     float v;                   // G / (4 NoL NoV)
-    float f_dielectric;
+    vec3 f_dielectric;
     vec3 f_metal;
     float k_d;
     vec3 k_s;
-    vec3 diffuse;              // k_d albedo / pi, 1/sr
-    vec3 specular;             // k_s D V, 1/sr
+    vec3 diffuse;              // k_d f_diffuse
+    vec3 specular;             // k_s D V
+    vec3 multiple;             // light that met more than one facet
+    vec3 sheen;
+    vec3 clearcoat;
+    vec3 transmitted;          // through the surface, in a lobe around -v
+    vec3 diffuse_transmitted;  // through the surface, everywhere
     vec3 value;                // f: their sum
 };
 
-// A normal map can turn n away from the eye, where no BRDF is defined. Clamped, such a point is seen at a grazing
-// angle, not as a black hole. 1e-4 is far under a degree; with MIN_ALPHA it keeps V's denominator above zero.
-const float MIN_N_DOT_V = 1e-4;
-
-// l below the horizon: both lobes, D, G and V are 0. l = -v leaves h without a direction, and n is as good as any.
-Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
-    vec3 h = safe_normalize(l + v, s.n);
+// D and V of the specular lobe: round or stretched (KHR_materials_anisotropy: alpha grows towards 1 along t).
+void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
     float alpha = alpha_from_roughness(s.roughness);
+    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) {
+        f.d = d_specular(f.n_dot_h, sin2_between(s.n, h), alpha);
+        f.v = v_specular(f.n_dot_l, f.n_dot_v, alpha);
+        return;
+    }
+    vec2 stretched = vec2(mix(alpha, 1.0, s.anisotropy * s.anisotropy), alpha);
+    mat3 ts_from_ws = transpose(mat3(s.t, s.b, s.n));
+    f.d = d_specular_anisotropic(vec3((ts_from_ws * h).xy, f.n_dot_h), stretched);
+    float a2_l = a2_towards(ts_from_ws * l, stretched);
+    float a2_v = a2_towards(ts_from_ws * v, stretched);
+    f.v = v_specular(f.n_dot_l, f.n_dot_v, a2_l, a2_v);
+}
+
+// f_diffuse of the chosen model, 1/sr.
+vec3 f_diffuse(Surface s, Brdf f, float l_dot_v) {
+    float fit = 1.0 / PI;
+    if (DIFFUSE == OREN_NAYAR) return f_oren_nayar(s.base_color, f.n_dot_l, f.n_dot_v, l_dot_v, s.roughness);
+    if (DIFFUSE == BURLEY) fit = f_burley(f.n_dot_l, f.n_dot_v, f.v_dot_h, s.roughness);
+    if (DIFFUSE == RENORMALIZED_BURLEY) fit = f_renormalized_burley(f.n_dot_l, f.n_dot_v, f.v_dot_h, s.roughness);
+    if (DIFFUSE == CALL_OF_DUTY) {
+        fit = f_call_of_duty(f.n_dot_l, f.n_dot_v, f.n_dot_h, f.v_dot_h, alpha_from_roughness(s.roughness));
+    }
+    return s.base_color * fit;
+}
+
+// How much of the light passes the dielectric's boundary twice, on its way in and out. Colors of F count with their
+// largest component, so that the diffuse part does not take on the complementary color (KHR_materials_specular).
+//
+// Fresnel: 1 - F (glTF 2.0, appendix B). Multiple scattering takes nothing more from it: that light is the part of F
+// which single scattering lost between the facets.
+//
+// Albedo: (1 - R(l)) (1 - R(v)) / (1 - R_avg), R being all that the boundary reflects (Kelemen & Szirmay-Kalos 2001). A
+// white base returns exactly what the boundary let through. R = 1 throughout: 0 / 0, where 1e-4 makes 0 of it.
+float entering(Surface s, Brdf f, vec4 dfg_l) {
+    if (DIFFUSE_COUPLING == FRESNEL_COUPLING) return 1.0 - max_component(f.f_dielectric);
+    float through = (1.0 - boundary_albedo(s, dfg_l)) * (1.0 - boundary_albedo(s, s.dfg));
+    return through / max(1.0 - boundary_albedo_average(s), 1e-4);
+}
+
+// KHR_materials_clearcoat: a layer of index 1.5 with a normal and a roughness of its own,
+//
+//   f = mix(f_base, D V, clearcoat F)        F = F(NoV): one number for what is reflected and for what passes
+//
+// f is multiplied by NoL of the base, the coat's light arrives under its own angle: hence the quotient. Returns F.
+float evaluate_clearcoat(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
+    float n_dot_l = saturate(dot(s.clearcoat_n, l));
+    float n_dot_v = clamp(dot(s.clearcoat_n, v), MIN_N_DOT_V, 1.0);
+    float alpha = alpha_from_roughness(s.clearcoat_roughness);
+    float d = d_specular(saturate(dot(s.clearcoat_n, h)), sin2_between(s.clearcoat_n, h), alpha);
+    float weight = s.clearcoat * f_schlick(0.04, n_dot_v);
+    float turned = n_dot_l / max(f.n_dot_l, MIN_N_DOT_V);
+    f.clearcoat = vec3(weight * d * v_specular(n_dot_l, n_dot_v, alpha) * turned);
+    return weight;
+}
+
+// Multiplies what lies below by what sheen and coat let through.
+void cover(Surface s, vec3 l, vec3 v, vec3 h, float n_dot_l, inout Brdf f) {
+    float passes = 1.0;
+    if ((FEATURES & FEATURE_SHEEN) != 0u) {
+        float alpha = sheen_alpha(s.sheen_roughness);
+        f.sheen = s.sheen_color * (d_charlie(f.n_dot_h, alpha) * v_sheen(f.n_dot_l, f.n_dot_v, alpha));
+        float stopped = max(sheen_albedo(n_dot_l, s.sheen_roughness), sheen_albedo(f.n_dot_v, s.sheen_roughness));
+        passes = under_sheen(s, stopped);
+    }
+    if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
+        float uncoated = 1.0 - evaluate_clearcoat(s, l, v, h, f);
+        passes *= uncoated;
+        f.sheen *= uncoated;
+    }
+    f.k_d *= passes;
+    f.k_s *= passes;
+    f.multiple *= passes;
+    f.transmitted *= passes;
+    f.diffuse_transmitted *= passes;
+}
+
+// To be multiplied by |n . l| and the light's irradiance. l below the horizon: all but the transmitted lobes is 0, D, G
+// and V too. Without transmission l = -v leaves h without a direction, and n is as good as any.
+Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
+    const bool transmits = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
+    vec3 h = safe_normalize((transmits ? unfolded(s.n, l) : l) + v, s.n);
+    float cos_l = dot(s.n, l);
+    float above = cos_l > 0.0 ? 1.0 : 0.0;
 
     Brdf f;
-    f.n_dot_l = saturate(dot(s.n, l));
+    f.n_dot_l = saturate(cos_l);
     f.n_dot_v = clamp(dot(s.n, v), MIN_N_DOT_V, 1.0);
     f.n_dot_h = saturate(dot(s.n, h));
     f.v_dot_h = saturate(dot(v, h));
+    f.sheen = f.clearcoat = f.transmitted = f.diffuse_transmitted = vec3(0.0);
 
-    float above = f.n_dot_l > 0.0 ? 1.0 : 0.0;
-    f.d = above * d_ggx(f.n_dot_h, alpha);
-    f.v = above * v_smith_ggx(f.n_dot_l, f.n_dot_v, alpha);
+    specular_lobe(s, l, v, h, f);
+    f.d *= above;
+    f.v *= above;
     f.g = 4.0 * f.n_dot_l * f.n_dot_v * f.v;
-    f.f_dielectric = f_schlick(DIELECTRIC_F0, f.v_dot_h);
-    f.f_metal = f_schlick(s.base_color, f.v_dot_h);
+    f.f_dielectric = dielectric_fresnel(s, f.v_dot_h);
+    f.f_metal = metal_fresnel(s, f.v_dot_h);
 
-    f.k_d = (1.0 - s.metallic) * (1.0 - f.f_dielectric);
-    f.k_s = mix(vec3(f.f_dielectric), f.f_metal, s.metallic);
-    f.diffuse = above * f.k_d * f_lambert(s.base_color);
+    vec4 dfg_l = s.dfg;
+    if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) dfg_l = dfg(abs(cos_l), s.roughness);
+    f.multiple = vec3(0.0);
+    if (MULTI_SCATTER != SINGLE_SCATTER) {
+        vec3 dielectric = f_multiple(dielectric_curve(s), dfg_l, s.dfg);
+        f.multiple = mix(dielectric, f_multiple(metal_curve(s), dfg_l, s.dfg), s.metallic);
+    }
+
+    f.k_s = mix(f.f_dielectric, f.f_metal, s.metallic);
+    f.k_d = (1.0 - s.metallic) * entering(s, f, dfg_l);
+    float below = 1.0 - above;
+    if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
+        // Lambert, on the other side (KHR_materials_diffuse_transmission).
+        f.diffuse_transmitted = f_lambert(s.diffuse_transmission_color) * (below * f.k_d * s.diffuse_transmission);
+        f.k_d *= 1.0 - s.diffuse_transmission;
+    }
+    if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
+        float transmitted = (1.0 - s.metallic) * s.transmission * below;
+        float sin2_h = sin2_between(s.n, h);
+        f.transmitted = f_transmitted(s, abs(cos_l), f.n_dot_v, f.n_dot_h, sin2_h, f.f_dielectric) * transmitted;
+        f.diffuse_transmitted *= 1.0 - s.transmission;
+        f.k_d *= 1.0 - s.transmission;
+    }
+    cover(s, l, v, h, abs(cos_l), f);
+
+    f.diffuse = f_diffuse(s, f, dot(l, v)) * (f.k_d * above);
     f.specular = f.k_s * (f.d * f.v);
-    f.value = f.diffuse + f.specular;
+    f.multiple *= above;
+    f.sheen *= above;
+    f.clearcoat *= above;
+    f.value = f.diffuse + f.specular + f.multiple + f.sheen + f.clearcoat + f.transmitted + f.diffuse_transmitted;
     return f;
 }
 

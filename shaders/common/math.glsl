@@ -23,4 +23,17 @@ vec3 safe_normalize(vec3 x, vec3 fallback) {
     return length_squared > 1e-20 ? x * inversesqrt(length_squared) : fallback;
 }
 
+// sin^2 of the angle between two unit vectors. 1 - dot(a, b)^2 is the same, but of small angles leaves rounding noise
+// only, since the dot is known to 6e-8; |a - b| keeps all its digits.
+float sin2_between(vec3 a, vec3 b) {
+    vec3 chord = a - b;
+    float chord2 = dot(chord, chord);
+    return chord2 * (1.0 - 0.25 * chord2);
+}
+
+// A unit vector at right angles to the unit vector n, by the axis that is farthest from n.
+vec3 any_perpendicular(vec3 n) {
+    return normalize(cross(n, abs(n.y) < 0.7 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+}
+
 #endif

@@ -2,7 +2,7 @@
 //
 // To add one: an annotation and a constant here, its value in `your_mode` at the end of this file, save.
 //
-//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [draw=lines|layers] [key=d] doc="One sentence."
+//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [accumulate] [draw=lines|layers] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
 // The first line in a comment that starts with the at sign; any number that no other mode has.
@@ -10,6 +10,8 @@
 //   encode    how a PNG and the window store the value: color: sRGB curve; data: as it is; vector: v * 0.5 + 0.5
 //   draw      lines: the edges of triangles; layers: every fragment added up, hidden ones too
 //   tonemap   the value is light: exposure and tone map apply
+//   accumulate  the value is an estimate by frame.sample_count random paths a pixel, others in each frame
+//             (frame.sample_index counts them): the renderer shows the mean over the frames since the picture changed
 //   key       a letter that shows the mode in the window
 //
 // Values are raw: a depth is in meters, D exceeds 1. A checkerboard means that the model or the light has no such data.
@@ -20,7 +22,7 @@
 #include "brdf/surface.glsl"
 #include "common/fragment.glsl"
 
-//@mode final "Final" group="Picture" encode=color tonemap key=p doc="All lights, ambient light and emission."
+//@mode final "Final" group="Picture" encode=color tonemap key=p doc="All lights, the environment and emission."
 const uint MODE_FINAL = 0u;
 //@mode clay "Clay" group="Picture" encode=color tonemap key=c doc="Matte gray of albedo 0.5 with the model's normals."
 const uint MODE_CLAY = 1u;
@@ -76,7 +78,7 @@ const uint MODE_METALLIC = 102u;
 const uint MODE_ROUGHNESS = 103u;
 //@mode ggx-alpha "GGX alpha" group="Material" encode=data doc="Width of the lobe: roughness^2, at least 0.0025."
 const uint MODE_GGX_ALPHA = 104u;
-//@mode occlusion "Occlusion" group="Material" encode=data doc="1 sees the whole sky; it dims ambient light only."
+//@mode occlusion "Occlusion" group="Material" encode=data doc="1 sees the whole sky; dims only the environment."
 const uint MODE_OCCLUSION = 105u;
 //@mode emissive "Emissive" group="Material" encode=color doc="Texture and factor, linear RGB, without exposure."
 const uint MODE_EMISSIVE = 106u;
@@ -84,10 +86,46 @@ const uint MODE_EMISSIVE = 106u;
 const uint MODE_NORMAL_TEXTURE = 107u;
 //@mode diffuse-color "Diffuse color" group="Material" encode=color doc="base color (1 - metallic)."
 const uint MODE_DIFFUSE_COLOR = 108u;
-//@mode f0 "F0" group="Material" encode=color doc="Reflectance along the normal: mix(0.04, base color, metallic)."
+//@mode f0 "F0" group="Material" encode=color doc="Reflectance along the normal, dielectric and metal mixed."
 const uint MODE_F0 = 109u;
-//@mode f90 "F90" group="Material" encode=color doc="Reflectance at a grazing angle: 1 in metallic-roughness."
+//@mode f90 "F90" group="Material" encode=color doc="Reflectance at a grazing angle: 1, or the specular factor."
 const uint MODE_F90 = 110u;
+//@mode ior "Index of refraction" group="Material" encode=data doc="Of the dielectric: 1.5 unless the model says more."
+const uint MODE_IOR = 111u;
+//@mode clearcoat "Clearcoat" group="Material" encode=data doc="0 bare .. 1 coated."
+const uint MODE_CLEARCOAT = 112u;
+//@mode clearcoat-roughness "Clearcoat roughness" group="Material" encode=data doc="Perceptual roughness of the coat."
+const uint MODE_CLEARCOAT_ROUGHNESS = 113u;
+//@mode clearcoat-normal "Clearcoat normal" group="Material" encode=vector doc="The coat's own normal, world space."
+const uint MODE_CLEARCOAT_NORMAL = 114u;
+//@mode anisotropy "Anisotropy" group="Material" encode=data doc="0 a round highlight .. 1 the longest."
+const uint MODE_ANISOTROPY = 115u;
+//@mode anisotropy-direction "Anisotropy axis" group="Material" encode=vector doc="Where the lobe is long, world space."
+const uint MODE_ANISOTROPY_DIRECTION = 116u;
+//@mode sheen-color "Sheen color" group="Material" encode=color doc="Of the fibers, linear RGB; black has no sheen."
+const uint MODE_SHEEN_COLOR = 117u;
+//@mode sheen-roughness "Sheen roughness" group="Material" encode=data doc="How much the fibers stray from the normal."
+const uint MODE_SHEEN_ROUGHNESS = 118u;
+//@mode specular-factor "Specular factor" group="Material" encode=data doc="F90 of the dielectric."
+const uint MODE_SPECULAR_FACTOR = 119u;
+//@mode specular-color "Specular color" group="Material" encode=color doc="F0 of the dielectric: color, factor and ior."
+const uint MODE_SPECULAR_COLOR = 120u;
+//@mode iridescence "Iridescence" group="Material" encode=data doc="0 no film .. 1."
+const uint MODE_IRIDESCENCE = 121u;
+//@mode iridescence-thickness "Iridescence thickness" group="Material" encode=data doc="Of the film, micrometers."
+const uint MODE_IRIDESCENCE_THICKNESS = 122u;
+//@mode transmission "Transmission" group="Material" encode=data doc="Part of what enters that goes straight through."
+const uint MODE_TRANSMISSION = 123u;
+//@mode thickness "Thickness" group="Material" encode=data doc="Of the volume behind the surface, world space, meters."
+const uint MODE_THICKNESS = 124u;
+//@mode attenuation-color "Attenuation color" group="Material" encode=color doc="What is left of white at a distance."
+const uint MODE_ATTENUATION_COLOR = 125u;
+//@mode dispersion "Dispersion" group="Material" encode=data doc="20 / Abbe number."
+const uint MODE_DISPERSION = 126u;
+//@mode diffuse-transmission "Diffuse transmission" group="Material" encode=data doc="Diffuse light: the part passing."
+const uint MODE_DIFFUSE_TRANSMISSION = 127u;
+//@mode diffuse-transmission-color "Diffuse transmission tint" group="Material" encode=color doc="Albedo, light behind."
+const uint MODE_DIFFUSE_TRANSMISSION_COLOR = 128u;
 
 // D to V dot H: of the chosen light, or of light 1 when all are chosen.
 //@mode d "Normal distribution D" group="BRDF terms" encode=data key=d doc="GGX (Walter et al. 2007, eq. 33), 1/sr."
@@ -115,8 +153,14 @@ const uint MODE_V_DOT_H = 309u;
 const uint MODE_DIFFUSE_LOBE = 310u;
 //@mode specular-lobe "Specular lobe" group="BRDF terms" encode=color key=k doc="k_s D V, 1/sr (Cook & Torrance 1982)."
 const uint MODE_SPECULAR_LOBE = 311u;
+//@mode multi-scatter-lobe "Multi-scatter lobe" group="BRDF terms" encode=color doc="Reflected twice and more, 1/sr."
+const uint MODE_MULTI_SCATTER_LOBE = 312u;
+//@mode clearcoat-lobe "Clearcoat lobe" group="BRDF terms" encode=color doc="D V of the coat by its weight, 1/sr."
+const uint MODE_CLEARCOAT_LOBE = 313u;
+//@mode sheen-lobe "Sheen lobe" group="BRDF terms" encode=color doc="sheen color D V, 1/sr (Estevez & Kulla 2017)."
+const uint MODE_SHEEN_LOBE = 314u;
 
-// Of the chosen light, of all lights when all are chosen; from `ambient` on, chosen or not.
+// Of the chosen light, of all lights when all are chosen; from `ambient` to `luminance`, chosen or not.
 //@mode dielectric "Dielectric only" group="Light" encode=color tonemap key=i doc="The picture with metallic 0."
 const uint MODE_DIELECTRIC = 400u;
 //@mode metal "Metal only" group="Light" encode=color tonemap key=j doc="The picture with metallic 1."
@@ -127,7 +171,7 @@ const uint MODE_DIRECT_DIFFUSE = 402u;
 const uint MODE_DIRECT_SPECULAR = 403u;
 //@mode lambert "Lambert, no cosine" group="Light" encode=color tonemap doc="base color / pi times irradiance."
 const uint MODE_LAMBERT = 404u;
-//@mode ambient "Ambient" group="Light" encode=color tonemap doc="ambient radiance times base color times occlusion."
+//@mode ambient "Ambient" group="Light" encode=color tonemap doc="All light of the environment, or flat ambient light."
 const uint MODE_AMBIENT = 405u;
 //@mode emissive-only "Emission" group="Light" encode=color tonemap doc="Emission alone, exposed like the picture."
 const uint MODE_EMISSIVE_ONLY = 406u;
@@ -139,6 +183,41 @@ const uint MODE_LIGHT_2 = 408u;
 const uint MODE_LIGHT_3 = 409u;
 //@mode luminance "Luminance" group="Light" encode=color tonemap doc="Y of the picture (ITU-R BT.709)."
 const uint MODE_LUMINANCE = 410u;
+// The environment.
+//@mode ibl-diffuse "Environment, diffuse" group="Light" encode=color tonemap doc="Irradiance times the diffuse albedo."
+const uint MODE_IBL_DIFFUSE = 411u;
+//@mode ibl-specular "Environment, specular" group="Light" encode=color tonemap doc="Split sum, one bounce: Karis 2013."
+const uint MODE_IBL_SPECULAR = 412u;
+//@mode irradiance "Irradiance" group="Light" encode=color tonemap doc="Of the environment on the normal's side, W/m2."
+const uint MODE_IRRADIANCE = 413u;
+//@mode prefiltered "Prefiltered radiance" group="Light" encode=color tonemap doc="Mirrored environment, blurred."
+const uint MODE_PREFILTERED = 414u;
+//@mode dfg "DFG terms" group="Light" encode=data doc="A, B, C: albedo of the lobe is F0 A + F90 B - beta C."
+const uint MODE_DFG = 415u;
+// Of the chosen light or of all, and of the environment.
+//@mode clearcoat-light "Clearcoat light" group="Light" encode=color tonemap doc="What the coat reflects."
+const uint MODE_CLEARCOAT_LIGHT = 416u;
+//@mode sheen-light "Sheen light" group="Light" encode=color tonemap doc="What the fibers scatter."
+const uint MODE_SHEEN_LIGHT = 417u;
+//@mode transmitted-light "Transmitted light" group="Light" encode=color tonemap doc="What passes through, seen or scattered."
+const uint MODE_TRANSMITTED_LIGHT = 418u;
+//@mode multiple-scattering "Multiple scattering" group="Light" encode=color tonemap doc="Off two microfacets or more."
+const uint MODE_MULTIPLE_SCATTERING = 419u;
+//@mode area-light "Area lights" group="Light" encode=color tonemap doc="Rectangles only (Heitz et al. 2016)."
+const uint MODE_AREA_LIGHT = 420u;
+// Of all lights, chosen or not.
+//@mode single-scattering "Single scattering" group="Light" encode=color tonemap doc="The picture without the above."
+const uint MODE_SINGLE_SCATTERING = 421u;
+//@mode environment "Environment" group="Light" encode=color tonemap doc="Mirrored without blur: a chrome model."
+const uint MODE_ENVIRONMENT = 422u;
+
+// By the chosen light or all that have no size: no environment, no emission.
+//@mode measured "Measured" group="Measured" encode=color tonemap doc="With the measured BRDF instead of the material."
+const uint MODE_MEASURED = 600u;
+//@mode measured-split "Split" group="Measured" encode=color tonemap doc="Left measured, right as shaded."
+const uint MODE_MEASURED_SPLIT = 601u;
+//@mode measured-error "Error" group="Measured" encode=color doc="Blue too dark, green equal, red too bright."
+const uint MODE_MEASURED_ERROR = 602u;
 
 //@mode nan "NaN, Inf, negative" group="Truth" encode=color key=x doc="NaN magenta, Inf yellow, negative cyan."
 const uint MODE_NAN = 500u;
@@ -152,6 +231,12 @@ const uint MODE_FALSE_COLOR = 503u;
 const uint MODE_ALBEDO_RANGE = 504u;
 //@mode f0-range "F0 range" group="Truth" encode=color doc="Red: neither dielectric (to 5 %) nor metal (sRGB 180 up)."
 const uint MODE_F0_RANGE = 505u;
+//@mode monte-carlo "Monte Carlo" group="Truth" encode=color tonemap accumulate doc="The picture with random paths."
+const uint MODE_MONTE_CARLO = 506u;
+//@mode ibl-error "Split sum error" group="Truth" encode=vector accumulate doc="Monte Carlo minus split sum."
+const uint MODE_IBL_ERROR = 507u;
+//@mode energy "Energy" group="Truth" encode=data doc="Reflected part of white light from everywhere; red above 1.005."
+const uint MODE_ENERGY = 508u;
 
 // Yours: the value of a mode of your own, from the fragment, the surface as it is shaded and the direction to the eye.
 //

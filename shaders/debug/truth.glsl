@@ -5,8 +5,12 @@
 #include "interface.glsl"
 #include "brdf/surface.glsl"
 #include "common/color.glsl"
+#include "debug/absent.glsl"
 #include "debug/modes.glsl"
+#include "lighting/monte_carlo.glsl"
 #include "lighting/radiance.glsl"
+#include "lighting/shade.glsl"
+#include "material.glsl"
 
 const vec3 TOO_LOW = vec3(0.05, 0.15, 1.0);
 const vec3 TOO_HIGH = vec3(1.0, 0.06, 0.03);
@@ -53,22 +57,45 @@ vec3 albedo_range_color(Surface s) {
 // Along the normal, dielectrics reflect 2 to 5 % and metals sRGB 180 and more (McDermott 2018). Nothing common lies
 // between: a metal that dark is covered by dirt or rust, which are dielectrics, and `metallic` should say so.
 vec3 f0_range_color(Surface s) {
-    float f0 = max_component(mix(vec3(DIELECTRIC_F0), s.base_color, s.metallic));
+    float f0 = max_component(mix(s.f0, s.base_color, s.metallic));
     if (f0 < 0.02) return TOO_LOW;
     float metal = linear_from_srgb(vec3(180.0 / 255.0)).r;
     if (f0 > 0.05 && f0 < metal) return TOO_HIGH;
     return vec3(0.25 * f0);
 }
 
-bool debug_truth(Surface s, vec3 v, out vec3 value) {
+// The environment by this frame's paths.
+vec3 environment_by_paths(Surface s, vec3 v) {
+    return environment_monte_carlo(s, v, frame.sample_index * frame.sample_count, frame.sample_count);
+}
+
+// A little over 1 is within the error of the estimate.
+vec3 energy_color(vec3 albedo) { return max_component(albedo) > 1.005 ? TOO_HIGH : albedo; }
+
+bool debug_paths(Surface s, vec3 v, Lit lit, out vec3 value) {
+    if (MODE == MODE_ENERGY) {
+        value = if_present(!has_feature(FEATURE_UNLIT), energy_color(albedo_monte_carlo(s, v)));
+        return true;
+    }
+    if (MODE != MODE_MONTE_CARLO && MODE != MODE_IBL_ERROR) return false;
+    vec3 by_paths = environment_by_paths(s, v);
+    vec3 by_split_sum = lit.ambient.all;
+    lit.ambient.all = by_paths;
+    value = MODE == MODE_IBL_ERROR ? by_paths - by_split_sum : outgoing_radiance(s, v, lit);
+    value = if_present(has_feature(FEATURE_ENVIRONMENT) && !has_feature(FEATURE_UNLIT), value);
+    return true;
+}
+
+// `lit` and `radiance`: the picture.
+bool debug_truth(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     bool known = true;
-    if (MODE == MODE_NAN) value = nan_color(outgoing_radiance(s, v, all_lights()));
-    else if (MODE == MODE_NEGATIVE) value = negative_color(outgoing_radiance(s, v, all_lights()));
-    else if (MODE == MODE_CLIPPED) value = clipped_color(outgoing_radiance(s, v, all_lights()));
-    else if (MODE == MODE_FALSE_COLOR) value = false_color(outgoing_radiance(s, v, all_lights()));
+    if (MODE == MODE_NAN) value = nan_color(radiance);
+    else if (MODE == MODE_NEGATIVE) value = negative_color(radiance);
+    else if (MODE == MODE_CLIPPED) value = clipped_color(radiance);
+    else if (MODE == MODE_FALSE_COLOR) value = false_color(radiance);
     else if (MODE == MODE_ALBEDO_RANGE) value = albedo_range_color(s);
     else if (MODE == MODE_F0_RANGE) value = f0_range_color(s);
-    else known = false;
+    else known = debug_paths(s, v, lit, value);
     return known;
 }
 

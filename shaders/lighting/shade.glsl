@@ -1,17 +1,25 @@
-// A surface under lights: the rendering equation (Kajiya 1986) with the integral replaced by a sum.
+// A surface under lights: the rendering equation (Kajiya 1986), the integral replaced by a sum over the lights and by
+// the split sum for what comes from everywhere.
 #ifndef LIGHTING_SHADE_GLSL
 #define LIGHTING_SHADE_GLSL
 
 #include "interface.glsl"
 #include "brdf/evaluate.glsl"
+#include "lighting/albedo.glsl"
 #include "lighting/ambient.glsl"
+#include "lighting/image_based.glsl"
+#include "lighting/lobes.glsl"
 #include "lighting/punctual.glsl"
+#include "lighting/rectangle.glsl"
+#include "lighting/transmission.glsl"
 
 // Radiance towards the eye, by origin.
 struct Lit {
-    vec3 diffuse;              // direct light, diffuse lobe
-    vec3 specular;             // direct light, specular lobe
-    vec3 ambient;
+    Lobes punctual;            // lights without a size
+    Lobes area;                // rectangles
+    Lobes ambient;             // the environment, or flat ambient light
+    vec3 behind;               // what is seen through the surface
+    vec3 emitted;              // the material's own light, as far as the coat lets it pass (KHR_materials_clearcoat)
 };
 
 // Lights number first .. end - 1.
@@ -31,19 +39,45 @@ LightRange chosen_lights() {
 
 bool is_empty(LightRange range) { return range.first >= range.end; }
 
-// L = sum over lights of f E NoL, E being the irradiance on a plane that faces the light.
+// L = f E |NoL|, E being the irradiance on a plane that faces the light.
+void add_punctual(inout Lobes sum, Surface s, vec3 v, Light light) {
+    Illumination illumination = illuminate(light, s.position_ws);
+    float n_dot_l = dot(s.n, illumination.l);
+    // Behind the surface: f is 0, unless light passes through.
+    if (LIGHT_PASSES) n_dot_l = abs(n_dot_l);
+    else if (n_dot_l <= 0.0) return;
+    add(sum, lobes_of(evaluate_brdf(s, illumination.l, v)), illumination.irradiance * n_dot_l);
+}
+
+Lobes ambient_light(Surface s, vec3 v, Albedo albedo) {
+    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) return with_sum(environment_light(s, v, albedo));
+    return with_sum(flat_light(s));
+}
+
+// A lamp's or the sky's light from behind crosses the volume; how far does not depend on where it came from.
+void cross_volume(Surface s, inout Lobes light) {
+    light.all -= light.transmitted;
+    light.transmitted *= attenuation(s, s.thickness);
+    light.all += light.transmitted;
+}
+
 Lit shade(Surface s, vec3 v, LightRange range) {
-    Lit lit = Lit(vec3(0.0), vec3(0.0), ambient_radiance(s));
+    Albedo albedo = directional_albedo(s, v);
+    Lit lit = Lit(no_light(), no_light(), ambient_light(s, v, albedo), vec3(0.0), albedo.under_coat * s.emissive);
+    if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
     for (uint i = range.first; i < range.end; ++i) {
-        Illumination light = illuminate(lights[i], s.position_ws);
-        if (dot(s.n, light.l) <= 0.0) continue;   // behind the surface: f would be 0
-        Brdf f = evaluate_brdf(s, light.l, v);
-        lit.diffuse += f.diffuse * light.irradiance * f.n_dot_l;
-        lit.specular += f.specular * light.irradiance * f.n_dot_l;
+        if ((FEATURES & FEATURE_RECT_LIGHTS) != 0u && lights[i].kind == LIGHT_RECT) {
+            add(lit.area, rectangle_light(s, v, albedo, lights[i]), vec3(1.0));
+        } else {
+            add_punctual(lit.punctual, s, v, lights[i]);
+        }
+    }
+    if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {
+        cross_volume(s, lit.punctual);
+        cross_volume(s, lit.area);
+        cross_volume(s, lit.ambient);
     }
     return lit;
 }
-
-vec3 reflected_radiance(Lit lit) { return lit.diffuse + lit.specular + lit.ambient; }
 
 #endif

@@ -9,15 +9,16 @@ use std::time::Instant;
 use winit::event_loop::EventLoopProxy;
 
 use crate::events::{Event, ReloadEvent, emit};
-use crate::gpu::{Gpu, SetLayouts, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts, vk};
 use crate::headless;
 use crate::interface::FEATURE_NORMAL_TEXTURE;
-use crate::render::{GpuScene, MaterialVariant, PipelineSet, Wanted};
+use crate::render::{GpuEnvironment, GpuScene, MaterialVariant, PipelineSet, Wanted};
 use crate::scene::Model;
 use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Mode, ShaderSet, Source, TreePath, Watcher, is_specula_tree};
 
 use super::camera::CameraHand;
+use super::environment::Surroundings;
 use super::input::Mouse;
 use super::worker::{Needs, Worker};
 use super::{AppOptions, Early, Message};
@@ -28,6 +29,8 @@ pub(super) struct Shown {
     pub(super) pipelines: Arc<PipelineSet>,
     pub(super) wanted: Wanted,
     pub(super) scene: Option<Arc<GpuScene>>,
+    pub(super) environment: Arc<GpuEnvironment>,
+    pub(super) measured: Arc<Buffer>,
     /// Slug of the mode that `wanted` draws.
     pub(super) mode: String,
 }
@@ -61,6 +64,8 @@ pub(super) struct Document {
     pub(super) settings: Settings,
     pub(super) model: Model,
     pub(super) model_path: Option<PathBuf>,
+    /// The model's files that are watched, or those of one that could not be loaded.
+    pub(super) model_files: Vec<PathBuf>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
     pub(super) pipelines: Option<Arc<PipelineSet>>,
@@ -88,6 +93,7 @@ pub(super) struct Document {
     pub(super) layouts: Arc<SetLayouts>,
     pub(super) proxy: EventLoopProxy<Message>,
     pub(super) worker: Worker,
+    pub(super) surroundings: Surroundings,
     pub(super) tree_watcher: Option<Watcher>,
     pub(super) model_watcher: Option<Watcher>,
     pub(super) allow_outside: bool,
@@ -117,7 +123,7 @@ impl Document {
         options: AppOptions,
         early: Early,
         proxy: &EventLoopProxy<Message>,
-    ) -> Self {
+    ) -> Result<Self, GpuError> {
         // What most models have, built while the model loads.
         let likely = MaterialVariant { features: FEATURE_NORMAL_TEXTURE, ..Default::default() };
         let needs = Needs {
@@ -127,11 +133,14 @@ impl Document {
             scene_format: SCENE_FORMAT,
         };
         let tree = options.source.clone();
+        let lights = &options.settings.lights;
+        let surroundings = Surroundings::new(gpu, lights.ambient_color.map(|c| c * lights.ambient_strength))?;
         let worker = Worker::start(gpu, layouts, options.source, needs, &options.compiler, proxy.clone());
         let mut document = Self {
             settings: options.settings,
             model: Model::default(),
             model_path: options.model.clone(),
+            model_files: Vec::new(),
             loading: false,
             load_ms: 0.0,
             pipelines: None,
@@ -157,6 +166,7 @@ impl Document {
             layouts: layouts.clone(),
             proxy: proxy.clone(),
             worker,
+            surroundings,
             tree_watcher: None,
             model_watcher: None,
             allow_outside: options.allow_outside,
@@ -168,7 +178,7 @@ impl Document {
         document.requested = options.model;
         document.model_watcher = early.watcher;
         document.take_model(early.reading);
-        document
+        Ok(document)
     }
 
     /// The shaders on screen.
@@ -195,6 +205,11 @@ impl Document {
     /// Whether the picture moves by itself: the lights orbit, or a shader reads the time.
     pub(super) fn moves(&self) -> bool {
         self.settings.lights.spin != 0.0 || self.shaders().is_some_and(|s| s.animated)
+    }
+
+    /// Whether the picture is the mean of frames, so that each one more makes it better.
+    pub(super) fn accumulates(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.wanted.accumulates)
     }
 
     /// Tells the user something for a few seconds.
@@ -243,16 +258,24 @@ impl Document {
                 path.display()
             )),
             "gltf" | "glb" => self.load_model(Some(path)),
-            "hdr" | "exr" => {
-                self.say(format!("{}: environments are not supported yet; the ambient light stays", path.display()));
+            "hdr" | "exr" => self.settings.environment.name = path.display().to_string(),
+            "binary" | "bin" => {
+                self.settings.measured = path.display().to_string();
+                self.settings.mode = "measured".into();
             }
-            _ => self.say(format!("{}: expected a .gltf or .glb model or a folder with a shader tree", path.display())),
+            _ => self.say(format!(
+                "{}: expected a .gltf or .glb model, an .hdr or .exr environment, a measured .binary or .bin, or a folder with a \
+                 shader tree",
+                path.display()
+            )),
         }
     }
 
     /// Works out what the next frame is drawn with: what the user asks for once it is complete, what was shown before until then.
     pub(super) fn shown(&mut self) -> Option<Shown> {
+        self.read_measured();
         if let Some(set) = self.pipelines.clone() {
+            self.bake_if_needed(&set);
             let scene = self.next_scene.as_ref().map(|(_, scene)| scene).or(self.scene.as_ref());
             let needs = Needs {
                 settings: self.settings.clone(),
@@ -281,7 +304,9 @@ impl Document {
         }
         self.asked = None;
         let mode = self.settings.mode.clone();
-        self.shown = Some(Shown { pipelines, wanted, scene: self.scene.clone(), mode });
+        let environment = self.surroundings.baked.environment.clone();
+        let measured = self.surroundings.measured.clone();
+        self.shown = Some(Shown { pipelines, wanted, scene: self.scene.clone(), environment, measured, mode });
     }
 
     /// A frame with these pipelines is finished, `ms` after it was begun.

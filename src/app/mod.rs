@@ -1,10 +1,11 @@
 //! The window: an editor on one half of the screen, this on the other.
 //!
-//! Three threads beside the window's own: the watcher (events only), the worker (compiles and builds pipelines) and a loader
-//! for models. They send messages; only the window's thread touches what is on screen.
+//! Four threads beside the window's own: the watcher (events only), the worker (compiles and builds pipelines), a loader for
+//! models and one that bakes environments. They send messages; only the window's thread touches what is on screen.
 
 mod camera;
 mod document;
+mod environment;
 mod input;
 mod loader;
 mod models;
@@ -31,6 +32,7 @@ use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
 
 use document::Document;
+use environment::BakeMessage;
 use loader::{Loaded, Reading};
 use screen::Screen;
 use worker::WorkerMessage;
@@ -79,7 +81,8 @@ pub enum AppError {
 enum Message {
     Worker(WorkerMessage),
     Loaded(Box<Loaded>),
-    ModelChanged(BTreeSet<PathBuf>),
+    Bake(BakeMessage),
+    FilesChanged(BTreeSet<PathBuf>),
 }
 
 /// Opens the window and runs until it is closed.
@@ -154,7 +157,7 @@ impl App {
             display: Some(display.as_raw()),
         })?;
         let screen = Screen::new(&gpu, &window)?;
-        let document = Document::new(&gpu, screen.layouts(), options, early, &self.proxy);
+        let document = Document::new(&gpu, screen.layouts(), options, early, &self.proxy)?;
         Ok(Open { document, screen, gpu, window })
     }
 
@@ -204,8 +207,9 @@ impl ApplicationHandler<Message> for App {
         let Some(open) = &mut self.open else { return };
         match message {
             Message::Worker(message) => open.document.on_worker(message),
+            Message::Bake(message) => open.document.on_bake(message),
             Message::Loaded(loaded) => open.document.on_loaded(*loaded),
-            Message::ModelChanged(paths) => open.document.reload_model(&paths),
+            Message::FilesChanged(paths) => open.document.files_changed(&paths),
         }
         open.window.request_redraw();
     }

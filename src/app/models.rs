@@ -28,8 +28,11 @@ impl Document {
         self.loaders.push(loader::upload(&self.gpu, &self.layouts, &self.proxy, reading, self.ticket));
     }
 
-    /// Files of the model have changed, or files of one that could not be loaded.
-    pub(super) fn reload_model(&mut self, changed: &BTreeSet<PathBuf>) {
+    /// Files of the model or the environment have changed, or files of one that could not be loaded.
+    pub(super) fn files_changed(&mut self, changed: &BTreeSet<PathBuf>) {
+        if self.environment_changed(changed) && changed.len() == 1 {
+            return;
+        }
         let of_model = self.model.files.iter().any(|file| changed.contains(file));
         let path = if of_model && !self.loading { self.model_path.clone() } else { self.requested.clone() };
         self.load_model(path);
@@ -51,20 +54,23 @@ impl Document {
                     self.settings.camera.target = None;
                 }
                 self.model_path = loaded.path;
-                self.watch_model(model.files.clone());
+                self.model_files.clone_from(&model.files);
+                self.watch_files();
                 self.next_scene = Some((model, scene));
             }
             Err((message, tried)) => {
                 // The model on screen stays watched, and so is what must be repaired.
-                let files = self.model.files.iter().cloned().chain(tried).collect();
-                self.watch_model(files);
+                self.model_files = self.model.files.iter().cloned().chain(tried).collect();
+                self.watch_files();
                 self.say(message);
             }
         }
     }
 
-    /// Watches these files in place of those before.
-    pub(super) fn watch_model(&mut self, files: Vec<PathBuf>) {
+    /// Watches the files of model and environment in place of those before.
+    pub(super) fn watch_files(&mut self) {
+        let environment = self.surroundings.files(&self.settings.environment.name);
+        let files: Vec<PathBuf> = self.model_files.iter().cloned().chain(environment).collect();
         match &self.model_watcher {
             Some(watcher) => watcher.set_files(&files),
             None => match watch(&files, &self.proxy) {
@@ -82,7 +88,7 @@ pub(super) fn watch(files: &[PathBuf], proxy: &EventLoopProxy<Message>) -> Resul
     }
     let proxy = proxy.clone();
     let on_batch = move |batch: Batch| {
-        let _ = proxy.send_event(Message::ModelChanged(batch.paths));
+        let _ = proxy.send_event(Message::FilesChanged(batch.paths));
     };
     Watcher::new(None, files, on_batch).map(Some).map_err(|e| e.to_string())
 }

@@ -8,14 +8,17 @@ use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
 use crate::events::{Event, emit};
-use crate::gpu::{Gpu, GpuError, Rect, SetLayouts, Surface, Swapchain, UiRenderer};
+use crate::gpu::{Buffer, Gpu, GpuError, Rect, SetLayouts, Surface, Swapchain, UiRenderer};
 use crate::picture;
-use crate::render::{Drawn, FrameInput, Renderer, Shot, Target, UiFrame};
+use crate::render::{Drawn, FrameInput, GpuEnvironment, Renderer, Shot, Target, UiFrame};
 use crate::scene::View;
 
 use super::camera::CameraHand;
 use super::document::{Document, Hover, SCENE_FORMAT, Shown};
 use super::panels;
+
+/// Frames that a picture is the mean of at most: more change nothing that can be seen.
+const MOST_ACCUMULATED: u32 = 4096;
 
 /// The screen. Fields drop in order: what draws, then what it draws to.
 pub(super) struct Screen {
@@ -110,7 +113,8 @@ impl Screen {
         let shown = document.shown();
         let shot = shot(document, shown.as_ref(), aspect);
         self.view = Some(shot.view);
-        let frame = frame_input(&shot, shown.as_ref(), self.rect);
+        let (environment, measured) = surroundings(document, shown.as_ref());
+        let frame = frame_input(&shot, shown.as_ref(), (&environment, &measured), self.rect);
         let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
         let ui = UiFrame { renderer: &mut self.ui, primitives: &primitives, pixels_per_point: output.pixels_per_point };
         let begin = Instant::now();
@@ -135,7 +139,8 @@ impl Screen {
         }
         // The value under the mouse belongs to the picture before this one: once more, when this one differs.
         let hover_is_old = document.mouse.over && self.renderer.redrawn();
-        if self.stale || moving || hover_is_old || document.moves() {
+        let gets_better = document.accumulates() && self.renderer.accumulated() < MOST_ACCUMULATED;
+        if self.stale || moving || hover_is_old || document.moves() || gets_better {
             return Ok(Some(Duration::ZERO));
         }
         let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|v| v.repaint_delay);
@@ -180,7 +185,8 @@ impl Screen {
 
     /// Writes the picture, without panels, to `specula-N.png` in the working directory.
     fn screenshot(&mut self, document: &mut Document, shot: &Shot, shown: Option<&Shown>) -> Result<(), GpuError> {
-        let frame = frame_input(shot, shown, Rect { x: 0, y: 0, ..self.rect });
+        let (environment, measured) = surroundings(document, shown);
+        let frame = frame_input(shot, shown, (&environment, &measured), Rect { x: 0, y: 0, ..self.rect });
         if let Drawn::Captured(capture) = self.renderer.frame(frame, Target::Memory)? {
             let free = (1..).map(|n| std::path::PathBuf::from(format!("specula-{n}.png"))).find(|p| !p.exists());
             let path = free.unwrap_or_else(|| "specula.png".into());
@@ -214,9 +220,22 @@ fn shot(document: &Document, shown: Option<&Shown>, aspect: f32) -> Shot {
     Shot::new(&settings, shown.map(|s| &*s.pipelines.shaders), &document.model, view, time_s)
 }
 
-fn frame_input<'a>(shot: &'a Shot, shown: Option<&'a Shown>, rect: Rect) -> FrameInput<'a> {
+/// The environment and the measured BRDF of a frame.
+fn surroundings(document: &Document, shown: Option<&Shown>) -> (Arc<GpuEnvironment>, Arc<Buffer>) {
+    match shown {
+        Some(shown) => (shown.environment.clone(), shown.measured.clone()),
+        None => (document.surroundings.baked.environment.clone(), document.surroundings.measured.clone()),
+    }
+}
+
+fn frame_input<'a>(
+    shot: &'a Shot,
+    shown: Option<&'a Shown>,
+    (environment, measured): (&'a Arc<GpuEnvironment>, &'a Arc<Buffer>),
+    rect: Rect,
+) -> FrameInput<'a> {
     let pipelines = shown.map(|s| (&s.pipelines, &s.wanted));
-    FrameInput { shot, pipelines, scene: shown.and_then(|s| s.scene.as_ref()), rect }
+    FrameInput { shot, pipelines, scene: shown.and_then(|s| s.scene.as_ref()), environment, measured, rect }
 }
 
 /// A rectangle of egui's points as whole pixels inside the window, at least one pixel large.

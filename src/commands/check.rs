@@ -27,7 +27,7 @@ pub struct Args {
 /// Runs the command. Compiling needs no device; where there is one, every mode and choice is built on it too.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let source = args.common.source()?;
-    let mut library = Library::new(source, compiler()?, &specula::render::STAGES);
+    let mut library = Library::new(source, compiler()?, &specula::render::all_stages());
     let start = std::time::Instant::now();
     let mut diagnostics = check::check(&mut library);
     let built = match library.set().cloned() {

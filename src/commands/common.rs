@@ -17,8 +17,8 @@ pub struct Common {
     /// Shader tree [default: ./shaders when it is Specula's, else the built-in one]
     #[arg(long, value_name = "DIR")]
     pub shaders: Option<PathBuf>,
-    /// Environment; only `none` so far: light comes from the lights and the ambient light
-    #[arg(long, value_parser = ["none"])]
+    /// Light from all around: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
+    #[arg(long, value_name = "WHAT")]
     env: Option<String>,
     /// Which lights shine
     #[arg(long, value_enum)]
@@ -41,7 +41,7 @@ pub struct Common {
     /// Exposure value (EV100): exposure is 1 / (1.2 * 2^N)
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     ev: Option<f32>,
-    /// Behind the model: none (transparent) or #rrggbb
+    /// Behind the model: none (transparent), env or #rrggbb
     #[arg(long, value_name = "WHAT")]
     background: Option<String>,
     /// Debug mode; `specula modes` lists them
@@ -92,6 +92,9 @@ impl Common {
         put(&mut settings.view.ev, self.ev);
         settings.lights.source = self.lights.unwrap_or(settings.lights.source);
         settings.view.tonemap = self.tonemap.unwrap_or(settings.view.tonemap);
+        if let Some(environment) = &self.env {
+            settings.environment.name.clone_from(environment);
+        }
         if let Some(background) = &self.background {
             settings.view.background.clone_from(background);
         }

@@ -69,6 +69,7 @@ fn summary(model: &Model) -> serde_json::Value {
         "materials": model.materials.len(),
         "images": model.images.iter().map(|i| format!("{} {}x{}", i.name, i.width, i.height)).collect::<Vec<_>>(),
         "lights": model.lights.len(),
+        "variants": model.variants,
         "cameras": model.cameras.len(),
         "size_m": rounded(size),
         "center_m": rounded(model.bounds.center()),

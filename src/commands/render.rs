@@ -42,7 +42,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     let gpu = args.common.gpu()?;
     let mut model = args.common.model(args.model.as_deref())?;
     if let Some(watch) = &mut watch {
-        watch.follow(&model);
+        watch.follow(&model, &[]);
     }
     let opened = loop {
         let opened =
@@ -61,6 +61,12 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
         }
     };
     let (mut headless, _) = opened;
+    if let Some(watch) = &mut watch {
+        watch.follow(headless.model(), headless.environment_files());
+    }
+    if settings.environment.is_lit() {
+        emit(args.common.emits(), &Event::Bake(headless.bake_report()));
+    }
     write(&mut headless, &args, all)?;
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     if let Some(mut watch) = watch {
@@ -79,10 +85,11 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
 fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, changes: &Changes) -> Result<(), Failure> {
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
     let new_model = changes.model && take_model(headless, args, watch)?;
+    let new_environment = changes.environment && take_environment(headless, args);
     let change = headless.reloader().library().change_of(&changes.paths);
     let reload = headless.update(change);
     let mut first_frame_ms = 0.0;
-    if new_model || matches!(reload.outcome, Outcome::Ready(_)) {
+    if new_model || new_environment || matches!(reload.outcome, Outcome::Ready(_)) {
         let begin = Instant::now();
         let drawn = headless.draw().map_err(Failure::from);
         first_frame_ms = begin.elapsed().as_secs_f64() * 1e3;
@@ -99,7 +106,7 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
 /// Loads the model again; on failure the last good one stays.
 fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result<bool, Failure> {
     let loaded = args.common.model(args.model.as_deref()).and_then(|model| {
-        watch.follow(&model);
+        watch.follow(&model, headless.environment_files());
         headless.set_model(model).map_err(Failure::from)
     });
     match loaded {
@@ -113,6 +120,16 @@ fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result
         }
         Err(other) => Err(other),
     }
+}
+
+/// Bakes the environment again; on failure the last good one stays.
+fn take_environment(headless: &mut Headless, args: &Args) -> bool {
+    let baked = headless.bake();
+    match &baked {
+        Ok(()) => emit(args.common.emits(), &Event::Bake(headless.bake_report())),
+        Err(error) => eprintln!("specula: {error}\nspecula: the last good environment stays"),
+    }
+    baked.is_ok()
 }
 
 fn tell(args: &Args, diagnostics: &[Diagnostic]) {

@@ -15,6 +15,7 @@ pub struct Watch {
     watcher: Watcher,
     batches: Receiver<Batch>,
     model_files: BTreeSet<PathBuf>,
+    environment_files: BTreeSet<PathBuf>,
 }
 
 /// What changed together.
@@ -23,6 +24,8 @@ pub struct Changes {
     pub paths: BTreeSet<PathBuf>,
     /// Whether one of them is the model's.
     pub model: bool,
+    /// Whether one of them is the environment's.
+    pub environment: bool,
     /// When the first event came.
     pub first_event: Instant,
 }
@@ -35,20 +38,28 @@ impl Watch {
             let _ = sender.send(batch);
         };
         let watcher = Watcher::new(source.root(), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
-        Ok(Self { watcher, batches, model_files: BTreeSet::new() })
+        Ok(Self { watcher, batches, model_files: BTreeSet::new(), environment_files: BTreeSet::new() })
     }
 
-    /// Watches this model's files too, in place of those before.
-    pub fn follow(&mut self, model: &Model) {
-        self.watcher.set_files(&model.files);
-        let resolved = model.files.iter().map(|file| file.canonicalize().unwrap_or_else(|_| file.clone()));
-        self.model_files = model.files.iter().cloned().chain(resolved).collect();
+    /// Watches these files of a model and of an environment too, in place of those before.
+    pub fn follow(&mut self, model: &Model, environment: &[PathBuf]) {
+        let files: Vec<PathBuf> = model.files.iter().chain(environment).cloned().collect();
+        self.watcher.set_files(&files);
+        self.model_files = both_names(&model.files);
+        self.environment_files = both_names(environment);
     }
 
     /// Waits for the next changes; `None` when watching has ended.
     pub fn next(&mut self) -> Option<Changes> {
         let batch = self.batches.recv().ok()?;
         let model = batch.paths.iter().any(|path| self.model_files.contains(path));
-        Some(Changes { paths: batch.paths, model, first_event: batch.first_event })
+        let environment = batch.paths.iter().any(|path| self.environment_files.contains(path));
+        Some(Changes { paths: batch.paths, model, environment, first_event: batch.first_event })
     }
+}
+
+/// Each file as it was named and without symbolic links.
+fn both_names(files: &[PathBuf]) -> BTreeSet<PathBuf> {
+    let resolved = files.iter().map(|file| file.canonicalize().unwrap_or_else(|_| file.clone()));
+    files.iter().cloned().chain(resolved).collect()
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::blank::Blank;
 use super::buffer::Buffer;
 use super::device::Gpu;
 use super::error::{Context, GpuError};
@@ -23,6 +24,7 @@ pub struct SetLayouts {
     gpu: Arc<Gpu>,
     sets: Vec<vk::DescriptorSetLayout>,
     pub(super) pipeline: vk::PipelineLayout,
+    blank: Blank,
 }
 
 impl SetLayouts {
@@ -32,7 +34,8 @@ impl SetLayouts {
     /// Out of memory.
     pub fn new(gpu: &Arc<Gpu>) -> Result<Arc<Self>, GpuError> {
         let count = interface::BINDINGS.iter().map(|b| b.set + 1).max().unwrap_or(0);
-        let mut layouts = Self { gpu: gpu.clone(), sets: Vec::new(), pipeline: vk::PipelineLayout::null() };
+        let (blank, pipeline) = (Blank::new(gpu)?, vk::PipelineLayout::null());
+        let mut layouts = Self { gpu: gpu.clone(), sets: Vec::new(), pipeline, blank };
         for set in 0..count {
             let bindings: Vec<_> = interface::BINDINGS
                 .iter()
@@ -80,6 +83,7 @@ fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
         BindingKind::UniformBuffer => vk::DescriptorType::UNIFORM_BUFFER,
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::Sampler2D | BindingKind::SamplerCube => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
     }
 }
 
@@ -101,6 +105,33 @@ pub struct SetWriter {
 }
 
 impl SetWriter {
+    /// Fills what was not written.
+    fn completed(mut self, set: u32, blank: &Blank) -> Self {
+        for binding in interface::BINDINGS.iter().filter(|b| b.set == set) {
+            let at = binding.binding;
+            if self.buffers.iter().any(|(b, _)| *b == at) || self.images.iter().any(|(b, _)| *b == at) {
+                continue;
+            }
+            self = match binding.kind {
+                BindingKind::UniformBuffer | BindingKind::StorageBuffer => self.buffer(at, &blank.buffer),
+                BindingKind::Sampler2D => self.texture(at, &blank.image, &blank.sampler),
+                BindingKind::SamplerCube => self.texture(at, &blank.cube, &blank.sampler),
+                BindingKind::StorageImage => self.storage_level(at, &blank.image, 0),
+            };
+        }
+        self
+    }
+
+    /// Points `binding` to one level, with all its layers, of an image that is in [`super::Use::Storage`] whenever the set is
+    /// used; the image's usage must include `STORAGE`.
+    pub fn storage_level(mut self, binding: u32, image: &Arc<Image>, level: u32) -> Self {
+        let image_view = image.level_views.get(level as usize).copied().unwrap_or_default();
+        let image_layout = vk::ImageLayout::GENERAL;
+        self.images.push((binding, vk::DescriptorImageInfo { sampler: vk::Sampler::null(), image_view, image_layout }));
+        self.kept.push(image.clone());
+        self
+    }
+
     /// Points `binding` to a whole buffer.
     pub fn buffer(mut self, binding: u32, buffer: &Arc<Buffer>) -> Self {
         let info = vk::DescriptorBufferInfo { buffer: buffer.raw, offset: 0, range: vk::WHOLE_SIZE };
@@ -124,12 +155,13 @@ impl SetWriter {
 }
 
 impl DescriptorSet {
-    /// Makes set number `set` of the contract.
+    /// Makes set number `set` of the contract. What `writer` left out must not be read by a shader.
     ///
     /// # Errors
     /// Out of memory.
     pub fn new(layouts: &Arc<SetLayouts>, set: u32, writer: SetWriter) -> Result<Arc<Self>, GpuError> {
         let device = &layouts.gpu.device;
+        let writer = writer.completed(set, &layouts.blank);
         let sizes: Vec<_> = interface::BINDINGS
             .iter()
             .filter(|b| b.set == set)

@@ -46,6 +46,8 @@ pub enum Use {
     Depth,
     /// Read in shaders.
     Sampled,
+    /// Written and read level by level in compute shaders.
+    Storage,
     /// Source of a copy or blit.
     CopyFrom,
     /// Target of a copy or blit.
@@ -73,6 +75,9 @@ impl Use {
             Self::Sampled => {
                 (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_SAMPLED_READ, L::SHADER_READ_ONLY_OPTIMAL)
             }
+            Self::Storage => {
+                (S::COMPUTE_SHADER, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, L::GENERAL)
+            }
             Self::CopyFrom => (S::ALL_TRANSFER, A::TRANSFER_READ, L::TRANSFER_SRC_OPTIMAL),
             Self::CopyTo => (S::ALL_TRANSFER, A::TRANSFER_WRITE, L::TRANSFER_DST_OPTIMAL),
             Self::Present => (S::BOTTOM_OF_PIPE, A::NONE, L::PRESENT_SRC_KHR),
@@ -88,8 +93,10 @@ pub struct Attachments<'a> {
     pub clear: Option<[f32; 4]>,
     /// Where multisampled color is averaged to, in [`Use::Color`].
     pub resolve: Option<&'a Arc<Image>>,
-    /// Depth target, in [`Use::Depth`]; cleared to 0, which is far, and not kept.
+    /// Depth target, in [`Use::Depth`]; cleared to 0, which is far, when color is.
     pub depth: Option<&'a Arc<Image>>,
+    /// Whether drawing goes on later: then depth and multisampled color are kept too.
+    pub goes_on: bool,
     /// The part of the target that is drawn.
     pub area: Rect,
 }
@@ -113,6 +120,15 @@ impl Encoder {
 
     /// SYNC: everything before that used `image` as `from` comes before everything after that uses it as `to`.
     pub fn transition(&mut self, image: &Arc<Image>, from: Use, to: Use) {
+        self.transition_levels(image, 0..image.desc().mips, from, to);
+    }
+
+    /// SYNC: the same for one mip level.
+    pub(super) fn transition_level(&mut self, image: &Arc<Image>, level: u32, from: Use, to: Use) {
+        self.transition_levels(image, level..level + 1, from, to);
+    }
+
+    fn transition_levels(&mut self, image: &Arc<Image>, levels: std::ops::Range<u32>, from: Use, to: Use) {
         let (src_stage, src_access, old_layout) = from.scope();
         let (dst_stage, dst_access, new_layout) = to.scope();
         let barrier = vk::ImageMemoryBarrier2::default()
@@ -125,10 +141,10 @@ impl Encoder {
             .image(image.raw)
             .subresource_range(vk::ImageSubresourceRange {
                 aspect_mask: image.aspect(),
-                base_mip_level: 0,
-                level_count: image.desc().mips,
+                base_mip_level: levels.start,
+                level_count: levels.end - levels.start,
                 base_array_layer: 0,
-                layer_count: 1,
+                layer_count: image.desc().layers,
             });
         let barriers = [barrier];
         self.keep(image);
@@ -139,17 +155,19 @@ impl Encoder {
 
     /// Begins drawing to `to`; viewport and scissor are set to its area.
     pub fn begin_rendering(&mut self, to: &Attachments<'_>) {
+        let load = if to.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
+        let store = if to.goes_on { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::DONT_CARE };
         let color = vk::RenderingAttachmentInfo::default()
             .image_view(to.color.view)
             .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-            .load_op(if to.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD })
+            .load_op(load)
             .clear_value(vk::ClearValue { color: vk::ClearColorValue { float32: to.clear.unwrap_or_default() } });
         self.keep(to.color);
         let color = match to.resolve {
             Some(resolve) => {
                 self.keep(resolve);
                 color
-                    .store_op(vk::AttachmentStoreOp::DONT_CARE)
+                    .store_op(store)
                     .resolve_mode(vk::ResolveModeFlags::AVERAGE)
                     .resolve_image_view(resolve.view)
                     .resolve_image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
@@ -162,8 +180,8 @@ impl Encoder {
             vk::RenderingAttachmentInfo::default()
                 .image_view(depth.view)
                 .image_layout(vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL)
-                .load_op(vk::AttachmentLoadOp::CLEAR)
-                .store_op(vk::AttachmentStoreOp::DONT_CARE)
+                .load_op(load)
+                .store_op(store)
         });
         let mut info =
             vk::RenderingInfo::default().render_area(to.area.vulkan()).layer_count(1).color_attachments(&colors);
@@ -190,6 +208,12 @@ impl Encoder {
             self.gpu.device.cmd_set_viewport(self.raw, 0, &[viewport]);
             self.gpu.device.cmd_set_scissor(self.raw, 0, &[to.vulkan()]);
         }
+    }
+
+    /// Sets the weight of what [`super::Raster::Averaged`] adds.
+    pub fn set_weight(&mut self, weight: f32) {
+        // SAFETY: recording into our own buffer.
+        unsafe { self.gpu.device.cmd_set_blend_constants(self.raw, &[weight; 4]) };
     }
 
     /// Ends drawing.
@@ -268,9 +292,14 @@ impl Encoder {
 
     /// SYNC: copies before this are visible to every shader and index read after it, and to the CPU after the fence.
     pub fn copies_done(&mut self) {
+        self.writes_done(vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
+    }
+
+    /// SYNC: what these stages wrote before is visible to all that comes after, and to the CPU after the fence.
+    pub(super) fn writes_done(&mut self, stage: vk::PipelineStageFlags2, access: vk::AccessFlags2) {
         let barrier = [vk::MemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .src_stage_mask(stage)
+            .src_access_mask(access)
             .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
             .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::HOST_READ)];
         let info = vk::DependencyInfo::default().memory_barriers(&barrier);
@@ -278,7 +307,7 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };
     }
 
-    /// Fills every mip level, in [`Use::CopyTo`], from tightly packed levels that follow each other.
+    /// Fills every mip level, in [`Use::CopyTo`], from tightly packed levels that follow each other, each with all its layers.
     pub fn copy_to_image(&mut self, from: &Arc<Buffer>, offset: u64, to: &Arc<Image>) {
         self.keep(from);
         self.keep(to);
@@ -286,13 +315,22 @@ impl Encoder {
         let mut at = offset;
         for level in 0..to.desc().mips {
             let region = whole_level(to, level, at);
-            at += u64::from(region.image_extent.width) * u64::from(region.image_extent.height) * 4;
+            at += to.desc().level_bytes(level);
             regions.push(region);
         }
         // SAFETY: recording into our own buffer; buffer and image are kept.
         unsafe {
             let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
             self.gpu.device.cmd_copy_buffer_to_image(self.raw, from.raw, to.raw, layout, &regions);
+        }
+    }
+
+    /// Reads every mip level, in [`Use::CopyFrom`], in the order that [`Encoder::copy_to_image`] takes.
+    pub fn copy_levels_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>, offset: u64) {
+        let mut at = offset;
+        for level in 0..from.desc().mips {
+            self.copy_region(from, whole_level(from, level, at), to);
+            at += from.desc().level_bytes(level);
         }
     }
 
@@ -334,7 +372,7 @@ fn whole_level(image: &Image, level: u32, offset: u64) -> vk::BufferImageCopy {
             aspect_mask: image.aspect(),
             mip_level: level,
             base_array_layer: 0,
-            layer_count: 1,
+            layer_count: image.desc().layers,
         },
         image_extent: vk::Extent3D { width: side(image.desc().width), height: side(image.desc().height), depth: 1 },
         ..Default::default()

@@ -18,6 +18,8 @@ pub struct ImageDesc {
     pub height: u32,
     /// Mip levels.
     pub mips: u32,
+    /// Layers: 1, or the six faces of a cube.
+    pub layers: u32,
     /// Samples a pixel.
     pub samples: u32,
     /// Format.
@@ -29,38 +31,70 @@ pub struct ImageDesc {
 impl ImageDesc {
     /// A single-sampled image with one level.
     pub fn new(width: u32, height: u32, format: vk::Format, usage: vk::ImageUsageFlags) -> Self {
-        Self { width, height, mips: 1, samples: 1, format, usage }
+        Self { width, height, mips: 1, layers: 1, samples: 1, format, usage }
+    }
+
+    /// A cube map, `side` texels wide, with `mips` levels.
+    pub fn cube(side: u32, mips: u32, format: vk::Format, usage: vk::ImageUsageFlags) -> Self {
+        Self { mips, layers: CUBE_FACES, ..Self::new(side, side, format, usage) }
+    }
+
+    /// Bytes of all levels and layers, tightly packed.
+    pub fn bytes(&self) -> u64 {
+        (0..self.mips).map(|level| self.level_bytes(level)).sum()
+    }
+
+    /// Bytes of one level with all its layers, tightly packed.
+    pub fn level_bytes(&self, level: u32) -> u64 {
+        let side = |pixels: u32| u64::from((pixels >> level).max(1));
+        side(self.width) * side(self.height) * u64::from(self.layers) * texel_bytes(self.format)
     }
 }
 
-/// An image, its memory and a view of all of it. A swapchain's image has no memory of its own.
+const CUBE_FACES: u32 = 6;
+
+/// Bytes of a texel, for the formats that are copied to and from buffers.
+fn texel_bytes(format: vk::Format) -> u64 {
+    match format {
+        vk::Format::R16G16B16A16_SFLOAT => 8,
+        vk::Format::R32G32B32A32_SFLOAT => 16,
+        _ => 4,
+    }
+}
+
+/// An image, its memory and a view of all of it; one view of each level, too, when shaders write it. A swapchain's image has no memory of its own.
 pub struct Image {
     gpu: Arc<Gpu>,
     pub(super) raw: vk::Image,
     pub(super) view: vk::ImageView,
+    pub(super) level_views: Vec<vk::ImageView>,
     allocation: Option<Allocation>,
     owned: bool,
     desc: ImageDesc,
 }
 
 impl Image {
-    /// Makes a 2D image.
+    /// Makes an image: 2D, or a cube of six layers.
     ///
     /// # Errors
     /// Out of memory, or a format that the device lacks.
     pub fn new(gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
+        let is_cube = desc.layers == CUBE_FACES;
+        let flags = if is_cube { vk::ImageCreateFlags::CUBE_COMPATIBLE } else { vk::ImageCreateFlags::empty() };
         let info = vk::ImageCreateInfo::default()
+            .flags(flags)
             .image_type(vk::ImageType::TYPE_2D)
             .format(desc.format)
             .extent(vk::Extent3D { width: desc.width, height: desc.height, depth: 1 })
             .mip_levels(desc.mips)
-            .array_layers(1)
+            .array_layers(desc.layers)
             .samples(vk::SampleCountFlags::from_raw(desc.samples))
             .usage(desc.usage);
         // SAFETY: the device is live.
         let raw = unsafe { gpu.device.create_image(&info, None) }.context("creating an image")?;
+        let view = vk::ImageView::null();
         let mut image =
-            Self { gpu: gpu.clone(), raw, view: vk::ImageView::null(), allocation: None, owned: true, desc };
+            Self { gpu: gpu.clone(), raw, view, level_views: Vec::new(), allocation: None, owned: true, desc };
         // SAFETY: `raw` belongs to this device.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(raw) };
         let allocation = gpu
@@ -78,13 +112,26 @@ impl Image {
         image.allocation = Some(allocation);
         bound.context("binding image memory")?;
         image.view = create_view(gpu, raw, &desc)?;
+        if desc.usage.contains(vk::ImageUsageFlags::STORAGE) {
+            for level in 0..desc.mips {
+                image.level_views.push(create_level_view(gpu, raw, &desc, level)?);
+            }
+        }
         Ok(Arc::new(image))
     }
 
     /// Wraps an image of the swapchain, which the swapchain frees.
     pub(super) fn from_swapchain(gpu: &Arc<Gpu>, raw: vk::Image, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
         let view = create_view(gpu, raw, &desc)?;
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw, view, allocation: None, owned: false, desc }))
+        Ok(Arc::new(Self {
+            gpu: gpu.clone(),
+            raw,
+            view,
+            level_views: Vec::new(),
+            allocation: None,
+            owned: false,
+            desc,
+        }))
     }
 
     /// Its description.
@@ -102,18 +149,31 @@ fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
 }
 
 fn create_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc) -> Result<vk::ImageView, GpuError> {
+    let kind = if desc.layers == CUBE_FACES { vk::ImageViewType::CUBE } else { vk::ImageViewType::TYPE_2D };
+    view_of_levels(gpu, raw, desc, kind, 0..desc.mips)
+}
+
+/// What a shader's `image2DArray` writes.
+fn create_level_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc, level: u32) -> Result<vk::ImageView, GpuError> {
+    view_of_levels(gpu, raw, desc, vk::ImageViewType::TYPE_2D_ARRAY, level..level + 1)
+}
+
+fn view_of_levels(
+    gpu: &Gpu,
+    raw: vk::Image,
+    desc: &ImageDesc,
+    kind: vk::ImageViewType,
+    levels: std::ops::Range<u32>,
+) -> Result<vk::ImageView, GpuError> {
     let range = vk::ImageSubresourceRange {
         aspect_mask: aspect(desc.format),
-        base_mip_level: 0,
-        level_count: desc.mips,
+        base_mip_level: levels.start,
+        level_count: levels.end - levels.start,
         base_array_layer: 0,
-        layer_count: 1,
+        layer_count: desc.layers,
     };
-    let info = vk::ImageViewCreateInfo::default()
-        .image(raw)
-        .view_type(vk::ImageViewType::TYPE_2D)
-        .format(desc.format)
-        .subresource_range(range);
+    let info =
+        vk::ImageViewCreateInfo::default().image(raw).view_type(kind).format(desc.format).subresource_range(range);
     // SAFETY: the image is live.
     unsafe { gpu.device.create_image_view(&info, None) }.context("creating an image view")
 }
@@ -122,7 +182,9 @@ impl Drop for Image {
     fn drop(&mut self) {
         // SAFETY: the last `Arc` is gone, so no command in flight uses the image; a null view may be destroyed.
         unsafe {
-            self.gpu.device.destroy_image_view(self.view, None);
+            for view in std::iter::once(&self.view).chain(&self.level_views) {
+                self.gpu.device.destroy_image_view(*view, None);
+            }
             if self.owned {
                 self.gpu.device.destroy_image(self.raw, None);
             }

@@ -3,7 +3,10 @@
 //! Every wrapper owns one object and an `Arc<Gpu>`, and frees it in `Drop`. A frame slot holds `Arc`s of all that its commands
 //! use and lets them go once its fence has signaled: deferred destruction without a queue and without a counter.
 
+mod blank;
+mod blit;
 mod buffer;
+mod compute;
 mod descriptor;
 mod device;
 mod encoder;
@@ -22,7 +25,7 @@ pub use encoder::{Attachments, Encoder, Rect, Use};
 pub use error::GpuError;
 pub use frames::{Frames, Submission, one_shot};
 pub use image::{Image, ImageDesc, Sampler, SamplerDesc};
-pub use pipeline::{Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization};
+pub use pipeline::{ComputePipeline, Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization};
 pub use surface::{Acquired, Surface, Swapchain};
 pub use ui::UiRenderer;
 

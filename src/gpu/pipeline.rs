@@ -40,6 +40,17 @@ impl Drop for ShaderModule {
 /// Values for specialization constants: `constant_id` and the four bytes of the value.
 pub type Specialization = Vec<(u32, u32)>;
 
+/// Where each value lies, and the values.
+fn specialization_data(values: &[(u32, u32)]) -> (Vec<vk::SpecializationMapEntry>, Vec<u8>) {
+    let entry = |(i, (id, _)): (u32, &(u32, u32))| vk::SpecializationMapEntry {
+        constant_id: *id,
+        offset: i * 4,
+        size: 4,
+    };
+    let entries = (0u32..).zip(values).map(entry).collect();
+    (entries, values.iter().flat_map(|(_, value)| value.to_ne_bytes()).collect())
+}
+
 /// What a pipeline's topology may be changed to while recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PrimitiveClass {
@@ -64,6 +75,8 @@ pub enum Raster {
     Lines,
     /// They add up, without depth test; alpha is the largest.
     Added,
+    /// They are mixed with what is there, by a weight that is set while recording.
+    Averaged,
 }
 
 /// What a graphics pipeline is made of.
@@ -99,11 +112,7 @@ impl Pipeline {
     /// # Errors
     /// The driver refuses it or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, desc: &PipelineDesc<'_>) -> Result<Arc<Self>, GpuError> {
-        let entries: Vec<_> = (0u32..)
-            .zip(desc.specialization)
-            .map(|(i, (id, _))| vk::SpecializationMapEntry { constant_id: *id, offset: i * 4, size: 4 })
-            .collect();
-        let data: Vec<u8> = desc.specialization.iter().flat_map(|(_, value)| value.to_ne_bytes()).collect();
+        let (entries, data) = specialization_data(desc.specialization);
         let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(&data);
         let stage = |stage, module: &ShaderModule| {
             let info = vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module.raw).name(MAIN);
@@ -142,6 +151,9 @@ impl Pipeline {
                 vk::DynamicState::PRIMITIVE_TOPOLOGY,
             ]);
         }
+        if desc.raster == Raster::Averaged {
+            dynamic_states.push(vk::DynamicState::BLEND_CONSTANTS);
+        }
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
         let formats = [desc.color];
         let mut rendering = vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
@@ -168,6 +180,47 @@ impl Pipeline {
     }
 }
 
+/// A compute pipeline.
+pub struct ComputePipeline {
+    gpu: Arc<Gpu>,
+    _layouts: Arc<SetLayouts>,
+    pub(super) raw: vk::Pipeline,
+}
+
+impl ComputePipeline {
+    /// Makes a pipeline of one stage; ids of `specialization` that the stage lacks are ignored.
+    ///
+    /// # Errors
+    /// The driver refuses it or is out of memory.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        module: &ShaderModule,
+        specialization: &[(u32, u32)],
+    ) -> Result<Arc<Self>, GpuError> {
+        let (entries, data) = specialization_data(specialization);
+        let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(&data);
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module.raw)
+            .name(MAIN)
+            .specialization_info(&specialization);
+        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.pipeline);
+        // SAFETY: every pointer in `info` lives until the call returns; module and layout are live. The cache is internally
+        // synchronized.
+        let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipeline_cache, &[info], None) };
+        let raw = made.map_err(|(_, result)| result).context("creating a compute pipeline")?[0];
+        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw }))
+    }
+}
+
+impl Drop for ComputePipeline {
+    fn drop(&mut self) {
+        // SAFETY: the last `Arc` is gone; a submission in flight would hold one.
+        unsafe { self.gpu.device.destroy_pipeline(self.raw, None) };
+    }
+}
+
 fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     let state = vk::PipelineColorBlendAttachmentState::default();
     match raster {
@@ -178,6 +231,12 @@ fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
             .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
             .src_alpha_blend_factor(vk::BlendFactor::ONE)
             .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA),
+        Raster::Averaged => state
+            .blend_enable(true)
+            .src_color_blend_factor(vk::BlendFactor::CONSTANT_COLOR)
+            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_CONSTANT_COLOR)
+            .src_alpha_blend_factor(vk::BlendFactor::CONSTANT_ALPHA)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_CONSTANT_ALPHA),
         Raster::Added => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)

@@ -18,7 +18,7 @@ pub fn glsl() -> String {
         let _ = writeln!(out, "const {kind} {name} = {value};");
     };
     constant("uint", "INTERFACE_VERSION", format!("{VERSION}u"));
-    for (name, value) in [("SET_FRAME", SET_FRAME), ("SET_MATERIAL", SET_MATERIAL), ("SET_PASS", SET_PASS)] {
+    for (name, value) in [("SET_FRAME", SET_FRAME), ("SET_MATERIAL", SET_MATERIAL), ("SET_PASS", SET_PASS), ("SET_TASK", SET_TASK)] {
         constant("int", name, value.to_string());
     }
     for b in BINDINGS {
@@ -44,11 +44,40 @@ const UINTS: &[(&str, u32)] = &[
     ("ALPHA_BLEND", ALPHA_BLEND),
     ("FEATURE_UNLIT", FEATURE_UNLIT),
     ("FEATURE_NORMAL_TEXTURE", FEATURE_NORMAL_TEXTURE),
+    ("FEATURE_CLEARCOAT", FEATURE_CLEARCOAT),
+    ("FEATURE_CLEARCOAT_NORMAL", FEATURE_CLEARCOAT_NORMAL),
+    ("FEATURE_ANISOTROPY", FEATURE_ANISOTROPY),
+    ("FEATURE_SHEEN", FEATURE_SHEEN),
+    ("FEATURE_SPECULAR", FEATURE_SPECULAR),
+    ("FEATURE_IRIDESCENCE", FEATURE_IRIDESCENCE),
+    ("FEATURE_TRANSMISSION", FEATURE_TRANSMISSION),
+    ("FEATURE_VOLUME", FEATURE_VOLUME),
+    ("FEATURE_DISPERSION", FEATURE_DISPERSION),
+    ("FEATURE_DIFFUSE_TRANSMISSION", FEATURE_DIFFUSE_TRANSMISSION),
+    ("FEATURE_SPECULAR_GLOSSINESS", FEATURE_SPECULAR_GLOSSINESS),
+    ("FEATURE_CONDUCTOR", FEATURE_CONDUCTOR),
+    ("FEATURE_PACKED_OCCLUSION", FEATURE_PACKED_OCCLUSION),
+    ("FEATURE_ENVIRONMENT", FEATURE_ENVIRONMENT),
+    ("FEATURE_RECT_LIGHTS", FEATURE_RECT_LIGHTS),
     ("TEXTURE_BASE_COLOR", TEXTURE_BASE_COLOR),
     ("TEXTURE_METALLIC_ROUGHNESS", TEXTURE_METALLIC_ROUGHNESS),
     ("TEXTURE_NORMAL", TEXTURE_NORMAL),
     ("TEXTURE_OCCLUSION", TEXTURE_OCCLUSION),
     ("TEXTURE_EMISSIVE", TEXTURE_EMISSIVE),
+    ("TEXTURE_CLEARCOAT", TEXTURE_CLEARCOAT),
+    ("TEXTURE_CLEARCOAT_ROUGHNESS", TEXTURE_CLEARCOAT_ROUGHNESS),
+    ("TEXTURE_CLEARCOAT_NORMAL", TEXTURE_CLEARCOAT_NORMAL),
+    ("TEXTURE_ANISOTROPY", TEXTURE_ANISOTROPY),
+    ("TEXTURE_SHEEN_COLOR", TEXTURE_SHEEN_COLOR),
+    ("TEXTURE_SHEEN_ROUGHNESS", TEXTURE_SHEEN_ROUGHNESS),
+    ("TEXTURE_SPECULAR", TEXTURE_SPECULAR),
+    ("TEXTURE_SPECULAR_COLOR", TEXTURE_SPECULAR_COLOR),
+    ("TEXTURE_IRIDESCENCE", TEXTURE_IRIDESCENCE),
+    ("TEXTURE_IRIDESCENCE_THICKNESS", TEXTURE_IRIDESCENCE_THICKNESS),
+    ("TEXTURE_TRANSMISSION", TEXTURE_TRANSMISSION),
+    ("TEXTURE_THICKNESS", TEXTURE_THICKNESS),
+    ("TEXTURE_DIFFUSE_TRANSMISSION", TEXTURE_DIFFUSE_TRANSMISSION),
+    ("TEXTURE_DIFFUSE_TRANSMISSION_COLOR", TEXTURE_DIFFUSE_TRANSMISSION_COLOR),
     ("ATTRIBUTE_NORMAL", ATTRIBUTE_NORMAL),
     ("ATTRIBUTE_TANGENT", ATTRIBUTE_TANGENT),
     ("ATTRIBUTE_UV0", ATTRIBUTE_UV0),
@@ -58,6 +87,10 @@ const UINTS: &[(&str, u32)] = &[
     ("LIGHT_DIRECTIONAL", LIGHT_DIRECTIONAL),
     ("LIGHT_POINT", LIGHT_POINT),
     ("LIGHT_SPOT", LIGHT_SPOT),
+    ("LIGHT_RECT", LIGHT_RECT),
+    ("MEASURED_NONE", MEASURED_NONE),
+    ("MEASURED_MERL", MEASURED_MERL),
+    ("MEASURED_UTIA", MEASURED_UTIA),
     ("ENCODE_COLOR", ENCODE_COLOR),
     ("ENCODE_DATA", ENCODE_DATA),
     ("ENCODE_VECTOR", ENCODE_VECTOR),
@@ -87,6 +120,11 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint encode;
     uint mode;
     float largest_value;       // of the HDR target: 65504 for half floats
+    vec2 environment_rotation; // cos, sin of the turn around +Y
+    float environment_intensity; // from the environment's images to radiance
+    float environment_blur;    // behind the model: 0 sharp .. 1, as a roughness
+    uint sample_index;         // accumulating modes: frames since the picture changed
+    uint sample_count;         // accumulating modes: paths a pixel in each frame
 } frame;
 
 struct Light {
@@ -94,9 +132,11 @@ struct Light {
     uint kind;                 // LIGHT_*
     vec3 direction_ws;         // where it shines to
     float range;               // meters, 0 without end
-    vec3 intensity;            // linear RGB times candela (point, spot) or lux (directional)
+    vec3 intensity;            // linear RGB times candela (point, spot), lux (directional), radiance (rectangle)
     float cos_inner;
     float cos_outer;
+    vec3 half_x_ws;            // rectangle: from the center to an edge, meters
+    vec3 half_y_ws;
 };
 
 layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) readonly buffer Lights {
@@ -114,8 +154,44 @@ layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material 
     uint texture_mask;         // bit TEXTURE_*: it exists
     uint uv1_mask;             // bit TEXTURE_*: it reads TEXCOORD_1
     uint id;
+    float clearcoat_factor;
+    float clearcoat_roughness;
+    float clearcoat_normal_scale;
+    float anisotropy_strength;
+    vec2 anisotropy_rotation;  // cos, sin
+    float sheen_roughness;
+    vec3 sheen_color;
+    float specular_factor;
+    vec3 specular_color;       // specular-glossiness: F0
+    float ior;                 // 0: infinite
+    float iridescence_factor;
+    float iridescence_ior;
+    vec2 iridescence_thickness_nm; // where the texture is 0 and 1
+    float transmission_factor;
+    float thickness;           // meters in object space, 0: thin wall
+    vec3 attenuation_color;
+    float attenuation_distance; // meters
+    float dispersion;          // 20 / Abbe number
+    float diffuse_transmission_factor;
+    vec3 diffuse_transmission_color;
+    vec3 conductor_n;          // index of refraction of the metal, n + i k
+    vec3 conductor_k;
     mat3x2 uv_from_texture[TEXTURE_COUNT];
 } material;
+
+layout(set = SET_TASK, binding = BINDING_TASK, scalar) uniform Task {
+    uvec2 size;                // texels, or columns and rows of results
+    uint level;                // mip level that is written
+    uint levels;
+    uint samples;              // for each texel or result
+    float radiance_scale;      // fits radiance into half floats
+    float roughness_first;     // of the first row
+    float roughness_last;
+    float theta_first;         // angle to the normal of the first column, degrees
+    float theta_last;
+    vec3 base_color;           // of the measured surface
+    float metallic;
+} task;
 
 struct Vertex {
     vec3 position;

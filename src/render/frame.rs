@@ -2,20 +2,21 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
-
 use crate::gpu::{
-    Attachments, DescriptorSet, Encoder, Frames, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc,
-    SetLayouts, SetWriter, Swapchain, UiRenderer, Use, vk,
+    Attachments, Buffer, Frames, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain,
+    UiRenderer, Use, vk,
 };
-use crate::interface::{ALPHA_BLEND, SET_PASS};
 
+use super::bake::GpuEnvironment;
 use super::capture::{self, Capture, Readback};
+use super::draw::{average, draw_model};
+use super::ltc;
 use super::pipelines::PipelineSet;
-use super::scene::{GpuDraw, GpuScene};
+use super::scene::GpuScene;
 use super::shot::Shot;
-use super::targets::Targets;
-use super::uniforms::Uniforms;
+use super::targets::{Purpose, Targets};
+use super::task;
+use super::uniforms::{Constants, Sources, Uniforms};
 use super::wanted::Wanted;
 
 /// What to draw.
@@ -27,6 +28,10 @@ pub struct FrameInput<'a> {
     pub pipelines: Option<(&'a Arc<PipelineSet>, &'a Wanted)>,
     /// The model, or none yet.
     pub scene: Option<&'a Arc<GpuScene>>,
+    /// Image-based light; [`super::Baked::uniform`] without.
+    pub environment: &'a Arc<GpuEnvironment>,
+    /// Measured BRDF, as [`super::measured_buffer`] makes it.
+    pub measured: &'a Arc<Buffer>,
     /// Where in the output the picture goes.
     pub rect: Rect,
 }
@@ -72,15 +77,25 @@ struct Drawing {
     wanted: Wanted,
     pipelines: Arc<PipelineSet>,
     scene: Option<Arc<GpuScene>>,
+    environment: Arc<GpuEnvironment>,
+    measured: Arc<Buffer>,
 }
 
 impl Drawing {
     fn of(input: &FrameInput<'_>, largest: f32) -> Option<Self> {
         let (pipelines, wanted) = input.pipelines?;
-        let mut uniforms = bytemuck::bytes_of(&input.shot.uniforms(input.rect, largest)).to_vec();
+        let frame = input.shot.uniforms(input.rect, largest, input.environment.scale, 0);
+        let mut uniforms = bytemuck::bytes_of(&frame).to_vec();
         uniforms.extend_from_slice(bytemuck::cast_slice(&input.shot.lights));
         uniforms.extend_from_slice(&input.shot.params);
-        Some(Self { uniforms, wanted: wanted.clone(), pipelines: pipelines.clone(), scene: input.scene.cloned() })
+        Some(Self {
+            uniforms,
+            wanted: wanted.clone(),
+            pipelines: pipelines.clone(),
+            scene: input.scene.cloned(),
+            environment: input.environment.clone(),
+            measured: input.measured.clone(),
+        })
     }
 
     fn is_same(&self, other: &Self) -> bool {
@@ -91,6 +106,8 @@ impl Drawing {
         };
         same_scene
             && Arc::ptr_eq(&self.pipelines, &other.pipelines)
+            && Arc::ptr_eq(&self.environment, &other.environment)
+            && Arc::ptr_eq(&self.measured, &other.measured)
             && self.wanted == other.wanted
             && self.uniforms == other.uniforms
     }
@@ -102,11 +119,14 @@ pub struct Renderer {
     layouts: Arc<SetLayouts>,
     frames: Frames,
     uniforms: Vec<Uniforms>,
-    targets: Option<(Targets, Arc<DescriptorSet>)>,
+    targets: Option<Targets>,
     nearest: Arc<Sampler>,
+    constants: Constants,
+    nothing: Arc<Image>,
     scene_format: vk::Format,
     kept: Option<Drawing>,
     redrawn: bool,
+    sample_index: u32,
 }
 
 impl Renderer {
@@ -133,12 +153,18 @@ impl Renderer {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             frames: Frames::new(gpu, Self::IN_FLIGHT)?,
-            uniforms: (0..Self::IN_FLIGHT).map(|_| Uniforms::new(gpu, layouts, 0)).collect::<Result<_, _>>()?,
+            uniforms: (0..Self::IN_FLIGHT).map(|_| Uniforms::new(gpu, 0)).collect::<Result<_, _>>()?,
             targets: None,
             nearest: Sampler::new(gpu, &nearest)?,
+            constants: Constants {
+                ltc: ltc::table(gpu)?,
+                linear: task::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?,
+            },
+            nothing: nothing(gpu)?,
             scene_format,
             kept: None,
             redrawn: false,
+            sample_index: 0,
         })
     }
 
@@ -157,13 +183,18 @@ impl Renderer {
         self.redrawn
     }
 
+    /// How many frames the picture is the mean of.
+    pub fn accumulated(&self) -> u32 {
+        self.sample_index + 1
+    }
+
     /// Raw value at a pixel of the last picture on screen, counted from its upper left corner; `None` outside, or without one.
     ///
     /// # Errors
     /// The device is lost.
     pub fn raw_at(&self, x: u32, y: u32) -> Result<Option<[f32; 4]>, GpuError> {
         match (&self.targets, &self.kept) {
-            (Some((targets, _)), Some(_)) => capture::raw_at(&self.gpu, &targets.color, x, y),
+            (Some(targets), Some(_)) => capture::raw_at(&self.gpu, targets.picture(), x, y),
             _ => Ok(None),
         }
     }
@@ -202,23 +233,31 @@ impl Renderer {
 
         // What the shaders read.
         let largest = if self.scene_format == vk::Format::R16G16B16A16_SFLOAT { 65504.0 } else { f32::MAX };
-        self.resize_targets(size, input.pipelines.map_or(1, |(_, wanted)| wanted.samples))?;
+        self.resize_targets(size, &input)?;
+        let drawing = Drawing::of(&input, largest);
+        let is_same = drawing.as_ref().zip(self.kept.as_ref()).is_some_and(|(new, kept)| new.is_same(kept));
+        let accumulates = input.pipelines.is_some_and(|(_, wanted)| wanted.accumulates);
+        self.sample_index = if is_same && accumulates { self.sample_index.saturating_add(1) } else { 0 };
         let slot = self.frames.current();
         if self.uniforms[slot].light_capacity() < input.shot.lights.len() {
-            self.uniforms[slot] = Uniforms::new(&self.gpu, &self.layouts, input.shot.lights.len())?;
+            self.uniforms[slot] = Uniforms::new(&self.gpu, input.shot.lights.len())?;
         }
-        let uniforms = &self.uniforms[slot];
-        uniforms.write(&input.shot.uniforms(input.rect, largest), &input.shot.lights, &input.shot.params);
-        encoder.bind_set(&self.layouts, &uniforms.set);
+        let uniforms = &mut self.uniforms[slot];
+        let frame = input.shot.uniforms(input.rect, largest, input.environment.scale, self.sample_index);
+        uniforms.write(&frame, &input.shot.lights, &input.shot.params);
+        if let Some(tables) = input.pipelines.and_then(|(set, wanted)| set.tables(wanted)) {
+            let (environment, measured) = (input.environment.clone(), input.measured.clone());
+            let sources = Sources { environment, tables, measured };
+            encoder.bind_set(&self.layouts, &uniforms.set(&self.layouts, &sources, &self.constants)?);
+        }
 
         // The model, to HDR; in a window only when something about it has changed.
-        let Some((targets, hdr_set)) = &self.targets else { return Ok(Drawn::NoImage) };
-        let drawing = Drawing::of(&input, largest).filter(|_| acquired.is_some());
-        let is_kept = drawing.as_ref().zip(self.kept.as_ref()).is_some_and(|(new, kept)| new.is_same(kept));
-        self.redrawn = !is_kept;
-        if !is_kept {
+        let Some(targets) = &self.targets else { return Ok(Drawn::NoImage) };
+        self.redrawn = !is_same || accumulates || acquired.is_none();
+        if self.redrawn {
             draw_model(&mut encoder, &self.layouts, targets, &input);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
+            average(&mut encoder, &self.layouts, targets, &input, self.sample_index);
         }
         self.kept = drawing;
 
@@ -227,12 +266,12 @@ impl Renderer {
         encoder.transition(&output, before, Use::Color);
         let whole = Rect { x: 0, y: 0, width: output.desc().width, height: output.desc().height };
         let attachments =
-            Attachments { color: &output, clear: Some([0.0, 0.0, 0.0, 1.0]), resolve: None, depth: None, area: whole };
+            Attachments { color: &output, clear: Some([0.0, 0.0, 0.0, 1.0]), resolve: None, depth: None, goes_on: false, area: whole };
         encoder.begin_rendering(&attachments);
         if let Some(pipeline) = input.pipelines.and_then(|(set, wanted)| set.get(&wanted.tonemap_key())) {
             encoder.set_viewport(input.rect);
             encoder.bind_pipeline(&pipeline);
-            encoder.bind_set(&self.layouts, hdr_set);
+            encoder.bind_set(&self.layouts, &targets.picture_set);
             encoder.draw(3);
         }
         encoder.end_rendering();
@@ -260,8 +299,9 @@ impl Renderer {
             }
             _ => {
                 encoder.transition(&output, Use::Color, Use::CopyFrom);
-                encoder.transition(&targets.color, Use::Sampled, Use::CopyFrom);
-                let readback = Readback::record(&self.gpu, &mut encoder, &output, &targets.color)?;
+                encoder.transition(targets.picture(), Use::Sampled, Use::CopyFrom);
+                let readback = Readback::record(&self.gpu, &mut encoder, &output, targets.picture())?;
+                encoder.transition(targets.picture(), Use::CopyFrom, Use::Sampled);
                 self.frames.submit(encoder, Default::default())?;
                 self.frames.wait()?;
                 Ok(Drawn::Captured(readback.finish()))
@@ -274,74 +314,29 @@ impl Renderer {
         Image::new(&self.gpu, "picture", ImageDesc::new(width, height, Self::OUTPUT_FORMAT, usage))
     }
 
-    fn resize_targets(&mut self, size: (u32, u32), samples: u32) -> Result<(), GpuError> {
-        if self.targets.as_ref().is_some_and(|(targets, _)| targets.fits(size, samples)) {
+    fn resize_targets(&mut self, size: (u32, u32), input: &FrameInput<'_>) -> Result<(), GpuError> {
+        let wanted = input.pipelines.map(|(_, wanted)| wanted);
+        let purpose = Purpose {
+            size,
+            samples: wanted.map_or(1, |wanted| wanted.samples),
+            format: self.scene_format,
+            transmission: input.scene.is_some_and(|scene| scene.is_transmissive()),
+            accumulates: wanted.is_some_and(|wanted| wanted.accumulates),
+        };
+        if self.targets.as_ref().is_some_and(|targets| targets.purpose == purpose) {
             return Ok(());
         }
         self.kept = None;
-        let targets = Targets::new(&self.gpu, size, samples, self.scene_format)?;
-        let writer = SetWriter::default().texture(0, &targets.color, &self.nearest);
-        let set = DescriptorSet::new(&self.layouts, SET_PASS, writer)?;
-        self.targets = Some((targets, set));
+        let samplers = (&self.nearest, &self.constants.linear);
+        self.targets = Some(Targets::new(&self.gpu, &self.layouts, purpose, &self.nothing, samplers)?);
         Ok(())
     }
 }
 
-/// Draws opaque, masked and blended primitives to the HDR target and resolves it.
-fn draw_model(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, targets: &Targets, input: &FrameInput<'_>) {
-    encoder.transition(&targets.color, Use::Undefined, Use::Color);
-    encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
-    let (color, resolve) = match &targets.multisampled {
-        Some(multisampled) => {
-            encoder.transition(multisampled, Use::Undefined, Use::Color);
-            (multisampled, Some(&targets.color))
-        }
-        None => (&targets.color, None),
-    };
-    let desc = targets.color.desc();
-    encoder.begin_rendering(&Attachments {
-        color,
-        clear: Some([0.0; 4]),
-        resolve,
-        depth: Some(&targets.depth),
-        area: Rect { x: 0, y: 0, width: desc.width, height: desc.height },
-    });
-    if let (Some(scene), Some((pipelines, wanted))) = (input.scene, input.pipelines) {
-        encoder.keep(&scene.vertices);
-        encoder.bind_indices(&scene.indices);
-        for draw in sorted(&scene.draws, input.shot.view.eye) {
-            if let Some(pipeline) = pipelines.get(&wanted.model_key(draw.variant)) {
-                encoder.bind_pipeline(&pipeline);
-                draw_primitive(encoder, layouts, scene, draw);
-            }
-        }
-    }
-    encoder.end_rendering();
-}
-
-fn draw_primitive(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, scene: &GpuScene, draw: &GpuDraw) {
-    encoder.bind_set(layouts, &scene.materials[draw.material]);
-    encoder.push(layouts, &draw.push);
-    // Both faces of a transparent surface are blended in order: the far one, seen from inside, first.
-    let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {
-        (true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
-        (true, _) => &[vk::CullModeFlags::NONE],
-        (false, _) => &[vk::CullModeFlags::BACK],
-    };
-    for cull in passes {
-        encoder.set_raster(draw.topology, *cull, draw.front);
-        encoder.draw_indexed(draw.index_count, draw.first_index);
-    }
-}
-
-/// Opaque and masked primitives front to back, which saves shading, then blended ones back to front, which blending needs.
-fn sorted(draws: &[GpuDraw], eye: Vec3) -> Vec<&GpuDraw> {
-    let mut sorted: Vec<_> = draws.iter().collect();
-    sorted.sort_by(|a, b| {
-        let (a_blend, b_blend) = (a.variant.alpha == ALPHA_BLEND, b.variant.alpha == ALPHA_BLEND);
-        let (a_far, b_far) = (a.center_ws.distance_squared(eye), b.center_ws.distance_squared(eye));
-        let order = if a_blend { b_far.total_cmp(&a_far) } else { a_far.total_cmp(&b_far) };
-        a_blend.cmp(&b_blend).then(order)
-    });
-    sorted
+/// One transparent texel.
+fn nothing(gpu: &Arc<Gpu>) -> Result<Arc<Image>, GpuError> {
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+    let image = Image::new(gpu, "nothing", ImageDesc::new(1, 1, vk::Format::R8G8B8A8_UNORM, usage))?;
+    task::upload(gpu, &[(&image, &[0; 4])])?;
+    Ok(image)
 }

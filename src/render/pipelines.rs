@@ -1,22 +1,47 @@
 //! The pipelines of one shader generation. A frame draws with exactly one set, so it never mixes two generations.
 
 use std::collections::{BTreeMap, HashMap};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::gpu::{Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule};
+use crate::gpu::{
+    ComputePipeline, Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule,
+    Specialization,
+};
 use crate::shader::{ShaderSet, Stage};
 
+use super::bake::BAKE_STAGES;
+use super::tables::{self, Tables};
 use super::wanted::{Pass, PipelineKey, Wanted};
 
-/// The stages that a shader tree must have, as paths from its root.
-pub const STAGES: [&str; 4] = ["pbr.vert", "pbr.frag", "tonemap.vert", "tonemap.frag"];
+/// The stages that a picture is drawn with.
+const GRAPHICS: [&str; 7] =
+    ["pbr.vert", "pbr.frag", "sky.vert", "sky.frag", "tonemap.vert", "tonemap.frag", "average.frag"];
+/// The stages that measure the BRDF, compiled by those who measure.
+pub const MEASURE_STAGES: [&str; 4] =
+    ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
+
+/// The stages that a shader tree must have to be shown, as paths from its root.
+pub fn stages() -> Vec<&'static str> {
+    GRAPHICS.into_iter().chain([tables::DFG, tables::SHEEN_ALBEDO]).chain(BAKE_STAGES).collect()
+}
+
+/// Those and the ones that measure the BRDF: everything in a tree with a `main()`.
+pub fn all_stages() -> Vec<&'static str> {
+    stages().into_iter().chain(MEASURE_STAGES).collect()
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 impl Pass {
     /// Vertex and fragment stage.
     fn stages(self) -> [&'static str; 2] {
         match self {
-            Self::Model { .. } => [STAGES[0], STAGES[1]],
-            Self::Tonemap => [STAGES[2], STAGES[3]],
+            Self::Model { .. } => [GRAPHICS[0], GRAPHICS[1]],
+            Self::Sky => [GRAPHICS[2], GRAPHICS[3]],
+            Self::Tonemap => [GRAPHICS[4], GRAPHICS[5]],
+            Self::Average => [GRAPHICS[4], GRAPHICS[6]],
         }
     }
 }
@@ -29,6 +54,8 @@ pub struct PipelineSet {
     pub shaders: Arc<ShaderSet>,
     modules: BTreeMap<String, Arc<ShaderModule>>,
     made: Mutex<HashMap<PipelineKey, Arc<Pipeline>>>,
+    computes: Mutex<HashMap<(String, Specialization), Arc<ComputePipeline>>>,
+    tables: Mutex<HashMap<Specialization, Arc<Tables>>>,
 }
 
 impl PipelineSet {
@@ -54,16 +81,22 @@ impl PipelineSet {
             None => Ok((path.clone(), ShaderModule::new(gpu, &stage.spirv)?)),
         };
         let modules = shaders.stages.iter().map(module).collect::<Result<_, GpuError>>()?;
-        let pipelines = before.map(|set| set.made.lock().unwrap_or_else(PoisonError::into_inner));
+        let pipelines = before.map(|set| lock(&set.made));
         let is_kept = |pass: Pass| pass.stages().iter().all(|path| kept(path).is_some());
         let made = pipelines.iter().flat_map(|made| made.iter()).filter(|(key, _)| is_kept(key.pass));
         let made = made.map(|(key, pipeline)| (key.clone(), pipeline.clone())).collect();
+        let computes = before.map(|set| lock(&set.computes).clone()).unwrap_or_default();
+        let computes = computes.into_iter().filter(|((path, _), _)| kept(path).is_some()).collect();
+        let same_tables = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().all(|path| kept(path).is_some());
+        let tables = before.filter(|_| same_tables).map(|set| lock(&set.tables).clone()).unwrap_or_default();
         let set = Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             shaders: shaders.clone(),
             modules,
             made: Mutex::new(made),
+            computes: Mutex::new(computes),
+            tables: Mutex::new(tables),
         };
         set.build(wanted)?;
         Ok(Arc::new(set))
@@ -77,19 +110,69 @@ impl PipelineSet {
         for key in wanted.keys() {
             if self.get(&key).is_none() {
                 let pipeline = self.make(&key)?;
-                self.made.lock().unwrap_or_else(PoisonError::into_inner).insert(key, pipeline);
+                lock(&self.made).insert(key, pipeline);
             }
+        }
+        if self.tables(wanted).is_none() {
+            let constants = self.of_tables(&wanted.constants);
+            let tables = Tables::new(self, &constants)?;
+            lock(&self.tables).insert(constants, tables);
         }
         Ok(())
     }
 
     /// Whether a frame of `wanted` can be drawn now.
     pub fn has(&self, wanted: &Wanted) -> bool {
-        wanted.keys().all(|key| self.get(&key).is_some())
+        wanted.keys().all(|key| self.get(&key).is_some()) && self.tables(wanted).is_some()
+    }
+
+    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    pub(super) fn layouts(&self) -> &Arc<SetLayouts> {
+        &self.layouts
+    }
+
+    /// The tables of `wanted`'s models, once they are made.
+    pub(super) fn tables(&self, wanted: &Wanted) -> Option<Arc<Tables>> {
+        lock(&self.tables).get(&self.of_tables(&wanted.constants)).cloned()
+    }
+
+    /// The constants that the tables depend on.
+    fn of_tables(&self, constants: &Specialization) -> Specialization {
+        let stages = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().filter_map(|path| self.shaders.stages.get(path));
+        let declared: Vec<u32> = stages.flat_map(|s| s.reflection.constants.iter().map(|c| c.id)).collect();
+        constants.iter().filter(|(id, _)| declared.contains(id)).copied().collect()
+    }
+
+    /// Whether an environment looks the same when baked with either set.
+    pub(super) fn bakes_like(&self, other: &Self) -> bool {
+        BAKE_STAGES.iter().all(|path| match (self.shaders.stages.get(*path), other.shaders.stages.get(*path)) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a.spirv == b.spirv,
+            _ => false,
+        })
+    }
+
+    /// The module of a stage.
+    pub(super) fn spirv(&self, path: &str) -> Result<&Vec<u32>, GpuError> {
+        self.shaders.stages.get(path).map(|stage| &stage.spirv).ok_or_else(|| GpuError::NoStage(path.to_owned()))
+    }
+
+    /// A compute pipeline, made at its first use.
+    pub(super) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
+        let key = (path.to_owned(), constants.clone());
+        if let Some(pipeline) = lock(&self.computes).get(&key) {
+            return Ok(pipeline.clone());
+        }
+        let module = self.modules.get(path).ok_or_else(|| GpuError::NoStage(path.to_owned()))?;
+        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, module, constants)?;
+        lock(&self.computes).insert(key, pipeline.clone());
+        Ok(pipeline)
     }
 
     pub(super) fn get(&self, key: &PipelineKey) -> Option<Arc<Pipeline>> {
-        self.made.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+        lock(&self.made).get(key).cloned()
     }
 
     fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
@@ -98,6 +181,8 @@ impl PipelineSet {
         let [vertex, fragment] = key.pass.stages();
         let (depth, raster, class) = match key.pass {
             Pass::Model { raster, class } => (true, raster, class),
+            Pass::Sky => (true, Raster::Solid, PrimitiveClass::Triangles),
+            Pass::Average => (false, Raster::Averaged, PrimitiveClass::Triangles),
             Pass::Tonemap => (false, Raster::Solid, PrimitiveClass::Triangles),
         };
         let desc = PipelineDesc {

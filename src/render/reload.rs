@@ -7,7 +7,7 @@ use crate::events::ReloadEvent;
 use crate::gpu::{Gpu, SetLayouts};
 use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, Update};
 
-use super::pipelines::{PipelineSet, STAGES};
+use super::pipelines::{PipelineSet, stages};
 use super::wanted::Wanted;
 
 /// Compiles a shader tree and builds its pipelines. `app` holds it on a thread of its own; headless calls it directly.
@@ -48,7 +48,7 @@ impl Reloader {
         Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
-            library: Library::new(source, compiler.clone(), &STAGES),
+            library: Library::new(source, compiler.clone(), &stages()),
             current: None,
             unbuilt: false,
         }

@@ -1,19 +1,18 @@
 //! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set for each material.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::Mat3;
 use rayon::prelude::*;
 
-use crate::gpu::{
-    Buffer, DescriptorSet, Gpu, GpuError, Image, ImageDesc, Memory, PrimitiveClass, Sampler, SamplerDesc, SetLayouts,
-    SetWriter, Use, one_shot, vk,
-};
-use crate::interface::{self, Draw, TEXTURE_BASE_COLOR, TEXTURE_COUNT, TEXTURE_EMISSIVE, TEXTURE_NORMAL, Vertex};
-use crate::scene::{self as model, AlphaMode, Model, Topology};
+use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, ImageDesc, Memory, SetLayouts, Use, one_shot, vk};
+use crate::interface::{Draw, FEATURE_TRANSMISSION, Vertex};
+use crate::scene::{self as model, Model, Topology};
 
+use super::materials::{Textures, materials, variant};
 use super::mips;
+use super::sources::{Source, sources};
 use super::wanted::MaterialVariant;
 
 /// Why a model cannot be put on the device.
@@ -74,6 +73,11 @@ impl GpuScene {
         Ok(Arc::new(Self { indices, vertices, materials, draws, variants }))
     }
 
+    /// Whether light passes through a surface, so that what lies behind it must be drawn first.
+    pub(super) fn is_transmissive(&self) -> bool {
+        self.variants.iter().any(|v| v.features & FEATURE_TRANSMISSION != 0)
+    }
+
     /// The kinds of material in the scene.
     pub fn variants(&self) -> &BTreeSet<MaterialVariant> {
         &self.variants
@@ -93,14 +97,6 @@ struct Range {
     first_index: u32,
 }
 
-/// A texture as it is used: an image in one color space.
-type Textures = HashMap<(usize, bool), Arc<Image>>;
-
-/// Base color and emissive textures hold colors; the others hold numbers.
-fn is_srgb(slot: usize) -> bool {
-    slot == TEXTURE_BASE_COLOR as usize || slot == TEXTURE_EMISSIVE as usize
-}
-
 /// Collects copies into one staging buffer and runs them as one submission.
 struct Staging<'a> {
     gpu: &'a Arc<Gpu>,
@@ -113,10 +109,6 @@ struct Staging<'a> {
 const TEXTURE_USAGE: vk::ImageUsageFlags =
     vk::ImageUsageFlags::from_raw(vk::ImageUsageFlags::SAMPLED.as_raw() | vk::ImageUsageFlags::TRANSFER_DST.as_raw());
 
-/// Images that stand in for missing textures: white, and a flat normal.
-const WHITE: (usize, bool) = (usize::MAX, false);
-const FLAT_NORMAL: (usize, bool) = (usize::MAX - 1, false);
-
 impl<'a> Staging<'a> {
     fn new(gpu: &'a Arc<Gpu>, model: &Model) -> Result<Self, UploadError> {
         let geometry: usize = model
@@ -124,8 +116,11 @@ impl<'a> Staging<'a> {
             .iter()
             .map(|p| size_of_val(p.vertices.as_slice()) + size_of_val(p.indices.as_slice()) + 32)
             .sum();
-        let bytes = |image: &model::Image| mips::bytes(image.width, image.height) + 16;
-        let images: usize = uses(model).iter().map(|(image, _)| bytes(&model.images[*image])).sum();
+        let bytes = |source: &Source| {
+            let (width, height) = size(source, model);
+            mips::bytes(width, height) + 16
+        };
+        let images: usize = sources(model).iter().map(bytes).sum();
         let size = (geometry + images + 64) as u64;
         let buffer = Buffer::new(gpu, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload)?;
         Ok(Self { gpu, buffer, used: 0, buffers: Vec::new(), images: Vec::new() })
@@ -172,28 +167,25 @@ impl<'a> Staging<'a> {
 
     fn textures(&mut self, model: &Model) -> Result<Textures, UploadError> {
         let mut textures = Textures::new();
-        for (key, color) in [(WHITE, [255; 4]), (FLAT_NORMAL, [128, 128, 255, 255])] {
-            let offset = self.push(&color);
-            textures.insert(key, self.image("default", (1, 1), false, offset)?);
-        }
         let most = self.gpu.max_image_size();
         let mut places = Vec::new();
-        for (index, srgb) in uses(model) {
-            let image = &model.images[index];
-            let (name, width, height) = (&image.name, image.width, image.height);
+        for source in sources(model) {
+            let (width, height) = size(&source, model);
+            let name = source.image(model).map_or("default", |image| &image.name);
             if width > most || height > most {
-                return Err(UploadError::ImageTooLarge { name: name.clone(), width, height, most });
+                return Err(UploadError::ImageTooLarge { name: name.to_owned(), width, height, most });
             }
             let offset = self.reserve(mips::bytes(width, height));
-            textures.insert((index, srgb), self.image(name, (width, height), srgb, offset)?);
-            places.push((image, srgb, offset));
+            textures.insert(source, self.image(name, (width, height), source.is_srgb(), offset)?);
+            places.push((source, (width, height), offset));
         }
         // The first touch of staging memory costs as much as the copy, so that is shared out too.
         let staging = &self.buffer;
-        places.par_iter().for_each(|(image, srgb, offset)| {
-            staging.write(*offset, &image.rgba8);
-            let below = mips::below(&image.rgba8, image.width, image.height, *srgb);
-            staging.write(offset + image.rgba8.len() as u64, &below);
+        places.par_iter().for_each(|(source, (width, height), offset)| {
+            let pixels = source.pixels(model);
+            staging.write(*offset, &pixels);
+            let below = mips::below(&pixels, *width, *height, source.is_srgb());
+            staging.write(offset + pixels.len() as u64, &below);
         });
         Ok(textures)
     }
@@ -232,93 +224,9 @@ impl<'a> Staging<'a> {
     }
 }
 
-/// Every image that a material uses, with whether it is read as sRGB.
-fn uses(model: &Model) -> BTreeSet<(usize, bool)> {
-    let slots = model.materials.iter().flat_map(|m| m.textures.iter().enumerate());
-    slots.filter_map(|(slot, u)| u.map(|u| (model.textures[u.texture].image, is_srgb(slot)))).collect()
-}
-
-fn materials(
-    gpu: &Arc<Gpu>,
-    layouts: &Arc<SetLayouts>,
-    model: &Model,
-    textures: &Textures,
-) -> Result<Vec<Arc<DescriptorSet>>, UploadError> {
-    let mut samplers: HashMap<model::Sampler, Arc<Sampler>> = HashMap::new();
-    let mut sets = Vec::new();
-    for (id, material) in (0u32..).zip(&model.materials) {
-        let packed = pack(material, id);
-        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
-        let buffer = Buffer::new(gpu, "material", size_of_val(&packed) as u64, usage, Memory::Upload)?;
-        buffer.write(0, bytemuck::bytes_of(&packed));
-        let mut writer = SetWriter::default().buffer(0, &buffer);
-        for (slot, used) in material.textures.iter().enumerate() {
-            let default = if slot == TEXTURE_NORMAL as usize { FLAT_NORMAL } else { WHITE };
-            let texture = used.map(|u| model.textures[u.texture]);
-            let key = texture.map_or(default, |t| (t.image, is_srgb(slot)));
-            let wanted = texture.map(|t| t.sampler).unwrap_or_default();
-            let sampler = match samplers.get(&wanted) {
-                Some(sampler) => sampler.clone(),
-                None => samplers.entry(wanted).or_insert(make_sampler(gpu, &wanted)?).clone(),
-            };
-            if let Some(image) = textures.get(&key) {
-                writer = writer.texture(1 + slot as u32, image, &sampler);
-            }
-        }
-        sets.push(DescriptorSet::new(layouts, interface::SET_MATERIAL, writer)?);
-    }
-    Ok(sets)
-}
-
-fn pack(material: &model::Material, id: u32) -> interface::Material {
-    let mut packed = interface::Material {
-        base_color_factor: material.base_color_factor.to_array(),
-        emissive_factor: material.emissive_factor.to_array(),
-        metallic_factor: material.metallic_factor,
-        roughness_factor: material.roughness_factor,
-        normal_scale: material.normal_scale,
-        occlusion_strength: material.occlusion_strength,
-        alpha_cutoff: material.alpha_cutoff,
-        id,
-        uv_from_texture: [[[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]; TEXTURE_COUNT],
-        ..Default::default()
-    };
-    for (slot, used) in material.textures.iter().enumerate() {
-        let Some(used) = used else { continue };
-        packed.texture_mask |= 1 << slot;
-        packed.uv1_mask |= used.uv_set << slot;
-        let m = used.uv_from_mesh;
-        packed.uv_from_texture[slot] =
-            [m.matrix2.x_axis.to_array(), m.matrix2.y_axis.to_array(), m.translation.to_array()];
-    }
-    packed
-}
-
-fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>, GpuError> {
-    let filter = |linear| if linear { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
-    let wrap = |wrap| match wrap {
-        model::Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
-        model::Wrap::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
-        model::Wrap::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
-    };
-    // A software device pays for each anisotropic sample; a GPU hardly notices.
-    let smooth = sampler.mag_linear && sampler.min_linear && sampler.mip == model::Mip::Linear;
-    let anisotropy = if smooth && gpu.info().kind != "cpu" { 8 } else { 1 };
-    Sampler::new(
-        gpu,
-        &SamplerDesc {
-            mag: filter(sampler.mag_linear),
-            min: filter(sampler.min_linear),
-            mip: match sampler.mip {
-                model::Mip::Linear => vk::SamplerMipmapMode::LINEAR,
-                model::Mip::None | model::Mip::Nearest => vk::SamplerMipmapMode::NEAREST,
-            },
-            mips: sampler.mip != model::Mip::None,
-            wrap_u: wrap(sampler.wrap_u),
-            wrap_v: wrap(sampler.wrap_v),
-            anisotropy,
-        },
-    )
+/// Width and height.
+fn size(source: &Source, model: &Model) -> (u32, u32) {
+    source.image(model).map_or((1, 1), |image| (image.width, image.height))
 }
 
 fn draws(model: &Model, vertices: u64, ranges: &[Range]) -> Vec<GpuDraw> {
@@ -350,7 +258,7 @@ fn draws(model: &Model, vertices: u64, ranges: &[Range]) -> Vec<GpuDraw> {
             front: if determinant < 0.0 { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE },
             double_sided: material.double_sided,
             material: primitive.material,
-            variant: variant(primitive, material),
+            variant: variant(model, primitive, material),
             center_ws: world.transform_point3(primitive.bounds.center()),
         }
     };
@@ -365,24 +273,5 @@ fn topology(topology: Topology) -> vk::PrimitiveTopology {
         Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
         Topology::TriangleStrip => vk::PrimitiveTopology::TRIANGLE_STRIP,
         Topology::TriangleFan => vk::PrimitiveTopology::TRIANGLE_FAN,
-    }
-}
-
-fn variant(primitive: &model::Primitive, material: &model::Material) -> MaterialVariant {
-    let has_frame = primitive.attributes & interface::ATTRIBUTE_TANGENT_FRAME != 0;
-    let has_normal_texture = material.textures[TEXTURE_NORMAL as usize].is_some() && has_frame;
-    MaterialVariant {
-        alpha: match material.alpha_mode {
-            AlphaMode::Opaque => interface::ALPHA_OPAQUE,
-            AlphaMode::Mask => interface::ALPHA_MASK,
-            AlphaMode::Blend => interface::ALPHA_BLEND,
-        },
-        features: if material.unlit { interface::FEATURE_UNLIT } else { 0 }
-            | if has_normal_texture { interface::FEATURE_NORMAL_TEXTURE } else { 0 },
-        class: match primitive.topology {
-            Topology::Points => PrimitiveClass::Points,
-            Topology::Lines | Topology::LineStrip => PrimitiveClass::Lines,
-            Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => PrimitiveClass::Triangles,
-        },
     }
 }

@@ -9,6 +9,9 @@ use crate::shader::{Encode, Mode, ShaderSet};
 use super::values;
 use super::wanted;
 
+/// Paths a pixel in each frame of a mode that accumulates.
+const PATHS: u32 = 8;
+
 /// One picture's inputs, ready for the device.
 #[derive(Clone, Debug)]
 pub struct Shot {
@@ -33,6 +36,7 @@ impl Shot {
         let exposure = 1.0 / (1.2 * settings.view.ev.exp2());
         let view_from_world = view.view_from_world();
         let clip_from_world = view.clip_from_world();
+        let turn = settings.environment.rotation.to_radians();
         let frame = Frame {
             clip_from_world: clip_from_world.to_cols_array_2d(),
             world_from_clip: clip_from_world.inverse().to_cols_array_2d(),
@@ -51,15 +55,22 @@ impl Shot {
             tonemap: tonemap(settings.view.tonemap, mode),
             encode: mode.map_or(Encode::Color, |m| m.encode).id(),
             mode: mode.map_or(0, |m| m.id),
+            environment_rotation: [turn.cos(), turn.sin()],
+            environment_intensity: if settings.environment.is_lit() { settings.environment.intensity } else { 0.0 },
+            environment_blur: settings.environment.blur,
+            sample_count: PATHS,
             ..Default::default()
         };
         Self { view, lights, params, frame }
     }
 
-    /// The frame's uniforms for a picture in this part of the output, whose HDR target holds values up to `largest`.
-    pub(super) fn uniforms(&self, rect: Rect, largest: f32) -> Frame {
+    /// The frame's uniforms for a picture in this part of the output, whose HDR target holds values up to `largest`, under an
+    /// environment whose images hold radiance times `scale`. `sample_index` counts the frames of one picture.
+    pub(super) fn uniforms(&self, rect: Rect, largest: f32, scale: f32, sample_index: u32) -> Frame {
         Frame {
             largest_value: largest,
+            environment_intensity: self.frame.environment_intensity / scale,
+            sample_index,
             viewport_px: [rect.width as f32, rect.height as f32],
             viewport_origin_px: [rect.x as f32, rect.y as f32],
             ..self.frame

@@ -1,42 +1,102 @@
-//! The images that a frame draws to before the picture: HDR color, its multisampled twin, and depth.
+//! The images that a frame draws to before the picture: HDR color, its multisampled twin, depth, and what some pictures need more.
 
 use std::sync::Arc;
 
-use crate::gpu::{Gpu, GpuError, Image, ImageDesc, vk};
+use crate::gpu::{DescriptorSet, Gpu, GpuError, Image, ImageDesc, Sampler, SetLayouts, SetWriter, vk};
+use crate::interface::SET_PASS;
 
-/// Targets of one size. Replaced as a whole; frames in flight keep the old ones.
+use super::mips;
+
+/// What the targets must be able to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Purpose {
+    /// Pixels across and down.
+    pub(super) size: (u32, u32),
+    /// Samples a pixel.
+    pub(super) samples: u32,
+    /// Format of HDR color.
+    pub(super) format: vk::Format,
+    /// Whether surfaces show what lies behind them.
+    pub(super) transmission: bool,
+    /// Whether frames add up.
+    pub(super) accumulates: bool,
+}
+
+/// Targets of one purpose. Replaced as a whole; frames in flight keep the old ones.
 pub(super) struct Targets {
+    pub(super) purpose: Purpose,
     /// Resolved HDR color.
     pub(super) color: Arc<Image>,
     /// Multisampled color, when there is more than one sample.
     pub(super) multisampled: Option<Arc<Image>>,
     /// Depth.
     pub(super) depth: Arc<Image>,
-    pub(super) samples: u32,
+    /// The opaque surfaces with mip levels, for those that light passes through.
+    pub(super) behind: Option<Arc<Image>>,
+    /// Mean of the frames so far.
+    pub(super) mean: Option<Arc<Image>>,
+    /// What the model's pass reads.
+    pub(super) model_set: Arc<DescriptorSet>,
+    /// What the pass that adds to the mean reads: the newest frame.
+    pub(super) color_set: Arc<DescriptorSet>,
+    /// What the tone map reads.
+    pub(super) picture_set: Arc<DescriptorSet>,
 }
 
 impl Targets {
+    /// `nothing`: an image of one texel, bound where there is none.
     pub(super) fn new(
         gpu: &Arc<Gpu>,
-        (width, height): (u32, u32),
-        samples: u32,
-        format: vk::Format,
+        layouts: &Arc<SetLayouts>,
+        purpose: Purpose,
+        nothing: &Arc<Image>,
+        (nearest, linear): (&Arc<Sampler>, &Arc<Sampler>),
     ) -> Result<Self, GpuError> {
         use vk::ImageUsageFlags as Usage;
-        let color = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
+        let Purpose { size: (width, height), samples, format, .. } = purpose;
+        let image = |name: &str, desc: ImageDesc| Image::new(gpu, name, desc);
+        let drawn = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
         let multi = |format, usage| ImageDesc { samples, ..ImageDesc::new(width, height, format, usage) };
+        let color = image("hdr color", ImageDesc::new(width, height, format, drawn))?;
+        let multisampled = match samples {
+            1 => None,
+            _ => Some(image("multisampled color", multi(format, Usage::COLOR_ATTACHMENT))?),
+        };
+        let depth = image("depth", multi(vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT))?;
+        let copied = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
+        let half = vk::Format::R16G16B16A16_SFLOAT;
+        let levels = mips::count(width, height);
+        let behind = match purpose.transmission {
+            true => {
+                Some(image("behind", ImageDesc { mips: levels, ..ImageDesc::new(width, height, half, copied) })?)
+            }
+            false => None,
+        };
+        let mean = match purpose.accumulates {
+            true => {
+                Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?)
+            }
+            false => None,
+        };
+        let set = |scene: &Arc<Image>, behind: &Arc<Image>| {
+            let writer = SetWriter::default().texture(0, scene, nearest).texture(1, behind, linear);
+            DescriptorSet::new(layouts, SET_PASS, writer)
+        };
         Ok(Self {
-            color: Image::new(gpu, "hdr color", ImageDesc::new(width, height, format, color))?,
-            multisampled: (samples > 1)
-                .then(|| Image::new(gpu, "multisampled color", multi(format, Usage::COLOR_ATTACHMENT)))
-                .transpose()?,
-            depth: Image::new(gpu, "depth", multi(vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT))?,
-            samples,
+            purpose,
+            model_set: set(nothing, behind.as_ref().unwrap_or(nothing))?,
+            color_set: set(&color, nothing)?,
+            picture_set: set(mean.as_ref().unwrap_or(&color), nothing)?,
+            color,
+            multisampled,
+            depth,
+            behind,
+            mean,
         })
     }
 
-    pub(super) fn fits(&self, (width, height): (u32, u32), samples: u32) -> bool {
-        let desc = self.color.desc();
-        (desc.width, desc.height, self.samples) == (width, height, samples)
+    /// What the tone map shows: the mean, or the newest frame.
+    pub(super) fn picture(&self) -> &Arc<Image> {
+        self.mean.as_ref().unwrap_or(&self.color)
     }
 }

@@ -1,30 +1,55 @@
-//! The buffers of set 0, one of each for every frame slot, so that the CPU never writes what a frame in flight reads.
+//! Set 0, one for every frame slot, so that the CPU never writes what a frame in flight reads.
 
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, DescriptorSet, GpuError, Memory, SetLayouts, SetWriter, vk};
+use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, vk};
 use crate::interface::{self, Frame, Light};
 
-/// Set 0 of one frame slot.
+use super::bake::GpuEnvironment;
+use super::tables::Tables;
+
+/// What set 0 points to that outlives a frame.
+#[derive(Clone)]
+pub(super) struct Sources {
+    pub(super) environment: Arc<GpuEnvironment>,
+    pub(super) tables: Arc<Tables>,
+    pub(super) measured: Arc<Buffer>,
+}
+
+impl Sources {
+    fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.environment, &other.environment)
+            && Arc::ptr_eq(&self.tables, &other.tables)
+            && Arc::ptr_eq(&self.measured, &other.measured)
+    }
+}
+
+/// What set 0 points to that never changes.
+pub(super) struct Constants {
+    /// Table of the rectangular lights.
+    pub(super) ltc: Arc<Image>,
+    /// Linear, clamped.
+    pub(super) linear: Arc<Sampler>,
+}
+
+/// Buffers and set 0 of one frame slot.
 pub(super) struct Uniforms {
     frame: Arc<Buffer>,
     lights: Arc<Buffer>,
     params: Arc<Buffer>,
-    pub(super) set: Arc<DescriptorSet>,
+    set: Option<(Sources, Arc<DescriptorSet>)>,
 }
 
 impl Uniforms {
     /// With room for `lights` lights.
-    pub(super) fn new(gpu: &Arc<crate::gpu::Gpu>, layouts: &Arc<SetLayouts>, lights: usize) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Arc<Gpu>, lights: usize) -> Result<Self, GpuError> {
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let light_bytes = (lights.max(8) * size_of::<Light>()) as u64;
         let frame = Buffer::new(gpu, "frame", size_of::<Frame>() as u64, uniform, Memory::Upload)?;
         let lights = Buffer::new(gpu, "lights", light_bytes, storage, Memory::Upload)?;
         let params = Buffer::new(gpu, "params", interface::PARAMS_SIZE.into(), uniform, Memory::Upload)?;
-        let writer = SetWriter::default().buffer(0, &frame).buffer(1, &lights).buffer(2, &params);
-        let set = DescriptorSet::new(layouts, interface::SET_FRAME, writer)?;
-        Ok(Self { frame, lights, params, set })
+        Ok(Self { frame, lights, params, set: None })
     }
 
     pub(super) fn light_capacity(&self) -> usize {
@@ -36,5 +61,33 @@ impl Uniforms {
         self.frame.write(0, bytemuck::bytes_of(frame));
         self.lights.write(0, bytemuck::cast_slice(lights));
         self.params.write(0, params);
+    }
+
+    /// The set over these sources; made anew when one of them is another.
+    pub(super) fn set(
+        &mut self,
+        layouts: &Arc<SetLayouts>,
+        sources: &Sources,
+        constants: &Constants,
+    ) -> Result<Arc<DescriptorSet>, GpuError> {
+        if let Some((_, set)) = self.set.as_ref().filter(|(made_of, _)| made_of.is_same(sources)) {
+            return Ok(set.clone());
+        }
+        let Sources { environment, tables, measured } = sources;
+        let writer = SetWriter::default()
+            .buffer(0, &self.frame)
+            .buffer(1, &self.lights)
+            .buffer(2, &self.params)
+            .texture(3, &environment.cube, &environment.sampler)
+            .texture(4, &environment.prefiltered, &environment.sampler)
+            .texture(5, &environment.sheen, &environment.sampler)
+            .buffer(6, &environment.irradiance)
+            .texture(7, &tables.dfg, &constants.linear)
+            .texture(8, &constants.ltc, &constants.linear)
+            .buffer(9, measured)
+            .texture(10, &tables.sheen_albedo, &constants.linear);
+        let set = DescriptorSet::new(layouts, interface::SET_FRAME, writer)?;
+        self.set = Some((sources.clone(), set.clone()));
+        Ok(set)
     }
 }

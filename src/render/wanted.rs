@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
 use crate::interface::{self, SPEC_ALPHA_MODE, SPEC_FEATURES, SPEC_MODE};
-use crate::settings::Settings;
+use crate::settings::{LightSource, Settings};
 use crate::shader::{DrawAs, Mode, ShaderSet};
 
 use super::values;
@@ -37,6 +37,12 @@ pub struct Wanted {
     pub output_format: vk::Format,
     /// Kinds of material in the scene.
     pub materials: BTreeSet<MaterialVariant>,
+    /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_RECT_LIGHTS`.
+    pub shared_features: u32,
+    /// Whether the environment is seen behind the model.
+    pub sky: bool,
+    /// Whether frames add up to a mean while nothing changes.
+    pub accumulates: bool,
 }
 
 /// One pipeline of a [`Wanted`].
@@ -53,6 +59,10 @@ pub(super) struct PipelineKey {
 pub(super) enum Pass {
     /// The model: `pbr.vert`, `pbr.frag`.
     Model { raster: Raster, class: PrimitiveClass },
+    /// The environment behind it: `sky.vert`, `sky.frag`.
+    Sky,
+    /// A frame added to the mean: `tonemap.vert`, `average.frag`.
+    Average,
     /// HDR to picture: `tonemap.vert`, `tonemap.frag`.
     Tonemap,
 }
@@ -76,17 +86,26 @@ impl Wanted {
             scene_format,
             output_format,
             materials: materials.clone(),
+            shared_features: shared_features(settings),
+            sky: settings.environment.is_shown(&settings.view) && mode.is_some_and(|m| m.tonemap),
+            accumulates: mode.is_some_and(|m| m.accumulate),
         }
     }
 
     /// The same picture in another mode.
     pub fn with_mode(&self, mode: &Mode) -> Self {
-        Self { mode: mode.id, draw: mode.draw, ..self.clone() }
+        Self {
+            mode: mode.id,
+            draw: mode.draw,
+            sky: self.sky && mode.tonemap,
+            accumulates: mode.accumulate,
+            ..self.clone()
+        }
     }
 
     pub(super) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
         let mut specialization =
-            vec![(SPEC_MODE, self.mode), (SPEC_ALPHA_MODE, material.alpha), (SPEC_FEATURES, material.features)];
+            vec![(SPEC_MODE, self.mode), (SPEC_ALPHA_MODE, material.alpha), (SPEC_FEATURES, material.features | self.shared_features)];
         specialization.extend_from_slice(&self.constants);
         let raster = match self.draw {
             DrawAs::Lines => Raster::Lines,
@@ -111,9 +130,41 @@ impl Wanted {
         }
     }
 
-    pub(super) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
-        self.materials.iter().map(|m| self.model_key(*m)).chain([self.tonemap_key()])
+    /// The sky's pipeline, when it is seen.
+    pub(super) fn sky_key(&self) -> Option<PipelineKey> {
+        self.sky.then(|| PipelineKey {
+            pass: Pass::Sky,
+            format: self.scene_format,
+            samples: self.samples,
+            specialization: self.constants.clone(),
+        })
     }
+
+    /// The pipeline that adds a frame to the mean, when frames add up.
+    pub(super) fn average_key(&self) -> Option<PipelineKey> {
+        self.accumulates.then(|| PipelineKey {
+            pass: Pass::Average,
+            format: vk::Format::R32G32B32A32_SFLOAT,
+            samples: 1,
+            specialization: Vec::new(),
+        })
+    }
+
+    pub(super) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
+        self.materials.iter().map(|m| self.model_key(*m)).chain([self.tonemap_key()]).chain(self.sky_key()).chain(self.average_key())
+    }
+}
+
+/// What a frame's materials have in common.
+fn shared_features(settings: &Settings) -> u32 {
+    let mut features = 0;
+    if settings.environment.is_lit() {
+        features |= interface::FEATURE_ENVIRONMENT;
+    }
+    if settings.lights.rect.enabled && settings.lights.source != LightSource::None {
+        features |= interface::FEATURE_RECT_LIGHTS;
+    }
+    features
 }
 
 /// The mode of this slug, or the tree's first mode.

@@ -5,15 +5,20 @@ use glam::Vec3;
 use super::camera::direction;
 use super::model::{LightKind, Model};
 use crate::interface::{self, Light};
-use crate::settings::{LightSettings, LightSource, OrbitLight};
+use crate::settings::{LightSettings, LightSource, OrbitLight, RectLight};
 
-/// The lights of a frame in world space. `time_s` turns the orbiting ones by `spin` degrees a second.
+/// The lights of a frame in world space, the rectangle last. `time_s` turns the orbiting ones by `spin` degrees a
+/// second; the rectangle stands still.
 pub fn lights(settings: &LightSettings, model: &Model, time_s: f32) -> Vec<Light> {
-    match settings.source {
-        LightSource::None => Vec::new(),
+    let mut lights: Vec<Light> = match settings.source {
+        LightSource::None => return Vec::new(),
         LightSource::Orbit => settings.orbit.iter().map(|light| orbit(light, settings.spin * time_s, model)).collect(),
         LightSource::Model => model.lights.iter().map(punctual).collect(),
+    };
+    if settings.rect.enabled {
+        lights.push(rectangle(&settings.rect, model));
     }
+    lights
 }
 
 /// Distances and intensities grow with the model, so that every model is lit alike.
@@ -26,6 +31,25 @@ fn orbit(light: &OrbitLight, turned_deg: f32, model: &Model) -> Light {
         kind: interface::LIGHT_POINT,
         direction_ws: (-outward).to_array(),
         intensity: (Vec3::from(light.color) * light.strength * radius * radius).to_array(),
+        ..Light::default()
+    }
+}
+
+/// Lengths grow with the model; radiance does not depend on them. `half_x_ws` x `half_y_ws` points where it shines to.
+fn rectangle(light: &RectLight, model: &Model) -> Light {
+    let (center, radius) = (model.bounds.center(), model.bounds.radius());
+    let azimuth_rad = light.azimuth.to_radians();
+    let outward = direction(azimuth_rad, (90.0 - light.polar).to_radians());
+    // Not a cross product with +Y, which has no direction above and below the model.
+    let x = Vec3::new(azimuth_rad.cos(), 0.0, -azimuth_rad.sin());
+    let y = (-outward).cross(x);
+    Light {
+        position_ws: (center + outward * radius * light.distance).to_array(),
+        kind: interface::LIGHT_RECT,
+        direction_ws: (-outward).to_array(),
+        intensity: (Vec3::from(light.color) * light.strength).to_array(),
+        half_x_ws: (x * radius * light.width * 0.5).to_array(),
+        half_y_ws: (y * radius * light.height * 0.5).to_array(),
         ..Light::default()
     }
 }
@@ -44,6 +68,7 @@ fn punctual(light: &super::model::Light) -> Light {
         intensity: light.intensity.to_array(),
         cos_inner,
         cos_outer,
+        ..Light::default()
     }
 }
 
@@ -81,6 +106,36 @@ mod tests {
         let settings = LightSettings { spin: 45.0, orbit: [light(0.0, 90.0); 3], ..LightSettings::default() };
         let position = Vec3::from(lights(&settings, &model(), 2.0)[0].position_ws);
         assert!(position.distance(Vec3::new(13.0, 2.0, 2.0)) < 1e-4, "{position}");
+    }
+
+    #[test]
+    fn the_rectangle_faces_the_center_from_everywhere() {
+        // Straight above and below, a horizontal edge has to be chosen.
+        for (azimuth, polar) in [(-40.0, 50.0), (0.0, 90.0), (77.0, 0.0), (200.0, 180.0), (0.0, 0.0)] {
+            let rect = RectLight {
+                enabled: true,
+                azimuth,
+                polar,
+                distance: 2.0,
+                width: 1.0,
+                height: 0.5,
+                ..RectLight::default()
+            };
+            let settings = LightSettings { rect, spin: 45.0, ..LightSettings::default() };
+            let lights = lights(&settings, &model(), 3.0);
+            let light = lights[3];
+            let [position, direction, x, y] =
+                [light.position_ws, light.direction_ws, light.half_x_ws, light.half_y_ws].map(Vec3::from);
+            assert_eq!((lights.len(), light.kind, light.intensity), (4, interface::LIGHT_RECT, [6.0; 3]));
+            assert!((position + direction * 6.0).distance(Vec3::new(1.0, 2.0, 2.0)) < 1e-4, "{light:?}");
+            assert!((x.length() - 1.5).abs() < 1e-5 && (y.length() - 0.75).abs() < 1e-5 && x.y == 0.0, "{light:?}");
+            assert!(x.cross(y).normalize().distance(direction) < 1e-5, "{light:?}");
+        }
+        let with = |source| {
+            let rect = RectLight { enabled: true, ..RectLight::default() };
+            lights(&LightSettings { source, rect, ..LightSettings::default() }, &model(), 0.0).len()
+        };
+        assert_eq!([LightSource::Model, LightSource::None].map(with), [1, 0]);
     }
 
     #[test]

@@ -7,9 +7,13 @@
 mod built_in;
 mod camera;
 mod control;
+pub mod environment;
 mod error;
+mod features;
 mod gltf;
 mod lights;
+mod material;
+mod measured;
 mod model;
 mod outline;
 
@@ -18,8 +22,11 @@ use std::path::{Path, PathBuf};
 pub use built_in::{BUILT_IN, built_in};
 pub use camera::{View, frame};
 pub use control::{FlyCamera, OrbitCamera};
+pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
+pub use features::{features, packs_occlusion};
 pub use lights::lights;
+pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 
 /// What a load may do.

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use glam::{Affine2, Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec3};
 
+pub use super::material::*;
 pub use crate::interface::Vertex;
 
 /// A loaded model. Indices into its vectors are always in range; a loader that cannot promise that returns an error.
@@ -19,6 +20,8 @@ pub struct Model {
     pub textures: Vec<Texture>,
     /// Decoded images.
     pub images: Vec<Image>,
+    /// KHR_materials_variants: their names.
+    pub variants: Vec<String>,
     /// What is drawn: primitives placed in the world.
     pub instances: Vec<Instance>,
     /// KHR_lights_punctual, placed in the world.
@@ -129,12 +132,55 @@ pub struct Primitive {
     pub indices: Vec<u32>,
     /// How the indices are read.
     pub topology: Topology,
-    /// Index into `Model::materials`.
+    /// Index into `Model::materials`: what it is drawn with, in the variant that is chosen.
     pub material: usize,
+    /// The same without a variant.
+    pub default_material: usize,
+    /// KHR_materials_variants: indices into `Model::variants` and `Model::materials`, each variant once at most.
+    pub variant_materials: Vec<(usize, usize)>,
     /// `interface::ATTRIBUTE_*` bits.
     pub attributes: u32,
     /// Object-space bounds.
     pub bounds: Bounds,
+}
+
+impl Primitive {
+    /// Its material in a variant: the default one where the file names no other.
+    pub fn material_in(&self, variant: Option<usize>) -> usize {
+        let named = self.variant_materials.iter().find(|(of, _)| Some(*of) == variant);
+        named.map_or(self.default_material, |(_, material)| *material)
+    }
+}
+
+impl Model {
+    /// Index of the variant of this name; `None` for the empty name, which is the model as it comes.
+    ///
+    /// # Errors
+    /// A name that the model does not have, in words with those it has.
+    pub fn variant(&self, name: &str) -> Result<Option<usize>, String> {
+        if name.is_empty() {
+            return Ok(None);
+        }
+        self.variants.iter().position(|known| known == name).map(Some).ok_or_else(|| {
+            let known = match self.variants.as_slice() {
+                [] => "it has none".to_owned(),
+                names => format!("it has {}", names.join(", ")),
+            };
+            format!("the model has no variant '{name}': {known}. Leave the name empty for the model as it comes")
+        })
+    }
+
+    /// Gives every primitive its material of the variant of this name; the empty name takes all variants back.
+    ///
+    /// # Errors
+    /// As [`Model::variant`]; nothing is changed then.
+    pub fn select_variant(&mut self, name: &str) -> Result<(), String> {
+        let variant = self.variant(name)?;
+        for primitive in &mut self.primitives {
+            primitive.material = primitive.material_in(variant);
+        }
+        Ok(())
+    }
 }
 
 /// A primitive placed in the world.
@@ -148,131 +194,6 @@ pub struct Instance {
     pub node: usize,
     /// Name of the node, or empty.
     pub node_name: String,
-}
-
-/// Coverage, as in glTF.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AlphaMode {
-    /// Alpha is ignored.
-    #[default]
-    Opaque,
-    /// Fragments below the cutoff are discarded.
-    Mask,
-    /// Blended over what is behind.
-    Blend,
-}
-
-/// A use of a texture by a material.
-#[derive(Clone, Copy, Debug)]
-pub struct TextureUse {
-    /// Index into `Model::textures`.
-    pub texture: usize,
-    /// TEXCOORD set, 0 or 1.
-    pub uv_set: u32,
-    /// KHR_texture_transform: texture coordinates from mesh coordinates.
-    pub uv_from_mesh: Affine2,
-}
-
-/// A metallic-roughness material. Colors are linear.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// Name, or empty.
-    pub name: String,
-    /// RGBA factor.
-    pub base_color_factor: Vec4,
-    /// 0..1.
-    pub metallic_factor: f32,
-    /// Perceptual roughness, 0..1.
-    pub roughness_factor: f32,
-    /// RGB factor, KHR_materials_emissive_strength multiplied in.
-    pub emissive_factor: Vec3,
-    /// Scale of the normal texture.
-    pub normal_scale: f32,
-    /// Strength of the occlusion texture.
-    pub occlusion_strength: f32,
-    /// Cutoff for [`AlphaMode::Mask`].
-    pub alpha_cutoff: f32,
-    /// Coverage.
-    pub alpha_mode: AlphaMode,
-    /// Draw both faces.
-    pub double_sided: bool,
-    /// KHR_materials_unlit.
-    pub unlit: bool,
-    /// The textures, indexed by `interface::TEXTURE_*`.
-    pub textures: [Option<TextureUse>; crate::interface::TEXTURE_COUNT],
-}
-
-impl Default for Material {
-    /// glTF's default material: white, rough metal.
-    fn default() -> Self {
-        Self {
-            name: String::new(),
-            base_color_factor: Vec4::ONE,
-            metallic_factor: 1.0,
-            roughness_factor: 1.0,
-            emissive_factor: Vec3::ZERO,
-            normal_scale: 1.0,
-            occlusion_strength: 1.0,
-            alpha_cutoff: 0.5,
-            alpha_mode: AlphaMode::Opaque,
-            double_sided: false,
-            unlit: false,
-            textures: [None; crate::interface::TEXTURE_COUNT],
-        }
-    }
-}
-
-/// An image with a way to read it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Texture {
-    /// Index into `Model::images`.
-    pub image: usize,
-    /// Filtering and wrapping.
-    pub sampler: Sampler,
-}
-
-/// glTF sampler. The default is linear with mips, repeating.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Sampler {
-    /// Magnification is linear, not nearest.
-    pub mag_linear: bool,
-    /// Minification is linear, not nearest.
-    pub min_linear: bool,
-    /// Mip levels: none, nearest or linear.
-    pub mip: Mip,
-    /// Horizontal wrap.
-    pub wrap_u: Wrap,
-    /// Vertical wrap.
-    pub wrap_v: Wrap,
-}
-
-impl Default for Sampler {
-    fn default() -> Self {
-        Self { mag_linear: true, min_linear: true, mip: Mip::Linear, wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat }
-    }
-}
-
-/// Use of mip levels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Mip {
-    /// Level 0 only.
-    None,
-    /// The nearest level.
-    Nearest,
-    /// Between two levels.
-    Linear,
-}
-
-/// Texture coordinates outside 0..1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Wrap {
-    /// Repeat.
-    Repeat,
-    /// Mirrored repeat.
-    Mirror,
-    /// Clamp to edge.
-    Clamp,
 }
 
 /// A decoded image, RGBA, 8 bits a channel, rows top to bottom. Color space depends on the use, so it is not converted.

@@ -80,6 +80,8 @@ mod tests {
             indices: (0..count as u32).collect(),
             topology: Topology::Points,
             material: 0,
+            default_material: 0,
+            variant_materials: Vec::new(),
             attributes: 0,
             bounds,
         }

@@ -76,6 +76,8 @@ pub struct Mode {
     pub encode: Encode,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
+    /// Whether frames add up to a mean: each is a noisy sample of the picture.
+    pub accumulate: bool,
     /// How the model is drawn.
     pub draw: DrawAs,
     /// Key in the window.
@@ -108,6 +110,12 @@ pub struct Constant {
     pub range: Option<(f64, f64)>,
     /// Named values; empty for free choice.
     pub choices: Vec<(String, i64)>,
+    /// Choices that are claimed never to reflect more light than arrives; `None` where the constant has no part in that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub conserves: Option<Vec<String>>,
+    /// Choices that are claimed to be the same with light and eye exchanged; `None` as above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reciprocal: Option<Vec<String>>,
     /// File as printed.
     #[serde(skip)]
     pub file: String,
@@ -267,7 +275,7 @@ impl Seen {
 
 /// Joins a `//@ui` with its declaration in the compiled modules.
 fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(), Box<Diagnostic>> {
-    let Ui { name, label, range, choices, color, default, declared, place } = ui;
+    let Ui { name, label, range, choices, conserves, reciprocal, color, default, declared, place } = ui;
     let (file, line) = (place.file.clone(), place.line);
     match declared {
         Declared::Constant(_) => {
@@ -283,7 +291,19 @@ fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(),
                 return Err(place.error(None, message));
             }
             let (id, scalar, default) = (found.id, found.scalar, found.default);
-            out.constants.push(Constant { name, id, label, scalar, default, range, choices, file, line });
+            out.constants.push(Constant {
+                name,
+                id,
+                label,
+                scalar,
+                default,
+                range,
+                choices,
+                conserves,
+                reciprocal,
+                file,
+                line,
+            });
         }
         Declared::Member(kind) => {
             let offset = offset_in_params(&name, modules, &place)?;

@@ -79,6 +79,12 @@ impl<'a> Cursor<'a> {
         self.raw[self.at..].starts_with(sign)
     }
 
+    /// Whether `text` comes next.
+    pub fn peek_text(&mut self, text: &str) -> bool {
+        self.skip();
+        self.raw[self.at..].starts_with(text)
+    }
+
     /// Passes over `sign` if it comes next.
     pub fn take(&mut self, sign: char) -> bool {
         let found = self.peek(sign);

@@ -2,7 +2,7 @@
 
 use super::annotation::{DrawAs, Encode, Mode, ParameterType};
 use super::annotation_cursor::{Cursor, Place};
-use super::annotation_value::{choices, default, range};
+use super::annotation_value::{choices, claim, claimed, default, range};
 use super::diagnostic::Diagnostic;
 use super::reflect::Scalar;
 use super::text::{Line, is_word, lines, tokens};
@@ -39,6 +39,10 @@ pub struct Ui {
     pub range: Option<(f64, f64)>,
     /// `choice A=0 B=1`
     pub choices: Vec<(String, i64)>,
+    /// `conserves="A"`
+    pub conserves: Option<Vec<String>>,
+    /// `reciprocal="A B"`
+    pub reciprocal: Option<Vec<String>>,
     /// `color`
     pub color: bool,
     /// `= ...`, one number for each component.
@@ -101,6 +105,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         group: String::new(),
         encode: Encode::Color,
         tonemap: false,
+        accumulate: false,
         draw: DrawAs::Surfaces,
         key: None,
         doc: String::new(),
@@ -116,6 +121,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         given.push(key);
         match key {
             "tonemap" => mode.tonemap = true,
+            "accumulate" => mode.accumulate = true,
             "group" => mode.group = cursor.value(key)?.1,
             "doc" => mode.doc = cursor.value(key)?.1,
             "encode" => {
@@ -152,7 +158,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 mode.key = Some(one);
             }
             other => {
-                let message = format!("expected group=, encode=, tonemap, draw=, key= or doc=, found `{other}`");
+                let message = format!("expected group=, encode=, tonemap, accumulate, draw=, key= or doc=, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }
         }
@@ -201,7 +207,18 @@ fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box
     let label = cursor.string()?;
     let label = label.unwrap_or_else(|| label_of(&name));
     let place = cursor.place().clone();
-    let mut ui = Ui { name, label, range: None, choices: Vec::new(), color: false, default: None, declared, place };
+    let mut ui = Ui {
+        name,
+        label,
+        range: None,
+        choices: Vec::new(),
+        conserves: None,
+        reciprocal: None,
+        color: false,
+        default: None,
+        declared,
+        place,
+    };
     let scalar = match declared {
         Declared::Constant(scalar) => scalar,
         Declared::Member(kind) => kind.scalar(),
@@ -216,6 +233,11 @@ fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box
             cursor.take('=');
             let (bytes, values) = default(cursor, kind)?;
             (ui.default, default_bytes) = (Some(values), Some(bytes));
+            continue;
+        }
+        if let Some(claim) = claim(cursor) {
+            let names = Some(claimed(cursor, &ui.choices)?);
+            *(if claim == "conserves" { &mut ui.conserves } else { &mut ui.reciprocal }) = names;
             continue;
         }
         let (bytes, word) = cursor.word();

@@ -85,7 +85,7 @@ fn what_does_not_parse_says_what_was_expected() {
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
-        "m.frag:3:34: error: expected group=, encode=, tonemap, draw=, key= or doc=, found `colour`",
+        "m.frag:3:34: error: expected group=, encode=, tonemap, accumulate, draw=, key= or doc=, found `colour`",
     );
     refused(
         &format!("{PARAMS}\nfloat a; //@ui 1..0\n}};"),

@@ -59,10 +59,35 @@ pub fn default(cursor: &mut Cursor<'_>, kind: ParameterType) -> Result<(Range<us
     Ok((bytes, out))
 }
 
+/// The words that say of which choices something is claimed.
+const CLAIMS: [&str; 2] = ["conserves=", "reciprocal="];
+
+/// Which of the claims comes next, without its `=`.
+pub fn claim(cursor: &mut Cursor<'_>) -> Option<&'static str> {
+    CLAIMS.into_iter().find(|claim| cursor.peek_text(claim)).map(|claim| claim.trim_end_matches('='))
+}
+
+/// `"A B"` after `conserves=` or `reciprocal=`: names among `choices`.
+pub fn claimed(
+    cursor: &mut Cursor<'_>,
+    choices: &[(String, i64)],
+) -> Result<Vec<String>, Box<Diagnostic>> {
+    let (_, key) = cursor.key();
+    let (bytes, value) = cursor.value(key)?;
+    let names: Vec<String> = value.split_whitespace().map(str::to_owned).collect();
+    match names.iter().find(|name| !choices.iter().any(|(choice, _)| choice == *name)) {
+        Some(unknown) => {
+            let message = format!("expected names of the choices before `{key}=`, found `{unknown}`");
+            Err(cursor.error(bytes, message))
+        }
+        None => Ok(names),
+    }
+}
+
 /// `A=0 B=1` up to something that is no choice; values of the type.
 pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Vec<(String, i64)>, Box<Diagnostic>> {
     let mut out: Vec<(String, i64)> = Vec::new();
-    while !cursor.at_end() && !cursor.peek('=') {
+    while !cursor.at_end() && !cursor.peek('=') && claim(cursor).is_none() {
         let (bytes, word) = cursor.word();
         let choice = word.split_once('=').and_then(|(name, value)| Some((name, value.parse::<i64>().ok()?)));
         let Some((name, value)) = choice.filter(|(name, _)| !name.is_empty()) else {

@@ -158,7 +158,7 @@ fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> 
             .map(|known| format!("{} = {} ({})", known.name, known.binding, known.kind.glsl()))
             .collect();
         let help = match names.as_slice() {
-            [] => "the sets are SET_FRAME, SET_MATERIAL and SET_PASS".to_owned(),
+            [] => "the sets are SET_FRAME, SET_MATERIAL, SET_PASS and SET_TASK".to_owned(),
             names => format!("set {set} has {}", names.join(", ")),
         };
         return Some(texts.error(&words, message).with_help(help));
@@ -176,6 +176,7 @@ fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> 
         "BINDING_LIGHTS" => check_lights(block, texts),
         "BINDING_FRAME" => layout("Frame").and_then(|layout| check_layout(block, layout, texts)),
         "BINDING_MATERIAL" => layout("Material").and_then(|layout| check_layout(block, layout, texts)),
+        "BINDING_TASK" => layout("Task").and_then(|layout| check_layout(block, layout, texts)),
         _ => None,
     };
     if misplaced.is_none() && block.size > known.size && known.kind == BindingKind::UniformBuffer {

@@ -57,6 +57,9 @@ mod storage {
     pub const STORAGE_BUFFER: u32 = 12;
 }
 
+/// SPIR-V's number of the image format Rgba16f.
+const RGBA16F: u32 = 2;
+
 #[derive(Clone, Debug)]
 enum Type {
     Bool,
@@ -64,7 +67,7 @@ enum Type {
     Float { bits: u32 },
     Vector { of: Id, count: u32 },
     Matrix { column: Id, count: u32 },
-    Image { sampled: Id, dim: u32, arrayed: bool, storage: bool },
+    Image { sampled: Id, dim: u32, arrayed: bool, storage: bool, format: u32 },
     Sampler,
     SampledImage { image: Id },
     Array { of: Id, length: Id },
@@ -196,6 +199,7 @@ impl Module {
             Type::Struct { .. } => (Some(BindingKind::UniformBuffer), "uniform block".to_owned()),
             _ if glsl == "sampler2D" => (Some(BindingKind::Sampler2D), glsl),
             _ if glsl == "samplerCube" => (Some(BindingKind::SamplerCube), glsl),
+            _ if glsl == BindingKind::StorageImage.glsl() => (Some(BindingKind::StorageImage), glsl),
             _ => (None, glsl),
         };
         Some(Descriptor {
@@ -313,7 +317,7 @@ impl Module {
                 Some(Type::Vector { of, count: rows }) => format!("{}mat{count}x{rows}", self.prefix(*of)),
                 _ => "?".to_owned(),
             },
-            Type::Image { sampled, dim, arrayed, storage } => {
+            Type::Image { sampled, dim, arrayed, storage, format } => {
                 let dimension = match dim {
                     0 => "1D",
                     1 => "2D",
@@ -323,7 +327,9 @@ impl Module {
                     _ => "?",
                 };
                 let kind = if *storage { "image" } else { "texture" };
-                format!("{}{kind}{dimension}{}", self.prefix(*sampled), if *arrayed { "Array" } else { "" })
+                // Storage images name their format; the contract has one.
+                let format = if *format == RGBA16F { "rgba16f " } else { "" };
+                format!("{format}{}{kind}{dimension}{}", self.prefix(*sampled), if *arrayed { "Array" } else { "" })
             }
             Type::Sampler => "sampler".to_owned(),
             Type::SampledImage { image } => self.type_name(*image).replacen("texture", "sampler", 1),
@@ -358,7 +364,7 @@ fn type_of(opcode: u32, operands: &[u32]) -> Option<Option<Type>> {
         op::TYPE_FLOAT => Type::Float { bits: at(1)? },
         op::TYPE_VECTOR => Type::Vector { of: at(1)?, count: at(2)? },
         op::TYPE_MATRIX => Type::Matrix { column: at(1)?, count: at(2)? },
-        op::TYPE_IMAGE => Type::Image { sampled: at(1)?, dim: at(2)?, arrayed: at(4)? != 0, storage: at(6)? == 2 },
+        op::TYPE_IMAGE => Type::Image { sampled: at(1)?, dim: at(2)?, arrayed: at(4)? != 0, storage: at(6)? == 2, format: at(7)? },
         op::TYPE_SAMPLER => Type::Sampler,
         op::TYPE_SAMPLED_IMAGE => Type::SampledImage { image: at(1)? },
         op::TYPE_ARRAY => Type::Array { of: at(1)?, length: at(2)? },

@@ -1,6 +1,7 @@
 //! The panels: modes on the left, everything that can be set on the right, messages over the picture. One file per panel.
 
 mod camera;
+mod environment;
 mod lights;
 mod model;
 mod modes;
@@ -56,6 +57,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>)
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 shaders::show(ui, document, device_ms);
                 parameters::show(ui, document);
+                environment::show(ui, document);
                 lights::show(ui, document);
                 output::show(ui, document);
                 camera::show(ui, document);

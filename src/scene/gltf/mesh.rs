@@ -10,7 +10,7 @@ use super::super::error::Problem;
 use super::super::model::{Bounds, Material, Primitive, Topology, Vertex};
 use super::accessor::{Format, Normalized as N, Reader};
 use super::triangles::{self, Corners};
-use super::{LARGEST_COORDINATE, get, place};
+use super::{LARGEST_COORDINATE, get, place, variants};
 use crate::interface as contract;
 
 /// A primitive and what was tolerated in it.
@@ -37,7 +37,12 @@ const COLOR: Format =
 const MAX_INDICES: usize = 1 << 30;
 
 /// Reads the drawable primitives of a mesh.
-pub fn read(reader: Reader<'_>, index: usize, materials: &[Material]) -> Result<Vec<Geometry>, Problem> {
+pub fn read(
+    reader: Reader<'_>,
+    index: usize,
+    materials: &[Material],
+    variants: usize,
+) -> Result<Vec<Geometry>, Problem> {
     let mesh = &reader.root.meshes[index];
     let mesh_place = place("meshes", index, mesh.name.as_deref());
     let mut geometries = Vec::with_capacity(mesh.primitives.len());
@@ -54,7 +59,10 @@ pub fn read(reader: Reader<'_>, index: usize, materials: &[Material]) -> Result<
             }
         };
         debug_assert!(material < materials.len());
-        geometries.push(Source { reader, primitive, place: &place }.read(name, material)?);
+        let mapping = variants::mapping(primitive, variants, reader.root.materials.len(), &place)?;
+        let mut geometry = Source { reader, primitive, place: &place }.read(name, material)?;
+        geometry.primitive.variant_materials = mapping.into_iter().map(|(of, material)| (of, material + 1)).collect();
+        geometries.push(geometry);
     }
     Ok(geometries)
 }
@@ -93,8 +101,17 @@ impl Source<'_> {
             vertices.iter_mut().zip(tangents).for_each(|(vertex, tangent)| vertex.tangent = tangent);
         }
         attributes |= self.read_uvs_and_colors(&mut vertices, &mut warnings)?;
-        let mut primitive =
-            Primitive { name, vertices, indices, topology, material, attributes, bounds: Bounds::default() };
+        let mut primitive = Primitive {
+            name,
+            vertices,
+            indices,
+            topology,
+            material,
+            default_material: material,
+            variant_materials: Vec::new(),
+            attributes,
+            bounds: Bounds::default(),
+        };
         if attributes & contract::ATTRIBUTE_NORMAL == 0 && triangles::has_faces(topology) {
             make_flat(&mut primitive);
         }

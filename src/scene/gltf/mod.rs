@@ -4,6 +4,7 @@
 mod accessor;
 mod buffers;
 mod container;
+mod extensions;
 mod images;
 mod material;
 mod mesh;
@@ -11,8 +12,11 @@ mod nodes;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod textures;
 mod triangles;
 mod uri;
+mod values;
+mod variants;
 
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -63,11 +67,12 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     let buffers = Buffers::load(&root, bin, &mut files)?;
     let scene = nodes::walk(&root)?;
     let material::Materials { materials, textures, images, warnings: material_warnings } = material::read(&root)?;
+    let variants = variants::names(&root, &mut warnings)?;
     let sources = images
         .into_iter()
         .map(|(index, used_by)| images::find(&root, &buffers, &mut files, index, used_by))
         .collect::<Result<Vec<_>, _>>()?;
-    let meshes = read_meshes(Reader { root: &root, buffers: &buffers }, &scene, &materials)?;
+    let meshes = read_meshes(Reader { root: &root, buffers: &buffers }, &scene, &materials, variants.len())?;
     let parse_ms = milliseconds(start);
     let ((images, decode_ms), (meshes, tangents_ms)) =
         rayon::join(|| timed(|| images::decode(&sources)), || timed(|| finish_meshes(meshes, &materials)));
@@ -76,7 +81,7 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     warnings.extend(scene.warnings);
     warnings.extend(material_warnings);
     let files = files.tried.clone();
-    let mut model = Model { name: name.to_owned(), materials, textures, images, files, ..Model::default() };
+    let mut model = Model { name: name.to_owned(), materials, textures, images, variants, files, ..Model::default() };
     let mut ranges = HashMap::new();
     for (mesh, geometries) in meshes {
         let first = model.primitives.len();
@@ -109,11 +114,16 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
 type Meshes = Vec<(usize, Vec<Geometry>)>;
 
 /// Reads every mesh that the scene places, once.
-fn read_meshes(reader: Reader<'_>, scene: &nodes::Scene, materials: &[Material]) -> Result<Meshes, Problem> {
+fn read_meshes(
+    reader: Reader<'_>,
+    scene: &nodes::Scene,
+    materials: &[Material],
+    variants: usize,
+) -> Result<Meshes, Problem> {
     let mut used: Vec<usize> = scene.meshes.iter().map(|placed| placed.mesh).collect();
     used.sort_unstable();
     used.dedup();
-    used.into_par_iter().map(|index| Ok((index, mesh::read(reader, index, materials)?))).collect()
+    used.into_par_iter().map(|index| Ok((index, mesh::read(reader, index, materials, variants)?))).collect()
 }
 
 fn finish_meshes(mut meshes: Meshes, materials: &[Material]) -> Meshes {

@@ -204,9 +204,18 @@ fn read_light(
     warnings: &mut Vec<String>,
 ) -> Result<Light, Problem> {
     let place = place("KHR_lights_punctual.lights", index, light.name.as_deref());
-    let intensity = Vec3::from(light.color) * light.intensity;
-    if !intensity.is_finite() || intensity.min_element() < 0.0 {
-        return Err(Problem::invalid(place, "a color and an intensity of at least 0", intensity.to_string()));
+    let color = Vec3::from(light.color);
+    // Each by itself: two that are negative would have a product that is not.
+    if !(light.intensity >= 0.0 && light.intensity.is_finite()) {
+        let (place, found) = (format!("{place}.intensity"), light.intensity.to_string());
+        return Err(Problem::invalid(place, "a finite number of at least 0", found));
+    }
+    if !(color.is_finite() && color.min_element() >= 0.0) {
+        return Err(Problem::invalid(format!("{place}.color"), "finite numbers of at least 0", color.to_string()));
+    }
+    let intensity = color * light.intensity;
+    if !intensity.is_finite() {
+        return Err(Problem::invalid(place, "a finite color times intensity", intensity.to_string()));
     }
     let kind = match light.type_ {
         Checked::Valid(punctual::Type::Directional) => LightKind::Directional,

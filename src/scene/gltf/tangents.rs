@@ -16,6 +16,14 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
     if from_file || made {
         primitive.attributes |= contract::ATTRIBUTE_TANGENT_FRAME;
     }
+    let anisotropic = |material: usize| materials.get(material).is_some_and(|m| m.anisotropy.strength > 0.0);
+    if !(from_file || made) && materials_of(primitive).any(anisotropic) {
+        geometry.warnings.push(format!(
+            "{}: its material is anisotropic, but without tangents or texture coordinates there is no direction for \
+             it: it is shown isotropic.",
+            primitive.name
+        ));
+    }
     let replaced = primitive.vertices.iter_mut().filter_map(repair).count();
     // A few made ones fail where texture coordinates meet in a point; that is the author's business only when it shows.
     let shows = replaced * 100 > primitive.vertices.len();
@@ -38,13 +46,21 @@ fn repair(vertex: &mut Vertex) -> Option<()> {
     if valid.is_none() { Some(()) } else { None }
 }
 
-/// MikkTSpace on the texture coordinates of the normal texture, before its KHR_texture_transform. `false` when there
-/// are no faces or texture coordinates.
+/// The material of a primitive, and those of its variants.
+fn materials_of(primitive: &Primitive) -> impl Iterator<Item = usize> {
+    let others = primitive.variant_materials.iter().map(|(_, material)| *material);
+    std::iter::once(primitive.default_material).chain(others)
+}
+
+/// MikkTSpace on the texture coordinates of the first texture that has directions in it, before its
+/// KHR_texture_transform. `false` when there are no faces or texture coordinates.
 fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
-    let normal_texture = materials.get(primitive.material).and_then(|m| m.textures[contract::TEXTURE_NORMAL as usize]);
+    let directions = [contract::TEXTURE_NORMAL, contract::TEXTURE_CLEARCOAT_NORMAL, contract::TEXTURE_ANISOTROPY];
+    let directed = |m: &Material| directions.iter().find_map(|texture| m.textures[*texture as usize]);
+    let texture = materials_of(primitive).filter_map(|material| materials.get(material)).find_map(directed);
     let (has_uv0, has_uv1) =
         (primitive.attributes & contract::ATTRIBUTE_UV0 != 0, primitive.attributes & contract::ATTRIBUTE_UV1 != 0);
-    let second = has_uv1 && (!has_uv0 || normal_texture.is_some_and(|texture| texture.uv_set == 1));
+    let second = has_uv1 && (!has_uv0 || texture.is_some_and(|texture| texture.uv_set == 1));
     let triangles = triangles::triangles(primitive.topology, &primitive.indices);
     if triangles.is_empty() || !(has_uv0 || has_uv1) {
         return false;

@@ -118,8 +118,8 @@ fn material_numbers() {
     let mut builder = Builder::triangle();
     builder.json["materials"] = json!([{
         "name": "paint", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true, "emissiveFactor": [0.5, 1, 0],
-        "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 1], "metallicFactor": 0.5,
-            "roughnessFactor": 1.5 },
+        "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 1], "metallicFactor": 1.5,
+            "roughnessFactor": 0.5 },
         "extensions": { "KHR_materials_unlit": {}, "KHR_materials_emissive_strength": { "emissiveStrength": 4.0 } }
     }]);
     builder.primitive()["material"] = json!(0);
@@ -128,8 +128,8 @@ fn material_numbers() {
     assert_eq!((material.name.as_str(), material.alpha_mode, material.alpha_cutoff), ("paint", AlphaMode::Mask, 0.25));
     assert!(material.double_sided && material.unlit);
     assert_eq!(material.emissive_factor, glam::Vec3::new(2.0, 4.0, 0.0));
-    assert_eq!((material.metallic_factor, material.roughness_factor), (0.5, 1.0));
-    assert!(model.warnings.len() == 1 && model.warnings[0].contains("roughnessFactor is 1.5"), "{:?}", model.warnings);
+    assert_eq!((material.metallic_factor, material.roughness_factor), (1.0, 0.5));
+    assert!(model.warnings.len() == 1 && model.warnings[0].contains("metallicFactor is 1.5"), "{:?}", model.warnings);
     // The default material comes first and is what a primitive without one gets.
     builder.primitive().as_object_mut().unwrap().remove("material");
     assert_eq!(builder.model().primitives[0].material, 0);

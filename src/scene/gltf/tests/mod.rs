@@ -1,5 +1,7 @@
 //! Tests of the loader on small files built in code.
 
+mod extensions;
+mod features;
 mod geometry;
 mod invalid;
 mod materials;

@@ -127,11 +127,26 @@ fn punctual_lights() {
         json!({ "type": "lamp" }),
         json!({ "type": "spot", "spot": { "innerConeAngle": 1, "outerConeAngle": 0.5 } }),
         json!({ "type": "spot", "spot": { "outerConeAngle": 3 } }),
-        json!({ "type": "point", "intensity": -1 }),
-        json!({ "type": "point", "color": [1e39, 1, 1] }),
+        json!({ "type": "point", "intensity": 1e38, "color": [1e3, 1, 1] }),
     ] {
         builder.json["extensions"]["KHR_lights_punctual"]["lights"][0] = bad;
         assert!(builder.error().contains("KHR_lights_punctual.lights[0]"));
+    }
+    for (key, bad, found) in [
+        ("intensity", json!(-1), "at least 0, found -1"),
+        ("intensity", json!(1e39), "found inf"),
+        ("color", json!([1e39, 1, 1]), "found [inf, 1, 1]"),
+        ("color", json!([0, -1, 0]), "found [0, -1, 0]"),
+    ] {
+        // Two negative numbers do not make up for one another.
+        let mut light = json!({ "type": "point", "intensity": 1, "color": [-1, 1, 1] });
+        if key == "color" {
+            light["intensity"] = json!(1);
+        }
+        light[key] = bad;
+        builder.json["extensions"]["KHR_lights_punctual"]["lights"][0] = light;
+        let (error, place) = (builder.error(), format!("KHR_lights_punctual.lights[0].{key}"));
+        assert!(error.contains(&place) && error.contains(found), "{error}");
     }
 }
 

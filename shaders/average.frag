@@ -1,0 +1,11 @@
+#version 460
+#include "interface.glsl"
+
+// One frame of those that add up. The blend unit mixes it into their mean with weight 1 / n: the running mean (Welford
+// 1962) m_n = m_(n-1) + (x_n - m_(n-1)) / n.
+
+layout(set = SET_PASS, binding = BINDING_SCENE_COLOR) uniform sampler2D scene_color;
+
+layout(location = 0) out vec4 out_color;
+
+void main() { out_color = texelFetch(scene_color, ivec2(gl_FragCoord.xy), 0); }

@@ -1,0 +1,61 @@
+// The choices of the BRDF: each is a list in the window and on the command line, and what is not chosen costs nothing.
+//
+// After the choices stand two claims, which `specula brdf` can hold against the code:
+//
+//   conserves    a white surface reflects no more light than it gets, at every angle and roughness
+//   reciprocal   f(l, v) = f(v, l)
+//
+// A combination claims what all of its choices claim; the claims are about materials without extensions. Who does not
+// claim, and why:
+//
+//   Burley, CallOfDuty    fits to the look of real surfaces; both add light at grazing angles.
+//   Coupling Fresnel      light enters by 1 - F at the angle to h. For v at a grazing angle F(NoV) of the light is
+//                         reflected, but h of most l is far from grazing: what enters and what does not exceed 1.
+//   FdezAguera            spreads what is missing towards v over all l alike: albedo 1, but l and v differ.
+#ifndef BRDF_MODELS_GLSL
+#define BRDF_MODELS_GLSL
+
+#include "interface.glsl"
+
+const uint HEIGHT_CORRELATED = 0u;
+const uint SEPARABLE = 1u;
+const uint SCHLICK_MASKING = 2u;
+//@ui "Masking-shadowing" choice HeightCorrelated=0 Separable=1 Schlick=2 conserves="HeightCorrelated Separable Schlick" reciprocal="HeightCorrelated Separable Schlick"
+layout(constant_id = USER_CONSTANTS + 0) const uint MASKING_SHADOWING = HEIGHT_CORRELATED;
+
+const uint GGX = 0u;
+const uint BECKMANN = 1u;
+//@ui "Normal distribution" choice GGX=0 Beckmann=1 conserves="GGX Beckmann" reciprocal="GGX Beckmann"
+layout(constant_id = USER_CONSTANTS + 2) const uint NDF = GGX;
+
+const uint LAMBERT = 0u;
+const uint BURLEY = 1u;
+const uint RENORMALIZED_BURLEY = 2u;
+const uint OREN_NAYAR = 3u;
+const uint CALL_OF_DUTY = 4u;
+//@ui "Diffuse" choice Lambert=0 Burley=1 RenormalizedBurley=2 OrenNayar=3 CallOfDuty=4 conserves="Lambert RenormalizedBurley OrenNayar" reciprocal="Lambert Burley RenormalizedBurley OrenNayar CallOfDuty"
+layout(constant_id = USER_CONSTANTS + 3) const uint DIFFUSE = LAMBERT;
+
+const uint SCHLICK_DIELECTRIC = 0u;
+const uint EXACT_DIELECTRIC = 1u;
+//@ui "Fresnel, dielectric" choice Schlick=0 Exact=1 conserves="Schlick Exact" reciprocal="Schlick Exact"
+layout(constant_id = USER_CONSTANTS + 4) const uint FRESNEL_DIELECTRIC = SCHLICK_DIELECTRIC;
+
+const uint SCHLICK_METAL = 0u;
+const uint CONDUCTOR_METAL = 1u;
+const uint F82_METAL = 2u;
+//@ui "Fresnel, metal" choice Schlick=0 Conductor=1 F82=2 conserves="Schlick Conductor F82" reciprocal="Schlick Conductor F82"
+layout(constant_id = USER_CONSTANTS + 5) const uint FRESNEL_METAL = SCHLICK_METAL;
+
+const uint SINGLE_SCATTER = 0u;
+const uint KULLA_CONTY = 1u;
+const uint FDEZ_AGUERA = 2u;
+//@ui "Multiple scattering" choice None=0 KullaConty=1 FdezAguera=2 conserves="None KullaConty FdezAguera" reciprocal="None KullaConty"
+layout(constant_id = USER_CONSTANTS + 6) const uint MULTI_SCATTER = KULLA_CONTY;
+
+const uint FRESNEL_COUPLING = 0u;
+const uint ALBEDO_COUPLING = 1u;
+//@ui "Diffuse coupling" choice Fresnel=0 Albedo=1 conserves="Albedo" reciprocal="Fresnel Albedo"
+layout(constant_id = USER_CONSTANTS + 7) const uint DIFFUSE_COUPLING = FRESNEL_COUPLING;
+
+#endif

@@ -1,0 +1,59 @@
+// Modes of the group Measured: the lights through a measured BRDF (brdf/measured.glsl) beside the material's own.
+#ifndef DEBUG_MEASURED_GLSL
+#define DEBUG_MEASURED_GLSL
+
+#include "interface.glsl"
+#include "brdf/measured.glsl"
+#include "brdf/surface.glsl"
+#include "common/color.glsl"
+#include "common/fragment.glsl"
+#include "debug/absent.glsl"
+#include "debug/modes.glsl"
+#include "lighting/shade.glsl"
+#include "material.glsl"
+
+struct MeasuredLight {
+    vec3 radiance;             // towards the eye
+    float irradiance;          // that makes it: luminance, W/m2
+};
+
+// The same sum over lights as in lighting/shade.glsl. The grain of an anisotropic material follows the mesh's tangents.
+MeasuredLight measured_light(Fragment f, Surface s, vec3 v, LightRange range) {
+    vec3 t = f.tangent_ws.xyz;
+    vec3 b = bitangent_ws(f);
+    MeasuredLight sum = MeasuredLight(vec3(0.0), 0.0);
+    for (uint i = range.first; i < range.end; ++i) {
+        if (lights[i].kind == LIGHT_RECT) continue;
+        Illumination light = illuminate(lights[i], s.position_ws);
+        vec3 irradiance = light.irradiance * saturate(dot(s.n, light.l));
+        sum.radiance += f_measured(light.l, v, s.n, t, b) * irradiance;
+        sum.irradiance += luminance(irradiance);
+    }
+    return sum;
+}
+
+// Left of the middle of the view the one, right of it the other, and a white line of two pixels between.
+vec3 split(vec3 left, vec3 right) {
+    float x = gl_FragCoord.x - frame.viewport_origin_px.x - 0.5 * frame.viewport_px.x;
+    if (abs(x) < 1.0) return vec3(1.0 / frame.exposure);
+    return x < 0.0 ? left : right;
+}
+
+// The error is that of the mean f over the lights, weighted by what each of them gives; in shadow there is none.
+vec3 measured_error(MeasuredLight measured, vec3 analytic) {
+    if (measured.irradiance <= 0.0) return if_present(false, vec3(0.0));
+    return relative_error_color(measured.radiance / measured.irradiance, analytic / measured.irradiance);
+}
+
+bool debug_measured(Fragment f, Surface s, vec3 v, Lit lit, out vec3 value) {
+    if (MODE != MODE_MEASURED && MODE != MODE_MEASURED_SPLIT && MODE != MODE_MEASURED_ERROR) return false;
+    LightRange range = chosen_lights();
+    MeasuredLight measured = measured_light(f, s, v, range);
+    if (MODE == MODE_MEASURED) value = measured.radiance;
+    else if (MODE == MODE_MEASURED_SPLIT) value = split(measured.radiance, lit.punctual.all);
+    else value = measured_error(measured, lit.punctual.all);
+    value = if_present(measured_kind != MEASURED_NONE && !is_empty(range), value);
+    return true;
+}
+
+#endif

@@ -1,0 +1,31 @@
+#version 460
+#include "interface.glsl"
+#include "brdf/sheen.glsl"
+#include "common/math.glsl"
+#include "common/sampling.glsl"
+#include "ibl/half.glsl"
+
+// How much light the sheen lobe reflects in all, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are NoV, rows
+// roughness, at texel centers. Directions cover the hemisphere: of the lobe's own distribution most lies below it. The
+// points are a lattice with 3 u^2 - 2 u^3 as the cosine, its derivative as a weight, as in ibl/dfg.comp.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
+
+void main() {
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(texel, task.size))) return;
+
+    vec2 row = (vec2(texel) + 0.5) / vec2(task.size);
+    float alpha = sheen_alpha(row.y);
+    vec3 v = vec3(sqrt(1.0 - row.x * row.x), 0.0, row.x);
+    float sum = 0.0;
+    for (uint i = 0u; i < task.samples; ++i) {
+        float u = (float(i) + 0.5) / float(task.samples);
+        vec3 l = direction_from_cosine(u * u * (3.0 - 2.0 * u), fract(float(i) * 0.618033988));
+        vec3 h = normalize(l + v);
+        sum += 6.0 * u * (1.0 - u) * d_charlie(h.z, alpha) * v_sheen(l.z, v.z, alpha) * l.z;
+    }
+    float albedo = 2.0 * PI * sum / float(task.samples);
+    imageStore(target, ivec3(texel, 0), vec4(rounded_to_half(vec3(albedo)), 1.0));
+}

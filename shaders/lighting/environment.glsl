@@ -1,0 +1,61 @@
+// Light from the environment, baked by ibl/*.comp: sharp, diffuse, and as rough surfaces mirror it. Directions are in
+// world space and need not have unit length, but for irradiance.
+#ifndef LIGHTING_ENVIRONMENT_GLSL
+#define LIGHTING_ENVIRONMENT_GLSL
+
+#include "interface.glsl"
+#include "ibl/levels.glsl"
+
+layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
+layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform samplerCube prefiltered_cube;
+layout(set = SET_FRAME, binding = BINDING_PREFILTERED_SHEEN) uniform samplerCube prefiltered_sheen_cube;
+layout(set = SET_FRAME, binding = BINDING_IRRADIANCE, scalar) readonly buffer Irradiance {
+    vec3 irradiance_sh[9];     // see ibl/irradiance.comp
+};
+
+// The map turns by an angle around +Y, counterclockwise from above: its center column is seen looking down -Z at 0
+// degrees, down -X at 90. So a direction turns back by it, into the map.
+vec3 map_from_world(vec3 d) {
+    float c = frame.environment_rotation.x;
+    float s = frame.environment_rotation.y;
+    return vec3(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
+}
+
+// Level `lod` of the sharp image.
+vec3 environment_radiance(vec3 direction, float lod) {
+    return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;
+}
+
+// E / pi, the radiance that leaves a white Lambert surface (Ramamoorthi & Hanrahan 2001, eq. 13, with all constants in the
+// coefficients). n: unit. max: between the directions that the bake looked at, three bands may still dip below 0.
+vec3 irradiance_over_pi(vec3 n) {
+    vec3 d = map_from_world(n);
+    vec3 e = irradiance_sh[0];
+    e += d.y * (irradiance_sh[1] + d.x * irradiance_sh[4] + d.z * irradiance_sh[5]);
+    e += d.z * (irradiance_sh[2] + d.z * irradiance_sh[6]);
+    e += d.x * (irradiance_sh[3] + d.z * irradiance_sh[7]) + (d.x * d.x - d.y * d.y) * irradiance_sh[8];
+    return max(e * frame.environment_intensity, 0.0);
+}
+
+// Mean of the radiance around r as GGX weights it, seen along the normal: the first sum of the split sum (Karis 2013).
+vec3 prefiltered_radiance(vec3 r, float roughness) {
+    float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_cube));
+    return frame.environment_intensity * textureLod(prefiltered_cube, map_from_world(r), lod).rgb;
+}
+
+// The same with the sheen's distribution.
+vec3 prefiltered_sheen(vec3 r, float roughness) {
+    float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_sheen_cube));
+    return frame.environment_intensity * textureLod(prefiltered_sheen_cube, map_from_world(r), lod).rgb;
+}
+
+// What is seen behind the model. Blurred as by a surface with this roughness; up to the first level that has one, the sharp
+// image, which has more texels than the prefiltered level 0, is faded out.
+vec3 background_radiance(vec3 direction) {
+    float lod = level_of_roughness(frame.environment_blur, textureQueryLevels(prefiltered_cube));
+    if (lod >= 1.0) return prefiltered_radiance(direction, frame.environment_blur);
+    vec3 blurred = textureLod(prefiltered_cube, map_from_world(direction), 1.0).rgb * frame.environment_intensity;
+    return mix(environment_radiance(direction, 0.0), blurred, lod);
+}
+
+#endif

@@ -1,0 +1,46 @@
+// Light, or the part of it that is reflected, by the lobe of the BRDF that sends it to the eye.
+#ifndef LIGHTING_LOBES_GLSL
+#define LIGHTING_LOBES_GLSL
+
+#include "interface.glsl"
+#include "brdf/evaluate.glsl"
+
+// Whether light from behind the surface can come through.
+const bool LIGHT_PASSES = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
+
+struct Lobes {
+    vec3 diffuse;
+    vec3 specular;             // reflected by one microfacet
+    vec3 multiple;             // by more than one
+    vec3 clearcoat;
+    vec3 sheen;
+    vec3 transmitted;          // from behind the surface, straight or scattered
+    vec3 all;                  // their sum
+};
+
+Lobes no_light() {
+    return Lobes(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+}
+
+// The sum has its own field, not a function: the picture needs it alone, so that the driver drops the others.
+Lobes with_sum(Lobes x) {
+    x.all = x.diffuse + x.specular + x.multiple + x.clearcoat + x.sheen + x.transmitted;
+    return x;
+}
+
+Lobes lobes_of(Brdf f) {
+    return Lobes(f.diffuse, f.specular, f.multiple, f.clearcoat, f.sheen, f.transmitted + f.diffuse_transmitted, f.value);
+}
+
+// sum + x * weight
+void add(inout Lobes sum, Lobes x, vec3 weight) {
+    sum.diffuse += x.diffuse * weight;
+    sum.specular += x.specular * weight;
+    sum.multiple += x.multiple * weight;
+    sum.clearcoat += x.clearcoat * weight;
+    sum.sheen += x.sheen * weight;
+    sum.transmitted += x.transmitted * weight;
+    sum.all += x.all * weight;
+}
+
+#endif

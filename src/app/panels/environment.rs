@@ -1,0 +1,48 @@
+//! Light from all around: which, how it is turned, and whether it is seen.
+
+use egui::{RichText, Slider, Ui};
+
+use super::{QUIET, row, section};
+use crate::app::document::Document;
+use crate::scene::environment::BUILT_IN;
+
+pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+    let progress = document.surroundings.progress().cloned();
+    let report = document.surroundings.baked.environment.report.clone();
+    let settings = &mut document.settings;
+    section(ui, "Environment", true, |ui| {
+        let environment = &mut settings.environment;
+        row(ui, "Map", "--env; drop an .hdr or .exr file on the window", |ui| {
+            let shown = environment.name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+            egui::ComboBox::from_id_salt("environment").selected_text(shown).width(150.0).truncate().show_ui(ui, |ui| {
+                for name in BUILT_IN.into_iter().chain(["none"]) {
+                    ui.selectable_value(&mut environment.name, name.to_owned(), name);
+                }
+            });
+        });
+        if let Some((done, next)) = progress {
+            ui.add(egui::ProgressBar::new(done).desired_height(14.0).text(RichText::new(next).small()));
+        } else if environment.is_lit() && report.total_ms > 0.0 {
+            let from = if report.cached { "from the disk" } else { "baked" };
+            ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));
+        }
+        row(ui, "Rotation", "Around +Y", |ui| {
+            ui.add(Slider::new(&mut environment.rotation, -180.0..=180.0).suffix("°").max_decimals(0));
+        });
+        row(ui, "Intensity", "Factor on its radiance", |ui| {
+            ui.add(Slider::new(&mut environment.intensity, 0.0..=8.0).max_decimals(2));
+        });
+        row(ui, "Behind", "Seen behind the model (--background env)", |ui| {
+            let mut seen = settings.view.background == "env";
+            if ui.add_enabled(environment.is_lit(), egui::Checkbox::without_text(&mut seen)).changed() {
+                settings.view.background = if seen { "env".into() } else { "#1b1d21".into() };
+            }
+            if seen {
+                ui.add(Slider::new(&mut environment.blur, 0.0..=1.0).text("blur").max_decimals(2));
+            }
+        });
+        if !environment.is_lit() && settings.view.background == "env" {
+            settings.view.background = "#1b1d21".into();
+        }
+    });
+}

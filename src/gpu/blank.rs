@@ -1,0 +1,48 @@
+//! What stands in for descriptors that nobody wrote.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::buffer::{Buffer, Memory};
+use super::device::Gpu;
+use super::encoder::Use;
+use super::error::GpuError;
+use super::frames::one_shot;
+use super::image::{Image, ImageDesc, Sampler, SamplerDesc};
+
+/// One of each kind. lavapipe reads every descriptor of a set that is bound, used or not, and ends the process at one that was
+/// never written.
+pub(super) struct Blank {
+    pub(super) image: Arc<Image>,
+    pub(super) cube: Arc<Image>,
+    pub(super) sampler: Arc<Sampler>,
+    pub(super) buffer: Arc<Buffer>,
+}
+
+impl Blank {
+    pub(super) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+        use vk::BufferUsageFlags as Usage;
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::STORAGE;
+        let format = vk::Format::R16G16B16A16_SFLOAT;
+        let image = Image::new(gpu, "blank", ImageDesc::new(1, 1, format, usage))?;
+        let cube = Image::new(gpu, "blank cube", ImageDesc::cube(1, 1, format, usage))?;
+        one_shot(gpu, |encoder| {
+            encoder.transition(&image, Use::Undefined, Use::Sampled);
+            encoder.transition(&cube, Use::Undefined, Use::Sampled);
+            Ok(())
+        })?;
+        let sampler = SamplerDesc {
+            mag: vk::Filter::NEAREST,
+            min: vk::Filter::NEAREST,
+            mip: vk::SamplerMipmapMode::NEAREST,
+            mips: false,
+            wrap_u: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+            wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+            anisotropy: 1,
+        };
+        let sampler = Sampler::new(gpu, &sampler)?;
+        let buffer = Buffer::new(gpu, "blank", 16, Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, Memory::Device)?;
+        Ok(Self { image, cube, sampler, buffer })
+    }
+}

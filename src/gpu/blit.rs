@@ -1,0 +1,47 @@
+//! Copies between images that scale and convert.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::encoder::{Encoder, Use};
+use super::image::Image;
+
+impl Encoder {
+    /// Fills every level of `to`, in [`Use::CopyTo`], from `from`, in [`Use::CopyFrom`] and of the same size: level 0 is a copy,
+    /// each other level half the one above. `to` ends up in [`Use::CopyFrom`].
+    pub fn fill_levels(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
+        self.keep(from);
+        self.keep(to);
+        self.blit((from, 0), (to, 0));
+        for level in 1..to.desc().mips {
+            self.transition_level(to, level - 1, Use::CopyTo, Use::CopyFrom);
+            self.blit((to, level - 1), (to, level));
+        }
+        self.transition_level(to, to.desc().mips - 1, Use::CopyTo, Use::CopyFrom);
+    }
+
+    fn blit(&mut self, (from, from_level): (&Image, u32), (to, to_level): (&Image, u32)) {
+        let side = |pixels: u32, level: u32| (pixels >> level).max(1) as i32;
+        let corner = |image: &Image, level: u32| vk::Offset3D {
+            x: side(image.desc().width, level),
+            y: side(image.desc().height, level),
+            z: 1,
+        };
+        let layers = |level| {
+            let color = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR);
+            color.mip_level(level).layer_count(1)
+        };
+        let region = [vk::ImageBlit::default()
+            .src_subresource(layers(from_level))
+            .src_offsets([vk::Offset3D::default(), corner(from, from_level)])
+            .dst_subresource(layers(to_level))
+            .dst_offsets([vk::Offset3D::default(), corner(to, to_level)])];
+        let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        // SAFETY: recording into our own buffer; the caller keeps both images, and the regions lie within them.
+        unsafe {
+            let device = &self.gpu.device;
+            device.cmd_blit_image(self.raw, from.raw, source, to.raw, target, &region, vk::Filter::LINEAR);
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Recording compute work.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::descriptor::{DescriptorSet, SetLayouts};
+use super::encoder::Encoder;
+use super::pipeline::ComputePipeline;
+
+impl Encoder {
+    /// Runs `groups` workgroups of a pipeline over these sets, each bound at its own number.
+    pub fn dispatch(
+        &mut self,
+        layouts: &Arc<SetLayouts>,
+        pipeline: &Arc<ComputePipeline>,
+        sets: &[&Arc<DescriptorSet>],
+        groups: [u32; 3],
+    ) {
+        let point = vk::PipelineBindPoint::COMPUTE;
+        self.keep(pipeline);
+        for set in sets {
+            self.keep(*set);
+            // SAFETY: recording into our own buffer; the set is kept, and the layout is the one of every pipeline.
+            unsafe {
+                self.gpu.device.cmd_bind_descriptor_sets(self.raw, point, layouts.pipeline, set.index, &[set.raw], &[]);
+            }
+        }
+        // SAFETY: recording into our own buffer; the pipeline is kept.
+        unsafe {
+            self.gpu.device.cmd_bind_pipeline(self.raw, point, pipeline.raw);
+            self.gpu.device.cmd_dispatch(self.raw, groups[0], groups[1], groups[2]);
+        }
+    }
+
+    /// SYNC: buffers that compute shaders wrote before this are visible to all that comes after, and to the CPU after the fence.
+    pub fn computed(&mut self) {
+        self.writes_done(vk::PipelineStageFlags2::COMPUTE_SHADER, vk::AccessFlags2::SHADER_STORAGE_WRITE);
+    }
+}

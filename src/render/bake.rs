@@ -1,0 +1,375 @@
+//! Image-based light: from an environment map to what the shaders read. Runs on any thread, pass by pass, so that frames get
+//! their turn between two passes.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, SetLayouts, Use, one_shot, vk};
+use crate::interface::Task;
+use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
+
+use super::cache;
+use super::pipelines::PipelineSet;
+use super::task;
+
+const CUBE: &str = "ibl/cube.comp";
+const DOWNSAMPLE: &str = "ibl/downsample.comp";
+const IRRADIANCE: &str = "ibl/irradiance.comp";
+const PREFILTER: &str = "ibl/prefilter.comp";
+const PREFILTER_SHEEN: &str = "ibl/prefilter_sheen.comp";
+/// The stages that an environment is baked with: when one changes, it is baked anew.
+pub const BAKE_STAGES: [&str; 5] = [CUBE, DOWNSAMPLE, IRRADIANCE, PREFILTER, PREFILTER_SHEEN];
+
+const CUBE_SIDE: u32 = 512;
+const CUBE_LEVELS: u32 = 10;
+const PREFILTERED_SIDE: u32 = 256;
+const PREFILTERED_LEVELS: u32 = 9;
+const SHEEN_SIDE: u32 = 64;
+const SHEEN_LEVELS: u32 = 7;
+const SHEEN_SAMPLES: u32 = 64;
+/// Level of the cube that irradiance is summed over: 64 x 64 texels.
+const IRRADIANCE_LEVEL: u32 = 3;
+/// Nine RGB coefficients.
+const IRRADIANCE_BYTES: u64 = 9 * 12;
+const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+/// Largest half float.
+const LARGEST_HALF: f32 = 65504.0;
+/// A peak this many times brighter than a half float holds is clipped: scaled down further, the dark parts would be lost.
+const LARGEST_RANGE: f32 = 4096.0;
+
+/// Samples a texel of each prefiltered level: small, rough levels need more and have fewer texels.
+const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 32, 64, 128, 256, 512, 512, 512, 512];
+
+/// Why there is no image-based light.
+#[derive(Debug, thiserror::Error)]
+pub enum BakeError {
+    /// The map.
+    #[error(transparent)]
+    Environment(#[from] EnvironmentError),
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// Something newer is wanted.
+    #[error("a newer environment or shader came first")]
+    Superseded,
+}
+
+/// Where the time of a bake went, wall milliseconds.
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct BakeReport {
+    /// Name of the environment.
+    pub environment: String,
+    /// Whether the result was on disk.
+    pub cached: bool,
+    /// Reading or making the map.
+    pub decode_ms: f64,
+    /// Making the compute pipelines.
+    pub pipeline_ms: f64,
+    /// Copying the map, or the cached result, to the device.
+    pub upload_ms: f64,
+    /// The map to a cube with its mip levels.
+    pub cube_ms: f64,
+    /// The cube to spherical harmonics.
+    pub irradiance_ms: f64,
+    /// GGX prefilter, all levels.
+    pub prefilter_ms: f64,
+    /// Sheen prefilter, all levels.
+    pub sheen_ms: f64,
+    /// Everything but writing the cache.
+    pub total_ms: f64,
+}
+
+/// An environment on the device; all images in [`Use::Sampled`].
+pub struct GpuEnvironment {
+    pub(super) cube: Arc<Image>,
+    pub(super) prefiltered: Arc<Image>,
+    pub(super) sheen: Arc<Image>,
+    pub(super) irradiance: Arc<Buffer>,
+    pub(super) sampler: Arc<Sampler>,
+    /// What the images hold is radiance times this.
+    pub(super) scale: f32,
+    /// What the bake took.
+    pub report: BakeReport,
+}
+
+/// What the caller of a bake wants to know and to decide.
+pub struct BakeControl<'a> {
+    /// Told the part that is done, 0..1, and what is next.
+    pub progress: &'a (dyn Fn(f32, &str) + Sync),
+    /// Asked between passes whether to give up.
+    pub superseded: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl GpuEnvironment {
+    /// The same radiance from everywhere, in images of one texel.
+    ///
+    /// # Errors
+    /// The device.
+    pub(super) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let cube = |name: &str| Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage));
+        let this = Self::with(gpu, [cube("uniform cube")?, cube("uniform prefiltered")?, cube("uniform sheen")?], 1.0)?;
+        let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(half::f16::from_f32);
+        let texels = (this.bytes() - IRRADIANCE_BYTES) as usize / 8;
+        let mut bytes = bytemuck::cast_slice(&texel.map(half::f16::to_bits)).repeat(texels);
+        // Of the harmonics only the constant one, 1 / (2 sqrt(pi)), is there.
+        let constant = radiance.map(|c| c * 2.0 * std::f32::consts::PI.sqrt());
+        bytes.extend_from_slice(bytemuck::cast_slice(&constant));
+        bytes.resize(this.bytes() as usize, 0);
+        this.fill(gpu, &bytes)?;
+        Ok(Arc::new(this))
+    }
+
+    fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+        use vk::ImageUsageFlags as Usage;
+        let usage = Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
+        let cube = |name: &str, side, levels| Image::new(gpu, name, ImageDesc::cube(side, levels, HALF, usage));
+        let images = [
+            cube("environment", CUBE_SIDE, CUBE_LEVELS)?,
+            cube("prefiltered", PREFILTERED_SIDE, PREFILTERED_LEVELS)?,
+            cube("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?,
+        ];
+        Self::with(gpu, images, 1.0)
+    }
+
+    fn with(gpu: &Arc<Gpu>, [cube, prefiltered, sheen]: [Arc<Image>; 3], scale: f32) -> Result<Self, GpuError> {
+        use vk::BufferUsageFlags as Usage;
+        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
+        let irradiance = Buffer::new(gpu, "irradiance", IRRADIANCE_BYTES, usage, Memory::Device)?;
+        let sampler = task::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        Ok(Self { cube, prefiltered, sheen, irradiance, sampler, scale, report: BakeReport::default() })
+    }
+
+    fn images(&self) -> [&Arc<Image>; 3] {
+        [&self.cube, &self.prefiltered, &self.sheen]
+    }
+
+    /// Bytes of all images and of the irradiance.
+    fn bytes(&self) -> u64 {
+        self.images().iter().map(|image| image.desc().bytes()).sum::<u64>() + IRRADIANCE_BYTES
+    }
+
+    /// Copies everything in, in the order of [`Self::read`].
+    fn fill(&self, gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<(), GpuError> {
+        let mut rest = bytes;
+        let mut images = Vec::new();
+        for image in self.images() {
+            let (own, others) = rest.split_at(image.desc().bytes() as usize);
+            images.push((image, own));
+            rest = others;
+        }
+        task::upload(gpu, &images)?;
+        let staging = vk::BufferUsageFlags::TRANSFER_SRC;
+        let staging = Buffer::new(gpu, "staging", IRRADIANCE_BYTES, staging, Memory::Upload)?;
+        staging.write(0, rest);
+        one_shot(gpu, |encoder| {
+            encoder.copy_buffer(&staging, 0, &self.irradiance, IRRADIANCE_BYTES);
+            encoder.copies_done();
+            Ok(())
+        })
+    }
+
+    /// Copies everything out.
+    fn read(&self, gpu: &Arc<Gpu>) -> Result<Vec<u8>, GpuError> {
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let out = Buffer::new(gpu, "baked", self.bytes() - IRRADIANCE_BYTES, usage, Memory::Readback)?;
+        let harmonics = Buffer::new(gpu, "baked irradiance", IRRADIANCE_BYTES, usage, Memory::Readback)?;
+        one_shot(gpu, |encoder| {
+            let mut at = 0;
+            for image in self.images() {
+                encoder.transition(image, Use::Sampled, Use::CopyFrom);
+                encoder.copy_levels_from_image(image, &out, at);
+                encoder.transition(image, Use::CopyFrom, Use::Sampled);
+                at += image.desc().bytes();
+            }
+            encoder.copy_buffer(&self.irradiance, 0, &harmonics, IRRADIANCE_BYTES);
+            encoder.copies_done();
+            Ok(())
+        })?;
+        let mut bytes = out.read();
+        bytes.extend(harmonics.read());
+        Ok(bytes)
+    }
+
+    /// Bakes an environment with a set's stages, or takes the result from the disk.
+    ///
+    /// # Errors
+    /// A bad map, a device that fails, or `control` gave up.
+    pub fn bake(
+        set: &PipelineSet,
+        file: &EnvironmentFile,
+        control: &BakeControl<'_>,
+    ) -> Result<Arc<Self>, BakeError> {
+        let start = Instant::now();
+        let gpu = set.gpu();
+        let mut this = Self::new(gpu)?;
+        this.report.environment.clone_from(&file.name);
+        let key = key(set, file)?;
+        // The scale comes last.
+        if let Some(bytes) = cache::load(&key, this.bytes() + 4) {
+            let upload = Instant::now();
+            let (images, scale) = bytes.split_at(bytes.len() - 4);
+            this.fill(gpu, images)?;
+            this.scale = bytemuck::pod_read_unaligned(scale);
+            this.report.cached = true;
+            this.report.upload_ms = ms(upload);
+            this.report.total_ms = ms(start);
+            return Ok(Arc::new(this));
+        }
+        (control.progress)(0.0, "reading");
+        let map = file.decode()?;
+        this.report.decode_ms = ms(start);
+        this.run(set, &map, control)?;
+        this.report.total_ms = ms(start);
+        let mut bytes = this.read(gpu)?;
+        bytes.extend(this.scale.to_ne_bytes());
+        cache::store(&key, &bytes);
+        Ok(Arc::new(this))
+    }
+
+    /// All passes, each a submission of its own.
+    fn run(&mut self, set: &PipelineSet, map: &Environment, control: &BakeControl<'_>) -> Result<(), BakeError> {
+        let (gpu, layouts) = (set.gpu(), set.layouts());
+        let begin = |done: f32, next: &str| -> Result<Instant, BakeError> {
+            (control.progress)(done, next);
+            if (control.superseded)() { Err(BakeError::Superseded) } else { Ok(Instant::now()) }
+        };
+        let time = begin(0.05, "pipelines")?;
+        let passes = Passes { gpu, layouts, set };
+        for stage in BAKE_STAGES {
+            set.compute(stage, &Vec::new())?;
+        }
+        self.report.pipeline_ms = ms(time);
+
+        let time = begin(0.1, "upload")?;
+        self.scale = (LARGEST_HALF / map.peak.max(LARGEST_HALF)).max(1.0 / LARGEST_RANGE);
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let desc = ImageDesc::new(map.width, map.height, vk::Format::R32G32B32A32_SFLOAT, usage);
+        let equirect = Image::new(gpu, "environment map", desc)?;
+        task::upload(gpu, &[(&equirect, bytemuck::cast_slice(&map.pixels))])?;
+        self.report.upload_ms = ms(time);
+
+        let time = begin(0.15, "cube map")?;
+        passes.cube(&equirect, &self.cube, self.scale)?;
+        self.report.cube_ms = ms(time);
+
+        let time = begin(0.25, "irradiance")?;
+        passes.irradiance(&self.cube, &self.sampler, &self.irradiance)?;
+        self.report.irradiance_ms = ms(time);
+
+        for level in 0..PREFILTERED_LEVELS {
+            let time = begin(0.3 + 0.6 * level as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
+            let samples = PREFILTER_SAMPLES[level as usize];
+            passes.prefilter(PREFILTER, (&self.cube, &self.sampler), &self.prefiltered, level, samples)?;
+            self.report.prefilter_ms += ms(time);
+        }
+        let time = begin(0.9, "sheen")?;
+        for level in 0..SHEEN_LEVELS {
+            passes.prefilter(PREFILTER_SHEEN, (&self.cube, &self.sampler), &self.sheen, level, SHEEN_SAMPLES)?;
+        }
+        self.report.sheen_ms = ms(time);
+        (control.progress)(1.0, "");
+        Ok(())
+    }
+}
+
+/// Named by the stages, the numbers that they are given, and the map.
+fn key(set: &PipelineSet, file: &EnvironmentFile) -> Result<String, GpuError> {
+    let numbers = [CUBE_SIDE, PREFILTERED_SIDE, SHEEN_SIDE, SHEEN_SAMPLES];
+    let fingerprint = file.fingerprint.to_le_bytes();
+    let mut parts: Vec<&[u8]> = vec![&fingerprint, bytemuck::cast_slice(&numbers)];
+    parts.push(bytemuck::cast_slice(&PREFILTER_SAMPLES));
+    for stage in BAKE_STAGES {
+        parts.push(bytemuck::cast_slice(set.spirv(stage)?));
+    }
+    Ok(cache::key(&parts))
+}
+
+fn ms(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}
+
+/// The passes, each recorded and waited for.
+struct Passes<'a> {
+    gpu: &'a Arc<Gpu>,
+    layouts: &'a Arc<SetLayouts>,
+    set: &'a PipelineSet,
+}
+
+impl Passes<'_> {
+    /// The map to level 0, then each level from the one above. The cube ends up in [`Use::Sampled`].
+    fn cube(&self, map: &Arc<Image>, cube: &Arc<Image>, radiance_scale: f32) -> Result<(), GpuError> {
+        let desc = *cube.desc();
+        let sampler = task::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
+        // A texel of the cube's face center spans 2 / side; the map has width / 2 pi of its own in a radian.
+        let finer = (map.desc().width as f32 / std::f32::consts::TAU * 2.0 / desc.width as f32).ceil().max(1.0);
+        let first = Task {
+            size: [desc.width; 2],
+            levels: desc.mips,
+            samples: (finer as u32).min(8),
+            radiance_scale,
+            ..Task::default()
+        };
+        let bind = |task: &Task, more: &dyn Fn(crate::gpu::SetWriter) -> crate::gpu::SetWriter| {
+            task::bindings(self.gpu, self.layouts, task, |writer| more(task::target(writer, cube, task.level)))
+        };
+        let mut dispatches =
+            vec![(self.set.compute(CUBE, &Vec::new())?, bind(&first, &|w| task::source(w, map, &sampler))?, desc.width)];
+        for level in 1..desc.mips {
+            let side = (desc.width >> level).max(1);
+            let task = Task { size: [side; 2], level, ..first };
+            let set = bind(&task, &|writer| task::level_above(writer, cube, level - 1))?;
+            dispatches.push((self.set.compute(DOWNSAMPLE, &Vec::new())?, set, side));
+        }
+        one_shot(self.gpu, |encoder| {
+            encoder.transition(cube, Use::Undefined, Use::Storage);
+            for (pipeline, set, side) in &dispatches {
+                encoder.dispatch(self.layouts, pipeline, &[set], task::groups(*side, desc.layers));
+                encoder.transition(cube, Use::Storage, Use::Storage);
+            }
+            encoder.transition(cube, Use::Storage, Use::Sampled);
+            Ok(())
+        })
+    }
+
+    fn irradiance(&self, cube: &Arc<Image>, sampler: &Arc<Sampler>, to: &Arc<Buffer>) -> Result<(), GpuError> {
+        let side = cube.desc().width >> IRRADIANCE_LEVEL;
+        let task = Task { size: [side; 2], level: IRRADIANCE_LEVEL, levels: cube.desc().mips, ..Task::default() };
+        let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {
+            task::results(task::source_cube(writer, cube, sampler), to)
+        })?;
+        let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
+        one_shot(self.gpu, |encoder| {
+            encoder.dispatch(self.layouts, &pipeline, &[&bindings], [1, 1, 1]);
+            encoder.computed();
+            Ok(())
+        })
+    }
+
+    /// One level; the last one leaves the image in [`Use::Sampled`].
+    fn prefilter(
+        &self,
+        stage: &str,
+        (cube, sampler): (&Arc<Image>, &Arc<Sampler>),
+        to: &Arc<Image>,
+        level: u32,
+        samples: u32,
+    ) -> Result<(), GpuError> {
+        let desc = *to.desc();
+        let side = (desc.width >> level).max(1);
+        let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
+        let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {
+            task::target(task::source_cube(writer, cube, sampler), to, level)
+        })?;
+        let pipeline = self.set.compute(stage, &Vec::new())?;
+        one_shot(self.gpu, |encoder| {
+            let before = if level == 0 { Use::Undefined } else { Use::Storage };
+            encoder.transition(to, before, Use::Storage);
+            encoder.dispatch(self.layouts, &pipeline, &[&bindings], task::groups(side, desc.layers));
+            if level + 1 == desc.mips {
+                encoder.transition(to, Use::Storage, Use::Sampled);
+            }
+            Ok(())
+        })
+    }
+}

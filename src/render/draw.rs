@@ -1,0 +1,136 @@
+//! The model on its way to HDR: opaque surfaces, what light passes through, the sky, and what is blended.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::gpu::{Attachments, Encoder, Rect, SetLayouts, Use, vk};
+use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
+
+use super::frame::FrameInput;
+use super::scene::{GpuDraw, GpuScene};
+use super::targets::Targets;
+
+/// Draws the scene to the HDR target and resolves it, which leaves color in [`Use::Color`].
+pub(super) fn draw_model(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, targets: &Targets, input: &FrameInput<'_>) {
+    encoder.transition(&targets.color, Use::Undefined, Use::Color);
+    encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
+    let (color, resolve) = match &targets.multisampled {
+        Some(multisampled) => {
+            encoder.transition(multisampled, Use::Undefined, Use::Color);
+            (multisampled, Some(&targets.color))
+        }
+        None => (&targets.color, None),
+    };
+    let (width, height) = targets.purpose.size;
+    let area = Rect { x: 0, y: 0, width, height };
+    let clear = Some([0.0; 4]);
+    let attachments =
+        Attachments { color, clear, resolve, depth: Some(&targets.depth), goes_on: targets.behind.is_some(), area };
+    let (opaque, passed, blended) = input.scene.map(|scene| sorted(scene, input.shot.view.eye)).unwrap_or_default();
+    if let Some(behind) = &targets.behind {
+        encoder.transition(behind, Use::Undefined, Use::Sampled);
+    }
+    encoder.begin_rendering(&attachments);
+    encoder.bind_set(layouts, &targets.model_set);
+    draw_primitives(encoder, layouts, input, &opaque);
+    if let Some(behind) = &targets.behind {
+        // What is drawn so far, blurred level by level, is what the next surfaces show of what lies behind them.
+        encoder.end_rendering();
+        encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
+        encoder.transition(behind, Use::Sampled, Use::CopyTo);
+        encoder.fill_levels(&targets.color, behind);
+        encoder.transition(behind, Use::CopyFrom, Use::Sampled);
+        encoder.transition(&targets.color, Use::CopyFrom, Use::Color);
+        encoder.transition(&targets.depth, Use::Depth, Use::Depth);
+        if let Some(multisampled) = &targets.multisampled {
+            encoder.transition(multisampled, Use::Color, Use::Color);
+        }
+        encoder.begin_rendering(&Attachments { clear: None, goes_on: false, ..attachments });
+        draw_primitives(encoder, layouts, input, &passed);
+    }
+    if let Some((pipelines, wanted)) = input.pipelines
+        && let Some(pipeline) = wanted.sky_key().and_then(|key| pipelines.get(&key))
+    {
+        encoder.bind_pipeline(&pipeline);
+        encoder.set_raster(
+            vk::PrimitiveTopology::TRIANGLE_LIST,
+            vk::CullModeFlags::NONE,
+            vk::FrontFace::COUNTER_CLOCKWISE,
+        );
+        encoder.draw(3);
+    }
+    draw_primitives(encoder, layouts, input, &blended);
+    encoder.end_rendering();
+}
+
+/// Adds the newest frame to the mean of those before it, and leaves the mean in [`Use::Sampled`].
+pub(super) fn average(
+    encoder: &mut Encoder,
+    layouts: &Arc<SetLayouts>,
+    targets: &Targets,
+    input: &FrameInput<'_>,
+    index: u32,
+) {
+    let (Some(mean), Some((pipelines, wanted))) = (&targets.mean, input.pipelines) else { return };
+    let Some(pipeline) = wanted.average_key().and_then(|key| pipelines.get(&key)) else { return };
+    encoder.transition(mean, if index == 0 { Use::Undefined } else { Use::Sampled }, Use::Color);
+    let (width, height) = targets.purpose.size;
+    encoder.begin_rendering(&Attachments {
+        color: mean,
+        clear: (index == 0).then_some([0.0; 4]),
+        resolve: None,
+        depth: None,
+        goes_on: false,
+        area: Rect { x: 0, y: 0, width, height },
+    });
+    encoder.bind_pipeline(&pipeline);
+    encoder.set_weight(1.0 / (index as f32 + 1.0));
+    encoder.bind_set(layouts, &targets.color_set);
+    encoder.draw(3);
+    encoder.end_rendering();
+    encoder.transition(mean, Use::Color, Use::Sampled);
+}
+
+fn draw_primitives(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, input: &FrameInput<'_>, draws: &[&GpuDraw]) {
+    let (Some(scene), Some((pipelines, wanted))) = (input.scene, input.pipelines) else { return };
+    encoder.keep(&scene.vertices);
+    encoder.bind_indices(&scene.indices);
+    for draw in draws {
+        if let Some(pipeline) = pipelines.get(&wanted.model_key(draw.variant)) {
+            encoder.bind_pipeline(&pipeline);
+            draw_primitive(encoder, layouts, scene, draw);
+        }
+    }
+}
+
+fn draw_primitive(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, scene: &GpuScene, draw: &GpuDraw) {
+    encoder.bind_set(layouts, &scene.materials[draw.material]);
+    encoder.push(layouts, &draw.push);
+    // Both faces of a transparent surface are blended in order: the far one, seen from inside, first.
+    let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {
+        (true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
+        (true, _) => &[vk::CullModeFlags::NONE],
+        (false, _) => &[vk::CullModeFlags::BACK],
+    };
+    for cull in passes {
+        encoder.set_raster(draw.topology, *cull, draw.front);
+        encoder.draw_indexed(draw.index_count, draw.first_index);
+    }
+}
+
+/// Opaque and masked primitives front to back, which saves shading; those that light passes through, and blended ones, back to
+/// front, which they need.
+fn sorted(scene: &GpuScene, eye: Vec3) -> (Vec<&GpuDraw>, Vec<&GpuDraw>, Vec<&GpuDraw>) {
+    let mut sorted: Vec<_> = scene.draws.iter().collect();
+    sorted.sort_by(|a, b| a.center_ws.distance_squared(eye).total_cmp(&b.center_ws.distance_squared(eye)));
+    let (mut opaque, mut passed, mut blended) = (Vec::new(), Vec::new(), Vec::new());
+    for draw in sorted {
+        match draw.variant {
+            v if v.alpha == ALPHA_BLEND => blended.insert(0, draw),
+            v if v.features & FEATURE_TRANSMISSION != 0 => passed.insert(0, draw),
+            _ => opaque.push(draw),
+        }
+    }
+    (opaque, passed, blended)
+}

@@ -1,0 +1,34 @@
+//! A measured BRDF on the device: see shaders/brdf/measured.glsl.
+
+use std::sync::Arc;
+
+use crate::gpu::{Buffer, Gpu, GpuError, Memory, one_shot, vk};
+use crate::interface::{MEASURED_MERL, MEASURED_NONE, MEASURED_UTIA};
+use crate::scene::{Measured, MeasuredKind};
+
+/// The buffer of `measured`, or of none: the kind, then the values.
+///
+/// # Errors
+/// Out of memory.
+pub fn measured_buffer(gpu: &Arc<Gpu>, measured: Option<&Measured>) -> Result<Arc<Buffer>, GpuError> {
+    let kind: u32 = match measured.map(|m| m.kind) {
+        None => MEASURED_NONE,
+        Some(MeasuredKind::Merl) => MEASURED_MERL,
+        Some(MeasuredKind::Utia) => MEASURED_UTIA,
+    };
+    // One value stands for none: a block may not be empty.
+    let values = measured.map_or(&[0.0][..], |m| &m.values);
+    let bytes: &[u8] = bytemuck::cast_slice(values);
+    let size = 4 + bytes.len() as u64;
+    let staging = Buffer::new(gpu, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload)?;
+    staging.write(0, bytemuck::bytes_of(&kind));
+    staging.write(4, bytes);
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+    let buffer = Buffer::new(gpu, "measured BRDF", size, usage, Memory::Device)?;
+    one_shot(gpu, |encoder| {
+        encoder.copy_buffer(&staging, 0, &buffer, size);
+        encoder.copies_done();
+        Ok(())
+    })?;
+    Ok(buffer)
+}

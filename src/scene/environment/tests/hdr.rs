@@ -1,0 +1,109 @@
+//! Radiance HDR files.
+
+use super::*;
+
+/// An HDR file of flat RGBE pixels, row by row.
+fn flat(width: usize, rgbe: &[[u8; 4]]) -> Vec<u8> {
+    let size = format!("-Y {} +X {width}\n", rgbe.len() / width);
+    with_header("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n", &size, rgbe.as_flattened())
+}
+
+fn with_header(header: &str, size: &str, pixels: &[u8]) -> Vec<u8> {
+    [header.as_bytes(), size.as_bytes(), pixels].concat()
+}
+
+/// 16x2 pixels with new run lengths: a run of red 128, a count of green 0..16, no blue, exponent 129 (so 128 is 1.0).
+fn run_lengths() -> Vec<u8> {
+    let row = |exponent: u8| {
+        let literal: Vec<u8> = (0..16).collect();
+        [&[2, 2, 0, 16][..], &[128 + 16, 128], &[16], &literal, &[128 + 16, 0], &[128 + 16, exponent]].concat()
+    };
+    with_header("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n", "-Y 2 +X 16\n", &[row(129), row(130)].concat())
+}
+
+#[test]
+fn known_values() {
+    // mantissa * 2^(exponent - 136): Ward 1991, "Real Pixels".
+    let environment = load("a.hdr", &flat(2, &[[128, 64, 32, 129], [0, 0, 0, 0]])).unwrap();
+    assert_eq!((environment.width, environment.height, environment.name.as_str()), (2, 1, "a"));
+    assert_eq!(environment.pixels, [[1.0, 0.5, 0.25, 1.0], [0.0, 0.0, 0.0, 1.0]]);
+    assert_eq!((environment.peak, environment.warnings.len()), (1.0, 0));
+
+    let environment = load("a.pic", &run_lengths()).unwrap();
+    for (i, pixel) in environment.pixels.iter().enumerate() {
+        let scale = if i < 16 { 1.0 } else { 2.0 };
+        assert_eq!(*pixel, [scale, scale * (i % 16) as f32 / 128.0, 0.0, 1.0], "{i}");
+    }
+    // Old run lengths: the pixel before, 3 + 1 * 256 times again; and the other name in the first line.
+    let old = [[128, 128, 128, 129], [1, 1, 1, 3], [1, 1, 1, 1]];
+    let old = with_header("#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n", "-Y 1 +X 260\n", old.as_flattened());
+    assert_eq!(load("a.hdr", &old).unwrap().pixels, [[1.0; 4]; 260]);
+}
+
+#[test]
+fn a_bright_pixel_at_three_quarters_lights_from_plus_x() {
+    let mut pixels = [[0; 4]; 16 * 8];
+    pixels[4 * 16 + 12] = [128, 128, 128, 129];
+    pixels[3 * 16 + 11] = [128, 128, 128, 129];
+    let environment = load("a.hdr", &flat(16, &pixels)).unwrap();
+    let at = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].map(|n| environment.irradiance(n).x);
+    assert!(at[0] > 0.2 && at[0] > 4.0 * at[2], "{at:?}");
+    assert!(at[1] == 0.0 && (at[2] - at[3]).abs() < 1e-5 && (at[4] - at[5]).abs() < 1e-5, "{at:?}");
+}
+
+#[test]
+fn exposure_of_the_header_is_divided_out() {
+    let header = "#?RADIANCE\nEXPOSURE=2\nEXPOSURE=4\nFORMAT=32-bit_rle_rgbe\n\n";
+    let pixels = [[128, 128, 128, 130]; 2];
+    let environment = load("a.hdr", &with_header(header, "-Y 1 +X 2\n", pixels.as_flattened())).unwrap();
+    assert_eq!(environment.pixels[0], [0.25, 0.25, 0.25, 1.0]);
+    assert!(environment.warnings[0].contains("EXPOSURE"));
+    for exposure in ["0", "-1", "NaN", "inf", "1e-40"] {
+        let header = header.replace("=2\n", &format!("={exposure}\n"));
+        let message = error("a.hdr", &with_header(&header, "-Y 1 +X 2\n", pixels.as_flattened()));
+        assert!(message.contains("EXPOSURE") && message.contains("expected positive"), "{message}");
+    }
+}
+
+#[test]
+fn warnings() {
+    let black = load("a.hdr", &flat(2, &[[0; 4]; 2])).unwrap();
+    assert!(black.warnings[0].contains("black everywhere") && black.warnings.len() == 1);
+    let square = load("a.hdr", &flat(2, &[[128; 4]; 4])).unwrap();
+    assert!(square.warnings[0].contains("2x2 pixels") && square.warnings.len() == 1);
+}
+
+#[test]
+fn cut_short_at_every_byte() {
+    for whole in [run_lengths(), flat(4, &[[9, 8, 7, 129]; 8])] {
+        load("a.hdr", &whole).unwrap();
+        for length in 0..whole.len() {
+            assert!(load("a.hdr", &whole[..length]).is_err(), "{length} of {} bytes", whole.len());
+        }
+    }
+    let whole = run_lengths();
+    assert!(error("a.hdr", &whole[..whole.len() - 1]).contains("cut short"));
+}
+
+#[test]
+fn every_byte_changed() {
+    let whole = run_lengths();
+    for (at, value) in (0..whole.len()).flat_map(|at| [0, 1, 2, 127, 128, 255].map(|value| (at, value))) {
+        let mut bytes = whole.clone();
+        bytes[at] = value;
+        let _ = load("a.hdr", &bytes);
+    }
+}
+
+#[test]
+fn bad_headers() {
+    let message = |header: &str, size: &str| error("a.hdr", &with_header(header, size, &[0; 64]));
+    let good = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    assert!(message(good, "-Y 9000 +X 18000\n").contains("has 18000x9000 pixels, expected 1x1 to 16384x8192"));
+    assert!(message(good, "-Y 4294967295 +X 4294967295\n").contains("4294967295"));
+    assert!(message(good, "-Y 0 +X 4\n").contains("has 4x0 pixels"));
+    assert!(message(good, "-Y 4096 +X 8192\n").contains("cut short: its header says 8192x4096 pixels"));
+    assert!(message(good, "+Y 4 +X 8\n").contains("rows from top to bottom (-Y height +X width)"));
+    assert!(message(good, "-Y four +X 8\n").contains("height"));
+    assert!(message(&good.replace("rgbe", "xyze"), "-Y 4 +X 8\n").contains("32-bit_rle_xyze"));
+}

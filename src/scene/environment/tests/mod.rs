@@ -1,0 +1,90 @@
+//! Good and bad images, and the built-in ones.
+
+mod built_in;
+mod hdr;
+mod open_exr;
+
+use glam::{Vec2, Vec3};
+
+use super::*;
+
+/// Writes bytes to a file and reads them as an environment.
+fn load(name: &str, bytes: &[u8]) -> Result<Environment, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    let file = EnvironmentFile::open(path.to_str().unwrap()).unwrap();
+    assert_eq!(file.files, std::slice::from_ref(&path));
+    let decoded = file.decode();
+    decoded.map_err(|error| {
+        let (message, prefix) = (error.to_string(), format!("{}: ", path.display()));
+        assert_eq!(error.files, [path]);
+        // A caught panic would be a bug of the decoder that we know of, not an answer.
+        assert!(!message.contains("was refused"), "{message}");
+        message.strip_prefix(&prefix).unwrap_or_else(|| panic!("no file name: {message}")).to_owned()
+    })
+}
+
+fn error(name: &str, bytes: &[u8]) -> String {
+    load(name, bytes).unwrap_err()
+}
+
+/// A file that is neither HDR nor EXR is refused with what it is.
+#[test]
+fn other_files() {
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::new(2, 1).write_to(&mut png, image::ImageFormat::Png).unwrap();
+    assert!(error("a.hdr", b"").starts_with("is empty. Expected a Radiance HDR or OpenEXR image"));
+    assert!(error("a.hdr", &png.into_inner()).starts_with("is a PNG image, of low dynamic range"));
+    assert!(error("a.exr", &[0xff, 0xd8, 0xff, 0xe0, 0, 0]).starts_with("is a JPEG image"));
+    assert!(error("a.exr", b"hello, world").contains("found 12 bytes that begin with 68 65 6c 6c 6f 2c 20 77"));
+    assert!(error("a.hdr", b"#").contains("found 1 bytes that begin with 23"));
+    let folder = tempfile::tempdir().unwrap();
+    let missing = EnvironmentFile::open(folder.path().join("studo").to_str().unwrap()).unwrap_err();
+    assert!(missing.to_string().contains("one of the built-in environments: studio, furnace, sky"), "{missing}");
+    assert_eq!(missing.files, [folder.path().join("studo")]);
+    let folder = EnvironmentFile::open(folder.path().to_str().unwrap()).unwrap_err();
+    assert!(folder.to_string().contains("not a regular file"), "{folder}");
+}
+
+/// The fingerprint follows the content, not the name, and is the same in every build.
+#[test]
+fn fingerprints() {
+    let folder = tempfile::tempdir().unwrap();
+    let fingerprint_of = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        EnvironmentFile::open(path.to_str().unwrap()).unwrap().fingerprint
+    };
+    let one = fingerprint_of("a.hdr", b"one");
+    assert_eq!(one, fingerprint_of("b.hdr", b"one"));
+    assert_ne!(one, fingerprint_of("a.hdr", b"onf"));
+    assert_eq!(one, FINGERPRINT_OF_ONE);
+    let built_in = BUILT_IN.map(|name| EnvironmentFile::open(name).unwrap().fingerprint);
+    assert!(built_in[0] != built_in[1] && built_in[1] != built_in[2] && built_in[0] != built_in[2]);
+}
+
+/// XXH3 with 128 bits and the seed 1 of the bytes "one", by its reference implementation.
+const FINGERPRINT_OF_ONE: u128 = 235_306_009_984_478_441_606_305_394_828_936_041_434;
+
+/// Directions and texels: the center looks down -Z, right of it is +X, the top is +Y.
+#[test]
+fn directions() {
+    let cases = [
+        (Vec2::new(0.5, 0.5), Vec3::NEG_Z),
+        (Vec2::new(0.75, 0.5), Vec3::X),
+        (Vec2::new(0.25, 0.5), Vec3::NEG_X),
+        (Vec2::new(1.0, 0.5), Vec3::Z),
+        (Vec2::new(0.5, 0.0), Vec3::Y),
+        (Vec2::new(0.5, 1.0), Vec3::NEG_Y),
+    ];
+    for (uv, expected) in cases {
+        assert!(direction_from_uv(uv.x, uv.y).distance(expected) < 1e-6, "{uv}");
+    }
+    for (x, y) in (0..64).flat_map(|x| (0..32).map(move |y| (x, y))) {
+        let uv = Vec2::new((x as f32 + 0.5) / 64.0, (y as f32 + 0.5) / 32.0);
+        let direction = direction_from_uv(uv.x, uv.y);
+        assert!((direction.length() - 1.0).abs() < 1e-6);
+        assert!(uv_from_direction(direction * 3.0).distance(uv) < 1e-6, "{uv}");
+    }
+}

@@ -1,0 +1,73 @@
+//! Which features of the shaders a material needs: those that change the picture, so that the others cost nothing.
+
+use glam::Vec3;
+
+use super::model::{Material, Model};
+use crate::interface::{
+    ATTRIBUTE_TANGENT_FRAME, FEATURE_ANISOTROPY, FEATURE_CLEARCOAT, FEATURE_CLEARCOAT_NORMAL, FEATURE_CONDUCTOR,
+    FEATURE_DIFFUSE_TRANSMISSION, FEATURE_DISPERSION, FEATURE_IRIDESCENCE, FEATURE_NORMAL_TEXTURE,
+    FEATURE_PACKED_OCCLUSION, FEATURE_SHEEN, FEATURE_SPECULAR, FEATURE_SPECULAR_GLOSSINESS, FEATURE_TRANSMISSION,
+    FEATURE_UNLIT, FEATURE_VOLUME, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_IRIDESCENCE_THICKNESS, TEXTURE_METALLIC_ROUGHNESS,
+    TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SPECULAR, TEXTURE_SPECULAR_COLOR,
+};
+
+/// The `interface::FEATURE_*` bits of a material of `model` on a mesh with these `interface::ATTRIBUTE_*`. The bits
+/// that a whole frame shares are not among them.
+pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
+    let has_frame = attributes & ATTRIBUTE_TANGENT_FRAME != 0;
+    let has = |texture: u32| material.textures[texture as usize].is_some();
+    let normal = if has_frame && has(TEXTURE_NORMAL) { FEATURE_NORMAL_TEXTURE } else { 0 };
+    if material.unlit {
+        return FEATURE_UNLIT | normal;
+    }
+    let clearcoat = material.clearcoat.factor > 0.0;
+    let specular = &material.specular;
+    let film = &material.iridescence;
+    let has_film = film.thickness_max_nm > 0.0 || (has(TEXTURE_IRIDESCENCE_THICKNESS) && film.thickness_min_nm > 0.0);
+    let transmission = material.transmission_factor > 0.0;
+    let diffuse_transmission = material.diffuse_transmission.factor > 0.0;
+    let volume = material.volume.thickness > 0.0 && (transmission || diffuse_transmission);
+    let conditions = [
+        (FEATURE_CLEARCOAT, clearcoat),
+        (FEATURE_CLEARCOAT_NORMAL, clearcoat && has_frame && has(TEXTURE_CLEARCOAT_NORMAL)),
+        (FEATURE_ANISOTROPY, has_frame && material.anisotropy.strength > 0.0),
+        (FEATURE_SHEEN, material.sheen.color.max_element() > 0.0),
+        (
+            FEATURE_SPECULAR,
+            !material.specular_glossiness
+                && (specular.factor != 1.0
+                    || specular.color != Vec3::ONE
+                    || has(TEXTURE_SPECULAR)
+                    || has(TEXTURE_SPECULAR_COLOR)),
+        ),
+        (FEATURE_IRIDESCENCE, film.factor > 0.0 && has_film),
+        (FEATURE_TRANSMISSION, transmission),
+        (FEATURE_VOLUME, volume),
+        // Diffuse light has lost its direction, so dispersion does not show in it.
+        (FEATURE_DISPERSION, volume && transmission && material.dispersion > 0.0),
+        (FEATURE_DIFFUSE_TRANSMISSION, diffuse_transmission),
+        (FEATURE_SPECULAR_GLOSSINESS, material.specular_glossiness),
+        (FEATURE_CONDUCTOR, !material.specular_glossiness && material.conductor.is_some()),
+        // Without an occlusion texture its strength is 0, so what is read does not matter: then better no texture more.
+        (FEATURE_PACKED_OCCLUSION, !has(TEXTURE_OCCLUSION) || packs_occlusion(model, material)),
+    ];
+    conditions.iter().filter(|(_, used)| *used).fold(normal, |bits, (bit, _)| bits | bit)
+}
+
+/// Whether occlusion can be the red channel of the metallic-roughness texture, which leaves it free: both are read
+/// alike, and are one image, or two of one size that an upload can merge.
+pub fn packs_occlusion(model: &Model, material: &Material) -> bool {
+    let slot = |texture: u32| material.textures[texture as usize];
+    let (Some(roughness), Some(occlusion)) = (slot(TEXTURE_METALLIC_ROUGHNESS), slot(TEXTURE_OCCLUSION)) else {
+        return false;
+    };
+    // Specular-glossiness has a color there; an unlit material reads neither.
+    if material.specular_glossiness || material.unlit {
+        return false;
+    }
+    let [a, b] = [roughness, occlusion].map(|used| model.textures[used.texture]);
+    let size = |image: usize| (model.images[image].width, model.images[image].height);
+    (roughness.uv_set, roughness.uv_from_mesh) == (occlusion.uv_set, occlusion.uv_from_mesh)
+        && a.sampler == b.sampler
+        && size(a.image) == size(b.image)
+}

@@ -1,0 +1,174 @@
+//! What materials use: textures, their samplers and images, and how texture coordinates reach them.
+
+use std::collections::HashMap;
+
+use glam::Affine2;
+use gltf::json;
+use json::extensions::texture::TextureTransform;
+use json::texture::{MagFilter, MinFilter, WrappingMode};
+use json::validation::Checked;
+
+use super::super::error::Problem;
+use super::super::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
+use super::place;
+use super::values::{self, Extensions};
+
+/// The highest TEXCOORD set that a vertex carries.
+const LAST_UV_SET: u32 = 1;
+
+/// Collects what the materials of a file use, each once.
+pub struct Collector<'a> {
+    /// Used pairs of image and sampler.
+    pub textures: Vec<Texture>,
+    /// Used images: index in the file and the first use, for messages. `Texture::image` counts these.
+    pub images: Vec<(usize, String)>,
+    /// Tolerated values.
+    pub warnings: Vec<String>,
+    root: &'a json::Root,
+    /// Textures by file index of the image and sampler.
+    seen: HashMap<(usize, Sampler), usize>,
+}
+
+/// A textureInfo of any kind.
+pub struct Slot {
+    texture: usize,
+    uv_set: u32,
+    transform: Option<TextureTransform>,
+}
+
+impl Slot {
+    /// Of a textureInfo that the parser knows.
+    pub fn new(info: &json::texture::Info) -> Self {
+        let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.clone());
+        Self { texture: info.index.value(), uv_set: info.tex_coord, transform }
+    }
+
+    /// Of one whose extensions are raw JSON: normal and occlusion textures, and all of extensions.
+    pub fn raw(texture: usize, uv_set: u32, others: Option<&Extensions>, place: &str) -> Result<Self, Problem> {
+        let raw = others.and_then(|others| others.get("KHR_texture_transform"));
+        let transform = raw.map(|raw| json::deserialize::from_value(raw.clone())).transpose().map_err(|error| {
+            let place = format!("{place}.extensions.KHR_texture_transform");
+            Problem::invalid(place, "a texture transform", error.to_string())
+        })?;
+        Ok(Self { texture, uv_set, transform })
+    }
+}
+
+impl<'a> Collector<'a> {
+    /// With nothing in it.
+    pub fn new(root: &'a json::Root) -> Self {
+        Self { textures: Vec::new(), images: Vec::new(), warnings: Vec::new(), root, seen: HashMap::new() }
+    }
+
+    /// Gives a material the texture of a slot, `interface::TEXTURE_*`.
+    pub fn bind(
+        &mut self,
+        material: &mut Material,
+        texture: u32,
+        slot: Option<Slot>,
+        place: &str,
+    ) -> Result<(), Problem> {
+        material.textures[texture as usize] = slot.map(|slot| self.texture_use(&slot, place)).transpose()?;
+        Ok(())
+    }
+
+    fn texture_use(&mut self, slot: &Slot, place: &str) -> Result<TextureUse, Problem> {
+        let textures = &self.root.textures;
+        let Some(texture) = textures.get(slot.texture) else {
+            return Err(super::out_of_range(place, "textures", slot.texture, textures.len()));
+        };
+        let image = self.image_of(texture, slot.texture)?;
+        let sampler = match texture.sampler {
+            None => Sampler::default(),
+            Some(at) => match self.root.samplers.get(at.value()) {
+                Some(sampler) => read_sampler(sampler, at.value())?,
+                None => return Err(super::out_of_range(place, "samplers", at.value(), self.root.samplers.len())),
+            },
+        };
+        let mut uv_set = slot.transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(slot.uv_set);
+        if uv_set > LAST_UV_SET {
+            self.warnings
+                .push(format!("{place} reads TEXCOORD_{uv_set}: Specula has sets 0 and 1, so TEXCOORD_0 is used."));
+            uv_set = 0;
+        }
+        let uv_from_mesh = slot.transform.as_ref().map_or(Ok(Affine2::IDENTITY), |t| affine(t, place))?;
+        let texture = *self.seen.entry((image, sampler)).or_insert_with(|| {
+            let known = self.images.iter().position(|(index, _)| *index == image);
+            let image = known.unwrap_or_else(|| {
+                self.images.push((image, place.to_owned()));
+                self.images.len() - 1
+            });
+            self.textures.push(Texture { image, sampler });
+            self.textures.len() - 1
+        });
+        Ok(TextureUse { texture, uv_set, uv_from_mesh })
+    }
+
+    /// Index of the image of a texture: the WebP one of EXT_texture_webp, or the core one.
+    fn image_of(&self, texture: &json::Texture, index: usize) -> Result<usize, Problem> {
+        let place = place("textures", index, texture.name.as_deref());
+        let webp =
+            texture.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp")).and_then(|e| e.get("source"));
+        // The parser says u32::MAX for "absent".
+        let core = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
+        let source = match webp {
+            Some(source) => Some(values::index(Some(source), &place, "images")?),
+            None => core,
+        };
+        let Some(source) = source else {
+            let expected = "a source that is a PNG, JPEG or WebP image";
+            let only: Vec<&str> = texture.extensions.iter().flat_map(|e| e.others.keys()).map(String::as_str).collect();
+            let found = if only.is_empty() { "none".into() } else { format!("only the extension {}", only.join(", ")) };
+            return Err(Problem::invalid(place, expected, found));
+        };
+        if source >= self.root.images.len() {
+            return Err(super::out_of_range(&place, "images", source, self.root.images.len()));
+        }
+        Ok(source)
+    }
+}
+
+/// KHR_texture_transform: translation * rotation * scale. Its rotation is counter-clockwise as seen with v pointing
+/// down, hence the minus.
+fn affine(transform: &TextureTransform, place: &str) -> Result<Affine2, Problem> {
+    let (offset, scale, rotation) = (transform.offset.0, transform.scale.0, transform.rotation.0);
+    let affine = Affine2::from_scale_angle_translation(scale.into(), -rotation, offset.into());
+    if affine.is_finite() {
+        return Ok(affine);
+    }
+    let found = format!("offset {offset:?}, rotation {rotation}, scale {scale:?}");
+    Err(Problem::invalid(format!("{place}.extensions.KHR_texture_transform"), "finite numbers", found))
+}
+
+fn read_sampler(sampler: &json::texture::Sampler, index: usize) -> Result<Sampler, Problem> {
+    let invalid = |name: &str, values: &[u32]| {
+        Problem::invalid(format!("samplers[{index}].{name}"), format!("one of {values:?}"), "another number")
+    };
+    let mag_linear = match sampler.mag_filter {
+        None | Some(Checked::Valid(MagFilter::Linear)) => true,
+        Some(Checked::Valid(MagFilter::Nearest)) => false,
+        Some(Checked::Invalid) => return Err(invalid("magFilter", json::texture::VALID_MAG_FILTERS)),
+    };
+    let (min_linear, mip) = match sampler.min_filter {
+        None | Some(Checked::Valid(MinFilter::LinearMipmapLinear)) => (true, Mip::Linear),
+        Some(Checked::Valid(MinFilter::Linear)) => (true, Mip::None),
+        Some(Checked::Valid(MinFilter::Nearest)) => (false, Mip::None),
+        Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => (true, Mip::Nearest),
+        Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => (false, Mip::Nearest),
+        Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => (false, Mip::Linear),
+        Some(Checked::Invalid) => return Err(invalid("minFilter", json::texture::VALID_MIN_FILTERS)),
+    };
+    let wrap = |mode: Checked<WrappingMode>, name| match mode {
+        Checked::Valid(WrappingMode::Repeat) => Ok(Wrap::Repeat),
+        Checked::Valid(WrappingMode::MirroredRepeat) => Ok(Wrap::Mirror),
+        Checked::Valid(WrappingMode::ClampToEdge) => Ok(Wrap::Clamp),
+        Checked::Invalid => Err(invalid(name, json::texture::VALID_WRAPPING_MODES)),
+    };
+    Ok(Sampler {
+        mag_linear,
+        min_linear,
+        mip,
+        wrap_u: wrap(sampler.wrap_s, "wrapS")?,
+        wrap_v: wrap(sampler.wrap_t, "wrapT")?,
+    })
+}

@@ -1,0 +1,132 @@
+//! The format of the MERL database (Matusik et al. 2003): three `i32` 90, 90, 180, then doubles, little endian: all of
+//! red, of green, of blue. In a plane phi_d runs fastest, then theta_d, then theta_h.
+//!
+//! The axes are the half and difference angles of Rusinkiewicz 1998: h halves the way from l to v, (theta_h, phi_h) is
+//! where it is; (theta_d, phi_d) is where l is when h is turned onto the normal. An isotropic BRDF does not depend on
+//! phi_h. Swapping l and v adds pi to phi_d, so by reciprocity phi_d from 0 to pi is enough.
+//!
+//! theta_d has 1 degree a bin, phi_d too; theta_h = 90 degrees (i / 90)^2, finest where the highlight is. The
+//! database's own reader truncates, so bin i lies between i and i + 1, and its value belongs to the middle, i + 0.5.
+//! Specula is linear between the middles, in i for theta_h.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use glam::Vec3;
+
+use super::grid::{Between, triple};
+use super::{Decoded, MeasuredProblem, interleave, warn_of_negative};
+
+const THETA_H: usize = 90;
+const THETA_D: usize = 90;
+const PHI_D: usize = 180;
+const CELLS: usize = THETA_H * THETA_D * PHI_D;
+
+/// What the header says.
+pub(super) const DIMENSIONS: [i32; 3] = [THETA_H as i32, THETA_D as i32, PHI_D as i32];
+pub(super) const HEADER_BYTES: usize = 12;
+pub(super) const FILE_BYTES: usize = HEADER_BYTES + 3 * CELLS * size_of::<f64>();
+
+/// From stored values to 1/sr: the exposure of each channel (the database's reader).
+const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
+
+/// What the database stores where no light can be.
+const BELOW_HORIZON: f64 = -1.0;
+
+/// The header's three numbers, if that many bytes are there.
+pub(super) fn dimensions(header: &[u8]) -> Option<[i32; 3]> {
+    let (numbers, _) = header.as_chunks::<4>();
+    let [a, b, c] = numbers.get(..3)? else { return None };
+    Some([a, b, c].map(|bytes| i32::from_le_bytes(*bytes)))
+}
+
+/// `bytes` is a whole file.
+pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, MeasuredProblem> {
+    let mut values = interleave(&bytes[HEADER_BYTES..], SCALE)?;
+    let negative = fill(&mut values);
+    Ok(Decoded { values, warnings: warn_of_negative(negative, 3 * CELLS).into_iter().collect() })
+}
+
+fn cell(theta_h: usize, theta_d: usize, phi_d: usize) -> usize {
+    (theta_h * THETA_D + theta_d) * PHI_D + phi_d
+}
+
+/// Makes every value one that may be interpolated. A bin whose middle is below the horizon holds nothing (-1), yet the
+/// last bins above it are mixed with it: it gets the value of the bin before, so that no dark rim is made up. The bin
+/// theta_d = 0 has l = v = h and is never below. Other negative values are failed measurements: 0. Returns how many.
+fn fill(values: &mut [f32]) -> usize {
+    let mut negative = 0;
+    for theta_h in 0..THETA_H {
+        for theta_d in 0..THETA_D {
+            for phi_d in 0..PHI_D {
+                let at = cell(theta_h, theta_d, phi_d);
+                if triple(values, at).min_element() > 0.0 {
+                    continue;
+                }
+                let (l, v) = directions(theta_h, theta_d, phi_d);
+                let below = theta_d > 0 && l.z.min(v.z) <= 0.0;
+                for channel in 0..3 {
+                    let value = values[at * 3 + channel];
+                    if below && value <= 0.0 {
+                        values[at * 3 + channel] = values[cell(theta_h, theta_d - 1, phi_d) * 3 + channel];
+                    } else if value < 0.0 {
+                        values[at * 3 + channel] = 0.0;
+                        negative += 1;
+                    }
+                }
+            }
+        }
+    }
+    negative
+}
+
+/// l and v in the middle of a bin, with phi_h = 0.
+fn directions(theta_h: usize, theta_d: usize, phi_d: usize) -> (Vec3, Vec3) {
+    let middle = |i: usize, count: usize| (i as f32 + 0.5) / count as f32;
+    let (sin_h, cos_h) = (FRAC_PI_2 * middle(theta_h, THETA_H).powi(2)).sin_cos();
+    let (sin_d, cos_d) = (FRAC_PI_2 * middle(theta_d, THETA_D)).sin_cos();
+    let (sin_phi, cos_phi) = (PI * middle(phi_d, PHI_D)).sin_cos();
+    let h = Vec3::new(sin_h, 0.0, cos_h);
+    let aside = sin_d * Vec3::new(cos_phi * cos_h, sin_phi, -cos_phi * sin_h);
+    (cos_d * h + aside, cos_d * h - aside)
+}
+
+/// Both directions are above the horizon.
+///
+/// With l + v = 2 cos(theta_d) h and l - v = 2 sin(theta_d) (across h, towards phi_d) all angles come from arc
+/// tangents, which are exact where the arc cosine of a dot product is not: at the highlight's peak.
+pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
+    let (sum, difference) = (l + v, l - v);
+    let aside = sum.truncate().length();
+    let theta_h = aside.atan2(sum.z);
+    let theta_d = difference.length().atan2(sum.length());
+
+    // Along the meridian through h and across it; h at the pole has every meridian, and x is as good as any.
+    let (cos_phi, sin_phi) = if aside > 0.0 { (sum.x / aside, sum.y / aside) } else { (1.0, 0.0) };
+    let (sin_h, cos_h) = theta_h.sin_cos();
+    let along = difference.dot(Vec3::new(cos_h * cos_phi, cos_h * sin_phi, -sin_h));
+    let across = difference.dot(Vec3::new(-sin_phi, cos_phi, 0.0));
+    let phi_d = across.atan2(along);
+    let phi_d = if phi_d < 0.0 { phi_d + PI } else { phi_d };
+
+    let h = Between::clamped(THETA_H as f32 * (theta_h / FRAC_PI_2).sqrt() - 0.5, THETA_H);
+    let d = Between::clamped(THETA_D as f32 * (theta_d / FRAC_PI_2) - 0.5, THETA_D);
+    let phi = Between::around(PHI_D as f32 * (phi_d / PI) - 0.5, PHI_D);
+    h.mix(|h| d.mix(|d| phi.mix(|phi| triple(values, cell(h, d, phi)))))
+}
+
+/// The file of `f`.
+pub(super) fn encode(f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
+    let mut bytes: Vec<u8> = DIMENSIONS.iter().flat_map(|n| n.to_le_bytes()).collect();
+    bytes.resize(FILE_BYTES, 0);
+    for index in 0..CELLS {
+        let (l, v) = directions(index / (THETA_D * PHI_D), index / PHI_D % THETA_D, index % PHI_D);
+        let above = l.z > 0.0 && v.z > 0.0;
+        let value = if above { f(l, v).as_dvec3().to_array() } else { [0.0; 3] };
+        for (channel, (value, scale)) in value.iter().zip(SCALE).enumerate() {
+            let stored = if above { value / scale } else { BELOW_HORIZON };
+            let at = HEADER_BYTES + (channel * CELLS + index) * size_of::<f64>();
+            bytes[at..at + size_of::<f64>()].copy_from_slice(&stored.to_le_bytes());
+        }
+    }
+    bytes
+}

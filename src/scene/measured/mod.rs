@@ -1,0 +1,195 @@
+//! Measured BRDFs: tables of what light a real material was seen to reflect, to hold an analytic BRDF against.
+//!
+//! Two databases are read, told apart by content and size:
+//!
+//! - **MERL** (`.binary`): isotropic, half and difference angles. Matusik et al. 2003, "A Data-Driven Reflectance
+//!   Model".
+//! - **UTIA** (`.bin`): anisotropic, angles of light and view. Filip & Vávra 2014, "Template-Based Sampling of
+//!   Anisotropic BRDFs".
+//!
+//! [`Measured::values`] is what `shaders/brdf/measured.glsl` reads; [`Measured::evaluate`] is the same lookup on the
+//! CPU. All directions here are unit vectors in tangent space (x tangent, y bitangent, z normal) and leave the surface.
+
+mod error;
+mod grid;
+mod merl;
+#[cfg(test)]
+mod tests;
+mod utia;
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+pub use error::{MeasuredError, MeasuredProblem};
+
+/// A negative value is a measurement that failed. More than this part of all values is worth a warning.
+const UNUSUAL: f64 = 0.05;
+
+/// The database whose format a file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeasuredKind {
+    /// Isotropic; theta_h x theta_d x phi_d = 90 x 90 x 180.
+    Merl,
+    /// Anisotropic; (theta x phi) of the light by those of the view, (6 x 48) x (6 x 48).
+    Utia,
+}
+
+impl MeasuredKind {
+    /// The database's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Merl => "MERL",
+            Self::Utia => "UTIA",
+        }
+    }
+
+    /// The size of a file, which is always the same.
+    pub fn file_bytes(self) -> usize {
+        match self {
+            Self::Merl => merl::FILE_BYTES,
+            Self::Utia => utia::FILE_BYTES,
+        }
+    }
+
+    /// The file that measuring `f(l, v)` would give, `f` in 1/sr for directions above the horizon: an analytic BRDF in
+    /// a form that other programs read, and what Specula's tests read back.
+    pub fn encode(self, f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
+        match self {
+            Self::Merl => merl::encode(f),
+            Self::Utia => utia::encode(f),
+        }
+    }
+}
+
+/// A measured BRDF.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The file's name without its extension, which both databases use as the material's name.
+    pub name: String,
+    /// Which lookup `values` is for.
+    pub kind: MeasuredKind,
+    /// 1/sr, linear RGB triples, none negative: 1,458,000 (MERL) or 82,944 (UTIA) of them in the file's order.
+    pub values: Vec<f32>,
+    /// Absolute paths of the files that were read.
+    pub files: Vec<PathBuf>,
+    /// What is odd about the data, in sentences for the user.
+    pub warnings: Vec<String>,
+}
+
+impl Measured {
+    /// Reads a MERL `.binary` or a UTIA `.bin` file. Never holds more of it in memory than such a file is long.
+    ///
+    /// # Errors
+    /// When it cannot be read, is of neither format, of the wrong dimensions or size, has a value that is not a number,
+    /// or is black all over.
+    pub fn open(path: &Path) -> Result<Self, MeasuredError> {
+        let open = || {
+            let file = std::path::absolute(path).map_err(MeasuredProblem::Read)?;
+            let (kind, bytes) = read(&file)?;
+            let decoded = match kind {
+                MeasuredKind::Merl => merl::decode(&bytes)?,
+                MeasuredKind::Utia => utia::decode(&bytes)?,
+            };
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            Ok(Self { name, kind, values: decoded.values, files: vec![file], warnings: decoded.warnings })
+        };
+        open().map_err(|problem| MeasuredError { file: path.to_owned(), problem })
+    }
+
+    /// f(l, v) in 1/sr, linear between the measured directions; black when either is below the horizon.
+    pub fn evaluate(&self, l: Vec3, v: Vec3) -> Vec3 {
+        if !(l.z > 0.0 && v.z > 0.0) {
+            return Vec3::ZERO;
+        }
+        match self.kind {
+            MeasuredKind::Merl => merl::evaluate(&self.values, l, v),
+            MeasuredKind::Utia => utia::evaluate(&self.values, l, v),
+        }
+    }
+}
+
+/// A file's values as triples, and what is odd about them.
+struct Decoded {
+    values: Vec<f32>,
+    warnings: Vec<String>,
+}
+
+/// The whole file, once its first bytes and its length say what it is. What the header claims is only compared.
+fn read(path: &Path) -> Result<(MeasuredKind, Vec<u8>), MeasuredProblem> {
+    let mut file = File::open(path).map_err(MeasuredProblem::Read)?;
+    let metadata = file.metadata().map_err(MeasuredProblem::Read)?;
+    if !metadata.is_file() {
+        return Err(MeasuredProblem::NotAFile);
+    }
+    let mut bytes = Vec::new();
+    (&mut file).take(merl::HEADER_BYTES as u64).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
+    let kind = recognize(&bytes, metadata.len(), path.extension())?;
+    let rest = (kind.file_bytes() - bytes.len()) as u64;
+    file.take(rest).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
+    // Its length was right, so it shrank while it was read.
+    if bytes.len() != kind.file_bytes() {
+        return Err(MeasuredProblem::Size { kind, found: bytes.len() as u64 });
+    }
+    Ok((kind, bytes))
+}
+
+/// What a file of this beginning and length is. UTIA has no header, so there only the length tells; the extension
+/// serves to choose the message.
+fn recognize(header: &[u8], length: u64, extension: Option<&OsStr>) -> Result<MeasuredKind, MeasuredProblem> {
+    let is_called = |name| extension.is_some_and(|extension| extension.eq_ignore_ascii_case(name));
+    let of_length = |kind: MeasuredKind| {
+        let right = length == kind.file_bytes() as u64;
+        if right { Ok(kind) } else { Err(MeasuredProblem::Size { kind, found: length }) }
+    };
+    if length == 0 {
+        return Err(MeasuredProblem::Empty);
+    }
+    let dimensions = merl::dimensions(header);
+    if dimensions == Some(merl::DIMENSIONS) {
+        return of_length(MeasuredKind::Merl);
+    }
+    if length == MeasuredKind::Utia.file_bytes() as u64 {
+        return Ok(MeasuredKind::Utia);
+    }
+    // Small numbers are somebody's dimensions; the first bytes of a double or of a text are not small numbers.
+    let plausible = |found: &[i32; 3]| is_called("binary") || found.iter().all(|n| (1..=4096).contains(n));
+    match dimensions.filter(plausible) {
+        Some(found) => Err(MeasuredProblem::Dimensions { found }),
+        None if is_called("bin") => of_length(MeasuredKind::Utia),
+        None => Err(MeasuredProblem::Unknown { found: length }),
+    }
+}
+
+/// Three planes of doubles, red, green, blue, as triples of `f32` times `scale`. `planes` has all of them.
+fn interleave(planes: &[u8], scale: [f64; 3]) -> Result<Vec<f32>, MeasuredProblem> {
+    let (doubles, _) = planes.as_chunks::<8>();
+    let cells = doubles.len() / 3;
+    let mut values = vec![0.0; cells * 3];
+    for (index, bytes) in doubles.iter().enumerate() {
+        let (channel, cell) = (index / cells, index % cells);
+        let found = f64::from_le_bytes(*bytes);
+        let value = (found * scale[channel]) as f32;
+        if !value.is_finite() {
+            return Err(MeasuredProblem::NotANumber { channel: ["red", "green", "blue"][channel], index: cell, found });
+        }
+        values[cell * 3 + channel] = value;
+    }
+    if values.iter().any(|&value| value > 0.0) { Ok(values) } else { Err(MeasuredProblem::Black) }
+}
+
+/// A sentence about `negative` of `all` values having been set to 0, if that is unusual.
+fn warn_of_negative(negative: usize, all: usize) -> Option<String> {
+    let part = negative as f64 / all as f64;
+    (part > UNUSUAL).then(|| {
+        format!(
+            "{negative} of {all} values ({:.0} %) are negative where both directions are above the horizon, and are \
+             taken as 0. A few are usual; so many mean that the material was hardly measured, or that the file is not \
+             what it seems.",
+            100.0 * part
+        )
+    })
+}
