@@ -13,14 +13,12 @@ bool has_feature(uint feature) { return (FEATURES & feature) != 0u; }
 
 // A normal texture's texel, tangent space: 0..1 stands for -1..1, x and y are scaled (glTF 2.0, 3.9.3). Its length is
 // not made 1: what turns it into world space does that.
-vec3 normal_texel(sampler2D normals, vec2 uv, float scale) {
-    return (texture(normals, uv).xyz * 2.0 - 1.0) * vec3(scale, scale, 1.0);
-}
+vec3 normal_texel(vec4 texel, float scale) { return (texel.xyz * 2.0 - 1.0) * vec3(scale, scale, 1.0); }
 
 // The normal texture, tangent space, unit. A texel of no direction is flat.
 vec3 normal_ts(Fragment f) {
-    vec3 n = normal_texel(normal_texture, texture_uv(f, TEXTURE_NORMAL), material.normal_scale);
-    return safe_normalize(n, vec3(0.0, 0.0, 1.0));
+    vec4 texel = texture(normal_texture, texture_uv(f, TEXTURE_NORMAL));
+    return safe_normalize(normal_texel(texel, material.normal_scale), vec3(0.0, 0.0, 1.0));
 }
 
 // glTF 2.0, 3.7.2.1. Not normalized: MikkTSpace bakers use the interpolated vectors as they are (Mikkelsen 2008).
@@ -45,14 +43,15 @@ vec3 mapped_normal(Fragment f, vec3 v, vec3 texel) {
 // The normal that is shaded.
 vec3 shading_normal(Fragment f, vec3 v) {
     if (!has_feature(FEATURE_NORMAL_TEXTURE)) return geometric_normal(f, v);
-    return mapped_normal(f, v, normal_texel(normal_texture, texture_uv(f, TEXTURE_NORMAL), material.normal_scale));
+    vec4 texel = texture(normal_texture, texture_uv(f, TEXTURE_NORMAL));
+    return mapped_normal(f, v, normal_texel(texel, material.normal_scale));
 }
 
 // The coat does not take over the bumps of what it covers (KHR_materials_clearcoat).
 vec3 clearcoat_normal(Fragment f, vec3 v) {
     if (!has_feature(FEATURE_CLEARCOAT_NORMAL)) return geometric_normal(f, v);
-    vec2 uv = texture_uv(f, TEXTURE_CLEARCOAT_NORMAL);
-    return mapped_normal(f, v, normal_texel(clearcoat_normal_texture, uv, material.clearcoat_normal_scale));
+    vec4 texel = texture(clearcoat_normal_texture, texture_uv(f, TEXTURE_CLEARCOAT_NORMAL));
+    return mapped_normal(f, v, normal_texel(texel, material.clearcoat_normal_scale));
 }
 
 // KHR_materials_anisotropy: the direction in tangent space, turned by the material's rotation, and laid into the plane

@@ -40,6 +40,8 @@ pub struct Headless {
     reloader: Reloader,
     pipelines: Arc<PipelineSet>,
     model: Model,
+    /// The model in its own materials; `scene` is in those of the settings.
+    uploaded: Arc<GpuScene>,
     scene: Arc<GpuScene>,
     baked: Baked,
     measured: (String, Arc<Buffer>),
@@ -71,7 +73,9 @@ impl Headless {
             return Err(HeadlessError::Settings(message));
         }
         let upload = Instant::now();
-        let scene = GpuScene::upload(gpu, &layouts, &model)?;
+        model.variant(&settings.variant).map_err(HeadlessError::Settings)?;
+        let uploaded = GpuScene::upload(gpu, &layouts, &model)?;
+        let scene = uploaded.dressed(gpu, &layouts, &model, &settings)?;
         let upload_ms = upload.elapsed().as_secs_f64() * 1e3;
         let samples = samples(gpu, &settings).map_err(HeadlessError::Settings)?;
         let mut reloader = Reloader::new(gpu, &layouts, compiler, source);
@@ -93,6 +97,7 @@ impl Headless {
             reloader,
             pipelines,
             model,
+            uploaded,
             scene,
             baked: Baked::uniform(gpu, [0.0; 3])?,
             measured: (String::new(), measured_buffer(gpu, None)?),
@@ -191,7 +196,7 @@ impl Headless {
     /// # Errors
     /// A model that does not fit the device.
     pub fn set_model(&mut self, model: Model) -> Result<(), HeadlessError> {
-        self.scene = GpuScene::upload(&self.gpu, &self.layouts, &model)?;
+        self.uploaded = GpuScene::upload(&self.gpu, &self.layouts, &model)?;
         self.model = model;
         Ok(())
     }
@@ -222,20 +227,42 @@ impl Headless {
         self.frame(Target::Nowhere).map(|_| ())
     }
 
+    /// The raw value of one pixel, counted from the upper left corner, shading little else; premultiplied, as in
+    /// [`Capture::raw`]. Zero where nothing is.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn pixel(&mut self, x: u32, y: u32) -> Result<[f32; 4], HeadlessError> {
+        self.open_files()?;
+        let frames = if self.wanted().accumulates { self.settings.view.frames } else { 1 };
+        for _ in 0..frames {
+            self.frame(Target::Pixel(x, y))?;
+        }
+        Ok(self.renderer.raw_at(x, y)?.unwrap_or_default())
+    }
+
+    /// Camera, lights and values of the next frame.
+    pub fn shot(&self) -> Shot {
+        let (width, height) = self.size;
+        let aspect = width as f32 / height as f32;
+        let view = scene::frame(&self.model.bounds, &self.model.outline, &self.settings.camera, aspect);
+        Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0)
+    }
+
     fn wanted(&self) -> Wanted {
         wanted(&self.settings, self.samples, &self.pipelines.shaders, &self.scene)
     }
 
     fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
+        self.model.variant(&self.settings.variant).map_err(HeadlessError::Settings)?;
+        self.scene = self.uploaded.dressed(&self.gpu, &self.layouts, &self.model, &self.settings)?;
         if let Some(misfit) = misfits(&self.settings.shader, &self.pipelines.shaders).into_iter().next() {
             return Err(HeadlessError::Settings(misfit));
         }
         let wanted = self.wanted();
         self.pipelines.build(&wanted)?;
         let (width, height) = self.size;
-        let aspect = width as f32 / height as f32;
-        let view = scene::frame(&self.model.bounds, &self.model.outline, &self.settings.camera, aspect);
-        let shot = Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0);
+        let shot = self.shot();
         let input = FrameInput {
             shot: &shot,
             pipelines: Some((&self.pipelines, &wanted)),

@@ -62,7 +62,8 @@ float sheen_albedo(float n_dot_v, float sheen_roughness) {
 }
 
 // What the fibers of the sheen let through to what lies below them (Estevez & Kulla 2017; KHR_materials_sheen).
-// stopped: E of the direction, towards the light or the eye, in which more is stopped.
-float under_sheen(Surface s, float stopped) { return 1.0 - max_component(s.sheen_color) * stopped; }
+// stopped: E of the direction, towards the light or the eye, in which more is stopped. The fit of Lambda lets E exceed
+// 1 where v grazes: nothing is left below.
+float under_sheen(Surface s, float stopped) { return max(1.0 - max_component(s.sheen_color) * stopped, 0.0); }
 
 #endif

@@ -80,8 +80,15 @@ vec3 metal_fresnel(Surface s, float c) {
 // lobe's albedo; for others it nearly is, and for a mirror it is exactly.
 float effective_cosine(vec4 dfg) { return 1.0 - pow(clamp(dfg.g / (1.0 - dfg.r), 1e-10, 1.0), 0.2); }
 
-// A film's average has no formula: F at the mean cosine, 2 integral c^2 dc = 2/3.
+// 2 integral c^2 dc.
 const float MEAN_COSINE = 2.0 / 3.0;
+
+// A film's average has no formula: F at the mean cosine, and from there a rise to 1 as Schlick's, whose average is
+// 1/21, and (1 - 2/3)^5 = 1/243 is in F already.
+vec3 film_average(Surface s, vec3 f0) {
+    vec3 f = f_film(f0, s.iridescence_ior, s.iridescence_nm, MEAN_COSINE);
+    return f + (1.0 - f) * (1.0 / 21.0 - 1.0 / 243.0);
+}
 
 // dfg: the table's entry for the direction that is asked for (s.dfg: towards the eye).
 FresnelCurve dielectric_curve(Surface s, vec4 dfg) {
@@ -90,8 +97,7 @@ FresnelCurve dielectric_curve(Surface s, vec4 dfg) {
         curve.average = s.f0 + (s.f90 - s.f0) * dielectric_rise(s.ior, f_dielectric_average(s.ior));
     }
     if (has_film()) {
-        vec3 film = f_film(s.f0, s.iridescence_ior, s.iridescence_nm, MEAN_COSINE);
-        curve.average = mix(curve.average, film, s.iridescence);
+        curve.average = mix(curve.average, film_average(s, s.f0), s.iridescence);
     }
     if (FRESNEL_DIELECTRIC == EXACT_DIELECTRIC || has_film()) {
         curve.f0 = dielectric_fresnel(s, effective_cosine(dfg));
@@ -103,8 +109,7 @@ FresnelCurve dielectric_curve(Surface s, vec4 dfg) {
 FresnelCurve metal_curve(Surface s, vec4 dfg) {
     FresnelCurve curve = bare_metal_curve(s);
     if (has_film()) {
-        vec3 film = f_film(curve.f0, s.iridescence_ior, s.iridescence_nm, MEAN_COSINE);
-        curve.average = mix(curve.average, film, s.iridescence);
+        curve.average = mix(curve.average, film_average(s, curve.f0), s.iridescence);
         curve.f0 = metal_fresnel(s, effective_cosine(dfg));
         curve.f90 = curve.f0;
         curve.beta = vec3(0.0);

@@ -199,7 +199,7 @@ const uint MODE_DFG = 415u;
 const uint MODE_CLEARCOAT_LIGHT = 416u;
 //@mode sheen-light "Sheen light" group="Light" encode=color tonemap doc="What the fibers scatter."
 const uint MODE_SHEEN_LIGHT = 417u;
-//@mode transmitted-light "Transmitted light" group="Light" encode=color tonemap doc="What passes through, seen or scattered."
+//@mode transmitted-light "Transmitted light" group="Light" encode=color tonemap doc="What passes through the surface."
 const uint MODE_TRANSMITTED_LIGHT = 418u;
 //@mode multiple-scattering "Multiple scattering" group="Light" encode=color tonemap doc="Off two microfacets or more."
 const uint MODE_MULTIPLE_SCATTERING = 419u;

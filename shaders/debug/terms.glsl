@@ -17,6 +17,8 @@ bool shows_lobes() { return MODE >= MODE_DIFFUSE_LOBE && MODE <= MODE_SHEEN_LOBE
 bool debug_terms(Surface s, vec3 v, out vec3 value) {
     LightRange range = chosen_lights();
     bool present = !is_empty(range);
+    if (MODE == MODE_CLEARCOAT_LOBE) present = present && has_feature(FEATURE_CLEARCOAT);
+    if (MODE == MODE_SHEEN_LOBE) present = present && has_feature(FEATURE_SHEEN);
     if (!shows_lobes()) range.end = min(range.end, range.first + 1u);
 
     Brdf f;
@@ -40,8 +42,8 @@ bool debug_terms(Surface s, vec3 v, out vec3 value) {
     else if (MODE == MODE_DIFFUSE_LOBE) value = sum.diffuse;
     else if (MODE == MODE_SPECULAR_LOBE) value = sum.specular;
     else if (MODE == MODE_MULTI_SCATTER_LOBE) value = sum.multiple;
-    else if (MODE == MODE_CLEARCOAT_LOBE) { value = sum.clearcoat; present = present && has_feature(FEATURE_CLEARCOAT); }
-    else if (MODE == MODE_SHEEN_LOBE) { value = sum.sheen; present = present && has_feature(FEATURE_SHEEN); }
+    else if (MODE == MODE_CLEARCOAT_LOBE) value = sum.clearcoat;
+    else if (MODE == MODE_SHEEN_LOBE) value = sum.sheen;
     else known = false;
     if (known) value = if_present(present, value);
     return known;

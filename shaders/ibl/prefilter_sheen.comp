@@ -28,6 +28,8 @@ void main() {
     mat3 basis = basis_around(n);
     vec4 sum = vec4(0.0);
 
+    // Mesa 22.3's lavapipe ends the process at a loop with barriers that no branch precedes.
+    if (task.samples == 0u) return;
     float alpha = sheen_alpha(roughness_of_level(task.level, task.levels));
     for (uint first = 0u; first < task.samples; first += LOBE_SIZE) {
         uint count = min(LOBE_SIZE, task.samples - first);

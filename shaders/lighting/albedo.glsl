@@ -1,5 +1,5 @@
-// How much light each lobe sends towards the eye when light of radiance 1 comes from everywhere: its directional albedo,
-// R(v) = integral of f NoL dl. What does not depend on a light is computed here, once.
+// How much light each lobe sends towards the eye when light of radiance 1 comes from everywhere: its directional
+// albedo, R(v) = integral of f NoL dl. What does not depend on a light is computed here, once.
 //
 // Light that does not come from one direction is reflected by the split sum (Karis 2013): the integral of a product is
 // taken as the product of two integrals, the albedo and the light that the lobe gathers on average. In a white furnace,
@@ -41,8 +41,8 @@ float mean_rise(float n_dot_v) {
 
 // The part of the light that enters the dielectric and comes back to v.
 //
-// Coupling Fresnel: 1 - F(VoH), integrated. With the specular albedo, in which F is taken where the lobe is, this exceeds
-// 1 at grazing angles, just as it does for lamps: brdf/models.glsl claims nothing else.
+// Coupling Fresnel: 1 - F(VoH), integrated. With the specular albedo, in which F is taken where the lobe is, this
+// exceeds 1 at grazing angles, just as it does for lamps: brdf/models.glsl claims nothing else.
 // Coupling Albedo: (1 - R(l)) (1 - R(v)) / (1 - R_avg) integrates to 1 - R(v): all that the boundary does not reflect.
 float entering_albedo(Surface s, FresnelCurve dielectric, float n_dot_v) {
     if (DIFFUSE_COUPLING == ALBEDO_COUPLING) return 1.0 - boundary_albedo(s, s.dfg);

@@ -23,8 +23,8 @@ vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
     return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
 }
 
-// The facets of a stretched lobe lean along t: of those in the plane of t and n, the one that faces the eye. The rounder
-// the lobe, the more the normal itself (McAuley 2015, "Rendering the world of Far Cry 4", after Revie 2011).
+// The facets of a stretched lobe lean along t: of those in the plane of t and n, the one that faces the eye. The
+// rounder the lobe, the more the normal itself (McAuley 2015, "Rendering the world of Far Cry 4", after Revie 2011).
 vec3 stretched_normal(Surface s, vec3 v) {
     vec3 facing = v - s.b * dot(s.b, v);
     float round_part = 1.0 - s.anisotropy * (1.0 - s.roughness);
@@ -40,8 +40,8 @@ vec3 mirrored(Surface s, vec3 v) {
 }
 
 // Occlusion is the part of the hemisphere that is open; glTF says that it dims indirect light, not how it dims a lobe
-// that looks at a part of it (glTF 2.0, 3.9.3). Lagarde & de Rousiers 2014, listing 26: a wide lobe is dimmed as much, a
-// narrow one only where it grazes the surface and the rest of the sky is hidden. occlusion = 1 -> 1.
+// that looks at a part of it (glTF 2.0, 3.9.3). Lagarde & de Rousiers 2014, listing 26: a wide lobe is dimmed as much,
+// a narrow one only where it grazes the surface and the rest of the sky is hidden. occlusion = 1 -> 1.
 float specular_occlusion(float n_dot_v, float occlusion, float roughness) {
     float alpha = roughness * roughness;
     return saturate(pow(n_dot_v + occlusion, exp2(-16.0 * alpha - 1.0)) - 1.0 + occlusion);

@@ -29,7 +29,8 @@ Lobes with_sum(Lobes x) {
 }
 
 Lobes lobes_of(Brdf f) {
-    return Lobes(f.diffuse, f.specular, f.multiple, f.clearcoat, f.sheen, f.transmitted + f.diffuse_transmitted, f.value);
+    vec3 transmitted = f.transmitted + f.diffuse_transmitted;
+    return Lobes(f.diffuse, f.specular, f.multiple, f.clearcoat, f.sheen, transmitted, f.value);
 }
 
 // sum + x * weight

@@ -11,7 +11,7 @@ use winit::event_loop::EventLoopProxy;
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts, vk};
 use crate::headless;
-use crate::interface::FEATURE_NORMAL_TEXTURE;
+use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
 use crate::render::{GpuEnvironment, GpuScene, MaterialVariant, PipelineSet, Wanted};
 use crate::scene::Model;
 use crate::settings::Settings;
@@ -125,7 +125,7 @@ impl Document {
         proxy: &EventLoopProxy<Message>,
     ) -> Result<Self, GpuError> {
         // What most models have, built while the model loads.
-        let likely = MaterialVariant { features: FEATURE_NORMAL_TEXTURE, ..Default::default() };
+        let likely = MaterialVariant { features: FEATURE_NORMAL_TEXTURE | FEATURE_PACKED_OCCLUSION, ..Default::default() };
         let needs = Needs {
             settings: options.settings.clone(),
             materials: BTreeSet::from([likely]),
@@ -276,10 +276,10 @@ impl Document {
         self.read_measured();
         if let Some(set) = self.pipelines.clone() {
             self.bake_if_needed(&set);
-            let scene = self.next_scene.as_ref().map(|(_, scene)| scene).or(self.scene.as_ref());
+            let scene = self.dressed();
             let needs = Needs {
                 settings: self.settings.clone(),
-                materials: scene.map(|s| s.variants().clone()).unwrap_or_default(),
+                materials: scene.as_ref().map(|s| s.variants().clone()).unwrap_or_default(),
                 samples: headless::samples(&self.gpu, &self.settings).unwrap_or(1),
                 scene_format: SCENE_FORMAT,
             };
@@ -288,7 +288,7 @@ impl Document {
             let is_asked =
                 |(asked, for_this): &(Arc<PipelineSet>, Wanted)| Arc::ptr_eq(asked, &set) && *for_this == wanted;
             if set.has(&wanted) {
-                self.show(set, wanted);
+                self.show(set, wanted, scene);
             } else if !self.asked.as_ref().is_some_and(is_asked) {
                 self.worker.build(&set, &wanted);
                 self.asked = Some((set, wanted));
@@ -297,7 +297,14 @@ impl Document {
         self.shown.clone()
     }
 
-    fn show(&mut self, pipelines: Arc<PipelineSet>, wanted: Wanted) {
+    /// The newest scene in the materials that are set; in its own when they cannot be made.
+    fn dressed(&self) -> Option<Arc<GpuScene>> {
+        let newest = self.next_scene.as_ref().map(|(model, scene)| (model, scene));
+        let (model, scene) = newest.or(self.scene.as_ref().map(|scene| (&self.model, scene)))?;
+        Some(scene.dressed(&self.gpu, &self.layouts, model, &self.settings).unwrap_or_else(|_| scene.clone()))
+    }
+
+    fn show(&mut self, pipelines: Arc<PipelineSet>, wanted: Wanted, scene: Option<Arc<GpuScene>>) {
         if let Some((model, scene)) = self.next_scene.take() {
             self.model = model;
             self.scene = Some(scene);
@@ -306,7 +313,7 @@ impl Document {
         let mode = self.settings.mode.clone();
         let environment = self.surroundings.baked.environment.clone();
         let measured = self.surroundings.measured.clone();
-        self.shown = Some(Shown { pipelines, wanted, scene: self.scene.clone(), environment, measured, mode });
+        self.shown = Some(Shown { pipelines, wanted, scene, environment, measured, mode });
     }
 
     /// A frame with these pipelines is finished, `ms` after it was begun.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use specula::events::{Event, emit};
 use specula::gpu::{PrimitiveClass, SetLayouts, vk};
-use specula::interface::{ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE, FEATURE_NORMAL_TEXTURE, FEATURE_UNLIT};
+use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
 use specula::render::{MaterialVariant, PipelineSet, Renderer, Wanted, tree_name};
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::reflect::Scalar;
@@ -72,11 +72,13 @@ fn build_choices(
     };
     let layouts = SetLayouts::new(&gpu)?;
     let settings = args.common.settings()?;
-    let materials = BTreeSet::from([MaterialVariant { features: FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
+    let materials = BTreeSet::from([MaterialVariant { features: interface::FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
+    // Each feature alone; the bits below NORMAL_TEXTURE and above are one another's neighbors.
+    let features = [0, interface::FEATURE_UNLIT].into_iter().chain((1..=14).map(|bit| 1 << bit));
     let all_materials: BTreeSet<_> =
         [ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND]
             .into_iter()
-            .flat_map(|alpha| [0, FEATURE_UNLIT, FEATURE_NORMAL_TEXTURE].map(|features| (alpha, features)))
+            .flat_map(|alpha| features.clone().map(move |features| (alpha, features)))
             .flat_map(|(alpha, features)| {
                 [PrimitiveClass::Points, PrimitiveClass::Lines, PrimitiveClass::Triangles]
                     .map(|class| MaterialVariant { alpha, features, class })

@@ -20,6 +20,9 @@ pub struct Common {
     /// Light from all around: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
     #[arg(long, value_name = "WHAT")]
     env: Option<String>,
+    /// File of a measured BRDF (MERL or UTIA) for the modes measured, measured-split and measured-error
+    #[arg(long, value_name = "FILE")]
+    measured: Option<PathBuf>,
     /// Which lights shine
     #[arg(long, value_enum)]
     lights: Option<LightSource>,
@@ -46,7 +49,7 @@ pub struct Common {
     background: Option<String>,
     /// Debug mode; `specula modes` lists them
     #[arg(long, value_name = "NAME")]
-    pub mode: Option<String>,
+    pub mode: Vec<String>,
     /// Set anything, as view.msaa=1 or a shader parameter's name=value; may repeat
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
@@ -95,11 +98,16 @@ impl Common {
         if let Some(environment) = &self.env {
             settings.environment.name.clone_from(environment);
         }
+        if let Some(measured) = &self.measured {
+            settings.measured = measured.display().to_string();
+        }
         if let Some(background) = &self.background {
             settings.view.background.clone_from(background);
         }
-        if let Some(mode) = &self.mode {
-            settings.mode.clone_from(mode);
+        match self.mode.as_slice() {
+            [] => {}
+            [mode] => settings.mode.clone_from(mode),
+            _ => return Err(Failure::Input("--mode is given more than once; here it takes one mode".into())),
         }
         for assignment in &self.set {
             settings.assign(assignment).map_err(|e| Failure::Input(format!("--set: {e}")))?;
@@ -110,16 +118,7 @@ impl Common {
 
     /// The shader tree.
     pub fn source(&self) -> Result<Source, Failure> {
-        match &self.shaders {
-            Some(directory) if is_specula_tree(directory) => disk(directory),
-            Some(directory) => Err(Failure::Input(format!(
-                "{} is no Specula shader tree: it has no interface.glsl. `specula new {}` writes one",
-                directory.display(),
-                directory.display()
-            ))),
-            None if is_specula_tree(Path::new("shaders")) => disk(Path::new("shaders")),
-            None => Ok(Source::embedded()),
-        }
+        source(self.shaders.as_deref())
     }
 
     /// The model at `path`, or the built-in shader ball; prints its warnings.
@@ -140,14 +139,32 @@ impl Common {
 
     /// Opens the device without a window.
     pub fn gpu(&self) -> Result<Arc<Gpu>, Failure> {
-        let options = GpuOptions { device: self.device.clone(), validation: self.validate, display: None };
-        Ok(Gpu::new(&options)?)
+        open_gpu(self.device.as_deref(), self.validate)
     }
 
     /// Whether events are printed.
     pub fn emits(&self) -> bool {
         self.events.is_some()
     }
+}
+
+/// The shader tree in a folder; without one the tree in ./shaders, or the built-in one.
+pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
+    match directory {
+        Some(directory) if is_specula_tree(directory) => disk(directory),
+        Some(directory) => Err(Failure::Input(format!(
+            "{} is no Specula shader tree: it has no interface.glsl. `specula new {}` writes one",
+            directory.display(),
+            directory.display()
+        ))),
+        None if is_specula_tree(Path::new("shaders")) => disk(Path::new("shaders")),
+        None => Ok(Source::embedded()),
+    }
+}
+
+/// Opens the device whose name contains `name`, or the best one, without a window.
+pub fn open_gpu(name: Option<&str>, validation: bool) -> Result<Arc<Gpu>, Failure> {
+    Ok(Gpu::new(&GpuOptions { device: name.map(str::to_owned), validation, display: None })?)
 }
 
 /// Fails when there is neither such a file nor a built-in model of that name.
@@ -158,7 +175,7 @@ pub fn check_model_path(path: Option<&Path>) -> Result<(), Failure> {
         return Ok(());
     }
     let hint = closest(&name, BUILT_IN.into_iter()).map(|c| format!(" Did you mean {c}?")).unwrap_or_default();
-    let list = BUILT_IN.join(" and ");
+    let list = BUILT_IN.join(", ");
     Err(Failure::Input(format!("{name}: there is no such file, and the built-in models are {list}.{hint}")))
 }
 

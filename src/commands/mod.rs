@@ -9,11 +9,13 @@ macro_rules! out {
 }
 
 mod bench;
+mod brdf;
 mod check;
 mod common;
 mod info;
 mod modes;
 mod new;
+mod probe;
 mod render;
 mod view;
 mod watch;
@@ -56,6 +58,10 @@ enum Command {
     New(new::Args),
     /// Measure reloads, frames and loading
     Bench(bench::Args),
+    /// Measure the BRDF of the shader tree, or plot it
+    Brdf(brdf::Args),
+    /// Print the raw values of a pixel in every debug mode
+    Probe(probe::Args),
 }
 
 /// Why a command ends early. Everything is printed once, here.
@@ -109,6 +115,8 @@ pub fn main(start: Instant) -> ExitCode {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::New(args)) => new::run(&args),
         Some(Command::Bench(args)) => bench::run(args, start),
+        Some(Command::Brdf(args)) => brdf::run(args),
+        Some(Command::Probe(args)) => probe::run(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -193,6 +193,12 @@ impl Encoder {
         self.set_viewport(to.area);
     }
 
+    /// Leaves all but a rectangle of what follows undrawn, in the same place.
+    pub fn set_scissor(&mut self, to: Rect) {
+        // SAFETY: recording into our own buffer.
+        unsafe { self.gpu.device.cmd_set_scissor(self.raw, 0, &[to.vulkan()]) };
+    }
+
     /// Confines what follows to a rectangle.
     pub fn set_viewport(&mut self, to: Rect) {
         let viewport = vk::Viewport {

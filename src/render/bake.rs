@@ -24,8 +24,8 @@ const CUBE_SIDE: u32 = 512;
 const CUBE_LEVELS: u32 = 10;
 const PREFILTERED_SIDE: u32 = 256;
 const PREFILTERED_LEVELS: u32 = 9;
-const SHEEN_SIDE: u32 = 64;
-const SHEEN_LEVELS: u32 = 7;
+const SHEEN_SIDE: u32 = 32;
+const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 64;
 /// Level of the cube that irradiance is summed over: 64 x 64 texels.
 const IRRADIANCE_LEVEL: u32 = 3;
@@ -232,6 +232,7 @@ impl GpuEnvironment {
         let (gpu, layouts) = (set.gpu(), set.layouts());
         let begin = |done: f32, next: &str| -> Result<Instant, BakeError> {
             (control.progress)(done, next);
+            tracing::debug!("bake: {next}");
             if (control.superseded)() { Err(BakeError::Superseded) } else { Ok(Instant::now()) }
         };
         let time = begin(0.05, "pipelines")?;

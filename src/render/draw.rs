@@ -11,8 +11,14 @@ use super::frame::FrameInput;
 use super::scene::{GpuDraw, GpuScene};
 use super::targets::Targets;
 
-/// Draws the scene to the HDR target and resolves it, which leaves color in [`Use::Color`].
-pub(super) fn draw_model(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, targets: &Targets, input: &FrameInput<'_>) {
+/// Draws the scene, or `only` a part of it, to the HDR target and resolves it, which leaves color in [`Use::Color`].
+pub(super) fn draw_model(
+    encoder: &mut Encoder,
+    layouts: &Arc<SetLayouts>,
+    targets: &Targets,
+    input: &FrameInput<'_>,
+    only: Option<Rect>,
+) {
     encoder.transition(&targets.color, Use::Undefined, Use::Color);
     encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
     let (color, resolve) = match &targets.multisampled {
@@ -32,6 +38,9 @@ pub(super) fn draw_model(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, targe
         encoder.transition(behind, Use::Undefined, Use::Sampled);
     }
     encoder.begin_rendering(&attachments);
+    if let Some(only) = only.filter(|_| targets.behind.is_none()) {
+        encoder.set_scissor(only);
+    }
     encoder.bind_set(layouts, &targets.model_set);
     draw_primitives(encoder, layouts, input, &opaque);
     if let Some(behind) = &targets.behind {
@@ -47,6 +56,9 @@ pub(super) fn draw_model(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, targe
             encoder.transition(multisampled, Use::Color, Use::Color);
         }
         encoder.begin_rendering(&Attachments { clear: None, goes_on: false, ..attachments });
+        if let Some(only) = only {
+            encoder.set_scissor(only);
+        }
         draw_primitives(encoder, layouts, input, &passed);
     }
     if let Some((pipelines, wanted)) = input.pipelines
@@ -70,6 +82,7 @@ pub(super) fn average(
     layouts: &Arc<SetLayouts>,
     targets: &Targets,
     input: &FrameInput<'_>,
+    only: Option<Rect>,
     index: u32,
 ) {
     let (Some(mean), Some((pipelines, wanted))) = (&targets.mean, input.pipelines) else { return };
@@ -84,6 +97,9 @@ pub(super) fn average(
         goes_on: false,
         area: Rect { x: 0, y: 0, width, height },
     });
+    if let Some(only) = only {
+        encoder.set_scissor(only);
+    }
     encoder.bind_pipeline(&pipeline);
     encoder.set_weight(1.0 / (index as f32 + 1.0));
     encoder.bind_set(layouts, &targets.color_set);

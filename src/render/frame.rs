@@ -54,6 +54,8 @@ pub enum Target<'a> {
     Memory,
     /// Nowhere: drawn and waited for, to measure.
     Nowhere,
+    /// The same, but nothing is shaded beside one pixel, counted from the upper left corner: for [`Renderer::raw_at`].
+    Pixel(u32, u32),
 }
 
 /// What became of a frame.
@@ -79,10 +81,11 @@ struct Drawing {
     scene: Option<Arc<GpuScene>>,
     environment: Arc<GpuEnvironment>,
     measured: Arc<Buffer>,
+    only: Option<Rect>,
 }
 
 impl Drawing {
-    fn of(input: &FrameInput<'_>, largest: f32) -> Option<Self> {
+    fn of(input: &FrameInput<'_>, largest: f32, only: Option<Rect>) -> Option<Self> {
         let (pipelines, wanted) = input.pipelines?;
         let frame = input.shot.uniforms(input.rect, largest, input.environment.scale, 0);
         let mut uniforms = bytemuck::bytes_of(&frame).to_vec();
@@ -95,6 +98,7 @@ impl Drawing {
             scene: input.scene.cloned(),
             environment: input.environment.clone(),
             measured: input.measured.clone(),
+            only,
         })
     }
 
@@ -108,6 +112,7 @@ impl Drawing {
             && Arc::ptr_eq(&self.pipelines, &other.pipelines)
             && Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.measured, &other.measured)
+            && self.only == other.only
             && self.wanted == other.wanted
             && self.uniforms == other.uniforms
     }
@@ -224,7 +229,11 @@ impl Renderer {
                     return Ok(Drawn::NoImage);
                 }
             },
-            Target::Memory | Target::Nowhere => None,
+            Target::Memory | Target::Nowhere | Target::Pixel(..) => None,
+        };
+        let only = match target {
+            Target::Pixel(x, y) => Some(Rect { x, y, width: 1, height: 1 }),
+            _ => None,
         };
         let output = match &acquired {
             Some(acquired) => acquired.image.clone(),
@@ -234,7 +243,7 @@ impl Renderer {
         // What the shaders read.
         let largest = if self.scene_format == vk::Format::R16G16B16A16_SFLOAT { 65504.0 } else { f32::MAX };
         self.resize_targets(size, &input)?;
-        let drawing = Drawing::of(&input, largest);
+        let drawing = Drawing::of(&input, largest, only);
         let is_same = drawing.as_ref().zip(self.kept.as_ref()).is_some_and(|(new, kept)| new.is_same(kept));
         let accumulates = input.pipelines.is_some_and(|(_, wanted)| wanted.accumulates);
         self.sample_index = if is_same && accumulates { self.sample_index.saturating_add(1) } else { 0 };
@@ -255,9 +264,9 @@ impl Renderer {
         let Some(targets) = &self.targets else { return Ok(Drawn::NoImage) };
         self.redrawn = !is_same || accumulates || acquired.is_none();
         if self.redrawn {
-            draw_model(&mut encoder, &self.layouts, targets, &input);
+            draw_model(&mut encoder, &self.layouts, targets, &input, only);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
-            average(&mut encoder, &self.layouts, targets, &input, self.sample_index);
+            average(&mut encoder, &self.layouts, targets, &input, only, self.sample_index);
         }
         self.kept = drawing;
 
@@ -292,7 +301,7 @@ impl Renderer {
                 self.frames.submit(encoder, acquired.submission)?;
                 Ok(Drawn::Shown { fits: swapchain.present(&acquired)? })
             }
-            (Target::Nowhere, _) => {
+            (Target::Nowhere | Target::Pixel(..), _) => {
                 self.frames.submit(encoder, Default::default())?;
                 self.frames.wait()?;
                 Ok(Drawn::Finished)

@@ -1,15 +1,14 @@
 //! The BRDF as it stands in the user's shaders, measured on the device: albedo, reciprocity, the integral of D, its lobes.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::gpu::{
-    Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk,
-};
+use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::settings::Settings;
-use crate::shader::ShaderSet;
+use crate::shader::{Constant, ShaderSet};
 
 use super::environment::Baked;
 use super::ltc;
@@ -20,7 +19,7 @@ use super::uniforms::{Constants, Sources, Uniforms};
 use super::values;
 use super::wanted::Wanted;
 
-/// What is measured, and over which grid.
+/// What is measured. All else has glTF's defaults.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Linear RGB.
@@ -46,25 +45,28 @@ pub struct Grid {
 
 impl Grid {
     /// Roughness of a row.
-    pub fn roughness_of(&self, row: u32) -> f32 {
+    pub fn roughness_of(&self, row: u32) -> f64 {
         step(self.roughness, row, self.rows)
     }
 
     /// Angle of a column, degrees.
-    pub fn theta_of(&self, column: u32) -> f32 {
+    pub fn theta_of(&self, column: u32) -> f64 {
         step(self.theta, column, self.columns)
     }
 }
 
-fn step((first, last): (f32, f32), index: u32, count: u32) -> f32 {
-    first + (last - first) * index as f32 / (count.max(2) - 1) as f32
+/// To six digits, since 0.05 as a float is 0.05000000074505806.
+fn step((first, last): (f32, f32), index: u32, count: u32) -> f64 {
+    let (first, last) = (f64::from(first), f64::from(last));
+    let value = first + (last - first) * f64::from(index) / f64::from(count.max(2) - 1);
+    (value * 1e6).round() / 1e6
 }
 
 /// A pair of directions, and how much f differs when they change places.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Worst {
-    /// |f(l, v) - f(v, l)| over their mean, the worst channel.
+    /// |f(l, v) - f(v, l)| over their mean, the worst channel; 1e30 where one is no number.
     pub error: f32,
     /// Towards the light; z is the normal.
     pub l: [f32; 3],
@@ -72,7 +74,7 @@ pub struct Worst {
     pub v: [f32; 3],
 }
 
-/// f NoL by lobe, 1/sr, linear RGB.
+/// f NoV by lobe: what leaves into a solid angle, of light that arrives with an irradiance of 1; 1/sr, linear RGB.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Lobe {
@@ -84,11 +86,58 @@ pub struct Lobe {
     pub multiple: [f32; 3],
 }
 
-/// Measures with the stages of one shader set and one choice of models.
-pub struct Bench {
+/// What a choice of the author's may be claimed to do: see brdf/models.glsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Claim {
+    /// A white surface reflects no more light than it gets.
+    Conserves,
+    /// f(l, v) = f(v, l)
+    Reciprocal,
+}
+
+impl Claim {
+    /// The choices of a constant that make this claim; `None` where the constant has no part in it.
+    pub fn of(self, constant: &Constant) -> Option<&Vec<String>> {
+        match self {
+            Self::Conserves => constant.conserves.as_ref(),
+            Self::Reciprocal => constant.reciprocal.as_ref(),
+        }
+    }
+}
+
+/// The author's constants in the order of their ids, each with what `settings` choose of it: a choice's name, or a number.
+pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
+    let chosen = values::constants(&settings.shader, &shaders.constants);
+    let name = |constant: &Constant, bits: u32| {
+        // Choices are whole numbers: of an int they may be negative.
+        let is = |value: i64| value == i64::from(bits) || value == i64::from(bits.cast_signed());
+        let found = constant.choices.iter().find(|(_, value)| is(*value));
+        found.map_or_else(|| bits.to_string(), |(name, _)| name.clone())
+    };
+    shaders.constants.iter().zip(chosen).map(|(constant, (_, bits))| (constant, name(constant, bits))).collect()
+}
+
+/// Those of the [`choices`] that do not make `claim`: when there are none, the combination claims it.
+pub fn unclaimed<'a>(claim: Claim, settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
+    let lacks =
+        |(constant, chosen): &(&Constant, String)| claim.of(constant).is_some_and(|names| !names.contains(chosen));
+    choices(settings, shaders).into_iter().filter(lacks).collect()
+}
+
+/// What measurements of one shader set share, whatever is chosen.
+struct Stand {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
+    shaders: Arc<ShaderSet>,
     set: Arc<PipelineSet>,
+    environment: Baked,
+    measured: Arc<Buffer>,
+    constants: Constants,
+}
+
+/// Measures with the stages of one shader set and one choice of models.
+pub struct Bench {
+    stand: Arc<Stand>,
     constants: Specialization,
     frame: Arc<DescriptorSet>,
 }
@@ -97,23 +146,42 @@ impl Bench {
     /// For shaders that hold [`super::all_stages`], with the author's constants and parameters as `settings` have them.
     ///
     /// # Errors
-    /// The device refuses a pipeline.
+    /// The device refuses a stage.
     pub fn new(gpu: &Arc<Gpu>, shaders: &Arc<ShaderSet>, settings: &Settings) -> Result<Self, GpuError> {
         let layouts = SetLayouts::new(gpu)?;
-        let none = std::collections::BTreeSet::new();
-        let half = vk::Format::R16G16B16A16_SFLOAT;
-        let wanted = Wanted::new(settings, shaders, &none, 1, half, super::Renderer::OUTPUT_FORMAT);
-        let set = PipelineSet::new(gpu, &layouts, shaders.clone(), &wanted, None)?;
-        let tables = set.tables(&wanted).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
+        let set = PipelineSet::new(gpu, &layouts, shaders.clone(), &wanted(settings, shaders), None)?;
         let linear = task::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
-        let constants = Constants { ltc: ltc::table(gpu)?, linear };
-        let environment = Baked::uniform(gpu, [1.0; 3])?.environment;
-        let sources = Sources { environment, tables, measured: measured_buffer(gpu, None)? };
-        let mut uniforms = Uniforms::new(gpu, 0)?;
-        let params = values::params(&settings.shader, &shaders.parameters);
+        let stand = Stand {
+            gpu: gpu.clone(),
+            layouts,
+            shaders: shaders.clone(),
+            set,
+            environment: Baked::uniform(gpu, [1.0; 3])?,
+            measured: measured_buffer(gpu, None)?,
+            constants: Constants { ltc: ltc::table(gpu)?, linear },
+        };
+        Self::on(Arc::new(stand), settings)
+    }
+
+    /// The same shaders with other choices.
+    ///
+    /// # Errors
+    /// As [`Bench::new`].
+    pub fn with(&self, settings: &Settings) -> Result<Self, GpuError> {
+        Self::on(self.stand.clone(), settings)
+    }
+
+    fn on(stand: Arc<Stand>, settings: &Settings) -> Result<Self, GpuError> {
+        let wanted = wanted(settings, &stand.shaders);
+        stand.set.build(&wanted)?;
+        let tables = stand.set.tables(&wanted).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
+        let environment = stand.environment.environment.clone();
+        let sources = Sources { environment, tables, measured: stand.measured.clone() };
+        let mut uniforms = Uniforms::new(&stand.gpu, 0)?;
+        let params = values::params(&settings.shader, &stand.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);
-        let frame = uniforms.set(&layouts, &sources, &constants)?;
-        Ok(Self { gpu: gpu.clone(), layouts, set, constants: wanted.constants, frame })
+        let frame = uniforms.set(&stand.layouts, &sources, &stand.constants)?;
+        Ok(Self { stand, constants: wanted.constants, frame })
     }
 
     /// Albedo (linear RGB) of each cell, row by row.
@@ -132,16 +200,16 @@ impl Bench {
         self.run(MEASURE_STAGES[1], surface, grid)
     }
 
-    /// Integral of D NoH for each roughness; one column.
+    /// Integral of D NoH for each roughness; of `grid` only rows and samples count.
     ///
     /// # Errors
     /// The device.
     pub fn normalization(&self, grid: Grid) -> Result<Vec<f32>, GpuError> {
-        self.run(MEASURE_STAGES[2], Surface { base_color: [1.0; 3], metallic: 1.0 }, grid)
+        self.run(MEASURE_STAGES[2], Surface { base_color: [1.0; 3], metallic: 1.0 }, Grid { columns: 1, ..grid })
     }
 
-    /// Lobes in the plane of incidence: columns run from -90 to 90 degrees; the eye is at `grid.theta.0` degrees on the
-    /// negative side.
+    /// Lobes in the plane of incidence: the eye goes from -90 to 90 degrees, by the centers of the columns; the light stands
+    /// at `grid.theta.0` degrees on the negative side.
     ///
     /// # Errors
     /// The device.
@@ -150,6 +218,7 @@ impl Bench {
     }
 
     fn run<T: Pod>(&self, stage: &str, surface: Surface, grid: Grid) -> Result<Vec<T>, GpuError> {
+        let Stand { gpu, layouts, set, .. } = &*self.stand;
         let task = Task {
             size: [grid.columns, grid.rows],
             samples: grid.samples,
@@ -162,18 +231,21 @@ impl Bench {
             ..Task::default()
         };
         let size = (grid.columns * grid.rows) as usize * size_of::<T>();
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let results = Buffer::new(&self.gpu, "results", size as u64, usage, Memory::Readback)?;
+        let results = Buffer::new(gpu, "results", size as u64, vk::BufferUsageFlags::STORAGE_BUFFER, Memory::Readback)?;
         let writer = |writer: SetWriter| task::results(writer, &results);
-        let bindings = task::bindings(&self.gpu, &self.layouts, &task, writer)?;
-        let pipeline = self.set.compute(stage, &self.constants)?;
+        let bindings = task::bindings(gpu, layouts, &task, writer)?;
+        let pipeline = set.compute(stage, &self.constants)?;
         let groups = [grid.columns.div_ceil(8), grid.rows.div_ceil(8), 1];
-        one_shot(&self.gpu, |encoder| {
-            encoder.dispatch(&self.layouts, &pipeline, &[&self.frame, &bindings], groups);
+        one_shot(gpu, |encoder| {
+            encoder.dispatch(layouts, &pipeline, &[&self.frame, &bindings], groups);
             encoder.computed();
             Ok(())
         })?;
-        let bytes = results.read();
-        Ok(bytes.chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect())
+        Ok(results.read().chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect())
     }
+}
+
+fn wanted(settings: &Settings, shaders: &ShaderSet) -> Wanted {
+    let half = vk::Format::R16G16B16A16_SFLOAT;
+    Wanted::new(settings, shaders, &BTreeSet::new(), 1, half, super::Renderer::OUTPUT_FORMAT)
 }

@@ -7,6 +7,7 @@ mod bake;
 mod cache;
 mod capture;
 mod draw;
+mod dress;
 mod environment;
 mod frame;
 mod ltc;

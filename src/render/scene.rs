@@ -1,7 +1,7 @@
 //! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set for each material.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use glam::Mat3;
 use rayon::prelude::*;
@@ -10,6 +10,7 @@ use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, ImageDesc, Memory,
 use crate::interface::{Draw, FEATURE_TRANSMISSION, Vertex};
 use crate::scene::{self as model, Model, Topology};
 
+use super::dress::Dress;
 use super::materials::{Textures, materials, variant};
 use super::mips;
 use super::sources::{Source, sources};
@@ -36,6 +37,7 @@ pub enum UploadError {
 }
 
 /// One draw call.
+#[derive(Clone)]
 pub(super) struct GpuDraw {
     pub(super) push: Draw,
     pub(super) first_index: u32,
@@ -54,6 +56,10 @@ pub struct GpuScene {
     pub(super) vertices: Arc<Buffer>,
     pub(super) materials: Vec<Arc<DescriptorSet>>,
     pub(super) draws: Vec<GpuDraw>,
+    /// The images that stand in for missing textures.
+    pub(super) stand_ins: Textures,
+    /// The last one that was made of it by [`GpuScene::dressed`].
+    pub(super) last_dress: Mutex<Option<(Dress, Arc<GpuScene>)>>,
     variants: BTreeSet<MaterialVariant>,
 }
 
@@ -70,7 +76,22 @@ impl GpuScene {
         let materials = materials(gpu, layouts, model, &textures)?;
         let draws = draws(model, vertices.address(), &ranges);
         let variants = draws.iter().map(|d| d.variant).collect();
-        Ok(Arc::new(Self { indices, vertices, materials, draws, variants }))
+        let stand_ins = textures.into_iter().filter(|(source, _)| source.image(model).is_none()).collect();
+        let last_dress = Mutex::new(None);
+        Ok(Arc::new(Self { indices, vertices, materials, draws, stand_ins, last_dress, variants }))
+    }
+
+    /// The same geometry, drawn otherwise.
+    pub(super) fn with(&self, materials: Vec<Arc<DescriptorSet>>, draws: Vec<GpuDraw>) -> Arc<Self> {
+        Arc::new(Self {
+            indices: self.indices.clone(),
+            vertices: self.vertices.clone(),
+            materials,
+            stand_ins: self.stand_ins.clone(),
+            last_dress: Mutex::new(None),
+            variants: draws.iter().map(|draw| draw.variant).collect(),
+            draws,
+        })
     }
 
     /// Whether light passes through a surface, so that what lies behind it must be drawn first.

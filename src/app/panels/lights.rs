@@ -1,10 +1,10 @@
 //! The lights: which shine, the three that orbit, and the ambient light.
 
-use egui::{Slider, Ui};
+use egui::{DragValue, Slider, Ui};
 
 use super::{color, row, section};
 use crate::app::document::Document;
-use crate::settings::LightSource;
+use crate::settings::{LightSource, RectLight};
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     let in_model = document.model.lights.len();
@@ -48,10 +48,43 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
                 });
             }
         }
+        if lights.source != LightSource::None {
+            ui.separator();
+            rect(ui, &mut lights.rect);
+        }
         ui.separator();
-        row(ui, "Ambient", "Radiance from everywhere", |ui| {
+        row(ui, "Ambient", "Radiance from everywhere, where there is no environment", |ui| {
             color(ui, &mut lights.ambient_color);
             ui.add(Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
+        });
+    });
+}
+
+/// The rectangular light.
+fn rect(ui: &mut Ui, light: &mut RectLight) {
+    row(ui, "Rectangle", "A light with a size; color, and radiance at white", |ui| {
+        ui.checkbox(&mut light.enabled, "");
+        if light.enabled {
+            color(ui, &mut light.color);
+            ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
+        }
+    });
+    if !light.enabled {
+        return;
+    }
+    ui.push_id("rectangle", |ui| {
+        row(ui, "Size", "Width and height in radii of the model", |ui| {
+            ui.add(DragValue::new(&mut light.width).range(0.01..=20.0).speed(0.01).prefix("w "));
+            ui.add(DragValue::new(&mut light.height).range(0.01..=20.0).speed(0.01).prefix("h "));
+        });
+        row(ui, "Distance", "In radii of the model", |ui| {
+            ui.add(Slider::new(&mut light.distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
+        });
+        row(ui, "Azimuth", "Around +Y, from +Z towards +X", |ui| {
+            ui.add(Slider::new(&mut light.azimuth, -180.0..=180.0).suffix("°").max_decimals(0));
+        });
+        row(ui, "Polar", "From +Y", |ui| {
+            ui.add(Slider::new(&mut light.polar, 0.0..=180.0).suffix("°").max_decimals(0));
         });
     });
 }

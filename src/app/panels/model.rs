@@ -1,9 +1,10 @@
 //! The model: what was loaded, and what the loader had to say.
 
-use egui::{RichText, Ui};
+use egui::{RichText, Slider, Ui};
 
-use super::{QUIET, WARNING, section};
+use super::{QUIET, WARNING, color, row, section};
 use crate::app::document::Document;
+use crate::settings::MaterialOverride;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     section(ui, "Model", false, |ui| {
@@ -13,6 +14,19 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
                 ui.label("loading…");
             }
         });
+        if !document.model.variants.is_empty() {
+            let variant = &mut document.settings.variant;
+            row(ui, "Variant", "The file's sets of materials", |ui| {
+                let shown = if variant.is_empty() { "as it comes" } else { variant.as_str() }.to_owned();
+                egui::ComboBox::from_id_salt("variant").selected_text(shown).show_ui(ui, |ui| {
+                    ui.selectable_value(variant, String::new(), "as it comes");
+                    for name in &document.model.variants {
+                        ui.selectable_value(variant, name.clone(), name);
+                    }
+                });
+            });
+        }
+        override_material(ui, &mut document.settings.material);
         let model = &document.model;
         let triangles: usize = model.instances.iter().map(|i| model.primitives[i.primitive].indices.len() / 3).sum();
         let size = if model.bounds.is_empty() { glam::Vec3::ZERO } else { model.bounds.max - model.bounds.min };
@@ -32,4 +46,25 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         }
         ui.label(RichText::new("Drop a .gltf, a .glb or a shader folder on the window.").small().color(QUIET));
     });
+}
+
+/// One material over all.
+fn override_material(ui: &mut Ui, material: &mut MaterialOverride) {
+    row(ui, "Override", "One material without textures over all of the model's", |ui| {
+        ui.checkbox(&mut material.enabled, "");
+        if material.enabled {
+            color(ui, &mut material.base_color);
+        }
+    });
+    if !material.enabled {
+        return;
+    }
+    row(ui, "Metallic", "", |ui| ui.add(Slider::new(&mut material.metallic, 0.0..=1.0).max_decimals(3)));
+    row(ui, "Roughness", "", |ui| ui.add(Slider::new(&mut material.roughness, 0.0..=1.0).max_decimals(3)));
+    row(ui, "Anisotropy", "", |ui| ui.add(Slider::new(&mut material.anisotropy, 0.0..=1.0).max_decimals(3)));
+    if material.anisotropy > 0.0 {
+        row(ui, "Direction", "From the tangent towards the bitangent", |ui| {
+            ui.add(Slider::new(&mut material.anisotropy_rotation, -90.0..=90.0).suffix("°").max_decimals(0))
+        });
+    }
 }

@@ -1,0 +1,107 @@
+//! `specula brdf furnace`: the albedo of a surface, by roughness and angle.
+
+use serde_json::json;
+use specula::render::measure::{Claim, Grid, Surface};
+use specula::settings::ShaderValue;
+use specula::shader::Constant;
+
+use super::{Opened, Options, SurfaceOptions, listed, short};
+use crate::commands::Failure;
+
+/// Light that is more than what arrives by this much is no error of the estimate.
+const MOST: f64 = 1.005;
+const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 18, theta: (0.0, 85.0), samples: 2048 };
+/// Enough to see whether a choice changes anything.
+const COARSE: Grid = Grid { rows: 4, roughness: (0.1, 1.0), columns: 4, theta: (0.0, 84.0), samples: 64 };
+
+/// Options of `brdf furnace`.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    surface: SurfaceOptions,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let opened = Opened::new(&args.options)?;
+    let surface = Surface { base_color: args.surface.base_color, metallic: args.surface.metallic.unwrap_or(1.0) };
+    let albedo: Vec<[f64; 3]> = opened.bench.furnace(surface, GRID)?.into_iter().map(|a| a.map(f64::from)).collect();
+    let mut without = Vec::new();
+    for (constant, chosen) in opened.unclaimed(Claim::Conserves) {
+        if has_part(&opened, constant, surface)? {
+            without.push((constant, chosen));
+        }
+    }
+    let (min, max) = extremes(&albedo);
+    let conserves = max <= MOST;
+    if args.json {
+        print_json(&albedo, min, max, without.is_empty());
+    } else {
+        print_table(&albedo, surface);
+        out!("\nmin {min:.4}  max {max:.4}");
+        match (without.as_slice(), conserves) {
+            ([], true) => out!("claims to conserve energy, and does: nothing is above {MOST}"),
+            ([], false) => out!("claims to conserve energy, and does not"),
+            (without, true) => out!("does not claim to conserve energy ({}); here it does", listed(without)),
+            (without, false) => out!("does not claim to conserve energy ({}), and does not", listed(without)),
+        }
+    }
+    let broken = without.is_empty() && !conserves;
+    opened.close()?;
+    if broken {
+        let found = if max.is_nan() { "a value that is no number".to_owned() } else { format!("up to {max:.4}") };
+        return Err(Failure::Input(format!(
+            "the furnace: this combination claims to conserve energy, but reflects {found} of the light that arrives"
+        )));
+    }
+    Ok(())
+}
+
+/// Whether a choice that claims nothing changes anything about this surface: of a metal, how diffuse light is spread has no
+/// part in what it reflects.
+fn has_part(opened: &Opened, constant: &Constant, surface: Surface) -> Result<bool, Failure> {
+    let Some(other) = Claim::Conserves.of(constant).and_then(|names| names.first()) else { return Ok(true) };
+    let mut settings = opened.settings.clone();
+    settings.shader.insert(constant.name.clone(), ShaderValue::Name(other.clone()));
+    let chosen = opened.bench.furnace(surface, COARSE)?;
+    let claiming = opened.bench.with(&settings)?.furnace(surface, COARSE)?;
+    // The drivers order sums of other code in other ways: 1e-4 is far above what that changes.
+    let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-4 || a.is_nan() != b.is_nan();
+    Ok(chosen.as_flattened().iter().zip(claiming.as_flattened()).any(differs))
+}
+
+/// Smallest and largest value; NaN when there is one.
+pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
+    let values = || albedo.as_flattened().iter().copied();
+    let with = |pick: fn(f64, f64) -> f64| {
+        values().reduce(|a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) }).unwrap_or(f64::NAN)
+    };
+    (with(f64::min), with(f64::max))
+}
+
+fn print_json(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {
+    let cells = (0..GRID.rows).flat_map(|row| (0..GRID.columns).map(move |column| (row, column)));
+    let row = |((row, column), albedo): ((u32, u32), &[f64; 3])| {
+        json!({ "roughness": GRID.roughness_of(row), "cos_theta": GRID.theta_of(column).to_radians().cos(),
+            "albedo": albedo })
+    };
+    let rows: Vec<_> = cells.zip(albedo).map(row).collect();
+    out!("{:#}", json!({ "rows": rows, "min": min, "max": max, "claims_conservation": claims }));
+}
+
+fn print_table(albedo: &[[f64; 3]], surface: Surface) {
+    let base_color = short(surface.base_color).map(|c| c.to_string()).join(" ");
+    out!("Albedo (the largest channel) of base color {base_color}, metallic {}", surface.metallic);
+    out!("Roughness downwards, angle to the normal in degrees across\n");
+    let angles = (0..GRID.columns).map(|column| format!("{:>6}", GRID.theta_of(column))).collect::<String>();
+    out!("     {angles}");
+    for (row, cells) in (0..).zip(albedo.chunks(GRID.columns as usize)) {
+        let largest = cells.iter().map(|[r, g, b]| format!(" {:.3}", r.max(*g).max(*b)));
+        out!("{:.2} {}", GRID.roughness_of(row), largest.collect::<String>());
+    }
+}

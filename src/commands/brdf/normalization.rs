@@ -1,0 +1,51 @@
+//! `specula brdf normalization`: the integral of D NoH, which is 1 for every distribution of facets.
+
+use serde_json::json;
+use specula::render::measure::Grid;
+
+use super::{Opened, Options};
+use crate::commands::Failure;
+
+const MOST: f64 = 0.005;
+const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 1, theta: (0.0, 0.0), samples: 4096 };
+
+/// Options of `brdf normalization`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let opened = Opened::new(&args.options)?;
+    let integrals: Vec<f64> = opened.bench.normalization(GRID)?.into_iter().map(f64::from).collect();
+    let rows: Vec<(f64, f64)> = (0..).map(|row| GRID.roughness_of(row)).zip(integrals).collect();
+    let off = |(_, integral): &(f64, f64)| if integral.is_nan() { f64::INFINITY } else { (integral - 1.0).abs() };
+    let worst = rows.iter().copied().max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_default();
+    let holds = off(&worst) <= MOST;
+    if args.json {
+        let list: Vec<_> = rows.iter().map(|(r, integral)| json!({ "roughness": r, "integral": integral })).collect();
+        let largest = json!({ "roughness": worst.0, "error": off(&worst) });
+        out!("{:#}", json!({ "rows": list, "worst": largest, "limit": MOST, "normalized": holds }));
+    } else {
+        out!("roughness  integral of D NoH");
+        for (roughness, integral) in &rows {
+            out!("{roughness:9.2}  {integral:.5}");
+        }
+        let verdict = if holds { "D is normalized" } else { "D is not normalized" };
+        out!("\n{verdict}: off by {:.3} % at most, at roughness {}", off(&worst) * 100.0, worst.0);
+    }
+    opened.close()?;
+    if !holds {
+        let (roughness, integral) = worst;
+        return Err(Failure::Input(format!(
+            "normalization: the integral of D NoH is {integral:.4} at roughness {roughness}, and must be 1 to {} %",
+            MOST * 100.0
+        )));
+    }
+    Ok(())
+}

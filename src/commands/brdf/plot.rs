@@ -1,0 +1,214 @@
+//! `specula brdf plot`: the lobes of the chosen models, and the albedo over the angle, as a picture.
+
+use std::path::PathBuf;
+
+use specula::picture;
+use specula::render::measure::{Bench, Claim, Grid, Lobe, Surface, choices};
+
+use super::canvas::{Anchor, Canvas, Ink, pen};
+use super::furnace::extremes;
+use super::plot_axes::{Chart, HalfDisk, TEXT, draw_legend};
+use super::{Opened, Options, SurfaceOptions, number, short, unit};
+use crate::commands::Failure;
+
+const WIDTH: f32 = 1600.0;
+const MARGIN: f32 = 56.0;
+const HEADER: f32 = 178.0;
+const CHART: f32 = 340.0;
+
+const DIFFUSE: Ink = Ink(224, 108, 32, 255);
+const SPECULAR: Ink = Ink(36, 104, 214, 255);
+const MULTIPLE: Ink = Ink(34, 150, 92, 255);
+const SUM: Ink = Ink(40, 44, 52, 255);
+const SUM_FILL: Ink = Ink(40, 44, 52, 22);
+
+/// Every eighth of a degree: the lobe of the smallest roughness is half a degree wide.
+const LOBE_COLUMNS: u32 = 1441;
+const ALBEDO_COLUMNS: u32 = 90;
+const ALBEDO_SAMPLES: u32 = 1024;
+
+/// Options of `brdf plot`.
+#[derive(clap::Args)]
+#[command(after_help = "Without --metallic, a dielectric and a metal are drawn.")]
+pub struct Args {
+    /// PNG to write
+    #[arg(long, short, value_name = "FILE.png", default_value = "lobes.png")]
+    out: PathBuf,
+    /// Where the light stands: degrees from the normal
+    #[arg(long, value_name = "DEG", default_value = "45", value_parser = |t: &str| number(t, 0.0, 89.0))]
+    angle: f32,
+    /// One to six values of roughness
+    #[arg(long, value_name = "R,R,..", value_delimiter = ',', default_value = "0.2,0.4,0.6,0.8", value_parser = unit)]
+    roughness: Vec<f32>,
+    #[command(flatten)]
+    surface: SurfaceOptions,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// What one surface looks like.
+struct Measured {
+    surface: Surface,
+    /// By roughness; columns of [`LOBE_COLUMNS`].
+    lobes: Vec<Vec<Lobe>>,
+    /// By roughness; the largest channel.
+    albedo: Vec<Vec<f32>>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    picture::check_path(&args.out).map_err(Failure::Input)?;
+    if args.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("png")) {
+        return Err(Failure::Input(format!("cannot write {}: a plot is a .png", args.out.display())));
+    }
+    if args.roughness.len() > 6 {
+        let found = args.roughness.len();
+        return Err(Failure::Input(format!(
+            "--roughness takes at most 6 values, or the panels get too small; found {found}"
+        )));
+    }
+    let opened = Opened::new(&args.options)?;
+    let surfaces = args.surface.surfaces(&[0.0, 1.0]);
+    let measured = surfaces.into_iter().map(|s| measure(&opened.bench, s, args)).collect::<Result<Vec<_>, _>>()?;
+    draw(&opened, args, &measured).and_then(|canvas| canvas.save(&args.out)).map_err(Failure::Input)?;
+    opened.close()
+}
+
+fn measure(bench: &Bench, surface: Surface, args: &Args) -> Result<Measured, Failure> {
+    let mut measured = Measured { surface, lobes: Vec::new(), albedo: Vec::new() };
+    for roughness in &args.roughness {
+        let roughness = (*roughness, *roughness);
+        let lobes = Grid { rows: 1, roughness, columns: LOBE_COLUMNS, theta: (args.angle, 0.0), samples: 1 };
+        measured.lobes.push(bench.lobes(surface, lobes)?);
+        let albedo = Grid { columns: ALBEDO_COLUMNS, theta: (0.0, 89.0), samples: ALBEDO_SAMPLES, ..lobes };
+        measured.albedo.push(bench.furnace(surface, albedo)?.into_iter().map(largest).collect());
+    }
+    Ok(measured)
+}
+
+fn largest([r, g, b]: [f32; 3]) -> f32 {
+    r.max(g).max(b)
+}
+
+fn sum(lobe: &Lobe) -> [f32; 3] {
+    std::array::from_fn(|c| lobe.diffuse[c] + lobe.specular[c] + lobe.multiple[c])
+}
+
+fn draw(opened: &Opened, args: &Args, measured: &[Measured]) -> Result<Canvas, String> {
+    let panels = args.roughness.len() as f32;
+    let panel = (WIDTH - 2.0 * MARGIN) / panels;
+    let radius = (panel * 0.5 - 26.0).min(240.0);
+    let row = radius + 118.0;
+    let height = HEADER + row * measured.len() as f32 + CHART + 150.0;
+    let mut canvas = Canvas::new(WIDTH as u32, height as u32)?;
+    draw_header(&mut canvas, opened, args);
+
+    let all = measured.iter().flat_map(|m| m.lobes.iter().flatten()).map(|lobe| largest(sum(lobe)));
+    let most = all.filter(|value| value.is_finite()).fold(1.0, f32::max);
+    let most = 10_f32.powf(most.log10().ceil());
+    for (index, measured) in measured.iter().enumerate() {
+        let top = HEADER + row * index as f32;
+        canvas.text((MARGIN, top + 22.0), 21.0, Anchor::Left, TEXT, &title(measured.surface));
+        for (column, (roughness, lobes)) in args.roughness.iter().zip(&measured.lobes).enumerate() {
+            let center = (MARGIN + panel * (column as f32 + 0.5), top + 72.0 + radius);
+            let disk = HalfDisk { center, radius, most };
+            draw_lobes(&mut canvas, disk, lobes, args.angle);
+            let label = format!("roughness {roughness}");
+            canvas.text((center.0, center.1 + 38.0), 16.0, Anchor::Center, TEXT, &label);
+        }
+    }
+    let top = HEADER + row * measured.len() as f32 + 30.0;
+    let each = (WIDTH - 2.0 * MARGIN) / measured.len() as f32;
+    for (index, measured) in measured.iter().enumerate() {
+        let left = MARGIN + each * index as f32;
+        draw_albedo(&mut canvas, (left, top), each - 60.0, &args.roughness, measured);
+    }
+    Ok(canvas)
+}
+
+fn title(surface: Surface) -> String {
+    let kind = match surface.metallic {
+        0.0 => "Dielectric".to_owned(),
+        1.0 => "Metal".to_owned(),
+        metallic => format!("Metallic {metallic}"),
+    };
+    let [r, g, b] = short(surface.base_color);
+    format!("{kind}, base color {r} {g} {b}")
+}
+
+fn draw_header(canvas: &mut Canvas, opened: &Opened, args: &Args) {
+    let heading = format!("Light from {}°, reflected into all directions of its plane", args.angle);
+    canvas.text((MARGIN, 54.0), 30.0, Anchor::Left, TEXT, &heading);
+    let is_model = |claim: Claim, constant| claim.of(constant).is_some();
+    let models = choices(&opened.settings, &opened.shaders).into_iter();
+    let models = models.filter(|(c, _)| is_model(Claim::Conserves, c) || is_model(Claim::Reciprocal, c));
+    let mut at = (MARGIN, 86.0);
+    for (constant, chosen) in models {
+        let text = format!("{}: {chosen}", constant.label);
+        let width = canvas.width_of(&text, 16.0);
+        if at.0 + width > WIDTH - MARGIN {
+            at = (MARGIN, at.1 + 23.0);
+        }
+        canvas.text(at, 16.0, Anchor::Left, TEXT, &text);
+        at.0 += width + 26.0;
+    }
+    let entries = [("diffuse", DIFFUSE), ("specular", SPECULAR), ("multiple scattering", MULTIPLE), ("sum", SUM)];
+    draw_legend(canvas, (MARGIN, 148.0), &entries);
+    let scale = "f cos in 1/sr, rings at powers of ten, linear below 0.03";
+    canvas.text((WIDTH - MARGIN, 148.0), 16.0, Anchor::Right, TEXT, scale);
+}
+
+fn draw_lobes(canvas: &mut Canvas, disk: HalfDisk, lobes: &[Lobe], angle_deg: f32) {
+    disk.draw_axes(canvas);
+    let count = lobes.len() as f32;
+    let outline = |value: &dyn Fn(&Lobe) -> [f32; 3]| -> Vec<(f32, f32)> {
+        let angle = |index: usize| std::f32::consts::PI * ((index as f32 + 0.5) / count - 0.5);
+        let rim = lobes.iter().enumerate().map(|(index, lobe)| disk.at(angle(index), largest(value(lobe))));
+        [disk.center].into_iter().chain(rim).chain([disk.center]).collect()
+    };
+    let whole = outline(&sum);
+    canvas.area(&whole, SUM_FILL);
+    canvas.line(&whole, pen(SUM, 1.4));
+    canvas.line(&outline(&|lobe| lobe.diffuse), pen(DIFFUSE, 2.2));
+    canvas.line(&outline(&|lobe| lobe.multiple), pen(MULTIPLE, 2.2));
+    canvas.line(&outline(&|lobe| lobe.specular), pen(SPECULAR, 2.2));
+    disk.draw_light(canvas, angle_deg);
+}
+
+fn draw_albedo(canvas: &mut Canvas, (left, top): (f32, f32), width: f32, roughness: &[f32], measured: &Measured) {
+    canvas.text((left, top), 21.0, Anchor::Left, TEXT, &format!("Albedo of the {}", lower(&title(measured.surface))));
+    let values: Vec<[f64; 3]> = measured.albedo.iter().flatten().map(|a| [f64::from(*a); 3]).collect();
+    let (_, max) = extremes(&values);
+    let chart = Chart {
+        origin: (left + 40.0, top + 22.0),
+        size: (width - 40.0 - 150.0, CHART),
+        most: if max.is_finite() { (max as f32 * 1.02).max(1.1) } else { 1.1 },
+    };
+    chart.draw_axes(canvas);
+    let count = roughness.len().max(2) - 1;
+    for (index, (roughness, albedo)) in roughness.iter().zip(&measured.albedo).enumerate() {
+        let ink = ramp(index as f32 / count as f32);
+        let step = 89.0 / (ALBEDO_COLUMNS - 1) as f32;
+        let points: Vec<_> = albedo.iter().enumerate().map(|(i, a)| chart.at(i as f32 * step, *a)).collect();
+        canvas.line(&points, pen(ink, 2.2));
+        let x = chart.origin.0 + chart.size.0 + 16.0;
+        let y = chart.origin.1 + 20.0 + 26.0 * index as f32;
+        canvas.line(&[(x, y - 5.0), (x + 24.0, y - 5.0)], pen(ink, 3.5));
+        canvas.text((x + 32.0, y), 16.0, Anchor::Left, TEXT, &format!("roughness {roughness}"));
+    }
+}
+
+fn lower(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// From dark blue over red to amber.
+fn ramp(part: f32) -> Ink {
+    let stops = [(46.0, 44.0, 130.0), (176.0, 50.0, 110.0), (236.0, 150.0, 30.0)];
+    let at = part.clamp(0.0, 1.0) * 2.0;
+    let (from, to) = if at < 1.0 { (stops[0], stops[1]) } else { (stops[1], stops[2]) };
+    let t = if at < 1.0 { at } else { at - 1.0 };
+    let mix = |a: f32, b: f32| (a + (b - a) * t) as u8;
+    Ink(mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2), 255)
+}

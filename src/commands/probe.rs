@@ -1,0 +1,174 @@
+//! `specula probe`: the raw values of one pixel in every debug mode, with camera and lights.
+
+use std::path::PathBuf;
+
+use serde_json::{Map, Value, json};
+use specula::headless::Headless;
+use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
+use specula::render::Shot;
+use specula::shader::{DrawAs, Mode, ShaderSet};
+
+use super::Failure;
+use super::common::{Common, check_mode, check_validation, compiler};
+
+/// Options of `probe`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Values are in world space, before exposure, tone map and encoding, color multiplied by coverage.\n\
+    One sample in the middle of the pixel: view.msaa is 1, so that no edge mixes two surfaces.\n\
+    Modes that accumulate are the mean of view.frames frames. Angles are in degrees. --mode may repeat; without, all."
+)]
+pub struct Args {
+    /// glTF model, .gltf or .glb [default: the built-in shader ball]
+    model: Option<PathBuf>,
+    /// The pixel, from the upper left corner
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    at: (u32, u32),
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the command.
+pub fn run(mut args: Args) -> Result<(), Failure> {
+    let slugs = std::mem::take(&mut args.common.mode);
+    let (x, y) = args.at;
+    let (width, height) = args.common.size;
+    if x >= width || y >= height {
+        let message = format!(
+            "--at {x},{y} is outside of the picture of {width}x{height}; it can be 0,0 to {},{}",
+            width - 1,
+            height - 1
+        );
+        return Err(Failure::Input(message));
+    }
+    let mut settings = args.common.settings()?;
+    settings.view.msaa = 1;
+    let source = args.common.source()?;
+    let gpu = args.common.gpu()?;
+    let model = args.common.model(args.model.as_deref())?;
+    let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size)?;
+    let modes = chosen(&headless.pipelines().shaders, &slugs)?;
+    let shot = headless.shot();
+    let hit = is_hit(&mut headless, args.at)?;
+    let mut values = Vec::new();
+    for mode in modes.iter().filter(|_| hit) {
+        headless.settings_mut().mode.clone_from(&mode.slug);
+        values.push((mode, headless.pixel(x, y)?));
+    }
+    if args.json {
+        let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), json!(value))).collect();
+        let lights: Vec<Value> = shot.lights.iter().map(light).collect();
+        let value = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&shot), "lights": lights });
+        out!("{value:#}");
+    } else {
+        print_table(args.at, &values, &shot);
+    }
+    // What the layers find at the end counts too.
+    drop(headless);
+    check_validation(&gpu)
+}
+
+/// The modes of these slugs, or all.
+fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
+    slugs.iter().filter(|slug| *slug != "all").try_for_each(|slug| check_mode(shaders, slug))?;
+    let all = slugs.is_empty() || slugs.iter().any(|slug| slug == "all");
+    Ok(shaders.modes.iter().filter(|mode| all || slugs.contains(&mode.slug)).cloned().collect())
+}
+
+/// Whether anything of the model is at the pixel: a mode that shows surfaces, but no light and so no sky, covers it there.
+fn is_hit(headless: &mut Headless, (x, y): (u32, u32)) -> Result<bool, Failure> {
+    let shaders = headless.pipelines().shaders.clone();
+    let plain = |mode: &&Mode| !mode.tonemap && !mode.accumulate && mode.draw == DrawAs::Surfaces;
+    let mode = shaders.modes.iter().find(plain).or_else(|| shaders.modes.first());
+    let settings = headless.settings_mut();
+    let before = settings.view.background.clone();
+    "none".clone_into(&mut settings.view.background);
+    if let Some(mode) = mode {
+        settings.mode.clone_from(&mode.slug);
+    }
+    let value = headless.pixel(x, y)?;
+    headless.settings_mut().view.background = before;
+    Ok(value[3] > 0.0)
+}
+
+fn camera(shot: &Shot) -> Value {
+    let view = &shot.view;
+    json!({ "eye": view.eye.to_array(), "target": view.target.to_array(), "fovy": view.fovy_rad.to_degrees() })
+}
+
+fn kind(light: &Light) -> &'static str {
+    match light.kind {
+        LIGHT_DIRECTIONAL => "directional",
+        LIGHT_POINT => "point",
+        LIGHT_SPOT => "spot",
+        LIGHT_RECT => "rect",
+        _ => "unknown",
+    }
+}
+
+/// With what its kind needs to be redone; `range` where it ends.
+fn light(light: &Light) -> Value {
+    let mut value = json!({ "kind": kind(light), "position": light.position_ws, "direction": light.direction_ws,
+        "intensity": light.intensity });
+    if light.range > 0.0 {
+        value["range"] = json!(light.range);
+    }
+    if light.kind == LIGHT_SPOT {
+        value["cos_inner"] = json!(light.cos_inner);
+        value["cos_outer"] = json!(light.cos_outer);
+    }
+    if light.kind == LIGHT_RECT {
+        value["half_x"] = json!(light.half_x_ws);
+        value["half_y"] = json!(light.half_y_ws);
+    }
+    value
+}
+
+fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], shot: &Shot) {
+    let view = &shot.view;
+    out!("pixel      {x} {y}");
+    out!(
+        "camera     eye {}  target {}  fovy {:.2}",
+        row(&view.eye.to_array()),
+        row(&view.target.to_array()),
+        view.fovy_rad.to_degrees()
+    );
+    for light in &shot.lights {
+        let place = match light.kind {
+            LIGHT_DIRECTIONAL => format!("direction {}", row(&light.direction_ws)),
+            LIGHT_POINT => format!("position {}", row(&light.position_ws)),
+            _ => format!("position {}  direction {}", row(&light.position_ws), row(&light.direction_ws)),
+        };
+        out!("light      {:11} {place}  intensity {}", kind(light), row(&light.intensity));
+    }
+    if values.is_empty() {
+        out!("\nnothing of the model is at this pixel");
+    }
+    let width = values.iter().map(|(mode, _)| mode.slug.len()).max().unwrap_or(0);
+    let mut group = "";
+    for (mode, value) in values {
+        if mode.group != group {
+            out!("\n{}", mode.group);
+            group = &mode.group;
+        }
+        out!("  {:width$}  {}", mode.slug, row(value));
+    }
+}
+
+fn row(numbers: &[f32]) -> String {
+    numbers.iter().map(|x| shown(*x)).collect::<Vec<_>>().join(" ")
+}
+
+/// In a column: six digits, in powers of ten where these say too little.
+fn shown(x: f32) -> String {
+    let plain = x == 0.0 || !x.is_finite() || (1e-3..1e6).contains(&x.abs());
+    if plain { format!("{x:>12.5}") } else { format!("{x:>12.4e}") }
+}
+
+fn pixel(text: &str) -> Result<(u32, u32), String> {
+    let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, as 640,360".to_owned())
+}

@@ -1,0 +1,226 @@
+//! `specula brdf`: the BRDF as the shader tree has it, held against physics and against its own claims.
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use specula::render::all_stages;
+use specula::render::measure::{Bench, Claim, Grid, Surface, choices, unclaimed};
+use specula::settings::{Settings, ShaderValue};
+use specula::shader::{Change, Constant, Library, Source, Update};
+use support::process::{Finished, run};
+use support::{Tree, assert_validated, compiler, gpu};
+
+/// Above what an estimate may be off by.
+const MOST: f64 = 1.005;
+
+/// `specula brdf` with these arguments, under validation.
+fn brdf(directory: &Path, args: &[&str]) -> Finished {
+    run(directory, &[&["brdf"], args, &["--validate"]].concat())
+}
+
+fn json(args: &[&str]) -> Value {
+    let directory = tempfile::tempdir().unwrap();
+    brdf(directory.path(), &[args, &["--json"]].concat()).expect(0, &[]).json()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn a_white_metal_returns_all_light() {
+    let furnace = json(&["furnace"]);
+    let rows = furnace["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 20 * 18);
+    for row in rows {
+        let albedo = numbers(&row["albedo"]);
+        assert!(albedo.len() == 3 && albedo.iter().all(|a| (a - 1.0).abs() < 0.005), "{row}");
+    }
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    assert_eq!((&first["roughness"], &first["cos_theta"]), (&Value::from(0.05), &Value::from(1.0)));
+    assert_eq!(last["roughness"], 1.0);
+    assert!((last["cos_theta"].as_f64().unwrap() - 85_f64.to_radians().cos()).abs() < 1e-6);
+    let all: Vec<f64> = rows.iter().flat_map(|row| numbers(&row["albedo"])).collect();
+    assert_eq!(furnace["max"].as_f64().unwrap(), all.iter().copied().fold(f64::MIN, f64::max));
+    assert_eq!(furnace["min"].as_f64().unwrap(), all.iter().copied().fold(f64::MAX, f64::min));
+    assert_eq!(furnace["claims_conservation"], true);
+}
+
+#[test]
+fn without_multiple_scattering_a_rough_metal_keeps_light() {
+    let furnace = json(&["furnace", "--set", "MULTI_SCATTER=None"]);
+    let rows = furnace["rows"].as_array().unwrap();
+    let of = |roughness: f64| rows.iter().filter(move |row| row["roughness"] == roughness);
+    // Walter et al. 2007, figure 11 and Heitz 2014, section 5.2: half of it, at roughness 1.
+    let rough = of(1.0).flat_map(|row| numbers(&row["albedo"])).fold(f64::MAX, f64::min);
+    assert!((0.3..0.6).contains(&rough), "{rough}");
+    assert!(of(0.05).all(|row| numbers(&row["albedo"])[0] > 0.99));
+}
+
+#[test]
+fn a_dark_metal_takes_on_its_color() {
+    let furnace = json(&["furnace", "--base-color", "1,0.5,0"]);
+    let smooth_from_above = numbers(&furnace["rows"][0]["albedo"]);
+    let expected = [1.0, 0.5, 0.0];
+    assert!(smooth_from_above.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.005), "{smooth_from_above:?}");
+}
+
+#[test]
+fn a_dielectric_that_does_not_claim_to_conserve_says_why() {
+    let directory = tempfile::tempdir().unwrap();
+    let more = ["furnace", "--metallic", "0", "--set", "DIFFUSE=Burley", "--set", "DIFFUSE_COUPLING=Albedo"];
+    let said = brdf(directory.path(), &more);
+    said.expect(0, &[]);
+    assert!(said.stdout.contains("does not claim to conserve energy (DIFFUSE=Burley)"), "{said:#?}");
+}
+
+/// One edit of brdf/ndf.glsl; the exit codes of furnace and normalization.
+fn edited(from: &str, to: &str) -> [Finished; 2] {
+    let tree = Tree::new();
+    tree.write("brdf/ndf.glsl", &tree.edited("brdf/ndf.glsl", from, to));
+    let root = tree.root();
+    let shaders = root.to_str().unwrap();
+    ["furnace", "normalization"].map(|what| brdf(&root, &[what, "--shaders", shaders]))
+}
+
+#[test]
+fn a_distribution_without_its_pi_fails_both() {
+    let [furnace, normalization] = edited("a2 / (PI * spread * spread)", "a2 / (spread * spread)");
+    furnace.expect(1, &["furnace", "claims to conserve energy"]);
+    normalization.expect(1, &["normalization", "3.14"]);
+}
+
+#[test]
+fn a_distribution_of_another_width_fails_the_furnace() {
+    // D stays a distribution, only not the one that G is for: its integral is still 1.
+    let [furnace, normalization] = edited("float a2 = alpha * alpha;", "float a2 = alpha;");
+    furnace.expect(1, &["furnace", "claims to conserve energy"]);
+    normalization.expect(0, &[]);
+}
+
+#[test]
+fn every_distribution_is_normalized() {
+    for distribution in ["GGX", "Beckmann"] {
+        let measured = json(&["normalization", "--set", &format!("NDF={distribution}")]);
+        let rows = measured["rows"].as_array().unwrap();
+        assert_eq!((rows.len(), &rows[0]["roughness"], &rows[19]["roughness"]), (20, &0.05.into(), &1.0.into()));
+        for row in rows {
+            assert!((row["integral"].as_f64().unwrap() - 1.0).abs() < 0.005, "{distribution}: {row}");
+        }
+    }
+}
+
+#[test]
+fn what_claims_to_be_reciprocal_is() {
+    let reciprocal = json(&["reciprocity"]);
+    assert!(reciprocal["error"].as_f64().unwrap() < 1e-4, "{reciprocal}");
+    assert_eq!((&reciprocal["claims_reciprocity"], &reciprocal["reciprocal"]), (&true.into(), &true.into()));
+    // The measurement can fail.
+    let other = json(&["reciprocity", "--set", "MULTI_SCATTER=FdezAguera"]);
+    assert!(other["error"].as_f64().unwrap() > 0.01, "{other}");
+    assert_eq!((&other["claims_reciprocity"], &other["reciprocal"]), (&false.into(), &false.into()));
+}
+
+#[test]
+fn numbers_out_of_range_are_usage_errors() {
+    let directory = tempfile::tempdir().unwrap();
+    for (args, said) in [
+        (["furnace", "--metallic", "1.5"], "0 to 1"),
+        (["furnace", "--base-color", "1,2"], "found"),
+        (["reciprocity", "--base-color", "1,2,1"], "0 to 1"),
+        (["plot", "--angle", "95"], "0 to 89"),
+        (["plot", "--roughness", "0.5,x"], "a number"),
+    ] {
+        brdf(directory.path(), &args).expect(2, &[args[1], said]);
+    }
+    brdf(directory.path(), &["furnace", "--set", "view.ev=2"]).expect(1, &["--set", "specula modes"]);
+    brdf(directory.path(), &["furnace", "--set", "NDF=Phong"]).expect(1, &["NDF", "GGX, Beckmann"]);
+    brdf(directory.path(), &["plot", "--out", "lobes.exr"]).expect(1, &["lobes.exr", ".png"]);
+}
+
+#[test]
+fn a_plot_is_drawn() {
+    let directory = tempfile::tempdir().unwrap();
+    brdf(directory.path(), &["plot", "--out", "lobes.png", "--roughness", "0.3,0.7"]).expect(0, &[]);
+    let picture = support::open_image(&directory.path().join("lobes.png")).into_rgb8();
+    // Lines of each lobe, in its own ink.
+    for ink in [[224, 108, 32], [36, 104, 214], [34, 150, 92]] {
+        let inked = picture.pixels().filter(|pixel| pixel.0 == ink).count();
+        assert!(inked > 200, "{inked} pixels of {ink:?}");
+    }
+}
+
+/// Every choice of some constants, each set in turn.
+fn combinations(constants: &[&Constant], kept: impl Fn(&Constant, &str) -> bool) -> Vec<Settings> {
+    let mut all = vec![Settings::default()];
+    for constant in constants {
+        let names = constant.choices.iter().filter(|(name, _)| kept(constant, name));
+        let set = |(name, _): &(String, i64)| {
+            all.iter().map(|before| {
+                let mut settings = before.clone();
+                settings.shader.insert(constant.name.clone(), ShaderValue::Name(name.clone()));
+                settings
+            })
+        };
+        all = names.flat_map(|choice| set(choice).collect::<Vec<_>>()).collect();
+    }
+    all
+}
+
+#[test]
+fn no_combination_that_claims_to_conserve_makes_light() {
+    let mut library = Library::new(Source::embedded(), compiler().clone(), &all_stages());
+    let Update::Ready(shaders, _) = library.update(&Change::All) else { panic!("the embedded tree compiles") };
+    let bench = Bench::new(gpu(), &shaders, &Settings::default()).unwrap();
+    let grid = Grid { rows: 6, roughness: (0.1, 1.0), columns: 6, theta: (0.0, 85.0), samples: 256 };
+    let largest = |settings: &Settings, metallic: f32| {
+        let surface = Surface { base_color: [1.0; 3], metallic };
+        let albedo = bench.with(settings).unwrap().furnace(surface, grid).unwrap();
+        albedo
+            .iter()
+            .flatten()
+            .map(|a| f64::from(*a))
+            .reduce(|a, b| if a < b || a.is_nan() { a.max(b) } else { a })
+            .unwrap()
+    };
+    let claiming = |c: &Constant, name: &str| Claim::Conserves.of(c).unwrap().iter().any(|n| n == name);
+    // What the boundary of a metal does not depend on, and of a dielectric.
+    let parts = |without: &[&str]| -> Vec<&Constant> {
+        let models = shaders.constants.iter().filter(|c| Claim::Conserves.of(c).is_some());
+        models.filter(|c| !without.contains(&c.name.as_str())).collect()
+    };
+    let metal = parts(&["DIFFUSE", "DIFFUSE_COUPLING", "FRESNEL_DIELECTRIC"]);
+    let dielectric = parts(&["FRESNEL_METAL"]);
+    let mut worst = (0.0, String::new());
+    let mut count = 0;
+    for (constants, metallic) in [(metal, 1.0), (dielectric, 0.0)] {
+        for settings in combinations(&constants, claiming) {
+            let max = largest(&settings, metallic);
+            let name = format!("metallic {metallic}: {:?}", settings.shader);
+            assert!(max <= MOST, "{max} of the light: {name}");
+            count += 1;
+            if max > worst.0 {
+                worst = (max, name);
+            }
+        }
+    }
+    println!("{count} combinations claim to conserve; most of the light: {:.4}, {}", worst.0, worst.1);
+    // Those that do not claim it, one constant at a time, beside choices that do.
+    let mut sound = Settings::default();
+    for (constant, _) in unclaimed(Claim::Conserves, &sound.clone(), &shaders) {
+        let claiming = Claim::Conserves.of(constant).unwrap()[0].clone();
+        sound.shader.insert(constant.name.clone(), ShaderValue::Name(claiming));
+    }
+    assert!(unclaimed(Claim::Conserves, &sound, &shaders).is_empty());
+    for (constant, _) in choices(&sound, &shaders) {
+        let Some(claims) = Claim::Conserves.of(constant) else { continue };
+        for (name, _) in constant.choices.iter().filter(|(name, _)| !claims.contains(name)) {
+            let mut settings = sound.clone();
+            settings.shader.insert(constant.name.clone(), ShaderValue::Name(name.clone()));
+            println!("{}={name} does not: {:.4}", constant.name, largest(&settings, 0.0));
+        }
+    }
+    assert_validated();
+}
