@@ -109,10 +109,13 @@ const uint ENCODE_DATA = 1u;
 const uint ENCODE_VECTOR = 2u;
 const uint TONEMAP_OFF = 0xffffffffu;
 const int TEXTURE_COUNT = 19;
+const int MAX_LIGHTS = 215;
 
 layout(constant_id = 0) const uint MODE = 0u; // debug mode, one of MODE_* in debug/modes.glsl
 layout(constant_id = 1) const uint ALPHA_MODE = 0u; // glTF alphaMode, one of ALPHA_*
 layout(constant_id = 2) const uint FEATURES = 0u; // what the material uses, FEATURE_* bits
+layout(constant_id = 3) const uint TONEMAP = 0u; // tone map, one of TONEMAP_* in common/tonemap.glsl
+layout(constant_id = 4) const uint ENCODE = 0u; // how the picture stores values, one of ENCODE_*
 
 layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     mat4 clip_from_world;      // reversed depth: 1 near, 0 at infinity
@@ -131,8 +134,6 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     float far;
     uint light_count;
     uint chosen_light;         // 0 all, else 1-based
-    uint tonemap;
-    uint encode;
     uint mode;
     float largest_value;       // of the HDR target: 65504 for half floats
     vec2 environment_rotation; // cos, sin of the turn around +Y
@@ -154,8 +155,8 @@ struct Light {
     vec3 half_y_ws;
 };
 
-layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) readonly buffer Lights {
-    Light lights[];
+layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
+    Light lights[MAX_LIGHTS];
 };
 
 layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {

@@ -156,7 +156,7 @@ void clear_extensions(inout Surface s) {
     s.diffuse_transmission_color = vec3(1.0);
 }
 
-// `v`: unit, towards the eye, world space. Leaves s.dfg to complete_surface (brdf/energy.glsl).
+// `v`: unit, towards the eye, world space. Leaves s.dfg and s.multiple to complete_surface (brdf/multiscatter.glsl).
 Surface make_surface(Fragment f, vec3 v) {
     vec4 base_color = texture(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR));
     vec4 metallic_roughness = texture(metallic_roughness_texture, texture_uv(f, TEXTURE_METALLIC_ROUGHNESS));
@@ -180,6 +180,7 @@ Surface make_surface(Fragment f, vec3 v) {
     s.f0 = vec3(f0_from_ior(s.ior));
     s.f90 = 1.0;
     s.dfg = vec4(0.0);   // of a mirror, along the normal
+    s.multiple = vec3(0.0);
     clear_extensions(s);
 
     if (has_feature(FEATURE_SPECULAR_GLOSSINESS)) read_specular_glossiness(metallic_roughness, s);

@@ -1,6 +1,6 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/energy.glsl"
+#include "brdf/multiscatter.glsl"
 #include "common/fragment.glsl"
 #include "debug/debug.glsl"
 #include "lighting/radiance.glsl"

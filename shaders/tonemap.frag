@@ -12,8 +12,8 @@ layout(location = 0) out vec4 out_color;
 
 // What the display shows for `value`, 0..1 and still linear if it is a color.
 vec3 display_value(vec3 value) {
-    if (frame.tonemap != TONEMAP_OFF) value = tonemap(value * frame.exposure, frame.tonemap);
-    if (frame.encode == ENCODE_VECTOR) value = value * 0.5 + 0.5;
+    if (TONEMAP != TONEMAP_OFF) value = tonemap(value * frame.exposure, TONEMAP);
+    if (ENCODE == ENCODE_VECTOR) value = value * 0.5 + 0.5;
     return saturate(value);
 }
 
@@ -23,12 +23,11 @@ void main() {
     vec3 front = display_value(scene.a > 0.0 ? scene.rgb / scene.a : vec3(0.0));
 
     // Colors meet in linear light, as they do in a lens. Numbers have no such space: they meet the encoded background.
-    bool is_color = frame.encode == ENCODE_COLOR;
-    vec3 back = is_color ? frame.background.rgb : srgb_from_linear(frame.background.rgb);
+    vec3 back = ENCODE == ENCODE_COLOR ? frame.background.rgb : srgb_from_linear(frame.background.rgb);
 
     // A over B (Porter & Duff 1984), with the result divided by its alpha.
     float back_alpha = frame.background.a * (1.0 - scene.a);
     float alpha = scene.a + back_alpha;
     vec3 color = alpha > 0.0 ? (front * scene.a + back * back_alpha) / alpha : vec3(0.0);
-    out_color = vec4(is_color ? srgb_from_linear(color) : color, alpha);
+    out_color = vec4(ENCODE == ENCODE_COLOR ? srgb_from_linear(color) : color, alpha);
 }

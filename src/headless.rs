@@ -118,7 +118,7 @@ impl Headless {
     pub fn open_files(&mut self) -> Result<(), HeadlessError> {
         let environment = &self.settings.environment;
         if environment.is_lit() && !self.baked.is_for(&environment.name, &self.pipelines) {
-            self.bake()?;
+            self.bake(true)?;
         }
         if self.measured.0 != self.settings.measured {
             let name = self.settings.measured.clone();
@@ -131,12 +131,13 @@ impl Headless {
         Ok(())
     }
 
-    /// Bakes the environment again, whatever is known of it: its file may have changed.
+    /// Bakes the environment again, whatever is known of it: its file may have changed. `from_disk`: a result that was kept on
+    /// disk will do.
     ///
     /// # Errors
     /// As [`Headless::open_files`].
-    pub fn bake(&mut self) -> Result<(), HeadlessError> {
-        let control = BakeControl { progress: &|_, _| {}, superseded: &|| false };
+    pub fn bake(&mut self, from_disk: bool) -> Result<(), HeadlessError> {
+        let control = BakeControl { progress: &|_, _| {}, superseded: &|| false, from_disk };
         self.baked = Baked::bake(&self.pipelines, &self.settings.environment.name, &control)?;
         Ok(())
     }
@@ -227,16 +228,21 @@ impl Headless {
         self.frame(Target::Nowhere).map(|_| ())
     }
 
-    /// The raw value of one pixel, counted from the upper left corner, shading little else; premultiplied, as in
-    /// [`Capture::raw`]. Zero where nothing is.
+    /// The raw value of one pixel, counted from the upper left corner; premultiplied, as in [`Capture::raw`]. Zero where
+    /// nothing is. Only what is near to the pixel is drawn, so that only its pipelines are compiled; all, where light passes
+    /// through a surface and what lies behind it is seen from around the pixel.
     ///
     /// # Errors
     /// As [`Headless::render`].
     pub fn pixel(&mut self, x: u32, y: u32) -> Result<[f32; 4], HeadlessError> {
         self.open_files()?;
+        self.dress()?;
+        let near = scene::near_pixel(&self.model, self.shot().view.clip_from_world(), self.size, (x, y));
+        let part = self.scene.only(&near);
+        let part = if part.is_transmissive() { self.scene.clone() } else { part };
         let frames = if self.wanted().accumulates { self.settings.view.frames } else { 1 };
         for _ in 0..frames {
-            self.frame(Target::Pixel(x, y))?;
+            self.frame_of(&part, Target::Pixel(x, y))?;
         }
         Ok(self.renderer.raw_at(x, y)?.unwrap_or_default())
     }
@@ -253,20 +259,31 @@ impl Headless {
         wanted(&self.settings, self.samples, &self.pipelines.shaders, &self.scene)
     }
 
-    fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
+    /// Puts on what the settings say.
+    fn dress(&mut self) -> Result<(), HeadlessError> {
         self.model.variant(&self.settings.variant).map_err(HeadlessError::Settings)?;
         self.scene = self.uploaded.dressed(&self.gpu, &self.layouts, &self.model, &self.settings)?;
+        Ok(())
+    }
+
+    fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
+        self.dress()?;
+        self.frame_of(&self.scene.clone(), target)
+    }
+
+    /// A frame of the scene or of a part of it.
+    fn frame_of(&mut self, scene: &Arc<GpuScene>, target: Target<'_>) -> Result<Drawn, HeadlessError> {
         if let Some(misfit) = misfits(&self.settings.shader, &self.pipelines.shaders).into_iter().next() {
             return Err(HeadlessError::Settings(misfit));
         }
-        let wanted = self.wanted();
+        let wanted = wanted(&self.settings, self.samples, &self.pipelines.shaders, scene);
         self.pipelines.build(&wanted)?;
         let (width, height) = self.size;
         let shot = self.shot();
         let input = FrameInput {
             shot: &shot,
             pipelines: Some((&self.pipelines, &wanted)),
-            scene: Some(&self.scene),
+            scene: Some(scene),
             environment: &self.baked.environment,
             measured: &self.measured.1,
             rect: Rect { x: 0, y: 0, width, height },

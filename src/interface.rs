@@ -28,6 +28,11 @@ pub const PUSH_CONSTANT_SIZE: u32 = 128;
 /// Size of the user's parameter block in bytes: what `//@ui` members of `Params` may fill together.
 pub const PARAMS_SIZE: u32 = 4096;
 
+/// Most lights of a frame: as many as fit into 16 KiB, the largest uniform block that every device has.
+pub const MAX_LIGHTS: usize = 215;
+/// Size of the irradiance block in bytes: nine RGB coefficients.
+pub const IRRADIANCE_SIZE: usize = 9 * 12;
+
 /// Specialization constants from this id on belong to the shader author (`//@ui` on a `constant_id`).
 pub const USER_CONSTANTS: u32 = 32;
 
@@ -81,12 +86,13 @@ const fn binding(set: u32, binding: u32, name: &'static str, kind: BindingKind, 
 /// Every descriptor of the contract, ordered by set and binding.
 pub const BINDINGS: &[Binding] = &[
     binding(SET_FRAME, 0, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
-    binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::StorageBuffer, size_of::<Light>()),
+    // Uniform blocks where a storage buffer would do: a software device reads those for each pixel of a group apart.
+    binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::UniformBuffer, MAX_LIGHTS * size_of::<Light>()),
     binding(SET_FRAME, 2, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
     binding(SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
     binding(SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::SamplerCube, 0),
     binding(SET_FRAME, 5, "BINDING_PREFILTERED_SHEEN", BindingKind::SamplerCube, 0),
-    binding(SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::UniformBuffer, IRRADIANCE_SIZE),
     binding(SET_FRAME, 7, "BINDING_DFG", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 8, "BINDING_LTC", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 9, "BINDING_MEASURED", BindingKind::StorageBuffer, 0),
@@ -139,11 +145,18 @@ pub const SPEC_ALPHA_MODE: u32 = 1;
 /// `constant_id` of the material's features: the `FEATURE_*` bits.
 pub const SPEC_FEATURES: u32 = 2;
 
+/// `constant_id` of the tone map, `TONEMAP_*` in common/tonemap.glsl or [`TONEMAP_OFF`]; for the tone mapping pass.
+pub const SPEC_TONEMAP: u32 = 3;
+/// `constant_id` of the encoding, `ENCODE_*`; for the tone mapping pass.
+pub const SPEC_ENCODE: u32 = 4;
+
 /// The specialization constants that Rust sets for every stage; those from [`USER_CONSTANTS`] on are the author's.
 pub const SPECIALIZATION: &[Specialization] = &[
     Specialization { id: SPEC_MODE, name: "MODE", doc: "debug mode, one of MODE_* in debug/modes.glsl" },
     Specialization { id: SPEC_ALPHA_MODE, name: "ALPHA_MODE", doc: "glTF alphaMode, one of ALPHA_*" },
     Specialization { id: SPEC_FEATURES, name: "FEATURES", doc: "what the material uses, FEATURE_* bits" },
+    Specialization { id: SPEC_TONEMAP, name: "TONEMAP", doc: "tone map, one of TONEMAP_* in common/tonemap.glsl" },
+    Specialization { id: SPEC_ENCODE, name: "ENCODE", doc: "how the picture stores values, one of ENCODE_*" },
 ];
 
 /// glTF `alphaMode` OPAQUE.
@@ -258,14 +271,14 @@ pub const MEASURED_MERL: u32 = 1;
 /// First word of the measured BRDF's buffer: UTIA's grid follows.
 pub const MEASURED_UTIA: u32 = 2;
 
-/// `Frame::encode`: colors, sRGB-encoded on output.
+/// [`SPEC_ENCODE`]: colors, sRGB-encoded on output.
 pub const ENCODE_COLOR: u32 = 0;
-/// `Frame::encode`: numbers, stored as they are.
+/// [`SPEC_ENCODE`]: numbers, stored as they are.
 pub const ENCODE_DATA: u32 = 1;
-/// `Frame::encode`: vectors, stored as v * 0.5 + 0.5.
+/// [`SPEC_ENCODE`]: vectors, stored as v * 0.5 + 0.5.
 pub const ENCODE_VECTOR: u32 = 2;
 
-/// `Frame::tonemap`: values that are not light (debug modes) skip exposure and tone mapping.
+/// [`SPEC_TONEMAP`]: values that are not light (debug modes) skip exposure and tone mapping.
 pub const TONEMAP_OFF: u32 = 0xffff_ffff;
 
 /// What a frame shares: camera, output, counts. `SET_FRAME`, `BINDING_FRAME`.
@@ -304,10 +317,6 @@ pub struct Frame {
     pub light_count: u32,
     /// Which light the BRDF term modes show: 0 all, else 1-based.
     pub chosen_light: u32,
-    /// Tone map, `TONEMAP_*` in common/tonemap.glsl, or `TONEMAP_OFF`.
-    pub tonemap: u32,
-    /// `ENCODE_*` of the mode on screen.
-    pub encode: u32,
     /// Debug mode on screen, for passes that are not specialized by mode.
     pub mode: u32,
     /// Largest value that the HDR target holds: 65504 for half floats.

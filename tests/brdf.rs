@@ -156,15 +156,15 @@ fn a_plot_is_drawn() {
 fn combinations(constants: &[&Constant], kept: impl Fn(&Constant, &str) -> bool) -> Vec<Settings> {
     let mut all = vec![Settings::default()];
     for constant in constants {
-        let names = constant.choices.iter().filter(|(name, _)| kept(constant, name));
-        let set = |(name, _): &(String, i64)| {
-            all.iter().map(|before| {
+        let mut longer = Vec::new();
+        for (name, _) in constant.choices.iter().filter(|(name, _)| kept(constant, name)) {
+            for before in &all {
                 let mut settings = before.clone();
                 settings.shader.insert(constant.name.clone(), ShaderValue::Name(name.clone()));
-                settings
-            })
-        };
-        all = names.flat_map(|choice| set(choice).collect::<Vec<_>>()).collect();
+                longer.push(settings);
+            }
+        }
+        all = longer;
     }
     all
 }

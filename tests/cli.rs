@@ -16,9 +16,9 @@ fn directory() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// `render` of a model file in `directory`, under validation.
+/// `render` of a model file in `directory`, under validation and by direct light.
 fn render(directory: &Path, model: &str, more: &[&str]) -> Finished {
-    let args = ["render", model, "--validate", "--out", "out.png", SMALL[0], SMALL[1]];
+    let args = ["render", model, "--validate", "--env", "none", "--out", "out.png", SMALL[0], SMALL[1]];
     run(directory, &[&args[..], more].concat())
 }
 
@@ -175,7 +175,7 @@ fn no_display() {
 #[test]
 fn an_out_that_cannot_be_written() {
     let directory = directory();
-    let out = |path: &str| run(directory.path(), &["render", "sphere-grid", "--out", path, SMALL[0], SMALL[1]]);
+    let out = |path: &str| run(directory.path(), &["render", "sphere-grid", "--env", "none", "--out", path, SMALL[0], SMALL[1]]);
     out("no/such/folder/x.png").expect(1, &["no/such/folder/x.png", "no folder"]);
     out("x.bmp").expect(1, &["x.bmp", ".png or .exr"]);
     fs::create_dir(directory.path().join("folder.png")).unwrap();
@@ -283,7 +283,7 @@ fn a_shader_error_is_printed_for_editors_and_ends_render_with_1() {
 fn render_mode_all_writes_each_file() {
     let directory = directory();
     fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    render(directory.path(), "quad.glb", &["--mode", "all", "--set", "view.msaa=1"]).expect(0, &[]);
+    render(directory.path(), "quad.glb", &["--mode", "all", "--set", "view.msaa=1", "--set", "view.frames=2"]).expect(0, &[]);
     let modes = run(directory.path(), &["modes", "--json"]).json();
     for mode in modes.as_array().unwrap() {
         let path = directory.path().join(format!("out.{}.png", mode["slug"].as_str().unwrap()));
@@ -299,7 +299,7 @@ fn an_exr_holds_raw_floats() {
     let mesh = glb::sphere(16, 32);
     fs::write(directory.path().join("ball.glb"), glb::model(&mesh, &glb::gray())).unwrap();
     let args = ["render", "ball.glb", "--mode", "depth", "--out", "depth.exr", "--eye", "0,0,5", "--target", "0,0,0"];
-    run(directory.path(), &[&args[..], &SMALL, &["--set", "view.msaa=1"]].concat()).expect(0, &[]);
+    run(directory.path(), &[&args[..], &SMALL, &["--env", "none", "--set", "view.msaa=1"]].concat()).expect(0, &[]);
     let exr = open_image(&directory.path().join("depth.exr")).into_rgba32f();
     let pixel = exr.get_pixel(24, 16).0;
     // The front of a unit sphere, 5 m away: metres, beyond what a PNG could hold.

@@ -3,6 +3,8 @@
 
 mod support;
 
+use std::f64::consts::PI;
+
 use serde_json::json;
 use specula::headless::Headless;
 use specula::render::Capture;
@@ -16,12 +18,38 @@ const FIXED: &str = "final base-color alpha metallic roughness occlusion emissiv
     shading-normal tangent bitangent uv0 uv1 vertex-color position d g v f diffuse-lobe specular-lobe dielectric metal \
     ambient light-1 light-2 light-3 n-dot-l n-dot-v n-dot-h v-dot-h nan";
 
-/// What these show is the same all over a closed, opaque, unmirrored model: 1, or the color for "good".
-const SAME_ALL_OVER: [&str; 4] = ["alpha", "f90", "face-orientation", "tangent-sign"];
+/// What these show is the same all over a closed, opaque, unmirrored model: 1, 1.5, or the color for "good".
+const SAME_ALL_OVER: [&str; 5] = ["alpha", "f90", "ior", "face-orientation", "tangent-sign"];
 
-/// One sample, so that no pixel mixes the model and what is behind it.
+/// Modes of what the shader ball lacks: a model that has it, what else must be set, the modes.
+const ELSEWHERE: [(&str, &[&str], &[&str]); 11] = [
+    (
+        "clearcoat",
+        &[],
+        &["clearcoat", "clearcoat-roughness", "clearcoat-normal", "clearcoat-lobe", "clearcoat-light"],
+    ),
+    ("anisotropy", &[], &["anisotropy", "anisotropy-direction"]),
+    ("sheen", &[], &["sheen-color", "sheen-roughness", "sheen-lobe", "sheen-light"]),
+    ("specular", &[], &["specular-factor", "specular-color"]),
+    ("iridescence", &[], &["iridescence", "iridescence-thickness"]),
+    ("transmission", &[], &["transmission", "transmitted-light"]),
+    ("volume", &[], &["thickness", "attenuation-color"]),
+    ("dispersion", &[], &["dispersion"]),
+    ("diffuse-transmission", &["lights.source=model"], &["diffuse-transmission", "diffuse-transmission-color"]),
+    ("sphere-grid", &["lights.rect.enabled=true"], &["area-light"]),
+    (
+        "sphere-grid",
+        &["environment.name=studio"],
+        &["ibl-diffuse", "ibl-specular", "irradiance", "prefiltered", "environment", "monte-carlo", "ibl-error"],
+    ),
+];
+/// These need a file: `the_measured_modes_show_the_file`.
+const MEASURED: [&str; 3] = ["measured", "measured-split", "measured-error"];
+
+/// One sample, so that no pixel mixes the model and what is behind it; by direct light.
 fn sharp(model: Model, more: &[&str]) -> Headless {
-    let mut settings: Settings = settings(&["view.msaa=1", "view.background=none"]);
+    let mut settings: Settings =
+        settings(&["view.msaa=1", "view.frames=2", "view.background=none", "environment.name=none"]);
     more.iter().for_each(|assignment| settings.assign(assignment).unwrap());
     renderer(model, settings, SIZE)
 }
@@ -56,23 +84,75 @@ fn the_fixed_slugs_exist() {
     }
 }
 
+/// What is wrong with a mode of which the model has data.
+fn fault(headless: &mut Headless, slug: &str) -> Option<String> {
+    let capture = render(headless, slug);
+    let values = covered(&capture);
+    let shown: Vec<_> = values.iter().filter(|value| !is_absent(value)).collect();
+    let black = shown.iter().all(|value| value.iter().all(|c| *c == 0.0));
+    let uniform = shown.iter().all(|value| *value == shown[0]);
+    let bad = values.iter().flatten().any(|c| !c.is_finite());
+    let is_wrong = bad || shown.len() < 20 || black || (uniform && !SAME_ALL_OVER.contains(&slug));
+    let count = shown.len();
+    is_wrong.then(|| format!("{slug}: {count} pixels with data, black {black}, uniform {uniform}, not finite {bad}"))
+}
+
 #[test]
 fn every_mode_shows_data_of_the_shader_ball() {
+    let elsewhere: Vec<&str> = ELSEWHERE.iter().flat_map(|(_, _, slugs)| *slugs).copied().chain(MEASURED).collect();
     let mut headless = sharp(model("shader-ball"), &[]);
+    let own = slugs(&headless).into_iter().filter(|slug| !elsewhere.contains(&slug.as_str()));
+    let wrong: Vec<String> = own.filter_map(|slug| fault(&mut headless, &slug)).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn modes_of_what_the_shader_ball_lacks_show_data_elsewhere() {
     let mut wrong = Vec::new();
-    for slug in slugs(&headless) {
-        let capture = render(&mut headless, &slug);
-        let values = covered(&capture);
-        let shown: Vec<_> = values.iter().filter(|value| !is_absent(value)).collect();
-        let black = shown.iter().all(|value| value.iter().all(|c| *c == 0.0));
-        let uniform = shown.iter().all(|value| *value == shown[0]);
-        let bad = values.iter().flatten().any(|c| !c.is_finite());
-        if bad || shown.len() < 20 || black || (uniform && !SAME_ALL_OVER.contains(&slug.as_str())) {
-            let count = shown.len();
-            wrong.push(format!("{slug}: {count} pixels with data, black {black}, uniform {uniform}, not finite {bad}"));
-        }
+    for (name, more, slugs) in ELSEWHERE {
+        let mut headless = sharp(model(name), more);
+        wrong.extend(slugs.iter().filter_map(|slug| fault(&mut headless, slug)));
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// A file of MERL's format for a matte surface of this albedo: the same BRDF for all pairs of directions.
+fn matte_merl(albedo: f64) -> Vec<u8> {
+    let counts = [90_i32, 90, 180];
+    let pairs = counts.iter().product::<i32>() as usize;
+    // What the file holds is to be multiplied by these (Matusik et al. 2003, the database's reader).
+    let scales = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
+    let value = |scale: f64| (albedo / PI / scale).to_le_bytes().repeat(pairs);
+    counts.iter().flat_map(|count| count.to_le_bytes()).chain(scales.into_iter().flat_map(value)).collect()
+}
+
+#[test]
+fn the_measured_modes_show_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("matte.binary");
+    std::fs::write(&path, matte_merl(0.5)).unwrap();
+    let light = json!({ "type": "point", "intensity": 20.0 });
+    let bytes = glb::model_with_light(&glb::quad(1.0), &glb::gray(), &light, &json!({ "translation": [0.5, 0.5, 2.0] }));
+    let mut headless =
+        sharp(load(&bytes), &["lights.source=model", "camera.azimuth=0", "camera.elevation=0", "MULTI_SCATTER=None"]);
+    assert!(MEASURED.iter().all(|slug| covered(&render(&mut headless, slug)).iter().all(is_absent)), "no file");
+    headless.settings_mut().measured = path.display().to_string();
+    let mut raw = |slug: &str| covered(&render(&mut headless, slug));
+    // base color / pi times irradiance, without the cosine: the file's albedo is the material's, 0.5.
+    let (measured, lambert, cosine) = (raw("measured"), raw("lambert"), raw("n-dot-l"));
+    for ((measured, lambert), cosine) in measured.iter().zip(&lambert).zip(&cosine) {
+        let expected = lambert[0] * cosine[0];
+        assert!(measured.iter().all(|c| (c - expected).abs() < 2e-3 * expected), "{measured:?}, not {expected}");
+    }
+    // Left of the middle as measured, right of it as shaded, with a highlight; between them a line of two pixels.
+    let (split, diffuse, specular) = (raw("measured-split"), raw("direct-diffuse"), raw("direct-specular"));
+    let equal = |a: f32, b: f32| (a - b).abs() < 1e-4;
+    let left = (0..split.len()).filter(|i| equal(split[*i][0], measured[*i][0])).count();
+    let right = (0..split.len()).filter(|i| equal(split[*i][0], diffuse[*i][0] + specular[*i][0])).count();
+    assert!(left.abs_diff(right) < split.len() / 20 && left + right >= split.len() - 2 * SIZE.1 as usize);
+    // The shaded surface is brighter where its highlight is, and darker far from it: F does not let all light in.
+    let error = raw("measured-error");
+    assert!(error.iter().any(|[r, _, b]| r > b) && error.iter().any(|[r, _, b]| b > r));
 }
 
 #[test]
@@ -80,7 +160,35 @@ fn absent_data_is_a_checkerboard() {
     // No normals: flat ones are made. No coordinates, colors or textures.
     let mesh = glb::Mesh { normals: Vec::new(), ..glb::quad(1.0) };
     let mut headless = sharp(load(&glb::model(&mesh, &glb::gray())), &["camera.azimuth=0", "camera.elevation=0"]);
-    let data = ["uv0", "uv1", "vertex-color", "normal-texture", "tangent", "bitangent", "tangent-sign", "mip-level"];
+    let data = [
+        "uv0",
+        "uv1",
+        "vertex-color",
+        "normal-texture",
+        "tangent",
+        "bitangent",
+        "tangent-sign",
+        "mip-level",
+        // Extensions, the environment, a rectangle.
+        "clearcoat-normal",
+        "clearcoat-light",
+        "anisotropy-direction",
+        "sheen-roughness",
+        "sheen-lobe",
+        "specular-color",
+        "iridescence-thickness",
+        "transmission",
+        "transmitted-light",
+        "attenuation-color",
+        "dispersion",
+        "diffuse-transmission-color",
+        "ibl-specular",
+        "irradiance",
+        "environment",
+        "monte-carlo",
+        "ibl-error",
+        "area-light",
+    ];
     let check = |headless: &mut Headless, slug: &str| {
         let values = covered(&render(headless, slug));
         assert!(values.iter().all(is_absent), "{slug} shows more than the checkerboard");
@@ -111,16 +219,21 @@ fn a_light_that_is_missing_leaves_the_others() {
 
 #[test]
 fn the_built_in_models_have_no_nan_anywhere() {
+    // The warnings are pure magenta, yellow and cyan; what is well is gray.
+    let is_well = |headless: &mut Headless| {
+        let values = covered(&render(headless, "nan"));
+        values.iter().all(|[r, g, b]| r == g && g == b)
+    };
     for name in BUILT_IN {
-        let mut headless = sharp(model(name), &[]);
-        for lights in ["orbit", "model", "none"] {
-            headless.settings_mut().assign(&format!("lights.source={lights}")).unwrap();
-            // The warnings are pure magenta, yellow and cyan; what is well is gray.
-            let values = covered(&render(&mut headless, "nan"));
-            assert!(values.iter().all(|[r, g, b]| r == g && g == b), "{name}, lights {lights}");
-        }
-        let values = covered(&render(&mut headless, "final"));
-        assert!(values.iter().flatten().all(|c| c.is_finite() && *c >= 0.0), "{name}");
+        let lights = if name == "many-lights" { "model" } else { "orbit" };
+        let lights = format!("lights.source={lights}");
+        let mut headless = sharp(model(name), &["environment.name=studio", "lights.rect.enabled=true", &lights]);
+        assert!(is_well(&mut headless), "{name}");
+    }
+    let mut headless = sharp(model(BUILT_IN[0]), &[]);
+    for lights in ["orbit", "none"] {
+        headless.settings_mut().assign(&format!("lights.source={lights}")).unwrap();
+        assert!(is_well(&mut headless), "{lights}, by flat ambient light");
     }
 }
 
@@ -177,12 +290,13 @@ fn assert_encoded(capture: &Capture, what: &str, stored: impl Fn(f64) -> f64) {
 
 #[test]
 fn light_adds_up_and_materials_mix() {
-    let mut headless = sharp(model("shader-ball"), &[]);
+    let mut headless = sharp(model("shader-ball"), &["environment.name=studio"]);
     let mut raw = |slug: &str| render(&mut headless, slug).raw;
     let whole = raw("final");
     let lights = [raw("light-1"), raw("light-2"), raw("light-3")];
     let (ambient, emitted) = (raw("ambient"), raw("emissive-only"));
     let (dielectric, metal, metallic) = (raw("dielectric"), raw("metal"), raw("metallic"));
+    let (once, more) = (raw("single-scattering"), raw("multiple-scattering"));
     for i in (0..whole.len()).filter(|i| whole[*i][3] == 1.0) {
         for c in 0..3 {
             let near = |found: f32, what: &str| {
@@ -194,6 +308,7 @@ fn light_adds_up_and_materials_mix() {
             near(lit - 2.0 * ambient[i][c] + emitted[i][c], "lights");
             let m = metallic[i][c];
             near(dielectric[i][c] * (1.0 - m) + metal[i][c] * m, "dielectric and metal");
+            near(once[i][c] + more[i][c], "scattered once and more often");
         }
     }
 }

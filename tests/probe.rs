@@ -8,9 +8,8 @@ use serde_json::Value;
 use support::open_image;
 use support::process::{Finished, run};
 
-const VIEW: [&str; 9] = [
-    "--size", "96x64", "--env", "none", "--validate", "--set", "view.frames=4", "--set", "lights.rect.enabled=true",
-];
+const VIEW: [&str; 9] =
+    ["--size", "96x64", "--env", "none", "--validate", "--set", "view.frames=4", "--set", "lights.rect.enabled=true"];
 
 fn probe(directory: &Path, args: &[&str]) -> Finished {
     run(directory, &[&["probe"], args, &VIEW].concat())

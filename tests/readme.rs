@@ -14,7 +14,7 @@ fn snippet(part: &str) -> String {
 }
 
 fn session() -> Session {
-    Session::new(model(BUILT_IN[0]), settings(&[]))
+    Session::new(model(BUILT_IN[0]), settings(&["environment.name=none"]))
 }
 
 /// `specula check` would pass.

@@ -11,16 +11,25 @@ use support::{Session, assert_differ, assert_same, failed, glb, line_of, lines, 
 
 /// A lit sphere: one kind of material, so that a reload builds one pipeline.
 fn sphere() -> Session {
-    Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings(&[]))
+    Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings(&["environment.name=none"]))
 }
 
 const NDF: &str = "brdf/ndf.glsl";
 const USER: &str = "user.glsl";
+/// Stages that round to half floats.
+const ROUNDING: &[&str] = &[
+    "ibl/cube.comp",
+    "ibl/dfg.comp",
+    "ibl/downsample.comp",
+    "ibl/prefilter.comp",
+    "ibl/prefilter_sheen.comp",
+    "ibl/sheen_albedo.comp",
+];
 const SQUARED: &str = "float a2 = alpha * alpha;";
 
 #[test]
 fn a_b_a_by_pixels() {
-    let mut session = Session::new(model("shader-ball"), settings(&[]));
+    let mut session = Session::new(model("shader-ball"), settings(&["environment.name=none"]));
     let original = session.tree.read(NDF);
     let a = session.render();
     ready(&session.edit(NDF, SQUARED, "float a2 = alpha;"));
@@ -61,6 +70,9 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
         ("common/tonemap.glsl", "x / (1.0 + x)", "x / (1.5 + x)", &["tonemap.frag"]),
         ("common/fragment.glsl", "vec2 uv1;", "vec2 uv1;\n    vec2 uv2;", &["pbr.frag", "pbr.vert"]),
         ("common/color.glsl", "0.0031308", "0.0031309", &["pbr.frag", "tonemap.frag"]),
+        ("lighting/environment.glsl", "#endif\n", "// Another line.\n#endif\n", &["pbr.frag", "sky.frag"]),
+        ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", &["ibl/dfg.comp", "pbr.frag"]),
+        ("ibl/half.glsl", "#endif\n", "// Another line.\n#endif\n", ROUNDING),
         ("tonemap.vert", "void main() {", "void main() {\n    float unused = 1.0;", &["tonemap.vert"]),
     ] {
         let reload = session.edit(file, from, to);
@@ -179,7 +191,8 @@ fn interface_glsl_is_held_against_this_program() {
     let file = session.tree.path("interface.glsl").display().to_string();
 
     // Written by another version: named, with what to do.
-    let reload = session.edit("interface.glsl", "INTERFACE_VERSION = 1u", "INTERFACE_VERSION = 77u");
+    let version = format!("INTERFACE_VERSION = {}u", specula::interface::VERSION);
+    let reload = session.edit("interface.glsl", &version, "INTERFACE_VERSION = 77u");
     let error = failed(&reload).iter().find(|d| d.file == file && d.message.contains("77")).expect("a diagnostic");
     assert_eq!(error.line, Some(line_of(&original, "INTERFACE_VERSION")), "{error}");
     assert!(error.help.as_ref().is_some_and(|help| help.contains("specula new")), "{error:?}");

@@ -41,7 +41,7 @@ impl Watched {
         let mut command = specula(&tree.beside(""));
         command.args(["render", "quad.glb", "--shaders", "shaders", "--out", "out/picture.png", "--size", "32x24"]);
         command.args(["--watch", "--events", "json", "--validate", "--tonemap", "none", "--set", "view.msaa=1"]);
-        command.args(["--eye", "0,0,3", "--target", "0,0,0"]);
+        command.args(["--env", "none", "--eye", "0,0,3", "--target", "0,0,0"]);
         let mut running = Running::start(&mut command);
         running.event("ready");
         Self { tree, running, original, pictures, _watcher: watcher }
@@ -265,7 +265,7 @@ fn shaders_that_are_broken_from_the_start_are_waited_for() {
     tree.write(USER, &original.replace("return radiance;", "return radianc;"));
     let mut command = specula(&tree.beside(""));
     command.args(["render", "sphere-grid", "--shaders", "shaders", "--out", "late.png", "--size", "32x24"]);
-    let mut running = Running::start(command.args(["--watch", "--events", "json", "--validate"]));
+    let mut running = Running::start(command.args(["--env", "none", "--watch", "--events", "json", "--validate"]));
     running.event("diagnostic");
     assert!(!tree.beside("late.png").exists());
     tree.write(USER, &original);

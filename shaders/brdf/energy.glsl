@@ -41,12 +41,6 @@ vec3 curve_albedo(FresnelCurve curve, vec4 dfg) {
     return curve.f0 * terms.r + curve.f90 * terms.g - curve.beta * terms.b;
 }
 
-// s.dfg: to be called after the last change of roughness and normal, before the surface is lit. A stretched lobe takes
-// the entry of the round one; `v`: unit, towards the eye.
-void complete_surface(inout Surface s, vec3 v) {
-    s.dfg = dfg(clamp(dot(s.n, v), MIN_N_DOT_V, 1.0), s.roughness);
-}
-
 // B over the hemisphere, 2 integral B(mu) mu dmu, which the table does not hold: 1/21 for a mirror, less for rough
 // surfaces, which meet more light at steep angles. Fits to the integrals, off by less than 0.002.
 float b_average(float roughness) {

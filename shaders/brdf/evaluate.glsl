@@ -159,10 +159,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     vec4 dfg_l = s.dfg;
     if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) dfg_l = dfg(abs(cos_l), s.roughness);
     f.multiple = vec3(0.0);
-    if (MULTI_SCATTER != SINGLE_SCATTER) {
-        vec3 dielectric = f_multiple(dielectric_curve(s), dfg_l, s.dfg);
-        f.multiple = mix(dielectric, f_multiple(metal_curve(s), dfg_l, s.dfg), s.metallic);
-    }
+    if (MULTI_SCATTER != SINGLE_SCATTER) f.multiple = f_multiple(s, dfg_l);
 
     f.k_s = mix(f.f_dielectric, f.f_metal, s.metallic);
     f.k_d = (1.0 - s.metallic) * entering(s, f, dfg_l);

@@ -39,12 +39,27 @@ vec3 multiple_albedo(FresnelCurve curve, vec4 dfg) {
     return vec3(0.0);
 }
 
-// 1/sr. dfg_l, dfg_v: the table's entries towards the light and the eye.
-vec3 f_multiple(FresnelCurve curve, vec4 dfg_l, vec4 dfg_v) {
+// The lobe, 1/sr. dfg_l: the table's entry towards the light.
+vec3 f_multiple(Surface s, vec4 dfg_l) {
+    if (MULTI_SCATTER == KULLA_CONTY) return s.multiple * f_kulla_conty(dfg_l, s.dfg);
+    return s.multiple;
+}
+
+// What no light changes: s.dfg, and s.multiple, the F_ms of Kulla & Conty or the whole lobe of Fdez-Aguera. To be called
+// after the last change of the material and the normal, before the surface is lit. A stretched lobe takes the entry of
+// the round one; `v`: unit, towards the eye.
+void complete_surface(inout Surface s, vec3 v) {
+    s.dfg = dfg(clamp(dot(s.n, v), MIN_N_DOT_V, 1.0), s.roughness);
+    s.multiple = vec3(0.0);
+    FresnelCurve dielectric = dielectric_curve(s);
+    FresnelCurve metal = metal_curve(s);
     if (MULTI_SCATTER == KULLA_CONTY) {
-        return multiple_fresnel(curve.average, dfg_v.a) * f_kulla_conty(dfg_l, dfg_v);
+        vec3 f_dielectric = multiple_fresnel(dielectric.average, s.dfg.a);
+        s.multiple = mix(f_dielectric, multiple_fresnel(metal.average, s.dfg.a), s.metallic);
+    } else if (MULTI_SCATTER == FDEZ_AGUERA) {
+        vec3 albedo = mix(multiple_albedo(dielectric, s.dfg), multiple_albedo(metal, s.dfg), s.metallic);
+        s.multiple = albedo / PI;
     }
-    return multiple_albedo(curve, dfg_v) / PI;
 }
 
 // All that the boundary of the dielectric reflects, once or more often: what is left of 1 enters.

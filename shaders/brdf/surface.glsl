@@ -14,7 +14,8 @@ struct Surface {
     vec3 f0;                   // of the dielectric: reflectance along the normal
     float f90;                 // of the dielectric: reflectance at a grazing angle
     float ior;                 // of the dielectric
-    vec4 dfg;                  // albedo terms towards the eye: see brdf/energy.glsl, which fills them in
+    vec4 dfg;                  // albedo terms towards the eye: see brdf/energy.glsl
+    vec3 multiple;             // strength of multiple scattering: see brdf/multiscatter.glsl, which fills in both
 
     // What follows is set where FEATURES has the extension's bit, and neutral else.
     vec3 t;                    // FEATURE_ANISOTROPY: direction in which the lobe is stretched, unit, at right angles to n

@@ -83,8 +83,8 @@ float pdf_charlie(float n_dot_h, float alpha) {
     return (2.0 + 1.0 / alpha) * pow(sin2, 0.5 / alpha) * max(n_dot_h, 0.0) / (2.0 * PI);
 }
 
-// Smith's G1 of GGX, the part of the facets facing v that v sees: 2 / (1 + sqrt(1 + alpha^2 tan^2)) (Walter et al. 2007,
-// eq. 34; Heitz 2014, eq. 72 and 87 when alpha differs along x and y). Times z above and below the line: no tangent.
+// Smith's G1 of GGX, the part of the facets facing v that v sees: 2 / (1 + sqrt(1 + alpha^2 tan^2)) (Walter et al.
+// 2007, eq. 34; Heitz 2014, eq. 72 and 87 when alpha differs along x and y). z above and below the line: no tangent.
 float g1_ggx(vec3 v, vec2 alpha) {
     float root = length(vec3(alpha * v.xy, v.z));
     return 2.0 * v.z / (v.z + root);

@@ -13,7 +13,7 @@
 //   C = integral of D V c (1 - c)^6 NoL dl          E = A + B,  E_avg = 2 integral of E(mu) mu dmu over 0..1
 //
 // Half vectors are drawn with a density that holds D, and D cancels (Karis 2013). So brdf/ndf.glsl is not called: the
-// table stays that of a true D, and what an edit of D does to the energy shows in the furnace instead of healing itself.
+// table stays that of a true D, and what an edit of D does to the energy shows in the furnace and does not heal itself.
 //
 // A group is a row, roughness from 0 to 1; its invocations are the columns, NoV at texel centers. Stored are 1 - E, B,
 // C and 1 - E_avg, which half floats hold to three digits where E is close to 1.

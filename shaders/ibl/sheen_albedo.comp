@@ -5,9 +5,11 @@
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
-// How much light the sheen lobe reflects in all, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are NoV, rows
-// roughness, at texel centers. Directions cover the hemisphere: of the lobe's own distribution most lies below it. The
-// points are a lattice with 3 u^2 - 2 u^3 as the cosine, its derivative as a weight, as in ibl/dfg.comp.
+// How much light the sheen lobe reflects in all, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are NoV,
+// rows roughness, at texel centers. Directions cover the hemisphere: of the lobe's own distribution most lies below it.
+// The points are a lattice with 3 u^2 - 2 u^3 as the cosine, its derivative as a weight, as in ibl/dfg.comp.
+//
+// E exceeds 1 (up to 2.2) where v grazes a smooth sheen: V grows without bound there. It is what the lobe does.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;

@@ -9,7 +9,7 @@
 layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform samplerCube prefiltered_cube;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED_SHEEN) uniform samplerCube prefiltered_sheen_cube;
-layout(set = SET_FRAME, binding = BINDING_IRRADIANCE, scalar) readonly buffer Irradiance {
+layout(set = SET_FRAME, binding = BINDING_IRRADIANCE, scalar) uniform Irradiance {
     vec3 irradiance_sh[9];     // see ibl/irradiance.comp
 };
 
@@ -26,8 +26,8 @@ vec3 environment_radiance(vec3 direction, float lod) {
     return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;
 }
 
-// E / pi, the radiance that leaves a white Lambert surface (Ramamoorthi & Hanrahan 2001, eq. 13, with all constants in the
-// coefficients). n: unit. max: between the directions that the bake looked at, three bands may still dip below 0.
+// E / pi, the radiance that leaves a white Lambert surface (Ramamoorthi & Hanrahan 2001, eq. 13, with all constants in
+// the coefficients). n: unit. max: between the directions that the bake looked at, the polynomial may dip below 0.
 vec3 irradiance_over_pi(vec3 n) {
     vec3 d = map_from_world(n);
     vec3 e = irradiance_sh[0];
@@ -49,8 +49,8 @@ vec3 prefiltered_sheen(vec3 r, float roughness) {
     return frame.environment_intensity * textureLod(prefiltered_sheen_cube, map_from_world(r), lod).rgb;
 }
 
-// What is seen behind the model. Blurred as by a surface with this roughness; up to the first level that has one, the sharp
-// image, which has more texels than the prefiltered level 0, is faded out.
+// What is seen behind the model. Blurred as by a surface with this roughness; up to the first level that has one, the
+// sharp image, which has more texels than the prefiltered level 0, is faded out.
 vec3 background_radiance(vec3 direction) {
     float lod = level_of_roughness(frame.environment_blur, textureQueryLevels(prefiltered_cube));
     if (lod >= 1.0) return prefiltered_radiance(direction, frame.environment_blur);

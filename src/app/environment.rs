@@ -176,7 +176,7 @@ fn bake(
         };
         let progress = |done: f32, next: &str| tell(BakeMessage::Progress(ticket, done, next.to_owned()));
         let superseded = || newest.load(Ordering::SeqCst) != ticket;
-        let control = BakeControl { progress: &progress, superseded: &superseded };
+        let control = BakeControl { progress: &progress, superseded: &superseded, from_disk: true };
         let result = Baked::bake(&set, &name, &control);
         tell(BakeMessage::Done(ticket, Box::new(result)));
     })

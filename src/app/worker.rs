@@ -251,14 +251,15 @@ impl Thread {
 
     /// Builds the modes before and after the one on screen, which `[` and `]` ask for next, unless there is other work.
     fn build_ahead(&self, set: &Arc<PipelineSet>) {
-        let (wanted, modes) = (self.needs().wanted(&set.shaders), &set.shaders.modes);
+        let (needs, modes) = (self.needs(), &set.shaders.modes);
+        let wanted = needs.wanted(&set.shaders);
         let Some(at) = modes.iter().position(|m| m.id == wanted.mode) else { return };
         for neighbor in [(at + 1) % modes.len(), (at + modes.len() - 1) % modes.len()] {
             if !self.inbox.is_empty() || self.is_stale() {
                 return;
             }
             // A neighbor that the driver refuses is told about when it is asked for.
-            let _ = set.build(&wanted.with_mode(&modes[neighbor]));
+            let _ = set.build(&wanted.with_mode(&modes[neighbor], needs.settings.view.tonemap));
         }
     }
 }

@@ -1,5 +1,6 @@
-//! `specula bench reload|frame|load`: medians on this machine, with its name.
+//! `specula bench reload|frame|load|bake`: medians on this machine, with its name.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -25,6 +26,8 @@ enum What {
     Frame,
     /// From the model's file to its first frame
     Load,
+    /// An environment to image-based light, pass by pass, and the same from the disk
+    Bake,
 }
 
 /// Options of `bench`.
@@ -54,6 +57,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
         What::Reload => reload(&args, &gpu, &compiler)?,
         What::Frame => frame(&args, &gpu, &compiler)?,
         What::Load => load(&args, &gpu, &compiler, start)?,
+        What::Bake => bake(&args, &gpu, &compiler)?,
     };
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);
@@ -124,7 +128,11 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         wall.push(ms(begin));
         device.extend(headless.device_ms());
     }
-    let slugs: Vec<String> = headless.pipelines().shaders.modes.iter().map(|m| m.slug.clone()).collect();
+    // A mode that was asked for is all that is of interest.
+    let slugs: Vec<String> = match args.common.mode {
+        Some(_) => Vec::new(),
+        None => headless.pipelines().shaders.modes.iter().map(|m| m.slug.clone()).collect(),
+    };
     let (mut first, mut again, mut modes) = (Vec::new(), Vec::new(), Vec::new());
     for slug in slugs {
         headless.settings_mut().mode.clone_from(&slug);
@@ -193,6 +201,30 @@ fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -
     let mut result = Value::Object(table.collect());
     result["start_to_device_ms"] = json!(round(device_ms));
     result["start_to_first_frame_ms"] = json!(round(cold_ms));
+    Ok(result)
+}
+
+/// Bakes the environment that is set; the first bake also makes the pipelines.
+fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+    let model = args.common.model_silently(args.model.as_deref())?;
+    let (source, settings) = (args.common.source()?, args.common.settings()?);
+    if !settings.environment.is_lit() {
+        return Err(Failure::Input("there is no environment to bake: --env is none".into()));
+    }
+    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    let (mut table, mut from_disk) = (BTreeMap::<String, Vec<f64>>::new(), Vec::new());
+    for _ in 0..args.samples {
+        headless.bake(false)?;
+        let report = serde_json::to_value(headless.bake_report()).unwrap_or_default();
+        for (name, value) in report.as_object().into_iter().flatten() {
+            value.as_f64().into_iter().for_each(|ms| table.entry(name.clone()).or_default().push(ms));
+        }
+        headless.bake(true)?;
+        from_disk.push(headless.bake_report().total_ms);
+    }
+    let mut result = Value::Object(table.into_iter().map(|(name, list)| (name, summary(list))).collect());
+    result["from_disk_ms"] = summary(from_disk);
+    result["environment"] = json!(headless.bake_report().environment);
     Ok(result)
 }
 

@@ -105,7 +105,7 @@ fn build_choices(
     let every_material = Wanted { materials: all_materials, samples: 4, ..plain.clone() };
     build(&every_material, &tree_name(&args.common.source()?), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
-        build(&plain.with_mode(mode), &mode.file, mode.line, format!("mode {}", mode.slug));
+        build(&plain.with_mode(mode, settings.view.tonemap), &mode.file, mode.line, format!("mode {}", mode.slug));
     }
     for constant in &shaders.constants {
         let named = constant.choices.iter().map(|(name, value)| (name.clone(), ShaderValue::Int(*value)));

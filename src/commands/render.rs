@@ -124,7 +124,7 @@ fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result
 
 /// Bakes the environment again; on failure the last good one stays.
 fn take_environment(headless: &mut Headless, args: &Args) -> bool {
-    let baked = headless.bake();
+    let baked = headless.bake(true);
     match &baked {
         Ok(()) => emit(args.common.emits(), &Event::Bake(headless.bake_report())),
         Err(error) => eprintln!("specula: {error}\nspecula: the last good environment stays"),

@@ -29,6 +29,7 @@ pub fn glsl() -> String {
         constant("uint", name, if *value > 0xffff { format!("0x{value:x}u") } else { format!("{value}u") });
     }
     constant("int", "TEXTURE_COUNT", TEXTURE_COUNT.to_string());
+    constant("int", "MAX_LIGHTS", MAX_LIGHTS.to_string());
     out.push('\n');
     for s in SPECIALIZATION {
         let _ = writeln!(out, "layout(constant_id = {}) const uint {} = 0u; // {}", s.id, s.name, s.doc);
@@ -116,8 +117,6 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     float far;
     uint light_count;
     uint chosen_light;         // 0 all, else 1-based
-    uint tonemap;
-    uint encode;
     uint mode;
     float largest_value;       // of the HDR target: 65504 for half floats
     vec2 environment_rotation; // cos, sin of the turn around +Y
@@ -139,8 +138,8 @@ struct Light {
     vec3 half_y_ws;
 };
 
-layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) readonly buffer Lights {
-    Light lights[];
+layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
+    Light lights[MAX_LIGHTS];
 };
 
 layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, SetLayouts, Use, one_shot, vk};
-use crate::interface::Task;
+use crate::interface::{IRRADIANCE_SIZE, Task};
 use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
 
 use super::cache;
@@ -29,8 +29,7 @@ const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 64;
 /// Level of the cube that irradiance is summed over: 64 x 64 texels.
 const IRRADIANCE_LEVEL: u32 = 3;
-/// Nine RGB coefficients.
-const IRRADIANCE_BYTES: u64 = 9 * 12;
+const IRRADIANCE_BYTES: u64 = IRRADIANCE_SIZE as u64;
 const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 /// Largest half float.
 const LARGEST_HALF: f32 = 65504.0;
@@ -98,6 +97,8 @@ pub struct BakeControl<'a> {
     pub progress: &'a (dyn Fn(f32, &str) + Sync),
     /// Asked between passes whether to give up.
     pub superseded: &'a (dyn Fn() -> bool + Sync),
+    /// Whether a result on disk will do; if not, it is made again and kept.
+    pub from_disk: bool,
 }
 
 impl GpuEnvironment {
@@ -134,7 +135,7 @@ impl GpuEnvironment {
 
     fn with(gpu: &Arc<Gpu>, [cube, prefiltered, sheen]: [Arc<Image>; 3], scale: f32) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
-        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
+        let usage = Usage::STORAGE_BUFFER | Usage::UNIFORM_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
         let irradiance = Buffer::new(gpu, "irradiance", IRRADIANCE_BYTES, usage, Memory::Device)?;
         let sampler = task::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
         Ok(Self { cube, prefiltered, sheen, irradiance, sampler, scale, report: BakeReport::default() })
@@ -206,7 +207,7 @@ impl GpuEnvironment {
         this.report.environment.clone_from(&file.name);
         let key = key(set, file)?;
         // The scale comes last.
-        if let Some(bytes) = cache::load(&key, this.bytes() + 4) {
+        if let Some(bytes) = cache::load(&key, this.bytes() + 4).filter(|_| control.from_disk) {
             let upload = Instant::now();
             let (images, scale) = bytes.split_at(bytes.len() - 4);
             this.fill(gpu, images)?;

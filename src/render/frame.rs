@@ -158,7 +158,7 @@ impl Renderer {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             frames: Frames::new(gpu, Self::IN_FLIGHT)?,
-            uniforms: (0..Self::IN_FLIGHT).map(|_| Uniforms::new(gpu, 0)).collect::<Result<_, _>>()?,
+            uniforms: (0..Self::IN_FLIGHT).map(|_| Uniforms::new(gpu)).collect::<Result<_, _>>()?,
             targets: None,
             nearest: Sampler::new(gpu, &nearest)?,
             constants: Constants {
@@ -248,9 +248,6 @@ impl Renderer {
         let accumulates = input.pipelines.is_some_and(|(_, wanted)| wanted.accumulates);
         self.sample_index = if is_same && accumulates { self.sample_index.saturating_add(1) } else { 0 };
         let slot = self.frames.current();
-        if self.uniforms[slot].light_capacity() < input.shot.lights.len() {
-            self.uniforms[slot] = Uniforms::new(&self.gpu, input.shot.lights.len())?;
-        }
         let uniforms = &mut self.uniforms[slot];
         let frame = input.shot.uniforms(input.rect, largest, input.environment.scale, self.sample_index);
         uniforms.write(&frame, &input.shot.lights, &input.shot.params);
@@ -279,6 +276,9 @@ impl Renderer {
         encoder.begin_rendering(&attachments);
         if let Some(pipeline) = input.pipelines.and_then(|(set, wanted)| set.get(&wanted.tonemap_key())) {
             encoder.set_viewport(input.rect);
+            if let Some(only) = only {
+                encoder.set_scissor(only);
+            }
             encoder.bind_pipeline(&pipeline);
             encoder.bind_set(&self.layouts, &targets.picture_set);
             encoder.draw(3);

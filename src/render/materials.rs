@@ -122,17 +122,19 @@ fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>
         model::Wrap::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
         model::Wrap::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
     };
-    // A software device pays for each anisotropic sample; a GPU hardly notices.
+    // A software device pays for each texel: it reads the nearest of two mip levels, and no anisotropic samples. A GPU
+    // hardly notices either.
+    let software = gpu.info().kind == "cpu";
     let smooth = sampler.mag_linear && sampler.min_linear && sampler.mip == model::Mip::Linear;
-    let anisotropy = if smooth && gpu.info().kind != "cpu" { 8 } else { 1 };
+    let anisotropy = if smooth && !software { 8 } else { 1 };
     Sampler::new(
         gpu,
         &SamplerDesc {
             mag: filter(sampler.mag_linear),
             min: filter(sampler.min_linear),
             mip: match sampler.mip {
-                model::Mip::Linear => vk::SamplerMipmapMode::LINEAR,
-                model::Mip::None | model::Mip::Nearest => vk::SamplerMipmapMode::NEAREST,
+                model::Mip::Linear if !software => vk::SamplerMipmapMode::LINEAR,
+                _ => vk::SamplerMipmapMode::NEAREST,
             },
             mips: sampler.mip != model::Mip::None,
             wrap_u: wrap(sampler.wrap_u),

@@ -177,7 +177,7 @@ impl Bench {
         let tables = stand.set.tables(&wanted).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
         let environment = stand.environment.environment.clone();
         let sources = Sources { environment, tables, measured: stand.measured.clone() };
-        let mut uniforms = Uniforms::new(&stand.gpu, 0)?;
+        let mut uniforms = Uniforms::new(&stand.gpu)?;
         let params = values::params(&settings.shader, &stand.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);
         let frame = uniforms.set(&stand.layouts, &sources, &stand.constants)?;

@@ -81,6 +81,12 @@ impl GpuScene {
         Ok(Arc::new(Self { indices, vertices, materials, draws, stand_ins, last_dress, variants }))
     }
 
+    /// The same with only those of the model's instances that are `kept`.
+    pub fn only(&self, kept: &[bool]) -> Arc<Self> {
+        let draws = self.draws.iter().zip(kept).filter(|(_, kept)| **kept).map(|(draw, _)| draw.clone());
+        self.with(self.materials.clone(), draws.collect())
+    }
+
     /// The same geometry, drawn otherwise.
     pub(super) fn with(&self, materials: Vec<Arc<DescriptorSet>>, draws: Vec<GpuDraw>) -> Arc<Self> {
         Arc::new(Self {
@@ -95,7 +101,7 @@ impl GpuScene {
     }
 
     /// Whether light passes through a surface, so that what lies behind it must be drawn first.
-    pub(super) fn is_transmissive(&self) -> bool {
+    pub fn is_transmissive(&self) -> bool {
         self.variants.iter().any(|v| v.features & FEATURE_TRANSMISSION != 0)
     }
 

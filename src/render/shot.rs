@@ -1,10 +1,10 @@
 //! What a frame shows: camera, lights and values, worked out from the settings, the model and the shaders.
 
 use crate::gpu::Rect;
-use crate::interface::{Frame, Light, TONEMAP_OFF};
+use crate::interface::{Frame, Light, MAX_LIGHTS};
 use crate::scene::{self, Model, View};
-use crate::settings::{Settings, Tonemap};
-use crate::shader::{Encode, Mode, ShaderSet};
+use crate::settings::Settings;
+use crate::shader::ShaderSet;
 
 use super::values;
 use super::wanted;
@@ -29,7 +29,8 @@ impl Shot {
     ///
     /// A value of the author's that does not fit its parameter leaves the parameter's default; see [`super::misfits`].
     pub fn new(settings: &Settings, shaders: Option<&ShaderSet>, model: &Model, view: View, time_s: f32) -> Self {
-        let lights = scene::lights(&settings.lights, model, 0.0);
+        let mut lights = scene::lights(&settings.lights, model, 0.0);
+        lights.truncate(MAX_LIGHTS);
         let mode = shaders.and_then(|s| wanted::mode(s, &settings.mode));
         let params = shaders.map(|s| values::params(&settings.shader, &s.parameters)).unwrap_or_default();
         let ambient = settings.lights.ambient_color.map(|c| c * settings.lights.ambient_strength);
@@ -52,8 +53,6 @@ impl Shot {
             far: view.far,
             light_count: lights.len() as u32,
             chosen_light: settings.lights.chosen,
-            tonemap: tonemap(settings.view.tonemap, mode),
-            encode: mode.map_or(Encode::Color, |m| m.encode).id(),
             mode: mode.map_or(0, |m| m.id),
             environment_rotation: [turn.cos(), turn.sin()],
             environment_intensity: if settings.environment.is_lit() { settings.environment.intensity } else { 0.0 },
@@ -76,9 +75,4 @@ impl Shot {
             ..self.frame
         }
     }
-}
-
-/// Exposure and tone map are for light; other values are shown as they are.
-fn tonemap(tonemap: Tonemap, mode: Option<&Mode>) -> u32 {
-    if mode.is_some_and(|m| m.tonemap) { tonemap as u32 } else { TONEMAP_OFF }
 }

@@ -41,19 +41,13 @@ pub(super) struct Uniforms {
 }
 
 impl Uniforms {
-    /// With room for `lights` lights.
-    pub(super) fn new(gpu: &Arc<Gpu>, lights: usize) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let light_bytes = (lights.max(8) * size_of::<Light>()) as u64;
+        let light_bytes = (interface::MAX_LIGHTS * size_of::<Light>()) as u64;
         let frame = Buffer::new(gpu, "frame", size_of::<Frame>() as u64, uniform, Memory::Upload)?;
-        let lights = Buffer::new(gpu, "lights", light_bytes, storage, Memory::Upload)?;
+        let lights = Buffer::new(gpu, "lights", light_bytes, uniform, Memory::Upload)?;
         let params = Buffer::new(gpu, "params", interface::PARAMS_SIZE.into(), uniform, Memory::Upload)?;
         Ok(Self { frame, lights, params, set: None })
-    }
-
-    pub(super) fn light_capacity(&self) -> usize {
-        self.lights.size() as usize / size_of::<Light>()
     }
 
     /// Writes everything. The slot's fence has signaled.

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
-use crate::interface::{self, SPEC_ALPHA_MODE, SPEC_FEATURES, SPEC_MODE};
-use crate::settings::{LightSource, Settings};
-use crate::shader::{DrawAs, Mode, ShaderSet};
+use crate::interface::{self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF};
+use crate::settings::{LightSource, Settings, Tonemap};
+use crate::shader::{DrawAs, Encode, Mode, ShaderSet};
 
 use super::values;
 
@@ -29,6 +29,10 @@ pub struct Wanted {
     pub draw: DrawAs,
     /// Values of the author's specialization constants.
     pub constants: Specialization,
+    /// `TONEMAP_*` in common/tonemap.glsl; off for a mode that shows no light.
+    pub tonemap: u32,
+    /// `interface::ENCODE_*`.
+    pub encode: u32,
     /// Samples a pixel.
     pub samples: u32,
     /// Format of the HDR target.
@@ -82,6 +86,8 @@ impl Wanted {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
             constants: values::constants(&settings.shader, &shaders.constants),
+            tonemap: if mode.is_some_and(|m| m.tonemap) { settings.view.tonemap as u32 } else { TONEMAP_OFF },
+            encode: mode.map_or(Encode::Color, |m| m.encode).id(),
             samples,
             scene_format,
             output_format,
@@ -92,10 +98,12 @@ impl Wanted {
         }
     }
 
-    /// The same picture in another mode.
-    pub fn with_mode(&self, mode: &Mode) -> Self {
+    /// The same picture in another mode, with this tone map where it applies.
+    pub fn with_mode(&self, mode: &Mode, tonemap: Tonemap) -> Self {
         Self {
             mode: mode.id,
+            tonemap: if mode.tonemap { tonemap as u32 } else { TONEMAP_OFF },
+            encode: mode.encode.id(),
             draw: mode.draw,
             sky: self.sky && mode.tonemap,
             accumulates: mode.accumulate,
@@ -122,12 +130,9 @@ impl Wanted {
     }
 
     pub(super) fn tonemap_key(&self) -> PipelineKey {
-        PipelineKey {
-            pass: Pass::Tonemap,
-            format: self.output_format,
-            samples: 1,
-            specialization: self.constants.clone(),
-        }
+        let mut specialization = vec![(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, self.encode)];
+        specialization.extend_from_slice(&self.constants);
+        PipelineKey { pass: Pass::Tonemap, format: self.output_format, samples: 1, specialization }
     }
 
     /// The sky's pipeline, when it is seen.

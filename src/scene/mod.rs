@@ -16,6 +16,7 @@ mod material;
 mod measured;
 mod model;
 mod outline;
+mod pick;
 
 use std::path::{Path, PathBuf};
 
@@ -28,6 +29,7 @@ pub use features::{features, packs_occlusion};
 pub use lights::lights;
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
+pub use pick::near_pixel;
 
 /// What a load may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -27,7 +27,7 @@ fn modes_in_the_order_of_their_ids() {
     let modes = read_text(
         "//@mode d \"Normal distribution D\" group=\"BRDF terms\" encode=data doc=\"GGX: eq. 33\"\n\
          const uint MODE_BRDF_D = 120u;\n\
-         const uint MODE_FINAL = 0u; //@mode final \"Final\" encode=color tonemap key=p\n\
+         const uint MODE_FINAL = 0u; //@mode final \"Final\" encode=color tonemap accumulate key=p\n\
          // not one: //@mode nonsense\n/*\n//@mode nonsense\n*/",
     )
     .unwrap()
@@ -35,6 +35,7 @@ fn modes_in_the_order_of_their_ids() {
     let rows: Vec<_> =
         modes.iter().map(|mode| (mode.id, mode.slug.as_str(), mode.line, mode.tonemap, mode.key)).collect();
     assert_eq!(rows, [(0, "final", 5, true, Some('p')), (120, "d", 3, false, None)]);
+    assert_eq!((modes[0].accumulate, modes[1].accumulate), (true, false));
     assert_eq!(
         (modes[1].group.as_str(), modes[1].encode, modes[1].doc.as_str()),
         ("BRDF terms", Encode::Data, "GGX: eq. 33")
@@ -67,6 +68,27 @@ fn constants_and_parameters() {
 }
 
 #[test]
+fn claims_name_choices() {
+    let constant = |ui: &str| format!("layout(constant_id = 40) const uint C = 0u; //@ui choice A=0 B=1 {ui}");
+    let claims = |ui: &str| {
+        let found = read_text(&constant(ui)).unwrap().constants.remove(0);
+        (found.conserves, found.reciprocal)
+    };
+    let names = |names: &[&str]| Some(names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
+    assert_eq!(claims(""), (None, None));
+    assert_eq!(claims("conserves=\"A B\""), (names(&["A", "B"]), None));
+    // To claim it of no choice is to have a part in it.
+    assert_eq!(claims("reciprocal=B conserves=\"\""), (names(&[]), names(&["B"])));
+    let unknown = "m.frag:3:76: error: expected names of the choices before `conserves=`, found `C`";
+    refused(&constant("conserves=\"A C\""), unknown);
+    let unknown = "m.frag:3:77: error: expected names of the choices before `reciprocal=`, found `a`";
+    refused(&constant("reciprocal=a"), unknown);
+    // Without choices there is nothing to claim.
+    let unknown = "m.frag:3:61: error: expected names of the choices before `conserves=`, found `A`";
+    refused("layout(constant_id = 40) const uint C = 0u; //@ui conserves=A", unknown);
+}
+
+#[test]
 fn what_does_not_parse_says_what_was_expected() {
     refused("//@mod d \"D\"\nint a;", "m.frag:3:1: error: expected `//@mode` or `//@ui`, found `//@mod`");
     refused(
@@ -86,6 +108,10 @@ fn what_does_not_parse_says_what_was_expected() {
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
         "m.frag:3:34: error: expected group=, encode=, tonemap, accumulate, draw=, key= or doc=, found `colour`",
+    );
+    refused(
+        "const uint M = 1u; //@mode d \"D\" accumulate accumulate",
+        "m.frag:3:45: error: `accumulate` is given twice",
     );
     refused(
         &format!("{PARAMS}\nfloat a; //@ui 1..0\n}};"),

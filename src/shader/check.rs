@@ -28,12 +28,22 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let rest: Vec<TreePath> =
         library.source().list().into_iter().filter(|path| is_ours(path) && !known.contains(path)).collect();
     let compiler = library.compiler();
+    // What only compute stages include may use what only they have.
+    let users = |path: &TreePath| library.set().into_iter().flat_map(|set| set.stages.values()).filter({
+        let path = path.clone();
+        move |stage| stage.dependencies.contains(&path)
+    });
+    let kind_of = |path: &TreePath| {
+        let mut kinds = users(path).map(|stage| stage.kind).peekable();
+        let only_compute = kinds.peek().is_some() && kinds.all(|kind| kind == StageKind::Compute);
+        if only_compute { StageKind::Compute } else { StageKind::Fragment }
+    };
     let found: Vec<Diagnostic> = rest
         .par_iter()
         .flat_map_iter(|path| {
             let compiled = match StageKind::of(path) {
                 Some(_) => compiler.compile(&snapshot, path),
-                None => compiler.compile_library(&snapshot, path),
+                None => compiler.compile_library(&snapshot, path, kind_of(path)),
             };
             let texts = Texts { snapshot: &snapshot, stage: path, dependencies: &compiled.dependencies };
             let judged = match compiled.result {

@@ -102,12 +102,12 @@ impl Compiler {
         }
     }
 
-    /// Compiles a library alone, as if a fragment shader included nothing else: it must include what it uses.
-    pub fn compile_library(&self, snapshot: &Snapshot<'_>, library: &TreePath) -> Compiled {
+    /// Compiles a library alone, as if a shader of this kind included nothing else: it must include what it uses.
+    pub fn compile_library(&self, snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> Compiled {
         // It holds no text of the user's; `rename` below keeps its name from the messages.
         let wrapper = TreePath::from("(library)");
         let text = format!("#version 460\n#include \"{library}\"\nvoid main() {{}}\n");
-        let mut compiled = self.compile_text(snapshot, &wrapper, &text, StageKind::Fragment);
+        let mut compiled = self.compile_text(snapshot, &wrapper, &text, kind);
         compiled.dependencies.remove(&wrapper);
         // What is wrong with the library as a whole is reported under its own name.
         let file = snapshot.display_path(&wrapper);

@@ -29,7 +29,7 @@ macro_rules! layout {
 pub const LAYOUTS: &[Layout] = &[
     layout!(Frame {
         clip_from_world world_from_clip view_from_world eye_ws exposure ambient time_s background scene_center_ws
-        scene_radius viewport_px viewport_origin_px near far light_count chosen_light tonemap encode mode largest_value
+        scene_radius viewport_px viewport_origin_px near far light_count chosen_light mode largest_value
         environment_rotation environment_intensity environment_blur sample_index sample_count
     }),
     layout!(Light { position_ws kind direction_ws range intensity cos_inner cos_outer half_x_ws half_y_ws }),

@@ -13,7 +13,7 @@ use crate::commands::Failure;
 
 const WIDTH: f32 = 1600.0;
 const MARGIN: f32 = 56.0;
-const HEADER: f32 = 178.0;
+const HEADER: f32 = 184.0;
 const CHART: f32 = 340.0;
 
 const DIFFUSE: Ink = Ink(224, 108, 32, 255);
@@ -98,14 +98,14 @@ fn draw(opened: &Opened, args: &Args, measured: &[Measured]) -> Result<Canvas, S
     let panels = args.roughness.len() as f32;
     let panel = (WIDTH - 2.0 * MARGIN) / panels;
     let radius = (panel * 0.5 - 26.0).min(240.0);
-    let row = radius + 118.0;
+    let row = radius + 142.0;
     let height = HEADER + row * measured.len() as f32 + CHART + 150.0;
     let mut canvas = Canvas::new(WIDTH as u32, height as u32)?;
     draw_header(&mut canvas, opened, args);
 
     let all = measured.iter().flat_map(|m| m.lobes.iter().flatten()).map(|lobe| largest(sum(lobe)));
     let most = all.filter(|value| value.is_finite()).fold(1.0, f32::max);
-    let most = 10_f32.powf(most.log10().ceil());
+    let most = most * 1.15;
     for (index, measured) in measured.iter().enumerate() {
         let top = HEADER + row * index as f32;
         canvas.text((MARGIN, top + 22.0), 21.0, Anchor::Left, TEXT, &title(measured.surface));
@@ -154,8 +154,8 @@ fn draw_header(canvas: &mut Canvas, opened: &Opened, args: &Args) {
     }
     let entries = [("diffuse", DIFFUSE), ("specular", SPECULAR), ("multiple scattering", MULTIPLE), ("sum", SUM)];
     draw_legend(canvas, (MARGIN, 148.0), &entries);
-    let scale = "f cos in 1/sr, rings at powers of ten, linear below 0.03";
-    canvas.text((WIDTH - MARGIN, 148.0), 16.0, Anchor::Right, TEXT, scale);
+    let scale = format!("f cos in 1/sr; rings at powers of ten, linear below {}", HalfDisk::BEND);
+    canvas.text((WIDTH - MARGIN, 148.0), 16.0, Anchor::Right, TEXT, &scale);
 }
 
 fn draw_lobes(canvas: &mut Canvas, disk: HalfDisk, lobes: &[Lobe], angle_deg: f32) {

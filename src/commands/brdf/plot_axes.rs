@@ -17,13 +17,13 @@ pub struct HalfDisk {
     pub center: (f32, f32),
     /// Pixels.
     pub radius: f32,
-    /// The value at the rim, a power of ten.
+    /// The value at the rim.
     pub most: f32,
 }
 
 impl HalfDisk {
     /// Where the scale turns from linear to logarithmic, 1/sr.
-    const BEND: f32 = 0.03;
+    pub const BEND: f32 = 0.01;
 
     /// The place of a value at an angle from the normal, radians; to the right is positive.
     pub fn at(&self, angle: f32, value: f32) -> (f32, f32) {
@@ -40,9 +40,10 @@ impl HalfDisk {
     pub fn draw_axes(&self, canvas: &mut Canvas) {
         let arc: Vec<f32> = (-90_i16..=90).step_by(2).map(|degrees| f32::from(degrees).to_radians()).collect();
         let mut ring = 0.1;
-        while ring <= self.most * 1.01 {
-            let points: Vec<_> = arc.iter().map(|angle| self.at(*angle, ring)).collect();
-            canvas.line(&points, pen(GRID, 1.2));
+        let circle = |value: f32| arc.iter().map(|angle| self.at(*angle, value)).collect::<Vec<_>>();
+        canvas.line(&circle(self.most), pen(GRID, 1.2));
+        while ring <= self.most {
+            canvas.line(&circle(ring), pen(GRID, 1.2));
             let (x, y) = self.at(90_f32.to_radians(), ring);
             canvas.text((x, y + 17.0), SMALL, Anchor::Center, FAINT, &ring_label(ring));
             ring *= 10.0;

@@ -29,6 +29,7 @@ use rayon::prelude::*;
 use self::accessor::Reader;
 use self::buffers::{Buffers, Files, read_regular};
 use self::mesh::Geometry;
+use crate::interface::MAX_LIGHTS;
 use super::LoadOptions;
 use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
@@ -106,6 +107,9 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     model.outline = outline(&model);
     model.lights = scene.lights;
     model.cameras = scene.cameras.iter().map(|camera| camera.place(&model.bounds)).collect();
+    if model.lights.len() > MAX_LIGHTS {
+        warnings.push(format!("it has {} lights: the first {MAX_LIGHTS} shine.", model.lights.len()));
+    }
     model.warnings = warnings;
     model.timing = LoadTiming { parse_ms, decode_ms, tangents_ms };
     Ok(model)

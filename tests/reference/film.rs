@@ -1,0 +1,74 @@
+//! `iridescent_fresnel` of KHR_materials_iridescence: Belcour & Barla 2017 without polarization.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat3, DVec3};
+
+/// A thin film in air.
+#[derive(Clone, Debug)]
+pub struct Film {
+    /// 0..1.
+    pub strength: f64,
+    pub ior: f64,
+    /// Nanometers.
+    pub thickness: f64,
+}
+
+/// Reflectance of a smooth boundary along its normal, by the indices on its two sides.
+fn r0(a: f64, b: f64) -> f64 {
+    ((a - b) / (a + b)).powi(2)
+}
+
+fn schlick(r0: f64, cosine: f64) -> f64 {
+    r0 + (1.0 - r0) * (1.0 - cosine).powi(5)
+}
+
+/// What the sensors of X, Y and Z see of waves that are apart by `path` meters and shifted by a phase: Gaussians over the
+/// wave number, the second of X in the blue. The unit is the sensitivity of Y to all light.
+fn sensed(path: f64, phase: f64) -> DVec3 {
+    let gaussian = |height: f64, center: f64, variance: f64| {
+        let distance = TAU * path;
+        height * (TAU * variance).sqrt() * (center * distance + phase).cos() * (-variance * distance * distance).exp()
+    };
+    let x = gaussian(5.4856e-13, 1.6810e6, 4.3278e9) + gaussian(9.7470e-14, 2.2399e6, 4.5282e9);
+    let y = gaussian(4.4201e-13, 1.7953e6, 9.3046e9);
+    let z = gaussian(5.2481e-13, 2.2084e6, 6.6121e9);
+    DVec3::new(x, y, z) / 1.0685e-7
+}
+
+/// Linear Rec. 709 from XYZ, rows.
+const RGB_FROM_XYZ: [[f64; 3]; 3] =
+    [[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560], [0.0556434, -0.2040259, 1.0572252]];
+
+impl Film {
+    /// Reflectance where the base has the reflectance `f0` in air, under the angle of this cosine. The text guards the index
+    /// of the base from a reflectance of 1 by adding 1e-4 to all; that is left out here. Reflectance is not negative (the
+    /// text) and not above 1 (the program).
+    pub fn fresnel(&self, f0: DVec3, cosine: f64) -> DVec3 {
+        // Snell.
+        let cosine2 = 1.0 - (1.0 - cosine * cosine) / (self.ior * self.ior);
+        if cosine2 < 0.0 {
+            return DVec3::ONE;
+        }
+        let cosine2 = cosine2.sqrt();
+        let path = 2.0 * self.ior * self.thickness * 1e-9 * cosine2;
+        // From air to the film and back out.
+        let r12 = schlick(r0(self.ior, 1.0), cosine);
+        let t121 = 1.0 - r12;
+        let phase21 = if self.ior < 1.0 { 0.0 } else { PI };
+        let rgb_from_xyz = DMat3::from_cols_array_2d(&RGB_FROM_XYZ).transpose();
+        let channel = |c: usize| {
+            let base_ior = (1.0 + f0[c].sqrt()) / (1.0 - f0[c].sqrt());
+            let r23 = schlick(r0(base_ior, self.ior), cosine2);
+            let phase = phase21 + if base_ior < self.ior { PI } else { 0.0 };
+            let r123 = (r12 * r23).clamp(1e-5, 0.9999);
+            let rs = t121 * t121 * r23 / (1.0 - r123);
+            let orders = (1..=2).map(|m| {
+                let order = f64::from(m);
+                2.0 * (rs - t121) * r123.powf(order / 2.0) * (rgb_from_xyz * self::sensed(order * path, order * phase))[c]
+            });
+            (r12 + rs + orders.sum::<f64>()).clamp(0.0, 1.0)
+        };
+        DVec3::new(channel(0), channel(1), channel(2))
+    }
+}

@@ -1,0 +1,147 @@
+//! What is shaded at a pixel, from the renderer's modes of inputs; what no mode shows, from the model's file.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec4};
+use specula::headless::Headless;
+use specula::interface;
+use specula::scene::{Material, Model};
+
+use super::brdf::{Coat, Surface};
+use super::film::Film;
+use crate::support::render;
+
+/// Modes that every material has.
+const COMMON: [&str; 8] =
+    ["position", "shading-normal", "base-color", "metallic", "roughness", "ior", "emissive", "specular-color"];
+
+/// The modes of inputs, rendered, and the materials by pixel.
+pub struct Inputs {
+    modes: BTreeMap<&'static str, Vec<[f32; 4]>>,
+    materials: Vec<Material>,
+    /// Index into `materials`.
+    numbers: Vec<usize>,
+}
+
+/// The model in opaque colors that say which of its materials is where.
+fn numbered(model: &Model) -> Model {
+    let mut model = model.clone();
+    for (i, material) in model.materials.iter_mut().enumerate() {
+        let (double_sided, number) = (material.double_sided, Vec4::new(i as f32, 0.0, 0.0, 1.0));
+        *material = Material { base_color_factor: number, double_sided, ..Material::default() };
+    }
+    model
+}
+
+impl Inputs {
+    /// Renders them. `extensions`: the modes that this model's extensions have.
+    pub fn render(headless: &mut Headless, extensions: &[&'static str]) -> Self {
+        let model = headless.model().clone();
+        let mut shown = |slug: &'static str| (slug, render(headless, slug).raw);
+        let modes = COMMON.iter().chain(extensions).map(|slug| shown(slug)).collect();
+        headless.set_model(numbered(&model)).unwrap();
+        let numbers = render(headless, "base-color").raw.iter().map(|value| value[0] as usize).collect();
+        let materials = model.materials.clone();
+        headless.set_model(model).unwrap();
+        Self { modes, materials, numbers }
+    }
+
+    /// The pixels on the model.
+    pub fn covered(&self) -> impl Iterator<Item = usize> + '_ {
+        let position = &self.modes["position"];
+        (0..position.len()).filter(|i| position[*i][3] == 1.0)
+    }
+
+    /// The material of a pixel.
+    pub fn material(&self, pixel: usize) -> &Material {
+        &self.materials[self.numbers[pixel]]
+    }
+
+    /// The value of a mode that every material has.
+    pub fn shown(&self, pixel: usize, slug: &str) -> DVec3 {
+        let [r, g, b, _] = self.modes[slug][pixel];
+        DVec3::new(r.into(), g.into(), b.into())
+    }
+
+    /// The value of another mode; none where it was not rendered, or shows the checkerboard of what is absent.
+    fn extra(&self, pixel: usize, slug: &str) -> Option<DVec3> {
+        self.modes.get(slug)?;
+        let value = self.shown(pixel, slug);
+        let checkerboard = [0.18_f32, 0.26].map(|gray| DVec3::splat(gray.into()));
+        (!checkerboard.contains(&value)).then_some(value)
+    }
+
+    /// The BRDF's inputs.
+    pub fn surface(&self, pixel: usize) -> Surface {
+        let number = |slug: &str| self.extra(pixel, slug).map_or(0.0, |value| value.x);
+        let material = self.material(pixel);
+        let n = self.shown(pixel, "shading-normal").normalize();
+        let coat_n = self.extra(pixel, "clearcoat-normal").map_or(n, DVec3::normalize);
+        let ior = self.shown(pixel, "ior").x;
+        let (f0, f90) = self.dielectric(pixel, ior);
+        Surface {
+            n,
+            base_color: self.base_color(pixel),
+            metallic: self.shown(pixel, "metallic").x,
+            roughness: self.shown(pixel, "roughness").x,
+            ior,
+            f0,
+            f90,
+            emissive: self.shown(pixel, "emissive"),
+            t: self.extra(pixel, "anisotropy-direction"),
+            anisotropy: number("anisotropy"),
+            coat: Coat { n: coat_n, factor: number("clearcoat"), roughness: number("clearcoat-roughness") },
+            sheen_color: self.extra(pixel, "sheen-color").unwrap_or_default(),
+            sheen_roughness: number("sheen-roughness"),
+            film: Film {
+                strength: number("iridescence"),
+                ior: material.iridescence.ior.into(),
+                thickness: 1e3 * number("iridescence-thickness"),
+            },
+            transmission: number("transmission"),
+            diffuse_transmission: number("diffuse-transmission"),
+            diffuse_transmission_color: self.extra(pixel, "diffuse-transmission-color").unwrap_or(DVec3::ONE),
+            attenuation: self.attenuation(pixel),
+        }
+    }
+
+    /// KHR_materials_pbrSpecularGlossiness: `c_diff`, without textures worked out from the file.
+    fn base_color(&self, pixel: usize) -> DVec3 {
+        let material = self.material(pixel);
+        if !material.specular_glossiness || material.textures.iter().any(Option::is_some) {
+            return self.shown(pixel, "base-color");
+        }
+        let specular = f64::from(material.specular.color.max_element());
+        material.base_color_factor.truncate().as_dvec3() * (1.0 - specular)
+    }
+
+    /// F0 and F90 of the dielectric. Without textures they are worked out from the file, else the modes are believed.
+    fn dielectric(&self, pixel: usize, ior: f64) -> (DVec3, f64) {
+        let material = self.material(pixel);
+        let textures = [
+            interface::TEXTURE_SPECULAR,
+            interface::TEXTURE_SPECULAR_COLOR,
+            interface::TEXTURE_METALLIC_ROUGHNESS,
+        ];
+        if textures.iter().any(|texture| material.textures[*texture as usize].is_some()) {
+            let f90 = self.extra(pixel, "specular-factor").map_or(1.0, |factor| factor.x);
+            let plain = DVec3::splat(((ior - 1.0) / (ior + 1.0)).powi(2));
+            return (self.extra(pixel, "specular-color").unwrap_or(plain), f90);
+        }
+        let color = material.specular.color.as_dvec3();
+        // KHR_materials_pbrSpecularGlossiness: `specular` is F0 itself.
+        if material.specular_glossiness {
+            return (color, 1.0);
+        }
+        let weight = f64::from(material.specular.factor);
+        let f0 = color * ((1.0 - ior) / (1.0 + ior)).powi(2);
+        (f0.min(DVec3::ONE) * weight, weight)
+    }
+
+    /// Transmittance of KHR_materials_volume: attenuationColor^(thickness / attenuationDistance).
+    fn attenuation(&self, pixel: usize) -> DVec3 {
+        let shown = (self.extra(pixel, "thickness"), self.extra(pixel, "attenuation-color"));
+        let (Some(thickness), Some(color)) = shown else { return DVec3::ONE };
+        color.powf(thickness.x / f64::from(self.material(pixel).volume.attenuation_distance))
+    }
+}
