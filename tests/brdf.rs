@@ -128,7 +128,7 @@ fn numbers_out_of_range_are_usage_errors() {
     let directory = tempfile::tempdir().unwrap();
     for (args, said) in [
         (["furnace", "--metallic", "1.5"], "0 to 1"),
-        (["furnace", "--base-color", "1,2"], "found"),
+        (["furnace", "--base-color", "1,1"], "found 2"),
         (["reciprocity", "--base-color", "1,2,1"], "0 to 1"),
         (["plot", "--angle", "95"], "0 to 89"),
         (["plot", "--roughness", "0.5,x"], "a number"),

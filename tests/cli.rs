@@ -175,7 +175,9 @@ fn no_display() {
 #[test]
 fn an_out_that_cannot_be_written() {
     let directory = directory();
-    let out = |path: &str| run(directory.path(), &["render", "sphere-grid", "--env", "none", "--out", path, SMALL[0], SMALL[1]]);
+    let out = |path: &str| {
+        run(directory.path(), &["render", "sphere-grid", "--env", "none", "--out", path, SMALL[0], SMALL[1]])
+    };
     out("no/such/folder/x.png").expect(1, &["no/such/folder/x.png", "no folder"]);
     out("x.bmp").expect(1, &["x.bmp", ".png or .exr"]);
     fs::create_dir(directory.path().join("folder.png")).unwrap();
@@ -283,7 +285,8 @@ fn a_shader_error_is_printed_for_editors_and_ends_render_with_1() {
 fn render_mode_all_writes_each_file() {
     let directory = directory();
     fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    render(directory.path(), "quad.glb", &["--mode", "all", "--set", "view.msaa=1", "--set", "view.frames=2"]).expect(0, &[]);
+    render(directory.path(), "quad.glb", &["--mode", "all", "--set", "view.msaa=1", "--set", "view.frames=2"])
+        .expect(0, &[]);
     let modes = run(directory.path(), &["modes", "--json"]).json();
     for mode in modes.as_array().unwrap() {
         let path = directory.path().join(format!("out.{}.png", mode["slug"].as_str().unwrap()));

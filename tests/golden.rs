@@ -1,4 +1,5 @@
-//! A few pictures of the shader ball against those in `tests/golden/`, as an eye would compare them.
+//! A few pictures of the shader ball, and one of each material extension, against those in `tests/golden/`, as an eye
+//! would compare them.
 //!
 //! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m on a 4K screen; we take the mean.
 //! Measured on these pictures: one sample a pixel in place of four, or a camera moved by 1 cm, 0.006 to 0.023; exposure
@@ -13,15 +14,18 @@ use std::path::{Path, PathBuf};
 use image::RgbImage;
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
 use specula::render::Capture;
+use specula::scene::BUILT_IN;
 use support::{model, render, renderer, settings};
 
 const SIZE: (u32, u32) = (160, 120);
+/// Charts of balls.
+const CHART: (u32, u32) = (320, 180);
 const MOST_MEAN: f32 = 0.02;
 const BLESS: &str = "SPECULA_BLESS=1 cargo test --release --test golden";
 
 #[test]
 fn pictures_are_as_they_were() {
-    // The camera is given, so that a change of framing changes no golden; lights and look are the defaults.
+    // The camera is given, so that a change of framing changes no golden; the look is the default.
     let settings = settings(&[
         "camera.eye=[2.0, 2.0, 3.4]",
         "camera.target=[0, 1.0, 0]",
@@ -32,14 +36,39 @@ fn pictures_are_as_they_were() {
     let mut headless = renderer(model("shader-ball"), settings, SIZE);
     let mut wrong = Vec::new();
     for slug in ["final", "shading-normal", "metallic", "light-2", "diffuse-lobe"] {
-        let capture = render(&mut headless, slug);
-        if std::env::var_os("SPECULA_BLESS").is_some() {
-            picture(&capture).save(golden(slug)).unwrap();
-        } else if let Err(message) = compare(slug, &picture(&capture)) {
-            wrong.push(message);
-        }
+        // The picture by all light; its parts by the lamps alone.
+        let environment = if slug == "final" { "studio" } else { "none" };
+        headless.settings_mut().environment.name = environment.into();
+        wrong.extend(bless_or_compare(slug, &render(&mut headless, slug)));
     }
     assert!(wrong.is_empty(), "{}\nIf the change is meant: {BLESS}", wrong.join("\n"));
+}
+
+#[test]
+fn extensions_are_as_they_were() {
+    // In the studio, as the program opens them; the lanterns of one have their lamps inside.
+    let mut wrong = Vec::new();
+    for name in BUILT_IN.into_iter().filter(|name| is_chart(name)) {
+        let lights = if name == "diffuse-transmission" { "lights.source=model" } else { "lights.source=orbit" };
+        let mut headless = renderer(model(name), settings(&[lights]), CHART);
+        wrong.extend(bless_or_compare(name, &render(&mut headless, "final")));
+    }
+    assert!(wrong.is_empty(), "{}\nIf the change is meant: {BLESS}", wrong.join("\n"));
+}
+
+/// Whether a built-in model shows a material extension.
+fn is_chart(name: &str) -> bool {
+    !["shader-ball", "sphere-grid", "metal-grid", "material-override", "many-lights"].contains(&name)
+}
+
+/// What is wrong with a picture; nothing while blessing, which writes it.
+fn bless_or_compare(name: &str, capture: &Capture) -> Option<String> {
+    let picture = picture(capture);
+    if std::env::var_os("SPECULA_BLESS").is_none() {
+        return compare(name, &picture).err();
+    }
+    picture.save(golden(name)).unwrap();
+    None
 }
 
 fn golden(slug: &str) -> PathBuf {

@@ -23,11 +23,7 @@ const SAME_ALL_OVER: [&str; 5] = ["alpha", "f90", "ior", "face-orientation", "ta
 
 /// Modes of what the shader ball lacks: a model that has it, what else must be set, the modes.
 const ELSEWHERE: [(&str, &[&str], &[&str]); 11] = [
-    (
-        "clearcoat",
-        &[],
-        &["clearcoat", "clearcoat-roughness", "clearcoat-normal", "clearcoat-lobe", "clearcoat-light"],
-    ),
+    ("clearcoat", &[], &["clearcoat", "clearcoat-roughness", "clearcoat-normal", "clearcoat-lobe", "clearcoat-light"]),
     ("anisotropy", &[], &["anisotropy", "anisotropy-direction"]),
     ("sheen", &[], &["sheen-color", "sheen-roughness", "sheen-lobe", "sheen-light"]),
     ("specular", &[], &["specular-factor", "specular-color"]),
@@ -132,7 +128,8 @@ fn the_measured_modes_show_the_file() {
     let path = folder.path().join("matte.binary");
     std::fs::write(&path, matte_merl(0.5)).unwrap();
     let light = json!({ "type": "point", "intensity": 20.0 });
-    let bytes = glb::model_with_light(&glb::quad(1.0), &glb::gray(), &light, &json!({ "translation": [0.5, 0.5, 2.0] }));
+    let bytes =
+        glb::model_with_light(&glb::quad(1.0), &glb::gray(), &light, &json!({ "translation": [0.5, 0.5, 2.0] }));
     let mut headless =
         sharp(load(&bytes), &["lights.source=model", "camera.azimuth=0", "camera.elevation=0", "MULTI_SCATTER=None"]);
     assert!(MEASURED.iter().all(|slug| covered(&render(&mut headless, slug)).iter().all(is_absent)), "no file");

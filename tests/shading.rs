@@ -1,8 +1,9 @@
 //! The shading model, written a second time from its papers, against the raw values of the renderer.
 //!
 //! Lambert, GGX (Walter et al. 2007), height-correlated Smith (Heitz 2014), Schlick 1994, metallic-roughness as the mix
-//! of two results, one punctual light (KHR_lights_punctual), ambient light and emission. All in f64, from the eye, the
-//! light and the factors in the file; of the renderer only the position of a pixel is taken.
+//! of two results, one punctual light (KHR_lights_punctual), ambient light and emission; and multiple scattering (Kulla &
+//! Conty 2017), which is off in the other tests. All in f64, from the eye, the light and the factors in the file; of the
+//! renderer only the position of a pixel is taken.
 
 mod support;
 
@@ -147,6 +148,8 @@ fn open(bytes: &[u8]) -> Headless {
     let [r, g, b] = AMBIENT;
     let settings = settings(&[
         "view.msaa=1",
+        "environment.name=none",
+        "MULTI_SCATTER=None",
         "lights.source=model",
         "lights.ambient_strength=1",
         &format!("lights.ambient_color=[{r}, {g}, {b}]"),
@@ -239,6 +242,76 @@ fn the_picture_is_the_sum_over_light_ambient_and_emission() {
     }
 }
 
+/// The part of white light that a metal of F = 1 sends towards v after one reflection: an integral over the hemisphere.
+fn white_albedo(n_dot_v: f64, roughness: f64) -> f64 {
+    let white = Material { base_color: [1.0; 3], metallic: 1.0, roughness, emissive: [0.0; 3] };
+    let v = DVec3::new((1.0 - n_dot_v * n_dot_v).sqrt(), 0.0, n_dot_v);
+    // Rings of equal solid angle; the lobe is the same on both sides of the plane of n and v.
+    let (rings, sectors) = (200, 100);
+    let sum: f64 = (0..rings * sectors)
+        .map(|i| {
+            let z = (f64::from(i / sectors) + 0.5) / f64::from(rings);
+            let (sin, cos) = (PI * (f64::from(i % sectors) + 0.5) / f64::from(sectors)).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            let terms = terms(&white, DVec3::Z, DVec3::new(r * cos, r * sin, z), v);
+            terms.d * terms.v * z
+        })
+        .sum();
+    sum * 2.0 * PI / f64::from(rings * sectors)
+}
+
+#[test]
+fn what_is_scattered_more_than_once_follows_kulla_and_conty() {
+    let material = Material { base_color: [0.9, 0.6, 0.3], metallic: 0.75, roughness: 0.9, emissive: [0.0; 3] };
+    let lamp = &lamps()[0];
+    let mut headless = open(&model(&material, lamp));
+    headless.settings_mut().assign("MULTI_SCATTER=KullaConty").unwrap();
+    let lobe = render(&mut headless, "multi-scatter-lobe");
+    // 2 integral of E(mu) mu dmu
+    let mu = |i: i32| (f64::from(i) + 0.5) / 50.0;
+    let e_avg = (0..50).map(|i| 2.0 * white_albedo(mu(i), material.roughness) * mu(i) / 50.0).sum::<f64>();
+    // F of all orders, of the mean of Schlick's F over the hemisphere.
+    let f_ms = |f0: f64| {
+        let f_avg = (20.0 * f0 + 1.0) / 21.0;
+        f_avg * f_avg * e_avg / (1.0 - f_avg * (1.0 - e_avg))
+    };
+    let mut count = 0;
+    for (i, p) in positions(&mut headless).into_iter().step_by(29) {
+        let (n, l, v) = (p.normalize(), (lamp.at)(p).0, (EYE - p).normalize());
+        if n.dot(l) < 0.1 || n.dot(v) < 0.1 {
+            continue;
+        }
+        let lost = |cosine: f64| 1.0 - white_albedo(cosine, material.roughness);
+        let white = lost(n.dot(l)) * lost(n.dot(v)) / (PI * (1.0 - e_avg));
+        for c in 0..3 {
+            let f = f_ms(0.04) * (1.0 - material.metallic) + f_ms(material.base_color[c]) * material.metallic;
+            let (found, expected) = (f64::from(lobe.raw[i][c]), f * white);
+            // The renderer looks E up in a table of half floats.
+            assert!((found - expected).abs() < 0.01 * expected, "at {p}: found {found}, expected {expected}");
+        }
+        count += 1;
+    }
+    assert!(count > 20, "{count} points are lit and seen");
+}
+
+#[test]
+fn what_a_material_does_not_say_is_gltfs_default() {
+    // glTF 2.0, section 3.9 and its schema: white, a rough metal. A dielectric has index 1.5, so F0 0.04.
+    let bare = json!({});
+    let dielectric = json!({ "pbrMetallicRoughness": { "metallicFactor": 0.0 } });
+    let mut headless = open(&glb::model(&glb::quad(1.0), &bare));
+    let mut center = |slug: &str| render(&mut headless, slug).raw_at(SIZE.0 / 2, SIZE.1 / 2).unwrap();
+    let ones = ["base-color", "metallic", "roughness", "alpha", "occlusion", "f0", "f90"];
+    for (slug, expected) in ones.map(|slug| (slug, 1.0)).into_iter().chain([("emissive", 0.0)]) {
+        assert_eq!(center(slug), [expected, expected, expected, 1.0], "{slug}");
+    }
+    headless.set_model(load(&glb::model(&glb::quad(1.0), &dielectric))).unwrap();
+    let mut center = |slug: &str| render(&mut headless, slug).raw_at(SIZE.0 / 2, SIZE.1 / 2).unwrap();
+    near("ior", center("ior")[0], 1.5, DVec3::ZERO);
+    near("F0", center("f0")[1], 0.04, DVec3::ZERO);
+    assert_eq!(center("diffuse-color"), [1.0; 4]);
+}
+
 #[test]
 fn normals_and_positions_are_where_the_camera_sees_them() {
     let mut headless = open(&model(&MATERIALS[0], &lamps()[0]));
@@ -278,6 +351,8 @@ fn straight_down_the_normal_the_terms_have_closed_forms() {
         let bytes = glb::model_with_light(&glb::quad(1.0), &material.json(), &light, &node);
         let settings = settings(&[
             "view.msaa=1",
+            "environment.name=none",
+            "MULTI_SCATTER=None",
             "lights.source=model",
             "lights.ambient_strength=0",
             "camera.eye=[0, 0, 3]",

@@ -20,7 +20,7 @@ bool debug_value(Fragment f, Surface s, vec3 v, Lit lit, vec3 radiance, out vec3
     if (your_mode(f, s, v, value)) return true;
     if (debug_geometry(f, s, v, value)) return true;
     if (debug_surface(f, s, value)) return true;
-    if (debug_terms(s, v, value)) return true;
+    if (debug_terms(s, v, lit, value)) return true;
     if (debug_light(s, v, lit, radiance, value)) return true;
     if (debug_measured(f, s, v, lit, value)) return true;
     return debug_truth(s, v, lit, radiance, value);

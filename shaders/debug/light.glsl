@@ -9,6 +9,7 @@
 #include "common/color.glsl"
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
+#include "debug/terms.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
@@ -45,9 +46,10 @@ Surface surface_of_mode(Surface s) {
 }
 
 // Light number `i`, or none if there are fewer.
-LightRange one_light(uint i) { return LightRange(i, min(i + 1u, frame.light_count)); }
+LightRange one_light(uint i) { return LightRange(i, min(i + 1u, frame.light_count), false); }
 
 LightRange lights_of_mode() {
+    if (shows_terms()) return lights_of_terms();
     switch (MODE) {
         case MODE_LIGHT_1: return one_light(0u);
         case MODE_LIGHT_2: return one_light(1u);

@@ -64,25 +64,21 @@ vec3 f0_range_color(Surface s) {
     return vec3(0.25 * f0);
 }
 
-// The environment by this frame's paths.
-vec3 environment_by_paths(Surface s, vec3 v) {
-    return environment_monte_carlo(s, v, frame.sample_index * frame.sample_count, frame.sample_count);
-}
-
 // A little over 1 is within the error of the estimate.
 vec3 energy_color(vec3 albedo) { return max_component(albedo) > 1.005 ? TOO_HIGH : albedo; }
 
 bool debug_paths(Surface s, vec3 v, Lit lit, out vec3 value) {
-    if (MODE == MODE_ENERGY) {
-        value = if_present(!has_feature(FEATURE_UNLIT), energy_color(albedo_monte_carlo(s, v)));
-        return true;
-    }
-    if (MODE != MODE_MONTE_CARLO && MODE != MODE_IBL_ERROR) return false;
-    vec3 by_paths = environment_by_paths(s, v);
+    if (MODE != MODE_MONTE_CARLO && MODE != MODE_IBL_ERROR && MODE != MODE_ENERGY) return false;
+    bool furnace = MODE == MODE_ENERGY;
+    uint count = furnace ? FURNACE_PATHS : frame.sample_count;
+    uint first = furnace ? 0u : frame.sample_index * frame.sample_count;
+    vec3 by_paths = monte_carlo(s, v, furnace, first, count);
     vec3 by_split_sum = lit.ambient.all;
     lit.ambient.all = by_paths;
-    value = MODE == MODE_IBL_ERROR ? by_paths - by_split_sum : outgoing_radiance(s, v, lit);
-    value = if_present(has_feature(FEATURE_ENVIRONMENT) && !has_feature(FEATURE_UNLIT), value);
+    if (MODE == MODE_ENERGY) value = energy_color(by_paths);
+    else if (MODE == MODE_IBL_ERROR) value = by_paths - by_split_sum;
+    else value = outgoing_radiance(s, v, lit);
+    value = if_present((furnace || has_feature(FEATURE_ENVIRONMENT)) && !has_feature(FEATURE_UNLIT), value);
     return true;
 }
 

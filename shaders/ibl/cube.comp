@@ -3,6 +3,7 @@
 #include "common/math.glsl"
 #include "ibl/cube_map.glsl"
 #include "ibl/half.glsl"
+#include "ibl/small_lights.glsl"
 
 // From an equirectangular image to level 0 of a cube map. One invocation is a texel; z of the group is the face.
 //
@@ -20,12 +21,9 @@ vec3 radiance_from(vec3 d) {
     return textureLod(source, uv, 0.0).rgb;
 }
 
-void main() {
-    uvec3 texel = gl_GlobalInvocationID;
-    if (any(greaterThanEqual(texel.xy, task.size))) return;
-
-    // The mean over task.samples x task.samples points, so that what is smaller than a texel, such as a sun, keeps its
-    // energy. Within one texel each point stands for the same solid angle, nearly.
+// The mean over task.samples x task.samples points, so that what is smaller than a texel, such as a sun, keeps its
+// energy. Within one texel each point stands for the same solid angle, nearly.
+vec3 mean_radiance(uvec3 texel) {
     vec3 sum = vec3(0.0);
     float step_st = 2.0 / (float(task.size.x) * float(task.samples));
     vec2 first = vec2(texel.xy * task.samples) * step_st - 1.0 + 0.5 * step_st;
@@ -34,6 +32,22 @@ void main() {
             sum += radiance_from(cube_position(first + vec2(x, y) * step_st, texel.z));
         }
     }
-    vec3 radiance = sum * (task.radiance_scale / float(task.samples * task.samples));
-    imageStore(target, ivec3(texel), vec4(rounded_to_half(radiance), 1.0));
+    return rounded_to_half(sum * (task.radiance_scale / float(task.samples * task.samples)));
+}
+
+// Counted in the group first: all of an image's texels on one counter would wait for each other.
+shared uint group_count[BRIGHTNESS_STEPS];
+
+void main() {
+    uvec3 texel = gl_GlobalInvocationID;
+    group_count[gl_LocalInvocationIndex] = 0u;
+    barrier();
+    if (all(lessThan(texel.xy, task.size))) {
+        vec3 radiance = mean_radiance(texel);
+        imageStore(target, ivec3(texel), vec4(radiance, 1.0));
+        atomicAdd(group_count[brightness_step(max_component(radiance))], 1u);
+    }
+    barrier();
+    uint count = group_count[gl_LocalInvocationIndex];
+    if (count > 0u) atomicAdd(brightness_count[gl_LocalInvocationIndex], count);
 }

@@ -1,37 +1,50 @@
 #version 460
 #include "interface.glsl"
+#include "common/math.glsl"
 #include "ibl/cube_map.glsl"
 #include "ibl/half.glsl"
+#include "ibl/small_lights.glsl"
 
-// One level of the cube map from the level above it: 4 x 4 texels with the weights 1 3 3 1 along both axes.
+// One level of the cube map from the level above it. Each of the four texels counts by its solid angle: so a level
+// holds as much light as the one above, and a texel's value is the mean radiance of what it covers. (In a corner of a
+// face a texel covers a fifth of one at the center, so an even mean would move light about.)
 //
-// Each texel above then counts 3/4 for the texel below that it lies in and 1/4 for the next one, as far as it is from their
-// centers: the center of gravity of its light stays in place. An even mean of 2 x 2 would pull a sun into the center of
-// whatever texel it is in, and with it the highlights of everything rough, by half a texel at worst: with small suns that was
-// nine tenths of the prefilter's error. The weights are also those of the solid angles: a level holds as much light
-// as the one above, though in a corner of a face a texel covers a fifth of one at the center.
+// From level 0 to 1, small lights are taken out: see ibl/small_lights.glsl.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray level_above;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
+const float NO_LIMIT = 1e38;
+
+shared float limit;
+
 void main() {
+    if (gl_LocalInvocationIndex == 0u) limit = task.level == 1u ? brightness_limit() : NO_LIMIT;
+    barrier();
     uvec3 texel = gl_GlobalInvocationID;
     if (any(greaterThanEqual(texel.xy, task.size))) return;
 
-    int side = 2 * int(task.size.x);
-    vec4 sum = vec4(0.0);      // w: of the weights
-    for (int y = -1; y < 3; ++y) {
-        for (int x = -1; x < 3; ++x) {
-            ivec2 at = 2 * ivec2(texel.xy) + ivec2(x, y);
-            bvec2 beyond = greaterThanEqual(uvec2(at), uvec2(side));   // -1 is large, too
-            if (all(beyond)) continue;   // three faces meet: there is no texel
-            ivec3 above = ivec3(at, texel.z);
-            if (any(beyond)) above = texel_across_edge(above, side);
-            float weight = (x == 0 || x == 1 ? 3.0 : 1.0) * (y == 0 || y == 1 ? 3.0 : 1.0);
-            weight *= solid_angle_density(texel_center(uvec2(above.xy), uvec2(side)));
-            sum += vec4(imageLoad(level_above, above).rgb, 1.0) * weight;
-        }
+    float reach = 0.5 / float(task.size.x);
+    vec4 kept = vec4(0.0);     // w: of the solid angles
+    vec3 cut = vec3(0.0);
+    vec3 center = vec3(0.0);   // of what was cut
+    for (uint i = 0u; i < 4u; ++i) {
+        uvec2 above = 2u * texel.xy + uvec2(i & 1u, i >> 1);
+        vec2 st = texel_center(above, 2u * task.size);
+        float steradians = solid_angle(st, reach);
+        vec3 radiance = imageLoad(level_above, ivec3(above, texel.z)).rgb;
+        float brightness = max_component(radiance);
+        float part = brightness > limit ? limit / brightness : 1.0;
+        kept += vec4(radiance * part, 1.0) * steradians;
+        cut += radiance * ((1.0 - part) * steradians);
+        center += normalize(cube_position(st, texel.z)) * (brightness * (1.0 - part) * steradians);
     }
-    imageStore(target, ivec3(texel), vec4(rounded_to_half(sum.rgb / sum.w), 1.0));
+    imageStore(target, ivec3(texel), vec4(rounded_to_half(kept.rgb / kept.w), 1.0));
+
+    if (max_component(cut) > 0.0) {
+        uint place = atomicAdd(small_light_count, 1u);
+        // Four points half a texel of level 0 from their center, along both axes: a sixteenth of the area.
+        if (place < LARGEST_COUNT) small_lights[place] = SmallLight(normalize(center), cut, kept.w / 16.0);
+    }
 }

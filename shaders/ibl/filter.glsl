@@ -1,55 +1,39 @@
-// Filtered importance sampling of a cube map (Krivanek & Colbert 2008): few samples, each read at the level whose texels
-// are as large as the part of the sphere that the sample stands for. The samples then cover the lobe without gaps, and a
-// small bright sun is met by all of them near it, not by one in a thousand: no noise, no fireflies.
-//
-// The lobe is seen along its axis, N = V = R (Karis 2013), so it is the same around every texel. A group works it out
-// once, in shared memory; a texel only turns it into place.
+// Filtered importance sampling of a cube map (Krivanek & Colbert 2008): few samples, each read at the level whose
+// texels are as large as the part of the sphere that the sample stands for. Together they cover the lobe without gaps:
+// no noise, no fireflies. All texels take the same samples around their axis; a table of them in shared memory was
+// slower on a software device than working them out again.
 #ifndef IBL_FILTER_GLSL
 #define IBL_FILTER_GLSL
 
 #include "interface.glsl"
 #include "common/math.glsl"
-#include "common/sampling.glsl"
 
 layout(set = SET_TASK, binding = BINDING_SOURCE_CUBE) uniform samplerCube source_cube;
 
-const uint LOBE_SIZE = 256u;
+// Turns of sample i around the axis: the golden ratio of a turn for each. On circles whose radii grow, such points are
+// evenly spread whatever the radii are.
+float golden_turns(uint i) { return fract(float(i) * 0.618033988); }
 
-struct LobeSample {
-    vec3 direction;            // tangent space; z = NoL is its weight
-    float lod;
-};
-
-shared LobeSample lobe[LOBE_SIZE];
-
-// Points on a spiral, turned by the golden ratio of a turn each: evenly spread however the warp stretches the radius,
-// and around the axis at any count. (Hammersley's points are aligned to it.)
-vec2 spiral(uint i, uint count) {
-    return vec2((float(i) + 0.5) / float(count), fract(float(i) * 0.618033988));
+// Solid angle of a texel of level 1 in the middle of a face. Finer is not read: level 0 has the small lights.
+float finest_footprint() {
+    float side = float(textureSize(source_cube, 1).x);
+    return 4.0 / (side * side);
 }
 
-// Levels above the even fit. Footprints of samples have to overlap, or a sun between two is lost and one on top of a sample
-// counts twice; too wide ones blur. Measured against brute force: half a level has the least error.
-const float LOD_BIAS = 0.5;
-
-// Light that is reflected by h when seen along the normal, and the level to read. `pdf` is the density of the direction.
-//
-// The sample stands for 1 / (count pdf) steradians, a texel in the middle of a face for 4 / side^2, and for four times as
-// much on the next level: lod = log2(ratio) / 2 (Krivanek & Colbert 2008; Colbert & Krivanek 2007, eq. 13).
-LobeSample lobe_sample(vec3 h, float pdf, uint count) {
-    vec3 l = vec3(2.0 * h.z * h.xy, 2.0 * h.z * h.z - 1.0);
+// Mean radiance of about `footprint` steradians around d, a unit vector.
+vec3 filtered_radiance(vec3 d, float footprint) {
+    // In texels of level 0. They shrink towards a face's edges with the cube of d's largest component, to a fifth.
     float side = float(textureSize(source_cube, 0).x);
-    return LobeSample(l, 0.5 * log2(side * side / (4.0 * float(count) * pdf)) + LOD_BIAS);
+    float major = max_component(abs(d));
+    float texels = max(footprint * side * side / (4.0 * major * major * major), 4.0);
+    // A level's texels are four times the last one's. Between two levels it is the variance of the filter that counts,
+    // so their areas are mixed, not their logarithms.
+    float level = floor(0.5 * log2(texels));
+    return textureLod(source_cube, d, level + (texels * exp2(-2.0 * level) - 1.0) / 3.0).rgb;
 }
 
-// Adds `count` samples of the lobe around basis[2]: radiance times weight, and the weight.
-void gather(mat3 basis, uint count, inout vec4 sum) {
-    for (uint i = 0u; i < count; ++i) {
-        vec3 d = basis * lobe[i].direction;
-        // Texels shrink towards the edges of a face with the cube of d's largest component, down to a fifth.
-        float lod = lobe[i].lod - 1.5 * log2(max_component(abs(d)));
-        sum += vec4(textureLod(source_cube, d, lod).rgb, 1.0) * lobe[i].direction.z;
-    }
-}
+// Variance of that filter along an axis, for each unit of its area: 1/12 of the box of a texel, 1/6 of the tent between
+// texels.
+const float FILTER_VARIANCE = 0.25;
 
 #endif

@@ -3,9 +3,11 @@
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "ibl/cube_map.glsl"
+#include "ibl/small_lights.glsl"
 
-// Diffuse light from the environment as nine numbers for each color: irradiance is radiance smoothed by a cosine, and of the
-// smoothed picture spherical harmonics of three bands hold 99 % (Ramamoorthi & Hanrahan 2001, section 3).
+// Diffuse light from the environment as nine numbers for each color: irradiance is radiance smoothed by a cosine, and
+// of what is left spherical harmonics of three bands hold 99 % of the energy (Ramamoorthi & Hanrahan 2001, section 3).
+// Against the integral: off by 3 % of the mean under a studio's lamps, by 8 % under a sun and a clear sky.
 //
 //   L_i = integral of L Y_i                 over all directions, here the texels of one level of the cube map
 //   E(n) = sum of A_i L_i Y_i(n)            (eq. 9), A = pi, 2 pi / 3, pi / 4 for the bands 0, 1, 2 (eq. 8)
@@ -19,9 +21,6 @@
 const uint THREADS = 256u;
 layout(local_size_x = 256) in;
 layout(set = SET_TASK, binding = BINDING_SOURCE_CUBE) uniform samplerCube source_cube;
-layout(set = SET_TASK, binding = BINDING_RESULTS, scalar) buffer Results {
-    vec3 irradiance_sh[9];
-};
 
 shared vec3 partial[THREADS];
 
@@ -63,20 +62,20 @@ float least_of_all(float value) {
     return partial[0].x;
 }
 
-// Three bands of a small sun in a black sky ring: they fall to -4 % of its irradiance on the far side, and light must not
-// be negative. Then all that depends on the direction is scaled by one factor, the largest that leaves 0, as a window
-// does (Sloan 2008, "Stupid spherical harmonics tricks", windowing), but only as far as this environment needs: any with
-// a tenth of its light from elsewhere keeps every bit. One factor for all colors, or the rings would be tinted.
+// Three bands of a small sun in a black sky ring: they fall to -4 % of its irradiance on the far side, and light must
+// not be negative. Then all that depends on the direction is scaled by one factor, the largest that leaves 0, as a
+// window does (Sloan 2008, "Stupid spherical harmonics tricks", windowing), but only as far as this environment needs:
+// any with a tenth of its light from elsewhere keeps every bit. One factor for all colors, or rings would be tinted.
 float window(vec3 sh[9]) {
     uint id = gl_LocalInvocationIndex;
-    // As many directions as there are invocations, evenly spread: a Fibonacci spiral, the golden ratio of a turn each.
+    // As many directions as there are invocations, evenly spread: a spiral, the golden ratio of a turn for each.
     vec3 n = direction_from_cosine(1.0 - (2.0 * float(id) + 1.0) / float(THREADS), fract(float(id) * 0.61803399));
     float y[9] = harmonics(n);
     vec3 directed = vec3(0.0);
     for (int i = 1; i < 9; ++i) directed += sh[i] * y[i];
     // mean + k directed >= 0. 1e-20: black has no factor, and needs none.
     vec3 mean = sh[0] * Y0;
-    return least_of_all(min(1.0, min_component(mean / max(-directed, 1e-20 + 0.0 * mean))));
+    return least_of_all(min(1.0, min_component(mean / max(-directed, vec3(1e-20)))));
 }
 
 void main() {
@@ -90,6 +89,11 @@ void main() {
         vec3 light = textureLod(source_cube, d, float(task.level)).rgb * solid_angle(st, 1.0 / float(side));
         float y[9] = harmonics(normalize(d));
         for (int j = 0; j < 9; ++j) sh[j] += light * y[j];
+    }
+    // The levels lack the small lights.
+    for (uint i = gl_LocalInvocationIndex; i < listed_lights(); i += THREADS) {
+        float y[9] = harmonics(small_lights[i].direction);
+        for (int j = 0; j < 9; ++j) sh[j] += small_lights[i].intensity * y[j];
     }
     for (int i = 0; i < 9; ++i) {
         float band = i == 0 ? 1.0 : i < 4 ? BAND_1 : BAND_2;

@@ -1,46 +1,101 @@
 #version 460
 #include "interface.glsl"
 #include "brdf/surface.glsl"
+#include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "ibl/cube_map.glsl"
 #include "ibl/filter.glsl"
 #include "ibl/half.glsl"
 #include "ibl/levels.glsl"
+#include "ibl/small_lights.glsl"
 
-// Light from the environment as a rough surface mirrors it, one level: the mean of radiance, weighted with D NoL of GGX.
+// Light from the environment as a rough surface mirrors it, one level: the mean of radiance with the weight
+// K = D NoL of GGX, seen along the lobe's axis, N = V = R (Karis 2013).
+//
+// With x = sin^2 of the angle to h, NoL = 1 - 2x, and GGX is K = (1 - 2x) / q^2 with q = alpha^2 + (1 - alpha^2) x.
+// (All constant factors cancel in the mean.) dl = 4 pi dx: light above the horizon has x < 1/2.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
-// Below the horizon there is no light, so no samples: seen along the normal, light at the horizon is mirrored by facets
-// at 45 degrees. By the warp, tan^2 = alpha^2 u / (1 - u), these are at u = 1 / (1 + alpha^2).
-LobeSample ggx_lobe(uint i, float alpha) {
-    float above = 1.0 / (1.0 + alpha * alpha);
-    vec2 u = spiral(i, task.samples);
-    vec3 h = sample_ggx(vec2(u.x * above, u.y), alpha);
-    return lobe_sample(h, pdf_reflected(pdf_ggx(h.z, alpha), h.z) / above, task.samples);
+struct LobeSample {
+    vec3 direction;            // tangent space
+    float footprint;           // steradians that it stands for
+    float weight;              // K / pdf
+    float sharpened;           // the same, with the blur of the footprints taken back
+};
+
+// Sample i of the lobe, drawn with a density of q^(-3/2), by which r = q^(-1/2) is uniform. K falls with q^-2: drawn
+// with that (Walter et al. 2007, eq. 35), the last samples would stand for half the sky and mix the peak into it.
+LobeSample lobe_sample(uint i, float alpha) {
+    float a2 = alpha * alpha;
+    float b = 1.0 - a2;
+    float r_first = 1.0 / alpha;
+    float r_last = inversesqrt(0.5 + 0.5 * a2);
+    float r = mix(r_first, r_last, (float(i) + 0.5) / float(task.samples));
+    float r3 = r * r * r;
+    float x = (1.0 / (r * r) - a2) / b;
+    float n_dot_l = 1.0 - 2.0 * x;
+    float pdf = b * r3 / (8.0 * PI * (r_first - r_last));
+    float footprint = max(1.0 / (float(task.samples) * pdf), finest_footprint());
+
+    // Reading each sample with a filter of variance s^2 = S q^(3/2) is a mean with K + laplacian(s^2 K) / 2, up to
+    // terms of s^4. So K is replaced by K - laplacian(s^2 K) / 2, which about halves the error. Around an axis the
+    // laplacian of g(x) on the unit sphere is (1 - 2x) g' + x (1 - x) g'', here of g = (1 - 2x) q^(-1/2);
+    // S is footprint times FILTER_VARIANCE over q^(3/2), which 1 / pdf of the weight cancels.
+    float g1 = -2.0 * r - 0.5 * n_dot_l * b * r3;
+    float g2 = 2.0 * b * r3 + 0.75 * n_dot_l * b * b * r3 * r * r;
+    float laplacian = n_dot_l * g1 + x * (1.0 - x) * g2;
+    float weight = n_dot_l * r;
+    float sharpened = max(weight - 0.5 * FILTER_VARIANCE * footprint * laplacian, 0.0);
+    return LobeSample(direction_from_cosine(n_dot_l, golden_turns(i)), footprint, weight, sharpened);
+}
+
+// The mean of what the levels hold, and in w the integral of K.
+vec4 filtered_mean(vec3 n, float alpha) {
+    mat3 basis = basis_around(n);
+    vec4 sum = vec4(0.0);
+    float integral = 0.0;
+    for (uint i = 0u; i < task.samples; ++i) {
+        LobeSample lobe = lobe_sample(i, alpha);
+        sum += vec4(filtered_radiance(basis * lobe.direction, lobe.footprint), 1.0) * lobe.sharpened;
+        integral += lobe.weight;
+    }
+    float a2 = alpha * alpha;
+    float scale = 8.0 * PI * (1.0 / alpha - inversesqrt(0.5 + 0.5 * a2)) / ((1.0 - a2) * float(task.samples));
+    return vec4(sum.rgb / sum.w, integral * scale);
+}
+
+// Small lights: sum of K intensity. One that is spread out sees a wider lobe, as much as its variance.
+vec3 small_light_sum(vec3 n, float alpha) {
+    float a2 = alpha * alpha;
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < listed_lights(); ++i) {
+        SmallLight light = small_lights[i];
+        vec3 chord = light.direction - n;
+        float x = 0.25 * dot(chord, chord);   // not 1 - NoL, which has no digits where a sharp lobe needs them
+        float wide = a2 + light.spread;
+        float q = wide + (1.0 - a2) * x;
+        sum += light.intensity * (max(1.0 - 2.0 * x, 0.0) * wide / (a2 * q * q));
+    }
+    return sum;
 }
 
 void main() {
     uvec3 texel = gl_GlobalInvocationID;
-    bool inside = all(lessThan(texel.xy, task.size));
+    if (any(greaterThanEqual(texel.xy, task.size))) return;
     vec3 n = normalize(cube_position(texel_center(texel.xy, task.size), texel.z));
-    mat3 basis = basis_around(n);
-    vec4 sum = vec4(0.0);
 
+    vec3 radiance;
     if (task.level == 0u) {
-        // A mirror: only the size changes.
-        float lod = log2(float(textureSize(source_cube, 0).x) / float(task.size.x));
-        sum = vec4(textureLod(source_cube, n, lod).rgb, 1.0);
+        // A mirror. The source has as many texels, or twice as many along each side: then n is where four of them meet,
+        // and the filter takes their mean.
+        radiance = textureLod(source_cube, n, 0.0).rgb;
     } else {
-        float alpha = alpha_from_roughness(roughness_of_level(task.level, task.levels));
-        for (uint first = 0u; first < task.samples; first += LOBE_SIZE) {
-            uint count = min(LOBE_SIZE, task.samples - first);
-            barrier();         // all have gathered what is overwritten
-            for (uint i = gl_LocalInvocationIndex; i < count; i += 64u) lobe[i] = ggx_lobe(first + i, alpha);
-            barrier();
-            if (inside) gather(basis, count, sum);
-        }
+        // 0.999: at 1, where K is the cosine, differences of equal numbers would be divided by their difference.
+        float alpha = min(alpha_from_roughness(roughness_of_level(task.level, task.levels)), 0.999);
+        vec4 mean = filtered_mean(n, alpha);
+        radiance = mean.rgb + small_light_sum(n, alpha) / mean.w;
     }
-    if (inside) imageStore(target, ivec3(texel), vec4(rounded_to_half(sum.rgb / sum.w), 1.0));
+    imageStore(target, ivec3(texel), vec4(rounded_to_half(radiance), 1.0));
 }

@@ -20,33 +20,38 @@ struct Lit {
     Lobes ambient;             // the environment, or flat ambient light
     vec3 behind;               // what is seen through the surface
     vec3 emitted;              // the material's own light, as far as the coat lets it pass (KHR_materials_clearcoat)
+    Lobes lobes;               // of the BRDF, added up over the lights whatever their strength, 1/sr
+    Brdf last;                 // of the last light
 };
 
 // Lights number first .. end - 1.
 struct LightRange {
     uint first;
     uint end;
+    bool for_terms;            // Lit's `lobes` and `last` are wanted: of each light, even one that cannot shine here
 };
 
-LightRange all_lights() { return LightRange(0u, frame.light_count); }
+LightRange all_lights() { return LightRange(0u, frame.light_count, false); }
 
 // What the debug modes of one light look at: the chosen light, or all. Empty if there is none, or nothing to light.
 LightRange chosen_lights() {
     uint end = (FEATURES & FEATURE_UNLIT) != 0u ? 0u : frame.light_count;
-    if (frame.chosen_light == 0u) return LightRange(0u, end);
-    return LightRange(frame.chosen_light - 1u, min(frame.chosen_light, end));
+    if (frame.chosen_light == 0u) return LightRange(0u, end, false);
+    return LightRange(frame.chosen_light - 1u, min(frame.chosen_light, end), false);
 }
 
 bool is_empty(LightRange range) { return range.first >= range.end; }
 
 // L = f E |NoL|, E being the irradiance on a plane that faces the light.
-void add_punctual(inout Lobes sum, Surface s, vec3 v, Light light) {
+void add_punctual(inout Lit lit, Surface s, vec3 v, Light light, bool for_terms) {
     Illumination illumination = illuminate(light, s.position_ws);
     float n_dot_l = dot(s.n, illumination.l);
     // Behind the surface: f is 0, unless light passes through.
-    if (LIGHT_PASSES) n_dot_l = abs(n_dot_l);
-    else if (n_dot_l <= 0.0) return;
-    add(sum, lobes_of(evaluate_brdf(s, illumination.l, v)), illumination.irradiance * n_dot_l);
+    if (n_dot_l <= 0.0 && !LIGHT_PASSES && !for_terms) return;
+    lit.last = evaluate_brdf(s, illumination.l, v);
+    Lobes lobes = lobes_of(lit.last);
+    add(lit.lobes, lobes, vec3(1.0));
+    add(lit.punctual, lobes, illumination.irradiance * abs(n_dot_l));
 }
 
 Lobes ambient_light(Surface s, vec3 v, Albedo albedo) {
@@ -63,13 +68,19 @@ void cross_volume(Surface s, inout Lobes light) {
 
 Lit shade(Surface s, vec3 v, LightRange range) {
     Albedo albedo = directional_albedo(s, v);
-    Lit lit = Lit(no_light(), no_light(), ambient_light(s, v, albedo), vec3(0.0), albedo.under_coat * s.emissive);
+    Lit lit;
+    lit.punctual = lit.area = lit.lobes = no_light();
+    lit.ambient = ambient_light(s, v, albedo);
+    lit.behind = vec3(0.0);
+    lit.emitted = s.emissive * albedo.under_coat;
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
     for (uint i = range.first; i < range.end; ++i) {
-        if ((FEATURES & FEATURE_RECT_LIGHTS) != 0u && lights[i].kind == LIGHT_RECT) {
+        // Among the terms a rectangle counts as if all of it were at its center.
+        bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && lights[i].kind == LIGHT_RECT;
+        if (has_size) {
             add(lit.area, rectangle_light(s, v, albedo, lights[i]), vec3(1.0));
         } else {
-            add_punctual(lit.punctual, s, v, lights[i]);
+            add_punctual(lit, s, v, lights[i], range.for_terms);
         }
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {

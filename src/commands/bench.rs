@@ -129,9 +129,9 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         device.extend(headless.device_ms());
     }
     // A mode that was asked for is all that is of interest.
-    let slugs: Vec<String> = match args.common.mode {
-        Some(_) => Vec::new(),
-        None => headless.pipelines().shaders.modes.iter().map(|m| m.slug.clone()).collect(),
+    let slugs: Vec<String> = match args.common.mode.is_empty() {
+        false => Vec::new(),
+        true => headless.pipelines().shaders.modes.iter().map(|m| m.slug.clone()).collect(),
     };
     let (mut first, mut again, mut modes) = (Vec::new(), Vec::new(), Vec::new());
     for slug in slugs {

@@ -307,7 +307,9 @@ impl Encoder {
             .src_stage_mask(stage)
             .src_access_mask(access)
             .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
-            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::HOST_READ)];
+            .dst_access_mask(
+                vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE | vk::AccessFlags2::HOST_READ,
+            )];
         let info = vk::DependencyInfo::default().memory_barriers(&barrier);
         // SAFETY: recording into our own buffer.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };

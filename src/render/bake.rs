@@ -4,17 +4,18 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, SetLayouts, Use, one_shot, vk};
-use crate::interface::{IRRADIANCE_SIZE, Task};
+use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
+use crate::interface::IRRADIANCE_SIZE;
 use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
 
+use super::bake_passes::{Passes, no_results};
 use super::cache;
 use super::pipelines::PipelineSet;
 use super::task;
 
-const CUBE: &str = "ibl/cube.comp";
-const DOWNSAMPLE: &str = "ibl/downsample.comp";
-const IRRADIANCE: &str = "ibl/irradiance.comp";
+pub(super) const CUBE: &str = "ibl/cube.comp";
+pub(super) const DOWNSAMPLE: &str = "ibl/downsample.comp";
+pub(super) const IRRADIANCE: &str = "ibl/irradiance.comp";
 const PREFILTER: &str = "ibl/prefilter.comp";
 const PREFILTER_SHEEN: &str = "ibl/prefilter_sheen.comp";
 /// The stages that an environment is baked with: when one changes, it is baked anew.
@@ -26,10 +27,8 @@ const PREFILTERED_SIDE: u32 = 256;
 const PREFILTERED_LEVELS: u32 = 9;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
-const SHEEN_SAMPLES: u32 = 64;
-/// Level of the cube that irradiance is summed over: 64 x 64 texels.
-const IRRADIANCE_LEVEL: u32 = 3;
-const IRRADIANCE_BYTES: u64 = IRRADIANCE_SIZE as u64;
+const SHEEN_SAMPLES: u32 = 256;
+pub(super) const IRRADIANCE_BYTES: u64 = IRRADIANCE_SIZE as u64;
 const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 /// Largest half float.
 const LARGEST_HALF: f32 = 65504.0;
@@ -113,9 +112,8 @@ impl GpuEnvironment {
         let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(half::f16::from_f32);
         let texels = (this.bytes() - IRRADIANCE_BYTES) as usize / 8;
         let mut bytes = bytemuck::cast_slice(&texel.map(half::f16::to_bits)).repeat(texels);
-        // Of the harmonics only the constant one, 1 / (2 sqrt(pi)), is there.
-        let constant = radiance.map(|c| c * 2.0 * std::f32::consts::PI.sqrt());
-        bytes.extend_from_slice(bytemuck::cast_slice(&constant));
+        // Irradiance / pi is a polynomial of the normal (ibl/irradiance.comp); here only its constant is there.
+        bytes.extend_from_slice(bytemuck::cast_slice(&radiance));
         bytes.resize(this.bytes() as usize, 0);
         this.fill(gpu, &bytes)?;
         Ok(Arc::new(this))
@@ -237,7 +235,8 @@ impl GpuEnvironment {
             if (control.superseded)() { Err(BakeError::Superseded) } else { Ok(Instant::now()) }
         };
         let time = begin(0.05, "pipelines")?;
-        let passes = Passes { gpu, layouts, set };
+        let results = no_results(gpu)?;
+        let passes = Passes { gpu, layouts, set, results: &results };
         for stage in BAKE_STAGES {
             set.compute(stage, &Vec::new())?;
         }
@@ -259,16 +258,18 @@ impl GpuEnvironment {
         passes.irradiance(&self.cube, &self.sampler, &self.irradiance)?;
         self.report.irradiance_ms = ms(time);
 
-        for level in 0..PREFILTERED_LEVELS {
-            let time = begin(0.3 + 0.6 * level as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
-            let samples = PREFILTER_SAMPLES[level as usize];
-            passes.prefilter(PREFILTER, (&self.cube, &self.sampler), &self.prefiltered, level, samples)?;
+        // On a software device frames get their turn between two levels; a GPU has done them all before anyone notices.
+        let at_once = if gpu.info().kind == "cpu" { 1 } else { PREFILTERED_LEVELS };
+        let source = (&self.cube, &self.sampler);
+        for first in (0..PREFILTERED_LEVELS).step_by(at_once as usize) {
+            let time = begin(0.3 + 0.6 * first as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
+            let levels = first..(first + at_once).min(PREFILTERED_LEVELS);
+            passes.prefilter(PREFILTER, source, &self.prefiltered, levels, &PREFILTER_SAMPLES)?;
             self.report.prefilter_ms += ms(time);
         }
         let time = begin(0.9, "sheen")?;
-        for level in 0..SHEEN_LEVELS {
-            passes.prefilter(PREFILTER_SHEEN, (&self.cube, &self.sampler), &self.sheen, level, SHEEN_SAMPLES)?;
-        }
+        let samples = [SHEEN_SAMPLES; SHEEN_LEVELS as usize];
+        passes.prefilter(PREFILTER_SHEEN, source, &self.sheen, 0..SHEEN_LEVELS, &samples)?;
         self.report.sheen_ms = ms(time);
         (control.progress)(1.0, "");
         Ok(())
@@ -289,89 +290,4 @@ fn key(set: &PipelineSet, file: &EnvironmentFile) -> Result<String, GpuError> {
 
 fn ms(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
-}
-
-/// The passes, each recorded and waited for.
-struct Passes<'a> {
-    gpu: &'a Arc<Gpu>,
-    layouts: &'a Arc<SetLayouts>,
-    set: &'a PipelineSet,
-}
-
-impl Passes<'_> {
-    /// The map to level 0, then each level from the one above. The cube ends up in [`Use::Sampled`].
-    fn cube(&self, map: &Arc<Image>, cube: &Arc<Image>, radiance_scale: f32) -> Result<(), GpuError> {
-        let desc = *cube.desc();
-        let sampler = task::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
-        // A texel of the cube's face center spans 2 / side; the map has width / 2 pi of its own in a radian.
-        let finer = (map.desc().width as f32 / std::f32::consts::TAU * 2.0 / desc.width as f32).ceil().max(1.0);
-        let first = Task {
-            size: [desc.width; 2],
-            levels: desc.mips,
-            samples: (finer as u32).min(8),
-            radiance_scale,
-            ..Task::default()
-        };
-        let bind = |task: &Task, more: &dyn Fn(crate::gpu::SetWriter) -> crate::gpu::SetWriter| {
-            task::bindings(self.gpu, self.layouts, task, |writer| more(task::target(writer, cube, task.level)))
-        };
-        let mut dispatches =
-            vec![(self.set.compute(CUBE, &Vec::new())?, bind(&first, &|w| task::source(w, map, &sampler))?, desc.width)];
-        for level in 1..desc.mips {
-            let side = (desc.width >> level).max(1);
-            let task = Task { size: [side; 2], level, ..first };
-            let set = bind(&task, &|writer| task::level_above(writer, cube, level - 1))?;
-            dispatches.push((self.set.compute(DOWNSAMPLE, &Vec::new())?, set, side));
-        }
-        one_shot(self.gpu, |encoder| {
-            encoder.transition(cube, Use::Undefined, Use::Storage);
-            for (pipeline, set, side) in &dispatches {
-                encoder.dispatch(self.layouts, pipeline, &[set], task::groups(*side, desc.layers));
-                encoder.transition(cube, Use::Storage, Use::Storage);
-            }
-            encoder.transition(cube, Use::Storage, Use::Sampled);
-            Ok(())
-        })
-    }
-
-    fn irradiance(&self, cube: &Arc<Image>, sampler: &Arc<Sampler>, to: &Arc<Buffer>) -> Result<(), GpuError> {
-        let side = cube.desc().width >> IRRADIANCE_LEVEL;
-        let task = Task { size: [side; 2], level: IRRADIANCE_LEVEL, levels: cube.desc().mips, ..Task::default() };
-        let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {
-            task::results(task::source_cube(writer, cube, sampler), to)
-        })?;
-        let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
-        one_shot(self.gpu, |encoder| {
-            encoder.dispatch(self.layouts, &pipeline, &[&bindings], [1, 1, 1]);
-            encoder.computed();
-            Ok(())
-        })
-    }
-
-    /// One level; the last one leaves the image in [`Use::Sampled`].
-    fn prefilter(
-        &self,
-        stage: &str,
-        (cube, sampler): (&Arc<Image>, &Arc<Sampler>),
-        to: &Arc<Image>,
-        level: u32,
-        samples: u32,
-    ) -> Result<(), GpuError> {
-        let desc = *to.desc();
-        let side = (desc.width >> level).max(1);
-        let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
-        let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {
-            task::target(task::source_cube(writer, cube, sampler), to, level)
-        })?;
-        let pipeline = self.set.compute(stage, &Vec::new())?;
-        one_shot(self.gpu, |encoder| {
-            let before = if level == 0 { Use::Undefined } else { Use::Storage };
-            encoder.transition(to, before, Use::Storage);
-            encoder.dispatch(self.layouts, &pipeline, &[&bindings], task::groups(side, desc.layers));
-            if level + 1 == desc.mips {
-                encoder.transition(to, Use::Storage, Use::Sampled);
-            }
-            Ok(())
-        })
-    }
 }

@@ -4,6 +4,7 @@
 //! device. [`Renderer::frame`] draws one with the other.
 
 mod bake;
+mod bake_passes;
 mod cache;
 mod capture;
 mod draw;

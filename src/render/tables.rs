@@ -15,9 +15,9 @@ pub(super) const DFG: &str = "ibl/dfg.comp";
 pub(super) const SHEEN_ALBEDO: &str = "ibl/sheen_albedo.comp";
 
 const DFG_SIZE: u32 = 128;
-const DFG_SAMPLES: u32 = 256;
+const DFG_SAMPLES: u32 = 512;
 const SHEEN_SIZE: u32 = 32;
-const SHEEN_SAMPLES: u32 = 256;
+const SHEEN_SAMPLES: u32 = 512;
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Both tables, in [`Use::Sampled`]. Columns are NoV, rows roughness, at texel centers.

@@ -65,7 +65,7 @@ impl Film {
             let rs = t121 * t121 * r23 / (1.0 - r123);
             let orders = (1..=2).map(|m| {
                 let order = f64::from(m);
-                2.0 * (rs - t121) * r123.powf(order / 2.0) * (rgb_from_xyz * self::sensed(order * path, order * phase))[c]
+                2.0 * (rs - t121) * r123.powf(order / 2.0) * (rgb_from_xyz * sensed(order * path, order * phase))[c]
             });
             (r12 + rs + orders.sum::<f64>()).clamp(0.0, 1.0)
         };

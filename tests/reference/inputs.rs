@@ -12,8 +12,7 @@ use super::film::Film;
 use crate::support::render;
 
 /// Modes that every material has.
-const COMMON: [&str; 8] =
-    ["position", "shading-normal", "base-color", "metallic", "roughness", "ior", "emissive", "specular-color"];
+const COMMON: [&str; 5] = ["position", "shading-normal", "base-color", "metallic", "roughness"];
 
 /// The modes of inputs, rendered, and the materials by pixel.
 pub struct Inputs {
@@ -40,7 +39,7 @@ impl Inputs {
         let mut shown = |slug: &'static str| (slug, render(headless, slug).raw);
         let modes = COMMON.iter().chain(extensions).map(|slug| shown(slug)).collect();
         headless.set_model(numbered(&model)).unwrap();
-        let numbers = render(headless, "base-color").raw.iter().map(|value| value[0] as usize).collect();
+        let numbers = render(headless, "base-color").raw.iter().map(|value| value[0].round() as usize).collect();
         let materials = model.materials.clone();
         headless.set_model(model).unwrap();
         Self { modes, materials, numbers }
@@ -64,7 +63,7 @@ impl Inputs {
     }
 
     /// The value of another mode; none where it was not rendered, or shows the checkerboard of what is absent.
-    fn extra(&self, pixel: usize, slug: &str) -> Option<DVec3> {
+    pub fn extra(&self, pixel: usize, slug: &str) -> Option<DVec3> {
         self.modes.get(slug)?;
         let value = self.shown(pixel, slug);
         let checkerboard = [0.18_f32, 0.26].map(|gray| DVec3::splat(gray.into()));
@@ -77,7 +76,7 @@ impl Inputs {
         let material = self.material(pixel);
         let n = self.shown(pixel, "shading-normal").normalize();
         let coat_n = self.extra(pixel, "clearcoat-normal").map_or(n, DVec3::normalize);
-        let ior = self.shown(pixel, "ior").x;
+        let ior = f64::from(material.ior);
         let (f0, f90) = self.dielectric(pixel, ior);
         Surface {
             n,
@@ -87,7 +86,7 @@ impl Inputs {
             ior,
             f0,
             f90,
-            emissive: self.shown(pixel, "emissive"),
+            emissive: material.emissive_factor.as_dvec3(),
             t: self.extra(pixel, "anisotropy-direction"),
             anisotropy: number("anisotropy"),
             coat: Coat { n: coat_n, factor: number("clearcoat"), roughness: number("clearcoat-roughness") },
@@ -118,11 +117,8 @@ impl Inputs {
     /// F0 and F90 of the dielectric. Without textures they are worked out from the file, else the modes are believed.
     fn dielectric(&self, pixel: usize, ior: f64) -> (DVec3, f64) {
         let material = self.material(pixel);
-        let textures = [
-            interface::TEXTURE_SPECULAR,
-            interface::TEXTURE_SPECULAR_COLOR,
-            interface::TEXTURE_METALLIC_ROUGHNESS,
-        ];
+        let textures =
+            [interface::TEXTURE_SPECULAR, interface::TEXTURE_SPECULAR_COLOR, interface::TEXTURE_METALLIC_ROUGHNESS];
         if textures.iter().any(|texture| material.textures[*texture as usize].is_some()) {
             let f90 = self.extra(pixel, "specular-factor").map_or(1.0, |factor| factor.x);
             let plain = DVec3::splat(((ior - 1.0) / (ior + 1.0)).powi(2));

@@ -12,14 +12,9 @@ fn alpha(roughness: f64) -> f64 {
 /// l(x, alphaG) of the text.
 fn fit(x: f64, alpha: f64) -> f64 {
     let part = (1.0 - alpha).powi(2);
-    let [a, b, c, d, e] = [
-        (21.5473, 25.3245),
-        (3.82987, 3.32435),
-        (0.19823, 0.16801),
-        (-1.97760, -1.27393),
-        (-4.32054, -4.85967),
-    ]
-    .map(|(rough, smooth)| rough * (1.0 - part) + smooth * part);
+    let [a, b, c, d, e] =
+        [(21.5473, 25.3245), (3.82987, 3.32435), (0.19823, 0.16801), (-1.97760, -1.27393), (-4.32054, -4.85967)]
+            .map(|(rough, smooth)| rough * (1.0 - part) + smooth * part);
     a / (1.0 + b * x.powf(c)) + d * x + e
 }
 

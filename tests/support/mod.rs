@@ -5,6 +5,7 @@
 #![allow(dead_code)]
 
 pub mod glb;
+pub mod hdr;
 pub mod process;
 
 use std::collections::BTreeSet;

@@ -1,0 +1,131 @@
+//! The passes of a bake, each recorded, submitted and waited for.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, Use, one_shot, vk};
+use crate::interface::Task;
+
+use super::bake::{CUBE, DOWNSAMPLE, IRRADIANCE, IRRADIANCE_BYTES};
+use super::pipelines::PipelineSet;
+use super::task;
+
+/// Level of the cube that irradiance is summed over: 64 x 64 texels.
+const IRRADIANCE_LEVEL: u32 = 3;
+/// `Results` of ibl/small_lights.glsl: the irradiance, 64 counters, the length of a list and its 192 entries.
+const RESULTS_BYTES: u64 = IRRADIANCE_BYTES + 64 * 4 + 4 + 192 * 28;
+
+/// The buffer that the passes share, all 0.
+pub(super) fn no_results(gpu: &Arc<Gpu>) -> Result<Arc<Buffer>, GpuError> {
+    use vk::BufferUsageFlags as Usage;
+    let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
+    let results = Buffer::new(gpu, "bake", RESULTS_BYTES, usage, Memory::Device)?;
+    let staging = Buffer::new(gpu, "staging", RESULTS_BYTES, Usage::TRANSFER_SRC, Memory::Upload)?;
+    staging.write(0, &[0; RESULTS_BYTES as usize]);
+    one_shot(gpu, |encoder| {
+        encoder.copy_buffer(&staging, 0, &results, RESULTS_BYTES);
+        encoder.copies_done();
+        Ok(())
+    })?;
+    Ok(results)
+}
+
+/// The passes, each recorded and waited for.
+pub(super) struct Passes<'a> {
+    pub(super) gpu: &'a Arc<Gpu>,
+    pub(super) layouts: &'a Arc<SetLayouts>,
+    pub(super) set: &'a PipelineSet,
+    /// BINDING_RESULTS of all: what one finds and the next ones need, see ibl/small_lights.glsl.
+    pub(super) results: &'a Arc<Buffer>,
+}
+
+impl Passes<'_> {
+    /// The map to level 0, then each level from the one above. The cube ends up in [`Use::Sampled`].
+    pub(super) fn cube(&self, map: &Arc<Image>, cube: &Arc<Image>, radiance_scale: f32) -> Result<(), GpuError> {
+        let desc = *cube.desc();
+        let sampler = task::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
+        // A texel of the cube's face center spans 2 / side; the map has width / 2 pi of its own in a radian. Two at
+        // least: with one the energy of a small lamp is off by 0.6 %.
+        let finer = (map.desc().width as f32 / std::f32::consts::TAU * 2.0 / desc.width as f32).ceil().max(2.0);
+        let first = Task {
+            size: [desc.width; 2],
+            levels: desc.mips,
+            samples: (finer as u32).min(8),
+            radiance_scale,
+            ..Task::default()
+        };
+        let bind = |task: &Task, more: &dyn Fn(SetWriter) -> SetWriter| {
+            let writer = |writer| more(task::results(task::target(writer, cube, task.level), self.results));
+            task::bindings(self.gpu, self.layouts, task, writer)
+        };
+        let mut dispatches =
+            vec![(self.set.compute(CUBE, &Vec::new())?, bind(&first, &|w| task::source(w, map, &sampler))?, desc.width)];
+        for level in 1..desc.mips {
+            let side = (desc.width >> level).max(1);
+            let task = Task { size: [side; 2], level, ..first };
+            let set = bind(&task, &|writer| task::level_above(writer, cube, level - 1))?;
+            dispatches.push((self.set.compute(DOWNSAMPLE, &Vec::new())?, set, side));
+        }
+        one_shot(self.gpu, |encoder| {
+            encoder.transition(cube, Use::Undefined, Use::Storage);
+            for (pipeline, set, side) in &dispatches {
+                encoder.dispatch(self.layouts, pipeline, &[set], task::groups(*side, desc.layers));
+                encoder.transition(cube, Use::Storage, Use::Storage);
+                encoder.computed();
+            }
+            encoder.transition(cube, Use::Storage, Use::Sampled);
+            Ok(())
+        })
+    }
+
+    pub(super) fn irradiance(&self, cube: &Arc<Image>, sampler: &Arc<Sampler>, to: &Arc<Buffer>) -> Result<(), GpuError> {
+        let side = cube.desc().width >> IRRADIANCE_LEVEL;
+        let task = Task { size: [side; 2], level: IRRADIANCE_LEVEL, levels: cube.desc().mips, ..Task::default() };
+        let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {
+            task::results(task::source_cube(writer, cube, sampler), self.results)
+        })?;
+        let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
+        one_shot(self.gpu, |encoder| {
+            encoder.dispatch(self.layouts, &pipeline, &[&bindings], [1, 1, 1]);
+            encoder.computed();
+            encoder.copy_buffer(self.results, 0, to, IRRADIANCE_BYTES);
+            encoder.copies_done();
+            Ok(())
+        })
+    }
+
+    /// Some of the levels, with samples for each of the image's; the last one leaves the image in [`Use::Sampled`].
+    pub(super) fn prefilter(
+        &self,
+        stage: &str,
+        (cube, sampler): (&Arc<Image>, &Arc<Sampler>),
+        to: &Arc<Image>,
+        levels: Range<u32>,
+        samples: &[u32],
+    ) -> Result<(), GpuError> {
+        let desc = *to.desc();
+        let pipeline = self.set.compute(stage, &Vec::new())?;
+        let mut dispatches = Vec::new();
+        for level in levels {
+            let side = (desc.width >> level).max(1);
+            let samples = samples.get(level as usize).copied().unwrap_or(1);
+            let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
+            let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {
+                task::results(task::target(task::source_cube(writer, cube, sampler), to, level), self.results)
+            })?;
+            dispatches.push((level, bindings, task::groups(side, desc.layers)));
+        }
+        one_shot(self.gpu, |encoder| {
+            for (level, bindings, groups) in &dispatches {
+                if *level == 0 {
+                    encoder.transition(to, Use::Undefined, Use::Storage);
+                }
+                encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
+                if level + 1 == desc.mips {
+                    encoder.transition(to, Use::Storage, Use::Sampled);
+                }
+            }
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,268 @@
+//! Light from all around: what is baked is what the file or the name says, bad files cost nothing, the cache is sound.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, SpecificChannels, WritableImage as _};
+use serde_json::Value;
+use specula::headless::Headless;
+use specula::render::Capture;
+use support::process::{Finished, Running, run, specula};
+use support::{
+    Session, Tree, assert_differ, assert_same, failed, glb, hdr, load, open_image, ready, render, renderer, settings,
+};
+use tempfile::TempDir;
+
+const SMALL: [&str; 6] = ["--size", "48x32", "--set", "view.msaa=1", "--lights", "none"];
+
+/// A folder with a small white sphere.
+fn folder() -> TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let white = serde_json::json!({ "pbrMetallicRoughness": { "metallicFactor": 0.0 } });
+    fs::write(directory.path().join("ball.glb"), glb::model(&glb::sphere(16, 32), &white)).unwrap();
+    directory
+}
+
+/// `render` of the sphere in an environment, under validation.
+fn lit_by(directory: &Path, environment: &str, more: &[&str]) -> Finished {
+    let args = ["render", "ball.glb", "--env", environment, "--validate", "--out", "out.exr"];
+    run(directory, &[&args[..], &SMALL, more].concat())
+}
+
+/// An EXR of 4x2 pixels: gray, but for one of them.
+fn exr_with(odd: (f32, f32, f32)) -> Vec<u8> {
+    let channels = SpecificChannels::rgb(
+        move |at: exr::prelude::Vec2<usize>| {
+            if (at.x(), at.y()) == (2, 1) { odd } else { (0.5, 0.5, 0.5) }
+        },
+    );
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    Image::from_channels((4, 2), channels).write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+/// An EXR with nothing but luminance.
+fn exr_of_luminance() -> Vec<u8> {
+    let channels = AnyChannels::sort([AnyChannel::new("Y", FlatSamples::F32(vec![1.0; 8]))].into_iter().collect());
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    Image::from_channels((4, 2), channels).write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn a_bad_file_is_named_with_the_reason() {
+    let directory = folder();
+    let whole = hdr::red_and_blue();
+    for (name, bytes, parts) in [
+        ("short.hdr", whole[..whole.len() - 20].to_vec(), ["does not decode as Radiance HDR", "cut short"]),
+        ("nan.exr", exr_with((0.5, f32::NAN, 0.5)), ["NaN in green at x = 2, y = 1", "expected finite"]),
+        ("negative.exr", exr_with((-1.0, 0.5, 0.5)), ["-1 in red at x = 2, y = 1", "expected finite"]),
+        ("gray.exr", exr_of_luminance(), ["the channels Y", "expected channels R, G and B"]),
+    ] {
+        fs::write(directory.path().join(name), bytes).unwrap();
+        lit_by(directory.path(), name, &[]).expect(1, &[&[name], &parts[..]].concat());
+    }
+    lit_by(directory.path(), "nowhere.hdr", &[]).expect(1, &["nowhere.hdr", "studio, furnace, sky"]);
+    lit_by(directory.path(), "none", &["--background", "env"]).expect(1, &["view.background", "environment.name"]);
+    assert!(!directory.path().join("out.exr").exists(), "a picture in a refused environment");
+}
+
+/// Renders with a cache of its own; the `bake` event and the picture.
+fn baked(directory: &Path) -> (Value, Vec<u8>) {
+    let mut command = specula(directory);
+    command.env("SPECULA_CACHE", directory.join("cache"));
+    command.args(["render", "ball.glb", "--env", "sky.hdr", "--validate", "--out", "out.exr", "--events", "json"]);
+    let finished = support::process::finish(command.args(SMALL));
+    finished.expect(0, &[]);
+    let events = finished.stdout.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+    let bake = events.into_iter().find(|event| event["event"] == "bake").expect("a bake event");
+    (bake, fs::read(directory.join("out.exr")).unwrap())
+}
+
+#[test]
+fn a_bake_is_told_and_kept_and_a_damaged_entry_is_baked_anew() {
+    let directory = folder();
+    fs::write(directory.path().join("sky.hdr"), hdr::red_and_blue()).unwrap();
+    let (first, picture) = baked(directory.path());
+    assert_eq!((&first["environment"], &first["cached"]), (&"sky".into(), &false.into()), "{first}");
+    for time in ["decode_ms", "cube_ms", "irradiance_ms", "prefilter_ms", "sheen_ms", "total_ms"] {
+        assert!(first[time].as_f64() > Some(0.0), "{time} in {first}");
+    }
+    let (second, same) = baked(directory.path());
+    assert_eq!(second["cached"], true, "{second}");
+    assert!(picture == same, "what came from the cache looks different");
+
+    // Every entry loses its end.
+    let entries: Vec<_> = fs::read_dir(directory.path().join("cache/baked")).unwrap().collect();
+    assert!(!entries.is_empty());
+    for entry in entries {
+        let path = entry.unwrap().path();
+        let bytes = fs::read(&path).unwrap();
+        fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    }
+    let (third, same) = baked(directory.path());
+    assert_eq!(third["cached"], false, "{third}");
+    assert!(picture == same, "what was baked again looks different");
+}
+
+#[test]
+fn a_bad_file_keeps_the_last_good_picture_and_a_good_one_shows() {
+    let tree = Tree::new();
+    let sky = tree.beside("sky.hdr");
+    fs::write(tree.beside("ball.glb"), glb::model(&glb::sphere(16, 32), &glb::gray())).unwrap();
+    fs::write(&sky, hdr::uniform([128, 0, 0, 129])).unwrap();
+    let mut command = specula(&tree.beside(""));
+    command.args(["render", "ball.glb", "--shaders", "shaders", "--env", "sky.hdr", "--background", "env"]);
+    command.args(["--watch", "--events", "json", "--validate", "--tonemap", "none", "--out", "out.png"]);
+    let mut running = Running::start(command.args(SMALL));
+    running.event("bake");
+    running.event("ready");
+    let pixel = |x, y| open_image(&tree.beside("out.png")).into_rgb8().get_pixel(x, y).0;
+    // 1 / 1.2 of radiance 1, sRGB-encoded.
+    assert_eq!(pixel(0, 0), [235, 0, 0], "the sky behind the model");
+    assert!(pixel(24, 16)[0] > 100 && pixel(24, 16)[1] == 0, "the model in a red sky: {:?}", pixel(24, 16));
+
+    fs::write(&sky, b"#?RADIANCE\n").unwrap();
+    // A good edit of the shaders after it is drawn with the last good environment.
+    let user = tree.edited("user.glsl", "    return radiance;", "    return radiance + vec3(0.0, 1.0, 0.0);");
+    tree.write("user.glsl", &user);
+    running.reload(true);
+    assert_eq!(pixel(0, 0), [235, 0, 0], "the sky after its file was damaged");
+    assert_eq!(pixel(24, 16)[1], 235, "the edit shows");
+
+    // Whole again.
+    let new = tree.beside("new.hdr");
+    fs::write(&new, hdr::uniform([0, 0, 128, 129])).unwrap();
+    fs::rename(&new, &sky).unwrap();
+    running.event("bake");
+    // The picture is written after the event; the next reload comes after the picture.
+    tree.write("user.glsl", &user.replace("vec3(0.0, 1.0, 0.0)", "vec3(1.0, 0.0, 0.0)"));
+    running.reload(true);
+    assert_eq!(pixel(0, 0), [0, 0, 235], "the new sky");
+    assert_eq!(pixel(24, 16)[0], 235, "the edit after it");
+    let stderr = running.stderr();
+    assert!(stderr.contains("sky.hdr") && stderr.contains("the last good environment stays"), "{stderr}");
+}
+
+/// A ball that leaves most of the picture to what is behind it; left is -X.
+fn before_the_sky(environment: &str) -> Headless {
+    let settings = settings(&[
+        &format!("environment.name={environment}"),
+        "view.background=env",
+        "view.msaa=1",
+        "lights.source=none",
+        "camera.eye=[0, 0, 8]",
+        "camera.target=[0, 0, 0]",
+    ]);
+    renderer(load(&glb::model(&glb::sphere(8, 16), &glb::gray())), settings, (48, 32))
+}
+
+/// The raw values behind the model, left and right.
+fn sides(capture: &Capture) -> [[f32; 3]; 2] {
+    [4, 43].map(|x| capture.raw_at(x, 16).unwrap()).map(|[r, g, b, _]| [r, g, b])
+}
+
+#[test]
+fn the_sky_behind_the_model_is_the_files_and_turns() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("sky.hdr");
+    fs::write(&path, hdr::red_and_blue()).unwrap();
+    let mut headless = before_the_sky(path.to_str().unwrap());
+    let mut with = |assignment: &str| {
+        headless.settings_mut().assign(assignment).unwrap();
+        render(&mut headless, "final")
+    };
+    let (red, blue) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    for (assignment, expected) in [
+        ("environment.rotation=180", [blue, red]),
+        // What was ahead is now left, what was right is ahead.
+        ("environment.rotation=90", [blue, blue]),
+        ("environment.rotation=-90", [red, red]),
+        ("environment.rotation=0", [red, blue]),
+        ("environment.intensity=2", [red.map(|c| 2.0 * c), blue.map(|c| 2.0 * c)]),
+        ("environment.intensity=1", [red, blue]),
+    ] {
+        let found = sides(&with(assignment));
+        let near =
+            found.as_flattened().iter().zip(expected.as_flattened()).all(|(a, b): (&f32, _)| (a - b).abs() < 1e-3);
+        assert!(near, "{assignment}: {found:?}, not {expected:?}");
+    }
+    let [left, right] = sides(&with("environment.blur=1"));
+    assert!(left[0] > left[2] && left[2] > 0.05 && right[2] > right[0] && right[0] > 0.05, "{left:?} {right:?}");
+    with("environment.blur=0");
+    // No light is seen behind a mode that shows none; without a background nothing is, and the model is lit as before.
+    let behind = render(&mut headless, "metallic").raw_at(4, 16).unwrap();
+    assert!(behind[3] == 1.0 && behind[..3].iter().all(|c| (0.005..0.02).contains(c)), "{behind:?}");
+    let lit = render(&mut headless, "final").raw_at(24, 16).unwrap();
+    headless.settings_mut().view.background = "none".into();
+    let alone = render(&mut headless, "final");
+    assert_eq!((alone.raw_at(4, 16), alone.raw_at(24, 16)), (Some([0.0; 4]), Some(lit)));
+}
+
+/// The raw values of the model, all channels.
+fn on_model(capture: &Capture) -> Vec<f32> {
+    capture.raw.iter().filter(|value| value[3] == 1.0).flat_map(|value| [value[0], value[1], value[2]]).collect()
+}
+
+/// Largest distance from 1, and the root of the mean square of it.
+fn off_one(values: &[f32]) -> (f32, f32) {
+    let squares = values.iter().map(|value| (value - 1.0).powi(2)).sum::<f32>() / values.len() as f32;
+    (values.iter().map(|value| (value - 1.0).abs()).fold(0.0, f32::max), squares.sqrt())
+}
+
+#[test]
+fn a_white_metal_cannot_be_seen_in_a_furnace() {
+    let mut settings = settings(&["environment.name=furnace", "view.msaa=1", "view.background=none"]);
+    for assignment in [
+        "lights.source=none",
+        "material.enabled=true",
+        "material.metallic=1",
+        "material.roughness=0.8",
+        "material.base_color=[1, 1, 1]",
+    ] {
+        settings.assign(assignment).unwrap();
+    }
+    let mut headless = renderer(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings, (48, 32));
+    let split_sum = off_one(&on_model(&render(&mut headless, "final")));
+    assert!(split_sum.0 < 0.005, "split sum: off 1 by up to {}", split_sum.0);
+    // The truth is a mean over frames: of 64 it is closer to 1 than of one.
+    headless.settings_mut().view.frames = 1;
+    let noisy = off_one(&on_model(&render(&mut headless, "monte-carlo")));
+    headless.settings_mut().view.frames = 64;
+    let mean = off_one(&on_model(&render(&mut headless, "monte-carlo")));
+    assert!(mean.1 < 0.01, "of 64 frames: off 1 by {} (r.m.s.)", mean.1);
+    assert!(noisy.1 > 3.0 * mean.1, "of one frame: off 1 by {}, of 64 by {}", noisy.1, mean.1);
+    // One bounce alone loses a third of it.
+    headless.settings_mut().assign("MULTI_SCATTER=None").unwrap();
+    let once = on_model(&render(&mut headless, "final"));
+    assert!(once.iter().all(|value| (0.5..0.9).contains(value)), "{:?}", off_one(&once));
+}
+
+#[test]
+fn an_edit_of_a_baking_stage_bakes_again() {
+    let file = "ibl/irradiance.comp";
+    let chosen = settings(&["environment.name=furnace", "lights.source=none", "view.msaa=1"]);
+    let mut session = Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), chosen);
+    let whole = session.mode("ibl-diffuse");
+    let original = session.tree.read(file);
+    ready(&session.edit(file, "irradiance_sh[0] = ", "irradiance_sh[0] = 0.5 * "));
+    let half = session.render();
+    assert_differ(&whole, &half, "half of the irradiance");
+    for (whole, half) in whole.raw.iter().zip(&half.raw).filter(|(value, _)| value[3] == 1.0) {
+        assert!((whole[0] - 2.0 * half[0]).abs() < 2e-3 * whole[0], "{whole:?} {half:?}");
+    }
+    // A stage that does not compile keeps what was baked.
+    assert!(!failed(&session.edit(file, "sum_of_all(sh[i])", "sum_of_all(sh)")).is_empty());
+    assert_same(&half, &session.render(), "after a broken edit");
+    ready(&session.save(file, &original));
+    assert_same(&whole, &session.render(), "back at the first text");
+    assert!(session.headless.bake_report().cached, "the first bake is kept");
+    // What does not bake leaves the bake alone.
+    let user = session.tree.edited("user.glsl", "    return radiance;", "    return radiance * 2.0;");
+    let before = session.headless.bake_report().total_ms;
+    ready(&session.save("user.glsl", &user));
+    session.render();
+    assert_eq!(session.headless.bake_report().total_ms, before, "baked again for an edit of user.glsl");
+}
