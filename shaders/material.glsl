@@ -42,14 +42,14 @@ vec3 mapped_normal(Fragment f, vec3 v, vec3 texel) {
 
 // The normal that is shaded.
 vec3 shading_normal(Fragment f, vec3 v) {
-    if (!has_feature(FEATURE_NORMAL_TEXTURE)) return geometric_normal(f, v);
+    if ((FEATURES & FEATURE_NORMAL_TEXTURE) == 0u) return geometric_normal(f, v);
     vec4 texel = texture(normal_texture, texture_uv(f, TEXTURE_NORMAL));
     return mapped_normal(f, v, normal_texel(texel, material.normal_scale));
 }
 
 // The coat does not take over the bumps of what it covers (KHR_materials_clearcoat).
 vec3 clearcoat_normal(Fragment f, vec3 v) {
-    if (!has_feature(FEATURE_CLEARCOAT_NORMAL)) return geometric_normal(f, v);
+    if ((FEATURES & FEATURE_CLEARCOAT_NORMAL) == 0u) return geometric_normal(f, v);
     vec4 texel = texture(clearcoat_normal_texture, texture_uv(f, TEXTURE_CLEARCOAT_NORMAL));
     return mapped_normal(f, v, normal_texel(texel, material.clearcoat_normal_scale));
 }
@@ -90,18 +90,18 @@ void read_specular(Fragment f, inout Surface s) {
 
 // The layers: coat, sheen, film.
 void read_layers(Fragment f, vec3 v, inout Surface s) {
-    if (has_feature(FEATURE_CLEARCOAT)) {
+    if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
         vec2 roughness_uv = texture_uv(f, TEXTURE_CLEARCOAT_ROUGHNESS);
         s.clearcoat_n = clearcoat_normal(f, v);
         s.clearcoat = material.clearcoat_factor * texture(clearcoat_texture, texture_uv(f, TEXTURE_CLEARCOAT)).r;
         s.clearcoat_roughness = material.clearcoat_roughness * texture(clearcoat_roughness_texture, roughness_uv).g;
     }
-    if (has_feature(FEATURE_SHEEN)) {
+    if ((FEATURES & FEATURE_SHEEN) != 0u) {
         vec2 roughness_uv = texture_uv(f, TEXTURE_SHEEN_ROUGHNESS);
         s.sheen_color = material.sheen_color * texture(sheen_color_texture, texture_uv(f, TEXTURE_SHEEN_COLOR)).rgb;
         s.sheen_roughness = material.sheen_roughness * texture(sheen_roughness_texture, roughness_uv).a;
     }
-    if (has_feature(FEATURE_IRIDESCENCE)) {
+    if ((FEATURES & FEATURE_IRIDESCENCE) != 0u) {
         float texel = texture(iridescence_texture, texture_uv(f, TEXTURE_IRIDESCENCE)).r;
         float thickness = texture(iridescence_thickness_texture, texture_uv(f, TEXTURE_IRIDESCENCE_THICKNESS)).g;
         s.iridescence = material.iridescence_factor * texel;
@@ -117,18 +117,18 @@ float object_scale() {
 }
 
 void read_transmission(Fragment f, inout Surface s) {
-    if (has_feature(FEATURE_TRANSMISSION)) {
+    if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
         vec2 uv = texture_uv(f, TEXTURE_TRANSMISSION);
         s.transmission = material.transmission_factor * texture(transmission_texture, uv).r;
     }
-    if (has_feature(FEATURE_VOLUME)) {
+    if ((FEATURES & FEATURE_VOLUME) != 0u) {
         float texel = texture(thickness_texture, texture_uv(f, TEXTURE_THICKNESS)).g;
         s.thickness = material.thickness * texel * object_scale();
         s.attenuation_color = material.attenuation_color;
         s.attenuation_distance = material.attenuation_distance;
     }
-    if (has_feature(FEATURE_DISPERSION)) s.dispersion = material.dispersion;
-    if (has_feature(FEATURE_DIFFUSE_TRANSMISSION)) {
+    if ((FEATURES & FEATURE_DISPERSION) != 0u) s.dispersion = material.dispersion;
+    if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         vec2 uv = texture_uv(f, TEXTURE_DIFFUSE_TRANSMISSION);
         vec2 color_uv = texture_uv(f, TEXTURE_DIFFUSE_TRANSMISSION_COLOR);
         vec3 color = texture(diffuse_transmission_color_texture, color_uv).rgb;
@@ -162,7 +162,7 @@ Surface make_surface(Fragment f, vec3 v) {
     vec4 metallic_roughness = texture(metallic_roughness_texture, texture_uv(f, TEXTURE_METALLIC_ROUGHNESS));
     vec3 emissive = texture(emissive_texture, texture_uv(f, TEXTURE_EMISSIVE)).rgb;
     float occlusion = metallic_roughness.r;
-    if (!has_feature(FEATURE_PACKED_OCCLUSION)) {
+    if ((FEATURES & FEATURE_PACKED_OCCLUSION) == 0u) {
         occlusion = texture(occlusion_texture, texture_uv(f, TEXTURE_OCCLUSION)).r;
     }
     base_color *= material.base_color_factor * f.color;
@@ -183,10 +183,10 @@ Surface make_surface(Fragment f, vec3 v) {
     s.multiple = vec3(0.0);
     clear_extensions(s);
 
-    if (has_feature(FEATURE_SPECULAR_GLOSSINESS)) read_specular_glossiness(metallic_roughness, s);
-    if (has_feature(FEATURE_SPECULAR)) read_specular(f, s);
-    if (has_feature(FEATURE_ANISOTROPY)) read_anisotropy(f, s);
-    if (has_feature(FEATURE_CONDUCTOR)) {
+    if ((FEATURES & FEATURE_SPECULAR_GLOSSINESS) != 0u) read_specular_glossiness(metallic_roughness, s);
+    if ((FEATURES & FEATURE_SPECULAR) != 0u) read_specular(f, s);
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) read_anisotropy(f, s);
+    if ((FEATURES & FEATURE_CONDUCTOR) != 0u) {
         s.conductor_n = material.conductor_n;
         s.conductor_k = material.conductor_k;
     }

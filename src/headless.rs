@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use crate::gpu::{Buffer, Gpu, GpuError, Rect, SetLayouts, vk};
 use crate::render::{
     BakeControl, BakeError, BakeReport, Baked, Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload,
@@ -10,7 +12,7 @@ use crate::render::{
 };
 use crate::scene::{self, Measured, Model};
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, Diagnostic, Source};
+use crate::shader::{Change, Compiler, Diagnostic, Mode, Source};
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -228,23 +230,37 @@ impl Headless {
         self.frame(Target::Nowhere).map(|_| ())
     }
 
-    /// The raw value of one pixel, counted from the upper left corner; premultiplied, as in [`Capture::raw`]. Zero where
-    /// nothing is. Only what is near to the pixel is drawn, so that only its pipelines are compiled; all, where light passes
-    /// through a surface and what lies behind it is seen from around the pixel.
+    /// The raw values of one pixel, counted from the upper left corner, in some modes; premultiplied, as in [`Capture::raw`],
+    /// and zero where nothing is. The last mode is the one of the settings then.
+    ///
+    /// Only what is near to the pixel is drawn, so that only its pipelines are made; all, where light passes through a surface
+    /// and what lies behind it is seen from around the pixel.
     ///
     /// # Errors
     /// As [`Headless::render`].
-    pub fn pixel(&mut self, x: u32, y: u32) -> Result<[f32; 4], HeadlessError> {
+    pub fn pixel(&mut self, (x, y): (u32, u32), modes: &[Mode]) -> Result<Vec<[f32; 4]>, HeadlessError> {
         self.open_files()?;
         self.dress()?;
         let near = scene::near_pixel(&self.model, self.shot().view.clip_from_world(), self.size, (x, y));
         let part = self.scene.only(&near);
         let part = if part.is_transmissive() { self.scene.clone() } else { part };
-        let frames = if self.wanted().accumulates { self.settings.view.frames } else { 1 };
-        for _ in 0..frames {
-            self.frame_of(&part, Target::Pixel(x, y))?;
+        let (settings, samples, pipelines) = (&self.settings, self.samples, &self.pipelines);
+        let wanted = |mode: &Mode| {
+            let settings = Settings { mode: mode.slug.clone(), ..settings.clone() };
+            wanted(&settings, samples, &pipelines.shaders, &part)
+        };
+        let wanted: Vec<Wanted> = modes.iter().map(wanted).collect();
+        // Drivers make a pipeline on the thread that asks for it.
+        wanted.par_iter().try_for_each(|wanted| pipelines.build(wanted))?;
+        let mut values = Vec::new();
+        for (mode, wanted) in modes.iter().zip(wanted) {
+            self.settings.mode.clone_from(&mode.slug);
+            for _ in 0..if wanted.accumulates { self.settings.view.frames } else { 1 } {
+                self.frame_of(&part, Target::Pixel(x, y))?;
+            }
+            values.push(self.renderer.raw_at(x, y)?.unwrap_or_default());
         }
-        Ok(self.renderer.raw_at(x, y)?.unwrap_or_default())
+        Ok(values)
     }
 
     /// Camera, lights and values of the next frame.

@@ -174,7 +174,7 @@ fn no_combination_that_claims_to_conserve_makes_light() {
     let mut library = Library::new(Source::embedded(), compiler().clone(), &all_stages());
     let Update::Ready(shaders, _) = library.update(&Change::All) else { panic!("the embedded tree compiles") };
     let bench = Bench::new(gpu(), &shaders, &Settings::default()).unwrap();
-    let grid = Grid { rows: 6, roughness: (0.1, 1.0), columns: 6, theta: (0.0, 85.0), samples: 256 };
+    let grid = Grid { rows: 6, roughness: (0.1, 1.0), columns: 6, theta: (0.0, 85.0), samples: 512 };
     let largest = |settings: &Settings, metallic: f32| {
         let surface = Surface { base_color: [1.0; 3], metallic };
         let albedo = bench.with(settings).unwrap().furnace(surface, grid).unwrap();

@@ -1,7 +1,7 @@
 //! The glTF BRDF with all of its extensions, written a second time from the specifications, against the program.
 //!
-//! Of the program only the inputs are taken, pixel by pixel, from its modes: positions, normals, and the material with its
-//! textures read. `reference/` redoes the rest in f64: what the lamps send to the eye must be the same to 1e-3.
+//! Of the program only the inputs are taken, pixel by pixel, from its modes: positions, normals, and the material with
+//! its textures read. `reference/` redoes the rest in f64: what the lamps send to the eye must be the same to 1e-3.
 
 mod reference {
     pub mod brdf;
@@ -123,8 +123,8 @@ fn compare(headless: &mut Headless, inputs: &Inputs, parts: &[Part], masking: Ma
         let (x, y) = (pixel % SIZE.0 as usize, pixel / SIZE.0 as usize);
         assert!(
             error(worst) < allowed,
-            "{name}, {slug}, {masking:?}: off by {:.2e}, allowed {allowed}, at pixel ({x}, {y}): found {}, expected {}\n\
-             there: {:?}",
+            "{name}, {slug}, {masking:?}: off by {:.2e}, allowed {allowed}, at pixel ({x}, {y}): found {}, \
+             expected {}\nthere: {:?}",
             error(worst),
             found[pixel],
             of(worst),

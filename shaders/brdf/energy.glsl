@@ -51,8 +51,8 @@ float b_average(float roughness) {
     return 1.0 / (21.0 * (1.0 + alpha * (fit.x + alpha * fit.y)));
 }
 
-// Columns are the root of NoV, since E is steep where v grazes; rows as above. Off by less than 0.001 from NoV = 0.1 on,
-// for a roughness of 0.15 and more.
+// Columns are the root of NoV, since E is steep where v grazes; rows as above. Off by less than 0.001 from NoV = 0.1
+// on, for a roughness of 0.15 and more.
 float sheen_albedo(float n_dot_v, float sheen_roughness) {
     const float ROWS = 64.0;
     return textureLod(sheen_albedo_table, vec2(sqrt(n_dot_v), (sheen_roughness * (ROWS - 1.0) + 0.5) / ROWS), 0.0).r;

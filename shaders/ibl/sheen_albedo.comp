@@ -5,9 +5,10 @@
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
-// How much light the sheen lobe reflects in all, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are NoV,
-// rows roughness, at texel centers. Directions cover the hemisphere: of the lobe's own distribution most lies below it.
-// The points are a lattice with 3 u^2 - 2 u^3 as the cosine, its derivative as a weight, as in ibl/dfg.comp.
+// How much light the sheen lobe reflects in all, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are
+// the root of NoV, at texel centers; rows are roughness, the first 0 and the last 1. Directions cover the hemisphere: of
+// the lobe's own distribution most lies below it. The points are a lattice with 3 u^2 - 2 u^3 as the cosine, its
+// derivative as a weight, as in ibl/dfg.comp.
 //
 // E exceeds 1 (up to 2.2) where v grazes a smooth sheen: V grows without bound there. It is what the lobe does.
 
@@ -18,9 +19,10 @@ void main() {
     uvec2 texel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(texel, task.size))) return;
 
-    vec2 row = (vec2(texel) + 0.5) / vec2(task.size);
-    float alpha = sheen_alpha(row.y);
-    vec3 v = vec3(sqrt(1.0 - row.x * row.x), 0.0, row.x);
+    float root = (float(texel.x) + 0.5) / float(task.size.x);
+    float n_dot_v = root * root;
+    float alpha = sheen_alpha(float(texel.y) / float(task.size.y - 1u));
+    vec3 v = vec3(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
     float sum = 0.0;
     for (uint i = 0u; i < task.samples; ++i) {
         float u = (float(i) + 0.5) / float(task.samples);

@@ -125,7 +125,8 @@ impl Document {
         proxy: &EventLoopProxy<Message>,
     ) -> Result<Self, GpuError> {
         // What most models have, built while the model loads.
-        let likely = MaterialVariant { features: FEATURE_NORMAL_TEXTURE | FEATURE_PACKED_OCCLUSION, ..Default::default() };
+        let likely =
+            MaterialVariant { features: FEATURE_NORMAL_TEXTURE | FEATURE_PACKED_OCCLUSION, ..Default::default() };
         let needs = Needs {
             settings: options.settings.clone(),
             materials: BTreeSet::from([likely]),

@@ -72,7 +72,8 @@ fn build_choices(
     };
     let layouts = SetLayouts::new(&gpu)?;
     let settings = args.common.settings()?;
-    let materials = BTreeSet::from([MaterialVariant { features: interface::FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
+    let materials =
+        BTreeSet::from([MaterialVariant { features: interface::FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
     // Each feature alone; the bits below NORMAL_TEXTURE and above are one another's neighbors.
     let features = [0, interface::FEATURE_UNLIT].into_iter().chain((1..=14).map(|bit| 1 << bit));
     let all_materials: BTreeSet<_> =

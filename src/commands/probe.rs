@@ -53,11 +53,8 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let modes = chosen(&headless.pipelines().shaders, &slugs)?;
     let shot = headless.shot();
     let hit = is_hit(&mut headless, args.at)?;
-    let mut values = Vec::new();
-    for mode in modes.iter().filter(|_| hit) {
-        headless.settings_mut().mode.clone_from(&mode.slug);
-        values.push((mode, headless.pixel(x, y)?));
-    }
+    let shown = if hit { modes.as_slice() } else { &[] };
+    let values: Vec<_> = shown.iter().zip(headless.pixel(args.at, shown)?).collect();
     if args.json {
         let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), json!(value))).collect();
         let lights: Vec<Value> = shot.lights.iter().map(light).collect();
@@ -79,19 +76,14 @@ fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
 }
 
 /// Whether anything of the model is at the pixel: a mode that shows surfaces, but no light and so no sky, covers it there.
-fn is_hit(headless: &mut Headless, (x, y): (u32, u32)) -> Result<bool, Failure> {
-    let shaders = headless.pipelines().shaders.clone();
+fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
+    let modes = &headless.pipelines().shaders.modes;
     let plain = |mode: &&Mode| !mode.tonemap && !mode.accumulate && mode.draw == DrawAs::Surfaces;
-    let mode = shaders.modes.iter().find(plain).or_else(|| shaders.modes.first());
-    let settings = headless.settings_mut();
-    let before = settings.view.background.clone();
-    "none".clone_into(&mut settings.view.background);
-    if let Some(mode) = mode {
-        settings.mode.clone_from(&mode.slug);
-    }
-    let value = headless.pixel(x, y)?;
+    let mode: Vec<Mode> = modes.iter().find(plain).or(modes.first()).cloned().into_iter().collect();
+    let before = std::mem::replace(&mut headless.settings_mut().view.background, "none".into());
+    let values = headless.pixel(at, &mode)?;
     headless.settings_mut().view.background = before;
-    Ok(value[3] > 0.0)
+    Ok(values.iter().any(|value| value[3] > 0.0))
 }
 
 fn camera(shot: &Shot) -> Value {

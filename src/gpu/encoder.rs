@@ -75,9 +75,7 @@ impl Use {
             Self::Sampled => {
                 (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_SAMPLED_READ, L::SHADER_READ_ONLY_OPTIMAL)
             }
-            Self::Storage => {
-                (S::COMPUTE_SHADER, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, L::GENERAL)
-            }
+            Self::Storage => (S::COMPUTE_SHADER, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, L::GENERAL),
             Self::CopyFrom => (S::ALL_TRANSFER, A::TRANSFER_READ, L::TRANSFER_SRC_OPTIMAL),
             Self::CopyTo => (S::ALL_TRANSFER, A::TRANSFER_WRITE, L::TRANSFER_DST_OPTIMAL),
             Self::Present => (S::BOTTOM_OF_PIPE, A::NONE, L::PRESENT_SRC_KHR),

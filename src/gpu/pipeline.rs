@@ -40,17 +40,6 @@ impl Drop for ShaderModule {
 /// Values for specialization constants: `constant_id` and the four bytes of the value.
 pub type Specialization = Vec<(u32, u32)>;
 
-/// Where each value lies, and the values.
-fn specialization_data(values: &[(u32, u32)]) -> (Vec<vk::SpecializationMapEntry>, Vec<u8>) {
-    let entry = |(i, (id, _)): (u32, &(u32, u32))| vk::SpecializationMapEntry {
-        constant_id: *id,
-        offset: i * 4,
-        size: 4,
-    };
-    let entries = (0u32..).zip(values).map(entry).collect();
-    (entries, values.iter().flat_map(|(_, value)| value.to_ne_bytes()).collect())
-}
-
 /// What a pipeline's topology may be changed to while recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PrimitiveClass {
@@ -85,8 +74,6 @@ pub struct PipelineDesc<'a> {
     pub vertex: &'a ShaderModule,
     /// Fragment stage.
     pub fragment: &'a ShaderModule,
-    /// Specialization of both stages; ids that a stage lacks are ignored.
-    pub specialization: &'a [(u32, u32)],
     /// Color target.
     pub color: vk::Format,
     /// Whether there is a D32 depth target, tested reversed (greater is nearer).
@@ -112,11 +99,8 @@ impl Pipeline {
     /// # Errors
     /// The driver refuses it or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, desc: &PipelineDesc<'_>) -> Result<Arc<Self>, GpuError> {
-        let (entries, data) = specialization_data(desc.specialization);
-        let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(&data);
         let stage = |stage, module: &ShaderModule| {
-            let info = vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module.raw).name(MAIN);
-            info.specialization_info(&specialization)
+            vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module.raw).name(MAIN)
         };
         let stages =
             [stage(vk::ShaderStageFlags::VERTEX, desc.vertex), stage(vk::ShaderStageFlags::FRAGMENT, desc.fragment)];
@@ -188,23 +172,15 @@ pub struct ComputePipeline {
 }
 
 impl ComputePipeline {
-    /// Makes a pipeline of one stage; ids of `specialization` that the stage lacks are ignored.
+    /// Makes a pipeline of one stage.
     ///
     /// # Errors
     /// The driver refuses it or is out of memory.
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        layouts: &Arc<SetLayouts>,
-        module: &ShaderModule,
-        specialization: &[(u32, u32)],
-    ) -> Result<Arc<Self>, GpuError> {
-        let (entries, data) = specialization_data(specialization);
-        let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(&data);
+    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, module: &ShaderModule) -> Result<Arc<Self>, GpuError> {
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module.raw)
-            .name(MAIN)
-            .specialization_info(&specialization);
+            .name(MAIN);
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.pipeline);
         // SAFETY: every pointer in `info` lives until the call returns; module and layout are live. The cache is internally
         // synchronized.

@@ -18,7 +18,9 @@ pub fn glsl() -> String {
         let _ = writeln!(out, "const {kind} {name} = {value};");
     };
     constant("uint", "INTERFACE_VERSION", format!("{VERSION}u"));
-    for (name, value) in [("SET_FRAME", SET_FRAME), ("SET_MATERIAL", SET_MATERIAL), ("SET_PASS", SET_PASS), ("SET_TASK", SET_TASK)] {
+    for (name, value) in
+        [("SET_FRAME", SET_FRAME), ("SET_MATERIAL", SET_MATERIAL), ("SET_PASS", SET_PASS), ("SET_TASK", SET_TASK)]
+    {
         constant("int", name, value.to_string());
     }
     for b in BINDINGS {

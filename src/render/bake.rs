@@ -194,11 +194,7 @@ impl GpuEnvironment {
     ///
     /// # Errors
     /// A bad map, a device that fails, or `control` gave up.
-    pub fn bake(
-        set: &PipelineSet,
-        file: &EnvironmentFile,
-        control: &BakeControl<'_>,
-    ) -> Result<Arc<Self>, BakeError> {
+    pub fn bake(set: &PipelineSet, file: &EnvironmentFile, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
         let start = Instant::now();
         let gpu = set.gpu();
         let mut this = Self::new(gpu)?;

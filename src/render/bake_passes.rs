@@ -58,8 +58,11 @@ impl Passes<'_> {
             let writer = |writer| more(task::results(task::target(writer, cube, task.level), self.results));
             task::bindings(self.gpu, self.layouts, task, writer)
         };
-        let mut dispatches =
-            vec![(self.set.compute(CUBE, &Vec::new())?, bind(&first, &|w| task::source(w, map, &sampler))?, desc.width)];
+        let mut dispatches = vec![(
+            self.set.compute(CUBE, &Vec::new())?,
+            bind(&first, &|w| task::source(w, map, &sampler))?,
+            desc.width,
+        )];
         for level in 1..desc.mips {
             let side = (desc.width >> level).max(1);
             let task = Task { size: [side; 2], level, ..first };
@@ -78,7 +81,12 @@ impl Passes<'_> {
         })
     }
 
-    pub(super) fn irradiance(&self, cube: &Arc<Image>, sampler: &Arc<Sampler>, to: &Arc<Buffer>) -> Result<(), GpuError> {
+    pub(super) fn irradiance(
+        &self,
+        cube: &Arc<Image>,
+        sampler: &Arc<Sampler>,
+        to: &Arc<Buffer>,
+    ) -> Result<(), GpuError> {
         let side = cube.desc().width >> IRRADIANCE_LEVEL;
         let task = Task { size: [side; 2], level: IRRADIANCE_LEVEL, levels: cube.desc().mips, ..Task::default() };
         let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {

@@ -271,8 +271,14 @@ impl Renderer {
         let before = if acquired.is_some() { Use::Acquired } else { Use::Undefined };
         encoder.transition(&output, before, Use::Color);
         let whole = Rect { x: 0, y: 0, width: output.desc().width, height: output.desc().height };
-        let attachments =
-            Attachments { color: &output, clear: Some([0.0, 0.0, 0.0, 1.0]), resolve: None, depth: None, goes_on: false, area: whole };
+        let attachments = Attachments {
+            color: &output,
+            clear: Some([0.0, 0.0, 0.0, 1.0]),
+            resolve: None,
+            depth: None,
+            goes_on: false,
+            area: whole,
+        };
         encoder.begin_rendering(&attachments);
         if let Some(pipeline) = input.pipelines.and_then(|(set, wanted)| set.get(&wanted.tonemap_key())) {
             encoder.set_viewport(input.rect);

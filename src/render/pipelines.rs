@@ -1,13 +1,13 @@
 //! The pipelines of one shader generation. A frame draws with exactly one set, so it never mixes two generations.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::gpu::{
     ComputePipeline, Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule,
     Specialization,
 };
-use crate::shader::{ShaderSet, Stage};
+use crate::shader::{ShaderSet, specialize};
 
 use super::bake::BAKE_STAGES;
 use super::tables::{self, Tables};
@@ -52,7 +52,6 @@ pub struct PipelineSet {
     layouts: Arc<SetLayouts>,
     /// The shaders of this generation, with their modes and parameters.
     pub shaders: Arc<ShaderSet>,
-    modules: BTreeMap<String, Arc<ShaderModule>>,
     made: Mutex<HashMap<PipelineKey, Arc<Pipeline>>>,
     computes: Mutex<HashMap<(String, Specialization), Arc<ComputePipeline>>>,
     tables: Mutex<HashMap<Specialization, Arc<Tables>>>,
@@ -71,29 +70,22 @@ impl PipelineSet {
         wanted: &Wanted,
         before: Option<&Self>,
     ) -> Result<Arc<Self>, GpuError> {
-        let kept = |path: &str| {
-            let before = before?;
-            let same = Arc::ptr_eq(before.shaders.stages.get(path)?, shaders.stages.get(path)?);
-            before.modules.get(path).filter(|_| same).cloned()
+        let is_same = |path: &str| match (before.and_then(|b| b.shaders.stages.get(path)), shaders.stages.get(path)) {
+            (Some(before), Some(now)) => Arc::ptr_eq(before, now),
+            _ => false,
         };
-        let module = |(path, stage): (&String, &Arc<Stage>)| match kept(path) {
-            Some(module) => Ok((path.clone(), module)),
-            None => Ok((path.clone(), ShaderModule::new(gpu, &stage.spirv)?)),
-        };
-        let modules = shaders.stages.iter().map(module).collect::<Result<_, GpuError>>()?;
         let pipelines = before.map(|set| lock(&set.made));
-        let is_kept = |pass: Pass| pass.stages().iter().all(|path| kept(path).is_some());
+        let is_kept = |pass: Pass| pass.stages().iter().all(|path| is_same(path));
         let made = pipelines.iter().flat_map(|made| made.iter()).filter(|(key, _)| is_kept(key.pass));
         let made = made.map(|(key, pipeline)| (key.clone(), pipeline.clone())).collect();
         let computes = before.map(|set| lock(&set.computes).clone()).unwrap_or_default();
-        let computes = computes.into_iter().filter(|((path, _), _)| kept(path).is_some()).collect();
-        let same_tables = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().all(|path| kept(path).is_some());
+        let computes = computes.into_iter().filter(|((path, _), _)| is_same(path)).collect();
+        let same_tables = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().all(is_same);
         let tables = before.filter(|_| same_tables).map(|set| lock(&set.tables).clone()).unwrap_or_default();
         let set = Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             shaders: shaders.clone(),
-            modules,
             made: Mutex::new(made),
             computes: Mutex::new(computes),
             tables: Mutex::new(tables),
@@ -159,14 +151,19 @@ impl PipelineSet {
         self.shaders.stages.get(path).map(|stage| &stage.spirv).ok_or_else(|| GpuError::NoStage(path.to_owned()))
     }
 
+    /// A stage with these values for its constants.
+    fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
+        ShaderModule::new(&self.gpu, &specialize(self.spirv(path)?, constants))
+    }
+
     /// A compute pipeline, made at its first use.
     pub(super) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
         let key = (path.to_owned(), constants.clone());
         if let Some(pipeline) = lock(&self.computes).get(&key) {
             return Ok(pipeline.clone());
         }
-        let module = self.modules.get(path).ok_or_else(|| GpuError::NoStage(path.to_owned()))?;
-        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, module, constants)?;
+        let module = self.module(path, constants)?;
+        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module)?;
         lock(&self.computes).insert(key, pipeline.clone());
         Ok(pipeline)
     }
@@ -176,8 +173,7 @@ impl PipelineSet {
     }
 
     fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
-        let missing = |path: &str| GpuError::NoStage(path.to_owned());
-        let module = |path: &str| self.modules.get(path).ok_or_else(|| missing(path));
+        let module = |path: &str| self.module(path, &key.specialization);
         let [vertex, fragment] = key.pass.stages();
         let (depth, raster, class) = match key.pass {
             Pass::Model { raster, class } => (true, raster, class),
@@ -186,9 +182,8 @@ impl PipelineSet {
             Pass::Tonemap => (false, Raster::Solid, PrimitiveClass::Triangles),
         };
         let desc = PipelineDesc {
-            vertex: module(vertex)?,
-            fragment: module(fragment)?,
-            specialization: &key.specialization,
+            vertex: &*module(vertex)?,
+            fragment: &*module(fragment)?,
             color: key.format,
             depth,
             raster,

@@ -16,11 +16,11 @@ pub(super) const SHEEN_ALBEDO: &str = "ibl/sheen_albedo.comp";
 
 const DFG_SIZE: u32 = 128;
 const DFG_SAMPLES: u32 = 512;
-const SHEEN_SIZE: u32 = 32;
+const SHEEN_SIZE: u32 = 64;
 const SHEEN_SAMPLES: u32 = 512;
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
-/// Both tables, in [`Use::Sampled`]. Columns are NoV, rows roughness, at texel centers.
+/// Both tables, in [`Use::Sampled`]. Columns are NoV or its root, rows roughness.
 pub(super) struct Tables {
     /// A, B, C and the mean albedo: see brdf/energy.glsl.
     pub(super) dfg: Arc<Image>,

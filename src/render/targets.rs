@@ -67,15 +67,11 @@ impl Targets {
         let half = vk::Format::R16G16B16A16_SFLOAT;
         let levels = mips::count(width, height);
         let behind = match purpose.transmission {
-            true => {
-                Some(image("behind", ImageDesc { mips: levels, ..ImageDesc::new(width, height, half, copied) })?)
-            }
+            true => Some(image("behind", ImageDesc { mips: levels, ..ImageDesc::new(width, height, half, copied) })?),
             false => None,
         };
         let mean = match purpose.accumulates {
-            true => {
-                Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?)
-            }
+            true => Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?),
             false => None,
         };
         let set = |scene: &Arc<Image>, behind: &Arc<Image>| {

@@ -112,8 +112,11 @@ impl Wanted {
     }
 
     pub(super) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
-        let mut specialization =
-            vec![(SPEC_MODE, self.mode), (SPEC_ALPHA_MODE, material.alpha), (SPEC_FEATURES, material.features | self.shared_features)];
+        let mut specialization = vec![
+            (SPEC_MODE, self.mode),
+            (SPEC_ALPHA_MODE, material.alpha),
+            (SPEC_FEATURES, material.features | self.shared_features),
+        ];
         specialization.extend_from_slice(&self.constants);
         let raster = match self.draw {
             DrawAs::Lines => Raster::Lines,
@@ -156,7 +159,12 @@ impl Wanted {
     }
 
     pub(super) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
-        self.materials.iter().map(|m| self.model_key(*m)).chain([self.tonemap_key()]).chain(self.sky_key()).chain(self.average_key())
+        self.materials
+            .iter()
+            .map(|m| self.model_key(*m))
+            .chain([self.tonemap_key()])
+            .chain(self.sky_key())
+            .chain(self.average_key())
     }
 }
 

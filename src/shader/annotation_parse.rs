@@ -158,7 +158,8 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 mode.key = Some(one);
             }
             other => {
-                let message = format!("expected group=, encode=, tonemap, accumulate, draw=, key= or doc=, found `{other}`");
+                let message =
+                    format!("expected group=, encode=, tonemap, accumulate, draw=, key= or doc=, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }
         }

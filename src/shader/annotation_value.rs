@@ -68,10 +68,7 @@ pub fn claim(cursor: &mut Cursor<'_>) -> Option<&'static str> {
 }
 
 /// `"A B"` after `conserves=` or `reciprocal=`: names among `choices`.
-pub fn claimed(
-    cursor: &mut Cursor<'_>,
-    choices: &[(String, i64)],
-) -> Result<Vec<String>, Box<Diagnostic>> {
+pub fn claimed(cursor: &mut Cursor<'_>, choices: &[(String, i64)]) -> Result<Vec<String>, Box<Diagnostic>> {
     let (_, key) = cursor.key();
     let (bytes, value) = cursor.value(key)?;
     let names: Vec<String> = value.split_whitespace().map(str::to_owned).collect();

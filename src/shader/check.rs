@@ -29,10 +29,12 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
         library.source().list().into_iter().filter(|path| is_ours(path) && !known.contains(path)).collect();
     let compiler = library.compiler();
     // What only compute stages include may use what only they have.
-    let users = |path: &TreePath| library.set().into_iter().flat_map(|set| set.stages.values()).filter({
-        let path = path.clone();
-        move |stage| stage.dependencies.contains(&path)
-    });
+    let users = |path: &TreePath| {
+        library.set().into_iter().flat_map(|set| set.stages.values()).filter({
+            let path = path.clone();
+            move |stage| stage.dependencies.contains(&path)
+        })
+    };
     let kind_of = |path: &TreePath| {
         let mut kinds = users(path).map(|stage| stage.kind).peekable();
         let only_compute = kinds.peek().is_some() && kinds.all(|kind| kind == StageKind::Compute);

@@ -364,7 +364,9 @@ fn type_of(opcode: u32, operands: &[u32]) -> Option<Option<Type>> {
         op::TYPE_FLOAT => Type::Float { bits: at(1)? },
         op::TYPE_VECTOR => Type::Vector { of: at(1)?, count: at(2)? },
         op::TYPE_MATRIX => Type::Matrix { column: at(1)?, count: at(2)? },
-        op::TYPE_IMAGE => Type::Image { sampled: at(1)?, dim: at(2)?, arrayed: at(4)? != 0, storage: at(6)? == 2, format: at(7)? },
+        op::TYPE_IMAGE => {
+            Type::Image { sampled: at(1)?, dim: at(2)?, arrayed: at(4)? != 0, storage: at(6)? == 2, format: at(7)? }
+        }
         op::TYPE_SAMPLER => Type::Sampler,
         op::TYPE_SAMPLED_IMAGE => Type::SampledImage { image: at(1)? },
         op::TYPE_ARRAY => Type::Array { of: at(1)?, length: at(2)? },

@@ -26,6 +26,7 @@ pub mod reflect;
 mod slot;
 pub mod snapshot;
 pub mod source;
+mod specialize;
 mod text;
 pub mod watch;
 
@@ -35,4 +36,5 @@ pub use diagnostic::{Diagnostic, Severity};
 pub use library::{Change, Library, Report, ShaderSet, Update};
 pub use slot::Stage;
 pub use source::{Source, SourceError, TreePath, is_specula_tree};
+pub use specialize::specialize;
 pub use watch::{Batch, Watcher};

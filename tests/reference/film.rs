@@ -23,8 +23,8 @@ fn schlick(r0: f64, cosine: f64) -> f64 {
     r0 + (1.0 - r0) * (1.0 - cosine).powi(5)
 }
 
-/// What the sensors of X, Y and Z see of waves that are apart by `path` meters and shifted by a phase: Gaussians over the
-/// wave number, the second of X in the blue. The unit is the sensitivity of Y to all light.
+/// What the sensors of X, Y and Z see of waves that are apart by `path` meters and shifted by a phase: Gaussians over
+/// the wave number, the second of X in the blue.
 fn sensed(path: f64, phase: f64) -> DVec3 {
     let gaussian = |height: f64, center: f64, variance: f64| {
         let distance = TAU * path;
@@ -41,9 +41,9 @@ const RGB_FROM_XYZ: [[f64; 3]; 3] =
     [[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560], [0.0556434, -0.2040259, 1.0572252]];
 
 impl Film {
-    /// Reflectance where the base has the reflectance `f0` in air, under the angle of this cosine. The text guards the index
-    /// of the base from a reflectance of 1 by adding 1e-4 to all; that is left out here. Reflectance is not negative (the
-    /// text) and not above 1 (the program).
+    /// Reflectance where the base has the reflectance `f0` in air, under the angle of this cosine. The text guards the
+    /// index of the base from a reflectance of 1 by adding 1e-4 to all; that is left out here. Reflectance is not
+    /// negative (the text) and not above 1 (the program).
     pub fn fresnel(&self, f0: DVec3, cosine: f64) -> DVec3 {
         // Snell.
         let cosine2 = 1.0 - (1.0 - cosine * cosine) / (self.ior * self.ior);

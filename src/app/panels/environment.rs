@@ -14,11 +14,14 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         let environment = &mut settings.environment;
         row(ui, "Map", "--env; drop an .hdr or .exr file on the window", |ui| {
             let shown = environment.name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-            egui::ComboBox::from_id_salt("environment").selected_text(shown).width(150.0).truncate().show_ui(ui, |ui| {
-                for name in BUILT_IN.into_iter().chain(["none"]) {
-                    ui.selectable_value(&mut environment.name, name.to_owned(), name);
-                }
-            });
+            egui::ComboBox::from_id_salt("environment").selected_text(shown).width(150.0).truncate().show_ui(
+                ui,
+                |ui| {
+                    for name in BUILT_IN.into_iter().chain(["none"]) {
+                        ui.selectable_value(&mut environment.name, name.to_owned(), name);
+                    }
+                },
+            );
         });
         if let Some((done, next)) = progress {
             ui.add(egui::ProgressBar::new(done).desired_height(14.0).text(RichText::new(next).small()));

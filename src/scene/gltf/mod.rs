@@ -29,11 +29,11 @@ use rayon::prelude::*;
 use self::accessor::Reader;
 use self::buffers::{Buffers, Files, read_regular};
 use self::mesh::Geometry;
-use crate::interface::MAX_LIGHTS;
 use super::LoadOptions;
 use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 use super::outline::outline;
+use crate::interface::MAX_LIGHTS;
 
 /// Largest coordinate of a mesh and of the scene, meters: a camera that frames it can still be squared in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;

@@ -1,0 +1,448 @@
+//! Specialization before the driver sees the module: constants get their values, branches that they decide are taken, and what
+//! nobody reaches anymore is left out.
+//!
+//! A driver would come to the same code, but most copy every function into its callers first: of a shader whose debug modes and
+//! material extensions are all behind constants, that is four times what any pipeline keeps. See the SPIR-V specification,
+//! section 2.11 for the rules of structured control flow, and 3.52 for the numbers.
+
+use std::collections::{HashMap, HashSet};
+
+mod op {
+    pub const NAME: u32 = 5;
+    pub const ENTRY_POINT: u32 = 15;
+    pub const TYPE_BOOL: u32 = 20;
+    pub const CONSTANT_TRUE: u32 = 41;
+    pub const CONSTANT_FALSE: u32 = 42;
+    pub const CONSTANT: u32 = 43;
+    pub const SPEC_CONSTANT_TRUE: u32 = 48;
+    pub const SPEC_CONSTANT_FALSE: u32 = 49;
+    pub const SPEC_CONSTANT: u32 = 50;
+    pub const SPEC_CONSTANT_OP: u32 = 52;
+    pub const FUNCTION: u32 = 54;
+    pub const FUNCTION_END: u32 = 56;
+    pub const FUNCTION_CALL: u32 = 57;
+    pub const DECORATE: u32 = 71;
+    pub const PHI: u32 = 245;
+    pub const LOOP_MERGE: u32 = 246;
+    pub const SELECTION_MERGE: u32 = 247;
+    pub const LABEL: u32 = 248;
+    pub const BRANCH: u32 = 249;
+    pub const BRANCH_CONDITIONAL: u32 = 250;
+    pub const SWITCH: u32 = 251;
+    pub const RETURN_VALUE: u32 = 254;
+    pub const UNREACHABLE: u32 = 255;
+    /// Instructions of a function that have no result: stores, merges, branches, barriers.
+    pub const WITHOUT_RESULT: [u32; 17] =
+        [0, 8, 62, 63, 99, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 317, 4416];
+}
+
+const SPEC_ID: u32 = 1;
+const HEADER: usize = 5;
+
+type Id = u32;
+type Instruction = Vec<u32>;
+
+fn opcode(instruction: &[u32]) -> u32 {
+    instruction[0] & 0xffff
+}
+
+fn instruction(opcode: u32, operands: &[u32]) -> Instruction {
+    let mut words = vec![(operands.len() as u32 + 1) << 16 | opcode];
+    words.extend_from_slice(operands);
+    words
+}
+
+/// The module with these values (`constant_id` and the four bytes) for its specialization constants; the others keep their
+/// defaults. Words that are no SPIR-V come back as they are.
+pub fn specialize(words: &[u32], values: &[(u32, u32)]) -> Vec<u32> {
+    specialized(words, values).unwrap_or_else(|| words.to_vec())
+}
+
+/// `None` when an instruction is cut off.
+fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
+    let mut rest = words.get(HEADER..)?;
+    let mut all: Vec<&[u32]> = Vec::new();
+    while let Some(first) = rest.first() {
+        let length = (first >> 16) as usize;
+        all.push(rest.get(..length).filter(|i| !i.is_empty())?);
+        rest = &rest[length..];
+    }
+    let start = all.iter().position(|i| opcode(i) == op::FUNCTION).unwrap_or(all.len());
+    let (globals, code) = all.split_at(start);
+    let mut known = Known::default();
+    let globals = known.globals(globals, values)?;
+    let mut functions: Vec<Function> =
+        code.split_inclusive(|i| opcode(i) == op::FUNCTION_END).map(Function::parse).collect::<Option<_>>()?;
+    known.returned = functions.iter().filter_map(|f| Some((f.id, f.constant(&known)?))).collect();
+    let mut removed = HashSet::new();
+    for function in &mut functions {
+        function.fold(&known, &mut removed);
+    }
+    // From the entry point on, what is still called.
+    let entry = globals.iter().find(|i| opcode(i) == op::ENTRY_POINT)?.get(2).copied()?;
+    let (mut called, mut open) = (HashSet::from([entry]), vec![entry]);
+    while let Some(id) = open.pop() {
+        let calls = functions.iter().filter(|f| f.id == id).flat_map(Function::calls);
+        open.extend(calls.filter(|id| called.insert(*id)).collect::<Vec<_>>());
+    }
+    for function in functions.iter().filter(|f| !called.contains(&f.id)) {
+        function.results(&mut removed);
+    }
+    let is_kept = |i: &&Instruction| match opcode(i) {
+        op::NAME | op::DECORATE => i.get(1).is_some_and(|target| !removed.contains(target)),
+        _ => true,
+    };
+    let mut out = words[..HEADER].to_vec();
+    out.extend(globals.iter().filter(is_kept).flatten());
+    functions.iter().filter(|f| called.contains(&f.id)).for_each(|f| f.write(&mut out));
+    Some(out)
+}
+
+/// Values that are known before the shader runs.
+#[derive(Default)]
+struct Known {
+    values: HashMap<Id, u32>,
+    /// By function.
+    returned: HashMap<Id, u32>,
+}
+
+impl Known {
+    /// Everything before the first function, with plain constants in place of the specialized ones.
+    fn globals(&mut self, globals: &[&[u32]], values: &[(u32, u32)]) -> Option<Vec<Instruction>> {
+        let is_spec_id = |i: &&&[u32]| opcode(i) == op::DECORATE && i.get(2) == Some(&SPEC_ID);
+        let ids: HashMap<Id, u32> =
+            globals.iter().filter(is_spec_id).filter_map(|i| Some((*i.get(1)?, *i.get(3)?))).collect();
+        let given = |id: Id| values.iter().find(|(spec, _)| ids.get(&id) == Some(spec)).map(|(_, value)| *value);
+        let mut bools = HashSet::new();
+        let mut out = Vec::new();
+        for i in globals {
+            let (kind, result) = (i.get(1).copied(), i.get(2).copied());
+            let value = match opcode(i) {
+                op::TYPE_BOOL => {
+                    bools.insert(kind?);
+                    None
+                }
+                op::CONSTANT_TRUE => self.learn(result?, 1),
+                op::CONSTANT_FALSE => self.learn(result?, 0),
+                op::CONSTANT if i.len() == 4 => self.learn(result?, i[3]),
+                op::SPEC_CONSTANT_TRUE => Some(given(result?).unwrap_or(1)),
+                op::SPEC_CONSTANT_FALSE => Some(given(result?).unwrap_or(0)),
+                op::SPEC_CONSTANT if i.len() == 4 => Some(given(result?).unwrap_or(i[3])),
+                op::SPEC_CONSTANT_OP => evaluate(*i.get(3)?, i.get(4..)?, &|id| self.values.get(&id).copied()),
+                _ => None,
+            };
+            // A constant that has its value no longer has a number to set it by.
+            if is_spec_id(&i) {
+                continue;
+            }
+            match (value, kind, result) {
+                (Some(value), Some(kind), Some(result)) => {
+                    self.values.insert(result, value);
+                    out.push(match (bools.contains(&kind), value) {
+                        (true, 0) => instruction(op::CONSTANT_FALSE, &[kind, result]),
+                        (true, _) => instruction(op::CONSTANT_TRUE, &[kind, result]),
+                        (false, value) => instruction(op::CONSTANT, &[kind, result, value]),
+                    });
+                }
+                _ => out.push(i.to_vec()),
+            }
+        }
+        Some(out)
+    }
+
+    /// Notes a value that stays written as it is.
+    fn learn(&mut self, id: Id, value: u32) -> Option<u32> {
+        self.values.insert(id, value);
+        None
+    }
+}
+
+/// The operations that choices are made of, on 32-bit integers and booleans.
+fn evaluate(operation: u32, operands: &[u32], lookup: &dyn Fn(Id) -> Option<u32>) -> Option<u32> {
+    let value = |index: usize| operands.get(index).and_then(|id| lookup(*id));
+    let (a, b) = (value(0)?, value(1));
+    let (signed_a, signed_b) = (a.cast_signed(), b.map(u32::cast_signed));
+    Some(match operation {
+        128 => a.wrapping_add(b?),
+        130 => a.wrapping_sub(b?),
+        132 => a.wrapping_mul(b?),
+        164 | 170 => u32::from(a == b?),
+        165 | 171 => u32::from(a != b?),
+        166 => u32::from(a != 0 || b? != 0),
+        167 => u32::from(a != 0 && b? != 0),
+        168 => u32::from(a == 0),
+        169 => {
+            if a != 0 {
+                b?
+            } else {
+                value(2)?
+            }
+        }
+        172 => u32::from(a > b?),
+        173 => u32::from(signed_a > signed_b?),
+        174 => u32::from(a >= b?),
+        175 => u32::from(signed_a >= signed_b?),
+        176 => u32::from(a < b?),
+        177 => u32::from(signed_a < signed_b?),
+        178 => u32::from(a <= b?),
+        179 => u32::from(signed_a <= signed_b?),
+        197 => a | b?,
+        198 => a ^ b?,
+        199 => a & b?,
+        200 => !a,
+        _ => return None,
+    })
+}
+
+/// A block: its label and what follows, the branch at the end included.
+struct Block {
+    label: Id,
+    body: Vec<Instruction>,
+}
+
+impl Block {
+    /// The merge and continue blocks that its last instructions name.
+    fn structure(&self) -> (Option<Id>, Option<Id>) {
+        let merge = self.body.iter().rev().nth(1);
+        match merge.map(|i| (opcode(i), i)) {
+            Some((op::SELECTION_MERGE, i)) => (i.get(1).copied(), None),
+            Some((op::LOOP_MERGE, i)) => (i.get(1).copied(), i.get(2).copied()),
+            _ => (None, None),
+        }
+    }
+
+    fn targets(&self) -> Vec<Id> {
+        let Some(last) = self.body.last() else { return Vec::new() };
+        match opcode(last) {
+            op::BRANCH => last[1..].to_vec(),
+            op::BRANCH_CONDITIONAL => last.get(2..4).unwrap_or_default().to_vec(),
+            op::SWITCH => last.iter().skip(2).enumerate().filter(|(at, _)| at % 2 == 0).map(|(_, id)| *id).collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// A function: what stands before its first block, and the blocks.
+struct Function {
+    id: Id,
+    head: Vec<Instruction>,
+    blocks: Vec<Block>,
+}
+
+impl Function {
+    fn parse(instructions: &[&[u32]]) -> Option<Self> {
+        let id = *instructions.first()?.get(2)?;
+        let mut function = Self { id, head: Vec::new(), blocks: Vec::new() };
+        for i in instructions.iter().filter(|i| opcode(i) != op::FUNCTION_END) {
+            match (opcode(i), function.blocks.last_mut()) {
+                (op::LABEL, _) => function.blocks.push(Block { label: *i.get(1)?, body: Vec::new() }),
+                (_, Some(block)) => block.body.push(i.to_vec()),
+                (_, None) => function.head.push(i.to_vec()),
+            }
+        }
+        Some(function)
+    }
+
+    /// What it always returns, when it does nothing else.
+    fn constant(&self, known: &Known) -> Option<u32> {
+        match (self.blocks.as_slice(), self.blocks.first()?.body.as_slice()) {
+            ([_], [only]) if opcode(only) == op::RETURN_VALUE => known.values.get(only.get(1)?).copied(),
+            _ => None,
+        }
+    }
+
+    /// Takes the branches that are decided and drops the blocks that are not reached, until nothing changes: a dropped block
+    /// can decide the next branch.
+    fn fold(&mut self, known: &Known, removed: &mut HashSet<Id>) {
+        while self.take_branches(known) {
+            self.drop_unreached(removed);
+        }
+    }
+
+    /// Whether there was one to take.
+    fn take_branches(&mut self, known: &Known) -> bool {
+        let mut local: HashMap<Id, u32> = HashMap::new();
+        let mut any = false;
+        for block in &mut self.blocks {
+            let lookup = |id: Id| known.values.get(&id).or_else(|| local.get(&id)).copied();
+            let mut found = Vec::new();
+            for i in block.body.iter().filter(|i| i.len() > 3) {
+                let value = match opcode(i) {
+                    op::FUNCTION_CALL => known.returned.get(&i[3]).copied(),
+                    op::PHI => {
+                        let mut values = i[3..].iter().step_by(2).map(|id| lookup(*id));
+                        let first = values.next().flatten();
+                        first.filter(|_| values.all(|value| value == first))
+                    }
+                    // What follows in the same block sees values of the blocks before.
+                    operation => evaluate(operation, &i[3..], &lookup),
+                };
+                found.extend(value.map(|value| (i[2], value)));
+            }
+            local.extend(found);
+            any |= take_case(block, &|id| known.values.get(&id).or_else(|| local.get(&id)).copied());
+            let Some(last) = block.body.last().filter(|i| opcode(i) == op::BRANCH_CONDITIONAL) else { continue };
+            let condition = last.get(1).and_then(|id| known.values.get(id).or_else(|| local.get(id)));
+            let (Some(condition), Some([yes, no])) = (condition, last.get(2..4)) else { continue };
+            let taken = if *condition != 0 { *yes } else { *no };
+            block.body.pop();
+            block.body.pop_if(|i| opcode(i) == op::SELECTION_MERGE);
+            block.body.push(instruction(op::BRANCH, &[taken]));
+            any = true;
+        }
+        any
+    }
+
+    fn drop_unreached(&mut self, removed: &mut HashSet<Id>) {
+        let at: HashMap<Id, usize> = self.blocks.iter().enumerate().map(|(index, b)| (b.label, index)).collect();
+        let block = |id: &Id| at.get(id).map(|index| &self.blocks[*index]);
+        let mut reached = HashSet::new();
+        let mut open: Vec<Id> = self.blocks.first().map(|b| b.label).into_iter().collect();
+        while let Some(label) = open.pop() {
+            if reached.insert(label) {
+                open.extend(block(&label).into_iter().flat_map(Block::targets));
+            }
+        }
+        // A merge or continue block must be there even when nobody gets to it: then it is empty.
+        let (mut merges, mut continues) = (HashSet::new(), HashMap::new());
+        for header in self.blocks.iter().filter(|b| reached.contains(&b.label)) {
+            let (merge, next) = header.structure();
+            merges.extend(merge);
+            continues.extend(next.map(|next| (next, header.label)));
+        }
+        let mut sources: HashMap<Id, HashSet<Id>> = HashMap::new();
+        for (index, block) in self.blocks.iter_mut().enumerate() {
+            if index > 0 && !reached.contains(&block.label) {
+                results(&block.body, removed);
+                block.body = match continues.get(&block.label) {
+                    Some(header) => vec![instruction(op::BRANCH, &[*header])],
+                    None => vec![instruction(op::UNREACHABLE, &[])],
+                };
+                if !merges.contains(&block.label) && !continues.contains_key(&block.label) {
+                    removed.insert(block.label);
+                    continue;
+                }
+            }
+            for target in block.targets() {
+                sources.entry(target).or_default().insert(block.label);
+            }
+        }
+        self.blocks.retain(|b| !removed.contains(&b.label));
+        // A phi has one value for each block that branches to it.
+        for block in &mut self.blocks {
+            let from = sources.get(&block.label);
+            for phi in block.body.iter_mut().filter(|i| opcode(i) == op::PHI) {
+                let is_source = |pair: &&[u32]| pair.len() == 2 && from.is_some_and(|from| from.contains(&pair[1]));
+                let pairs: Vec<u32> = phi[3..].chunks(2).filter(is_source).flatten().copied().collect();
+                let operands = [&phi[1..3], &pairs].concat();
+                *phi = instruction(op::PHI, &operands);
+            }
+        }
+    }
+
+    fn calls(&self) -> impl Iterator<Item = Id> {
+        let all = self.blocks.iter().flat_map(|b| &b.body);
+        all.filter(|i| opcode(i) == op::FUNCTION_CALL).filter_map(|i| i.get(3).copied())
+    }
+
+    /// Adds every id that it defines.
+    fn results(&self, out: &mut HashSet<Id>) {
+        results(&self.head, out);
+        for block in &self.blocks {
+            out.insert(block.label);
+            results(&block.body, out);
+        }
+    }
+
+    fn write(&self, out: &mut Vec<u32>) {
+        out.extend(self.head.iter().flatten());
+        for block in &self.blocks {
+            out.extend(instruction(op::LABEL, &[block.label]));
+            out.extend(block.body.iter().flatten());
+        }
+        out.extend(instruction(op::FUNCTION_END, &[]));
+    }
+}
+
+/// Leaves a switch whose value is known with the case that it takes, as its default: breaks within need the switch itself.
+fn take_case(block: &mut Block, lookup: &dyn Fn(Id) -> Option<u32>) -> bool {
+    let Some(last) = block.body.last_mut().filter(|i| opcode(i) == op::SWITCH && i.len() > 3) else { return false };
+    let Some(value) = lookup(last[1]) else { return false };
+    let case = last[3..].chunks_exact(2).find(|case| case[0] == value).map(|case| case[1]);
+    *last = instruction(op::SWITCH, &[last[1], case.unwrap_or(last[2])]);
+    true
+}
+
+/// Adds the ids that these instructions define.
+fn results(instructions: &[Instruction], out: &mut HashSet<Id>) {
+    let with_result = instructions.iter().filter(|i| !op::WITHOUT_RESULT.contains(&opcode(i)));
+    out.extend(with_result.filter_map(|i| i.get(2)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compile::Compiler;
+    use crate::shader::snapshot::Snapshot;
+    use crate::shader::source::Source;
+
+    const TEXT: &str = "#version 460
+        layout(constant_id = 7) const uint KIND = 1u;
+        layout(constant_id = 8) const bool TWICE = false;
+        layout(location = 0) in vec4 x;
+        layout(location = 0) out vec4 color;
+        const bool IS_SECOND = KIND == 2u;
+        bool is_third() { return KIND == 3u; }
+        vec4 first() { return sin(x); }
+        vec4 second() { vec4 y = x; for (int i = 0; i < 4; ++i) { if (y.x > 2.0) break; y = cos(y); } return y; }
+        vec4 third() { return exp(x); }
+        void main() {
+            if (IS_SECOND && x.y > 0.0) color = second();
+            else if (is_third()) { color = third(); return; }
+            else color = first();
+            if (TWICE) color *= 2.0;
+        }";
+
+    fn module() -> Vec<u32> {
+        let source = Source::memory([("m.frag", TEXT)]);
+        Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap()
+    }
+
+    fn opcodes(words: &[u32]) -> Vec<u32> {
+        let (mut at, mut out) = (HEADER, Vec::new());
+        while at < words.len() {
+            out.push(words[at] & 0xffff);
+            at += (words[at] >> 16) as usize;
+        }
+        assert_eq!(at, words.len());
+        out
+    }
+
+    fn count(words: &[u32], opcode: u32) -> usize {
+        opcodes(words).into_iter().filter(|found| *found == opcode).count()
+    }
+
+    #[test]
+    fn only_what_the_values_choose_is_left() {
+        let module = module();
+        assert_eq!(count(&module, op::FUNCTION), 5);
+        for (kind, functions, branches) in [(1, 2, 0), (2, 3, 3), (3, 3, 0)] {
+            let folded = specialize(&module, &[(7, kind)]);
+            // main, what it calls, and is_third, whose call stays.
+            let expected = functions + usize::from(kind != 3);
+            assert!(count(&folded, op::FUNCTION) <= expected, "kind {kind}");
+            assert!(count(&folded, op::BRANCH_CONDITIONAL) <= branches, "kind {kind}");
+            assert_eq!(count(&folded, op::SPEC_CONSTANT), 0);
+            assert!(folded.len() < module.len());
+        }
+    }
+
+    #[test]
+    fn garbage_comes_back() {
+        for words in
+            [vec![], vec![1, 2, 3], vec![0x0723_0203, 0, 0, 9, 0, 0], vec![0x0723_0203, 0, 0, 9, 0, 0xffff_0036]]
+        {
+            assert_eq!(specialize(&words, &[]), words);
+        }
+    }
+}
