@@ -192,52 +192,11 @@ fn the_sky_behind_the_model_is_the_files_and_turns() {
     let [left, right] = sides(&with("environment.blur=1"));
     assert!(left[0] > left[2] && left[2] > 0.05 && right[2] > right[0] && right[0] > 0.05, "{left:?} {right:?}");
     with("environment.blur=0");
-    // No light is seen behind a mode that shows none; without a background nothing is, and the model is lit as before.
-    let behind = render(&mut headless, "metallic").raw_at(4, 16).unwrap();
-    assert!(behind[3] == 1.0 && behind[..3].iter().all(|c| (0.005..0.02).contains(c)), "{behind:?}");
+    // Without a background nothing is seen behind the model, and it is lit as before.
     let lit = render(&mut headless, "final").raw_at(24, 16).unwrap();
     headless.settings_mut().view.background = "none".into();
     let alone = render(&mut headless, "final");
     assert_eq!((alone.raw_at(4, 16), alone.raw_at(24, 16)), (Some([0.0; 4]), Some(lit)));
-}
-
-/// The raw values of the model, all channels.
-fn on_model(capture: &Capture) -> Vec<f32> {
-    capture.raw.iter().filter(|value| value[3] == 1.0).flat_map(|value| [value[0], value[1], value[2]]).collect()
-}
-
-/// Largest distance from 1, and the root of the mean square of it.
-fn off_one(values: &[f32]) -> (f32, f32) {
-    let squares = values.iter().map(|value| (value - 1.0).powi(2)).sum::<f32>() / values.len() as f32;
-    (values.iter().map(|value| (value - 1.0).abs()).fold(0.0, f32::max), squares.sqrt())
-}
-
-#[test]
-fn a_white_metal_cannot_be_seen_in_a_furnace() {
-    let mut settings = settings(&["environment.name=furnace", "view.msaa=1", "view.background=none"]);
-    for assignment in [
-        "lights.source=none",
-        "material.enabled=true",
-        "material.metallic=1",
-        "material.roughness=0.8",
-        "material.base_color=[1, 1, 1]",
-    ] {
-        settings.assign(assignment).unwrap();
-    }
-    let mut headless = renderer(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings, (48, 32));
-    let split_sum = off_one(&on_model(&render(&mut headless, "final")));
-    assert!(split_sum.0 < 0.005, "split sum: off 1 by up to {}", split_sum.0);
-    // The truth is a mean over frames: of 64 it is closer to 1 than of one.
-    headless.settings_mut().view.frames = 1;
-    let noisy = off_one(&on_model(&render(&mut headless, "monte-carlo")));
-    headless.settings_mut().view.frames = 64;
-    let mean = off_one(&on_model(&render(&mut headless, "monte-carlo")));
-    assert!(mean.1 < 0.01, "of 64 frames: off 1 by {} (r.m.s.)", mean.1);
-    assert!(noisy.1 > 3.0 * mean.1, "of one frame: off 1 by {}, of 64 by {}", noisy.1, mean.1);
-    // One bounce alone loses a third of it.
-    headless.settings_mut().assign("MULTI_SCATTER=None").unwrap();
-    let once = on_model(&render(&mut headless, "final"));
-    assert!(once.iter().all(|value| (0.5..0.9).contains(value)), "{:?}", off_one(&once));
 }
 
 #[test]

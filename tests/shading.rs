@@ -1,9 +1,9 @@
 //! The shading model, written a second time from its papers, against the raw values of the renderer.
 //!
 //! Lambert, GGX (Walter et al. 2007), height-correlated Smith (Heitz 2014), Schlick 1994, metallic-roughness as the mix
-//! of two results, one punctual light (KHR_lights_punctual), ambient light and emission; and multiple scattering (Kulla &
-//! Conty 2017), which is off in the other tests. All in f64, from the eye, the light and the factors in the file; of the
-//! renderer only the position of a pixel is taken.
+//! of two results, one punctual light (KHR_lights_punctual), ambient light and emission; and multiple scattering (Kulla
+//! & Conty 2017), which is off in the other tests. All in f64, from the eye, the light and the factors in the file; of
+//! the renderer only the position of a pixel is taken.
 
 mod support;
 

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use image::RgbaImage;
 use support::process::{Finished, PATIENCE, Running, finish, specula};
-use support::{Tree, glb, hdr, open_image};
+use support::{Tree, glb, open_image};
 
 const NDF: &str = "brdf/ndf.glsl";
 
@@ -243,33 +243,6 @@ fn the_model_is_watched_and_a_damaged_one_costs_nothing() {
     std::fs::write(&path, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
     viewer.until("the first model", |shot| *shot == quad);
     viewer.quit();
-}
-
-#[test]
-fn the_environment_is_baked_and_a_damaged_one_costs_nothing() {
-    let tree = Tree::new();
-    let path = tree.beside("sky.hdr");
-    std::fs::write(&path, hdr::uniform([128, 0, 0, 129])).unwrap();
-    let mut viewer = Viewer::open(tree, &["sphere-grid", "--env", "sky.hdr", "--lights", "none"]);
-    let bake = viewer.running.event("bake");
-    assert_eq!(bake["environment"], "sky", "{bake}");
-    viewer.until("a red model", |shot| brightest(shot).is_some_and(|[r, g, _]| r > 60 && g < r / 2));
-    let red = viewer.screenshot();
-    std::fs::write(&path, b"#?RADIANCE\n").unwrap();
-    // A good edit after it: by then the bad file was looked at.
-    let user = viewer.tree.read("user.glsl");
-    viewer.tree.write("user.glsl", &format!("{user}// Another line.\n"));
-    viewer.running.reload(true);
-    assert!(viewer.screenshot() == red, "a damaged file changed the picture");
-    std::fs::write(&path, hdr::uniform([0, 128, 0, 129])).unwrap();
-    viewer.running.event("bake");
-    viewer.until("a green model", |shot| brightest(shot).is_some_and(|[r, g, _]| g > 60 && r < g / 2));
-    assert!(viewer.quit().contains("sky.hdr"), "no word of the damaged file");
-}
-
-/// The brightest pixel of the model: the background is darker.
-fn brightest(shot: &RgbaImage) -> Option<[u8; 3]> {
-    shot.pixels().map(|pixel| [pixel[0], pixel[1], pixel[2]]).max_by_key(|rgb| rgb.iter().max().copied())
 }
 
 #[test]

@@ -6,8 +6,8 @@
 #include "ibl/half.glsl"
 
 // How much light the sheen lobe reflects in all, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are
-// the root of NoV, at texel centers; rows are roughness, the first 0 and the last 1. Directions cover the hemisphere: of
-// the lobe's own distribution most lies below it. The points are a lattice with 3 u^2 - 2 u^3 as the cosine, its
+// the root of NoV, at texel centers; rows are roughness, the first 0 and the last 1. Directions cover the hemisphere:
+// of the lobe's own distribution most lies below it. The points are a lattice with 3 u^2 - 2 u^3 as the cosine, its
 // derivative as a weight, as in ibl/dfg.comp.
 //
 // E exceeds 1 (up to 2.2) where v grazes a smooth sheen: V grows without bound there. It is what the lobe does.

@@ -35,8 +35,8 @@ pub fn lobe(roughness: f64, n_dot_l: f64, n_dot_v: f64, n_dot_h: f64) -> f64 {
 }
 
 /// E: what a lobe of color 1 reflects of light from everywhere towards a direction. The midpoint rule over the azimuth
-/// and over u, the cosine being 3 u^2 - 2 u^3, which is dense where Lambda is steep; off by less than 2e-4 from a cosine
-/// of 0.02 on.
+/// and over u, the cosine being 3 u^2 - 2 u^3, which is dense where Lambda is steep; off by less than 2e-4 from a
+/// cosine of 0.02 on.
 pub fn albedo(roughness: f64, cosine: f64) -> f64 {
     const STEPS: usize = 48;
     let alpha = alpha(roughness);

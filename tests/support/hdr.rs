@@ -3,8 +3,8 @@
 /// Columns and rows of the images: twice as wide as high, as an equirectangular one should be.
 pub const SIZE: (usize, usize) = (32, 16);
 
-/// A Radiance HDR image of flat pixels; `rgbe` of a column and a row counted from the upper left. [128, 0, 0, 129] is red
-/// of radiance 1 (Ward 1991, "Real Pixels": mantissa 2^(exponent - 136)).
+/// A Radiance HDR image of flat pixels; `rgbe` of a column and a row counted from the upper left. [128, 0, 0, 129] is
+/// red of radiance 1 (Ward 1991, "Real Pixels": mantissa 2^(exponent - 136)).
 pub fn image(rgbe: impl Fn(usize, usize) -> [u8; 4]) -> Vec<u8> {
     let (width, height) = SIZE;
     let mut bytes = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes();
