@@ -75,7 +75,7 @@ fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
     Ok(shaders.modes.iter().filter(|mode| all || slugs.contains(&mode.slug)).cloned().collect())
 }
 
-/// Whether anything of the model is at the pixel: a mode that shows surfaces, but no light and so no sky, covers it there.
+/// Whether anything of the model is at the pixel: a mode that shows surfaces, but no light and so no sky, covers it.
 fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
     let modes = &headless.pipelines().shaders.modes;
     let plain = |mode: &&Mode| !mode.tonemap && !mode.accumulate && mode.draw == DrawAs::Surfaces;

@@ -1,4 +1,4 @@
-//! The BRDF as it stands in the user's shaders, measured on the device: albedo, reciprocity, the integral of D, its lobes.
+//! The BRDF as it stands in the user's shaders, measured on the device: albedo, reciprocity, integral of D, lobes.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -105,7 +105,8 @@ impl Claim {
     }
 }
 
-/// The author's constants in the order of their ids, each with what `settings` choose of it: a choice's name, or a number.
+/// The author's constants in the order of their ids, each with what `settings` choose of it: a choice's name, or a
+/// number.
 pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
     let chosen = values::constants(&settings.shader, &shaders.constants);
     let name = |constant: &Constant, bits: u32| {
@@ -208,8 +209,8 @@ impl Bench {
         self.run(MEASURE_STAGES[2], Surface { base_color: [1.0; 3], metallic: 1.0 }, Grid { columns: 1, ..grid })
     }
 
-    /// Lobes in the plane of incidence: the eye goes from -90 to 90 degrees, by the centers of the columns; the light stands
-    /// at `grid.theta.0` degrees on the negative side.
+    /// Lobes in the plane of incidence: the eye goes from -90 to 90 degrees, by the centers of the columns; the light
+    /// stands at `grid.theta.0` degrees on the negative side.
     ///
     /// # Errors
     /// The device.

@@ -7,8 +7,8 @@ use super::model::{Model, Primitive, Topology};
 /// Pixels around a primitive that its points, lines and the neighbors that shaders take derivatives from may reach.
 const REACH: f32 = 4.0;
 
-/// For each instance of the model whether one of its triangles, lines or points comes near to a pixel of a picture of this
-/// size, hidden or not. It may be wrong in one direction only: true for what just misses the pixel.
+/// For each instance of the model whether one of its triangles, lines or points comes near to a pixel of a picture of
+/// this size, hidden or not. It may be wrong in one direction only: true for what just misses the pixel.
 pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u32, u32)) -> Vec<bool> {
     let half = Vec2::new(size.0 as f32, size.1 as f32) * 0.5;
     let pixel = Vec2::new(at.0 as f32, at.1 as f32) + 0.5;

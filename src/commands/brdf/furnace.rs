@@ -62,8 +62,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether a choice that claims nothing changes anything about this surface: of a metal, how diffuse light is spread has no
-/// part in what it reflects.
+/// Whether a choice that claims nothing changes anything about this surface: how diffuse light is spread has no part in
+/// what a metal reflects.
 fn has_part(opened: &Opened, constant: &Constant, surface: Surface) -> Result<bool, Failure> {
     let Some(other) = Claim::Conserves.of(constant).and_then(|names| names.first()) else { return Ok(true) };
     let mut settings = opened.settings.clone();

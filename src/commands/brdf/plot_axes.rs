@@ -9,8 +9,8 @@ const GRID: Ink = Ink(222, 225, 230, 255);
 const LIGHT: Ink = Ink(214, 158, 0, 255);
 const SMALL: f32 = 14.0;
 
-/// A half disk above a surface: directions in the plane of incidence. Values go outwards on a scale that is linear near 0
-/// and logarithmic beyond.
+/// A half disk above a surface: directions in the plane of incidence. Values go outwards on a scale that is linear near
+/// 0 and logarithmic beyond.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfDisk {
     /// The point on the surface.

@@ -58,8 +58,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     opened.close()?;
     if claims && !holds {
         let message = format!(
-            "reciprocity: this combination claims f(l, v) = f(v, l), but they differ by {:.3e} of their mean at roughness \
-             {roughness}",
+            "reciprocity: this combination claims f(l, v) = f(v, l), but they differ by {:.3e} of their mean at \
+             roughness {roughness}",
             pair.error
         );
         return Err(Failure::Input(message));
