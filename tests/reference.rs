@@ -130,7 +130,6 @@ fn compare(headless: &mut Headless, inputs: &Inputs, parts: &[Part], masking: Ma
             of(worst),
             inputs.surface(pixel),
         );
-        eprintln!("ZZ {name} {slug} {masking:?} {:.2e}", error(worst));
     }
 }
 
