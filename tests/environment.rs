@@ -192,11 +192,51 @@ fn the_sky_behind_the_model_is_the_files_and_turns() {
     let [left, right] = sides(&with("environment.blur=1"));
     assert!(left[0] > left[2] && left[2] > 0.05 && right[2] > right[0] && right[0] > 0.05, "{left:?} {right:?}");
     with("environment.blur=0");
+    // No light is seen behind a mode that shows none, but the plain background.
+    let behind = render(&mut headless, "metallic");
+    assert_eq!(behind.rgba8[4 * (16 * 48 + 4)..][..4], [0x1b, 0x1d, 0x21, 255]);
     // Without a background nothing is seen behind the model, and it is lit as before.
     let lit = render(&mut headless, "final").raw_at(24, 16).unwrap();
     headless.settings_mut().view.background = "none".into();
     let alone = render(&mut headless, "final");
     assert_eq!((alone.raw_at(4, 16), alone.raw_at(24, 16)), (Some([0.0; 4]), Some(lit)));
+}
+
+/// Where the surface is seen at less than 78 degrees: the raw values of the model, all channels.
+fn on_model(capture: &Capture, n_dot_v: &Capture) -> Vec<f32> {
+    let seen = capture.raw.iter().zip(&n_dot_v.raw).filter(|(value, cosine)| value[3] == 1.0 && cosine[0] > 0.2);
+    seen.flat_map(|(value, _)| [value[0], value[1], value[2]]).collect()
+}
+
+/// Largest distance from 1, and the root of the mean square of it.
+fn off_one(values: &[f32]) -> (f32, f32) {
+    let squares = values.iter().map(|value| (value - 1.0).powi(2)).sum::<f32>() / values.len() as f32;
+    (values.iter().map(|value| (value - 1.0).abs()).fold(0.0, f32::max), squares.sqrt())
+}
+
+#[test]
+fn a_white_metal_cannot_be_seen_in_a_furnace() {
+    let chosen = settings(&[
+        "environment.name=furnace",
+        "view.msaa=1",
+        "view.background=none",
+        "lights.source=none",
+        "material.enabled=true",
+        "material.metallic=1",
+        "material.roughness=0.8",
+        "material.base_color=[1, 1, 1]",
+    ]);
+    let mut headless = renderer(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), chosen, (48, 32));
+    let n_dot_v = render(&mut headless, "n-dot-v");
+    let split_sum = off_one(&on_model(&render(&mut headless, "final"), &n_dot_v));
+    assert!(split_sum.0 < 0.005, "split sum: off 1 by up to {}", split_sum.0);
+    // The truth is a mean over frames: of 64 it is closer to 1 than of one.
+    headless.settings_mut().view.frames = 1;
+    let noisy = off_one(&on_model(&render(&mut headless, "monte-carlo"), &n_dot_v));
+    headless.settings_mut().view.frames = 64;
+    let mean = off_one(&on_model(&render(&mut headless, "monte-carlo"), &n_dot_v));
+    assert!(mean.1 < 0.02, "of 64 frames: off 1 by {} (r.m.s.)", mean.1);
+    assert!(noisy.1 > 3.0 * mean.1, "of one frame: off 1 by {}, of 64 by {}", noisy.1, mean.1);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //! Measured on these pictures: one sample a pixel in place of four, or a camera moved by 1 cm, 0.006 to 0.023; exposure
 //! off by a tenth of a stop 0.04; roughness times 0.7 0.07; a light or the ambient light missing 0.09 to 0.14. Drivers
 //! differ in the last bit of a color, in filtering and in which samples an edge covers, which is less than the first of
-//! these. So the threshold is 0.05. A slip in a BRDF term that no eye sees is for `tests/shading.rs` to find.
+//! these. So the threshold is 0.02. A slip in a BRDF term that no eye sees is for `tests/shading.rs` to find.
 
 mod support;
 
@@ -20,7 +20,7 @@ use support::{model, render, renderer, settings};
 const SIZE: (u32, u32) = (160, 120);
 /// Charts of balls.
 const CHART: (u32, u32) = (320, 180);
-const MOST_MEAN: f32 = 0.05;
+const MOST_MEAN: f32 = 0.02;
 const BLESS: &str = "SPECULA_BLESS=1 cargo test --release --test golden";
 
 #[test]

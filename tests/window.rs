@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use image::RgbaImage;
 use support::process::{Finished, PATIENCE, Running, finish, specula};
-use support::{Tree, glb, open_image};
+use support::{Tree, glb, hdr, open_image};
 
 const NDF: &str = "brdf/ndf.glsl";
 
@@ -260,4 +260,31 @@ fn names_that_do_not_exist_are_told() {
 fn a_window_too_large_is_refused() {
     let (tree, display) = (Tree::new(), Display::new());
     finish(view(&tree, &display).args(["--size", "99999x99999"])).expect(1, &["99999x99999"]);
+}
+
+#[test]
+fn the_environment_is_baked_and_a_damaged_one_costs_nothing() {
+    let tree = Tree::new();
+    let path = tree.beside("sky.hdr");
+    std::fs::write(&path, hdr::uniform([128, 0, 0, 129])).unwrap();
+    let mut viewer = Viewer::open(tree, &["sphere-grid", "--env", "sky.hdr", "--lights", "none"]);
+    let bake = viewer.running.event("bake");
+    assert_eq!(bake["environment"], "sky", "{bake}");
+    viewer.until("a red model", |shot| brightest(shot).is_some_and(|[r, g, _]| r > 60 && g < r / 2));
+    let red = viewer.screenshot();
+    std::fs::write(&path, b"#?RADIANCE\n").unwrap();
+    // An edit after it that changes no pixel: by then the bad file was looked at.
+    let user = viewer.tree.edited("user.glsl", "    return radiance;", "    return radiance * 1.0;");
+    viewer.tree.write("user.glsl", &user);
+    viewer.running.reload(true);
+    assert!(viewer.screenshot() == red, "a damaged file changed the picture");
+    std::fs::write(&path, hdr::uniform([0, 128, 0, 129])).unwrap();
+    viewer.running.event("bake");
+    viewer.until("a green model", |shot| brightest(shot).is_some_and(|[r, g, _]| g > 60 && r < g / 2));
+    assert!(viewer.quit().contains("sky.hdr"), "no word of the damaged file");
+}
+
+/// The brightest pixel of the model: the background is darker.
+fn brightest(shot: &RgbaImage) -> Option<[u8; 3]> {
+    shot.pixels().map(|pixel| [pixel[0], pixel[1], pixel[2]]).max_by_key(|rgb| rgb.iter().max().copied())
 }

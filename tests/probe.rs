@@ -1,0 +1,91 @@
+//! `specula probe`: the values of one pixel, as `render` has them.
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::open_image;
+use support::process::{Finished, run};
+
+const VIEW: [&str; 9] =
+    ["--size", "96x64", "--env", "none", "--validate", "--set", "view.frames=4", "--set", "lights.rect.enabled=true"];
+
+fn probe(directory: &Path, args: &[&str]) -> Finished {
+    run(directory, &[&["probe"], args, &VIEW].concat())
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap_or_else(|| panic!("no array: {value}")).iter().map(|n| n.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn values_are_those_of_the_raw_picture() {
+    let directory = tempfile::tempdir().unwrap();
+    // Light; data; what depends on the neighbors of a pixel; a mean of frames; edges; layers.
+    let modes = ["final", "position", "facet-normal", "mip-level", "d", "energy", "wireframe", "overdraw"];
+    let args: Vec<&str> = modes.iter().flat_map(|mode| ["--mode", mode]).collect();
+    let found = probe(directory.path(), &[&["--at", "50,30", "--json"], args.as_slice()].concat());
+    let found = found.expect(0, &[]).json();
+    assert_eq!((&found["pixel"], &found["hit"]), (&serde_json::json!([50, 30]), &true.into()));
+    assert_eq!(found["modes"].as_object().unwrap().len(), modes.len());
+    for mode in modes {
+        let out = format!("{mode}.exr");
+        let render = ["render", "--mode", mode, "--out", &out, "--set", "view.msaa=1"];
+        run(directory.path(), &[&render[..], &VIEW].concat()).expect(0, &[]);
+        let pixel = open_image(&directory.path().join(&out)).into_rgba32f().get_pixel(50, 30).0.map(f64::from);
+        let value = numbers(&found["modes"][mode]);
+        let same = value.iter().zip(pixel).all(|(a, b)| (a - b).abs() <= 1e-6 * b.abs().max(1.0));
+        assert!(value.len() == 4 && same, "{mode}: probe {value:?}, render {pixel:?}");
+    }
+    // The picture is lit: it is not all zero that agrees.
+    assert!(numbers(&found["modes"]["final"])[0] > 0.01 && numbers(&found["modes"]["d"])[0] > 0.0, "{found}");
+}
+
+#[test]
+fn camera_and_lights_are_told_in_world_space() {
+    let directory = tempfile::tempdir().unwrap();
+    let place =
+        ["--at", "48,32", "--json", "--mode", "position", "--mode", "depth", "--eye", "0,0.5,4", "--target", "0,0,0"];
+    let found = probe(directory.path(), &[&place[..], &["--fovy", "30"]].concat()).expect(0, &[]).json();
+    assert_eq!(numbers(&found["camera"]["eye"]), [0.0, 0.5, 4.0]);
+    assert_eq!(numbers(&found["camera"]["target"]), [0.0; 3]);
+    assert!((found["camera"]["fovy"].as_f64().unwrap() - 30.0).abs() < 1e-4);
+    let lights = found["lights"].as_array().unwrap();
+    assert_eq!(
+        lights.iter().map(|light| light["kind"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["point", "point", "point", "rect"]
+    );
+    for light in lights {
+        assert!([&light["position"], &light["direction"], &light["intensity"]].iter().all(|v| numbers(v).len() == 3));
+        let direction = numbers(&light["direction"]);
+        assert!((direction.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-5);
+    }
+    assert!(numbers(&lights[3]["half_x"]).len() == 3 && numbers(&lights[3]["half_y"]).len() == 3);
+    assert!(lights[0].get("half_x").is_none());
+    // The pixel's point lies at its depth before the camera, close to the middle of the picture.
+    let position = numbers(&found["modes"]["position"]);
+    let depth = numbers(&found["modes"]["depth"])[0];
+    let forward = [0.0, -0.5 / 16.25_f64.sqrt(), -4.0 / 16.25_f64.sqrt()];
+    let along: f64 = position.iter().zip([0.0, 0.5, 4.0]).zip(forward).map(|((p, e), f)| (p - e) * f).sum();
+    assert!((along - depth).abs() < 1e-4, "{along} {depth}");
+}
+
+#[test]
+fn nothing_is_at_a_corner() {
+    let directory = tempfile::tempdir().unwrap();
+    for background in ["none", "#336699"] {
+        let found =
+            probe(directory.path(), &["--at", "0,0", "--json", "--background", background]).expect(0, &[]).json();
+        assert_eq!((&found["hit"], &found["modes"]), (&false.into(), &serde_json::json!({})));
+        assert!(found["camera"].is_object() && found["lights"].is_array());
+    }
+}
+
+#[test]
+fn a_pixel_outside_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    probe(directory.path(), &["--at", "96,10"]).expect(1, &["96,10", "96x64", "95,63"]);
+    probe(directory.path(), &["--at", "here"]).expect(2, &["--at", "X,Y"]);
+    probe(directory.path(), &["--at", "1,1", "--mode", "dd"]).expect(1, &["dd", "specula modes"]);
+}
