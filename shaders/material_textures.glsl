@@ -33,6 +33,7 @@ bool has_texture(uint which) { return (material.texture_mask & 1u << which) != 0
 
 // Where texture `which` is read: its set of coordinates, moved by KHR_texture_transform.
 vec2 texture_uv(Fragment f, uint which) {
+    if ((FEATURES & FEATURE_TEXTURE_COORDINATES) == 0u) return f.uv0;
     vec2 uv = (material.uv1_mask & 1u << which) != 0u ? f.uv1 : f.uv0;
     return material.uv_from_texture[which] * vec3(uv, 1.0);
 }

@@ -19,7 +19,7 @@ void main() {
     fragment.tangent_ws = vec4(safe_normalize(directions * vertex.tangent.xyz, vec3(0.0)), vertex.tangent.w * mirrored);
     fragment.uv0 = vertex.uv0;
     fragment.uv1 = vertex.uv1;
-    fragment.color = vertex.color;
+    fragment.color = (draw.attributes & ATTRIBUTE_COLOR) != 0u ? vertex.color : vec4(1.0);
 
     gl_Position = frame.clip_from_world * vec4(fragment.position_ws, 1.0);
     gl_PointSize = 4.0;

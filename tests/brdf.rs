@@ -49,6 +49,23 @@ fn a_white_metal_returns_all_light() {
 }
 
 #[test]
+fn the_split_sum_is_reported_by_roughness() {
+    let near = |metallic: &str| {
+        let found = json(&["split-sum", "--env", "furnace", "--frames", "16", "--metallic", metallic]);
+        let rows = found["rows"].as_array().unwrap().clone();
+        assert_eq!(rows.len(), 10);
+        rows.iter().map(|row| row["bias"].as_f64().unwrap().abs()).fold(0.0, f64::max)
+    };
+    // In a furnace the product of the two sums is exact.
+    assert!(near("1") < 0.01, "{}", near("1"));
+    // Under a studio it is not, but not far off either.
+    let studio = json(&["split-sum", "--frames", "16"]);
+    let rms = |row: &Value| row["rms"].as_f64().unwrap();
+    let rows = studio["rows"].as_array().unwrap();
+    assert!(rows.iter().all(|row| rms(row) > 0.001 && rms(row) < 0.3), "{studio}");
+}
+
+#[test]
 fn without_multiple_scattering_a_rough_metal_keeps_light() {
     let furnace = json(&["furnace", "--set", "MULTI_SCATTER=None"]);
     let rows = furnace["rows"].as_array().unwrap();

@@ -246,14 +246,14 @@ fn an_edit_of_a_baking_stage_bakes_again() {
     let mut session = Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), chosen);
     let whole = session.mode("ibl-diffuse");
     let original = session.tree.read(file);
-    ready(&session.edit(file, "irradiance_sh[0] = ", "irradiance_sh[0] = 0.5 * "));
+    ready(&session.edit(file, "sum.rgb / sum.w", "0.5 * sum.rgb / sum.w"));
     let half = session.render();
     assert_differ(&whole, &half, "half of the irradiance");
     for (whole, half) in whole.raw.iter().zip(&half.raw).filter(|(value, _)| value[3] == 1.0) {
         assert!((whole[0] - 2.0 * half[0]).abs() < 2e-3 * whole[0], "{whole:?} {half:?}");
     }
     // A stage that does not compile keeps what was baked.
-    assert!(!failed(&session.edit(file, "sum_of_all(sh[i])", "sum_of_all(sh)")).is_empty());
+    assert!(!failed(&session.edit(file, "sum.rgb / sum.w", "sum / sum.w.x.y")).is_empty());
     assert_same(&half, &session.render(), "after a broken edit");
     ready(&session.save(file, &original));
     assert_same(&whole, &session.render(), "back at the first text");

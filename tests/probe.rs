@@ -38,6 +38,8 @@ fn values_are_those_of_the_raw_picture() {
         let same = value.iter().zip(pixel).all(|(a, b)| (a - b).abs() <= 1e-6 * b.abs().max(1.0));
         assert!(value.len() == 4 && same, "{mode}: probe {value:?}, render {pixel:?}");
     }
+    let absent = probe(directory.path(), &["--at", "50,30", "--json", "--mode", "clearcoat"]).expect(0, &[]).json();
+    assert!(absent["modes"]["clearcoat"].is_null(), "no coat, but {absent}");
     // The picture is lit: it is not all zero that agrees.
     assert!(numbers(&found["modes"]["final"])[0] > 0.01 && numbers(&found["modes"]["d"])[0] > 0.0, "{found}");
 }

@@ -7,7 +7,10 @@ use std::fs;
 use specula::render::Outcome;
 use specula::settings::ShaderValue;
 use specula::shader::{Change, Severity};
-use support::{Session, assert_differ, assert_same, failed, glb, line_of, lines, load, model, ready, settings, stages};
+use support::{
+    Session, assert_differ, assert_same, assert_validated, failed, glb, line_of, lines, load, model, ready, settings,
+    stages,
+};
 
 /// A lit sphere: one kind of material, so that a reload builds one pipeline.
 fn sphere() -> Session {
@@ -138,6 +141,22 @@ fn includes_may_come_late_move_and_go() {
     assert_same(&green, &session.render(), "after the include was deleted");
     ready(&session.save(USER, &original));
     assert_same(&before, &session.render(), "without the include");
+}
+
+/// What a driver was seen to fail at: the module that reaches it must be sound.
+#[test]
+fn loops_and_choices_of_any_kind_draw() {
+    let mut session = Session::new(model("shader-ball"), settings(&["view.msaa=1", "FRESNEL_DIELECTRIC=Exact"]));
+    session.render();
+    let loops = "    do { if (radiance.x > 1e9) break; radiance *= 1.0; } while (false);
+    while (ALPHA_MODE == 77u) radiance *= 0.5;
+    for (uint i = 0u; i < 3u; ++i) { if (MODE == 12345u) break; radiance += 0.0; }
+    if (material.alpha_cutoff > 2.0 && frame.near < 0.0) return vec3(0.0);
+    return radiance;";
+    let plain = session.render();
+    ready(&session.edit("user.glsl", "    return radiance;", loops));
+    assert_same(&plain, &session.render(), "loops that do nothing");
+    assert_validated();
 }
 
 #[test]

@@ -101,20 +101,22 @@ float entering(Surface s, Brdf f, vec4 dfg_l) {
 //
 //   f = mix(f_base, D V, clearcoat F)        F = F(NoV): one number for what is reflected and for what passes
 //
-// f is multiplied by NoL of the base, the coat's light arrives under its own angle: hence the quotient. Returns F.
-float evaluate_clearcoat(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
+// f is multiplied by |NoL| of the base, the coat's light arrives under its own angle: hence the quotient. A bump of the
+// base that turns away from the light leaves the coat as it is. Returns F.
+float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf f) {
+    vec3 h = safe_normalize(l + v, s.clearcoat_n);
     float n_dot_l = saturate(dot(s.clearcoat_n, l));
     float n_dot_v = clamp(dot(s.clearcoat_n, v), MIN_N_DOT_V, 1.0);
     float alpha = alpha_from_roughness(s.clearcoat_roughness);
     float d = d_specular(saturate(dot(s.clearcoat_n, h)), sin2_between(s.clearcoat_n, h), alpha);
     float weight = s.clearcoat * f_schlick(0.04, n_dot_v);
-    float turned = n_dot_l / max(f.n_dot_l, MIN_N_DOT_V);
+    float turned = n_dot_l / max(abs(dot(s.n, l)), MIN_N_DOT_V);
     f.clearcoat = vec3(weight * d * v_specular(n_dot_l, n_dot_v, alpha) * turned);
     return weight;
 }
 
 // Multiplies what lies below by what sheen and coat let through.
-void cover(Surface s, vec3 l, vec3 v, vec3 h, float n_dot_l, inout Brdf f) {
+void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf f) {
     float passes = 1.0;
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
         float alpha = sheen_alpha(s.sheen_roughness);
@@ -123,7 +125,7 @@ void cover(Surface s, vec3 l, vec3 v, vec3 h, float n_dot_l, inout Brdf f) {
         passes = under_sheen(s, stopped);
     }
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
-        float uncoated = 1.0 - evaluate_clearcoat(s, l, v, h, f);
+        float uncoated = 1.0 - evaluate_clearcoat(s, l, v, f);
         passes *= uncoated;
         f.sheen *= uncoated;
     }
@@ -134,8 +136,8 @@ void cover(Surface s, vec3 l, vec3 v, vec3 h, float n_dot_l, inout Brdf f) {
     f.diffuse_transmitted *= passes;
 }
 
-// To be multiplied by |n . l| and the light's irradiance. l below the horizon: all but the transmitted lobes is 0, D, G
-// and V too. Without transmission l = -v leaves h without a direction, and n is as good as any.
+// To be multiplied by |n . l| and the light's irradiance. l below the horizon: all but the transmitted lobes and a
+// coat that lies flatter is 0, D, G and V too. Without transmission l = -v leaves h without a direction, and n is as good as any.
 Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     const bool transmits = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
     vec3 h = safe_normalize((transmits ? unfolded(s.n, l) : l) + v, s.n);
@@ -176,13 +178,12 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
         f.diffuse_transmitted *= 1.0 - s.transmission;
         f.k_d *= 1.0 - s.transmission;
     }
-    cover(s, l, v, h, abs(cos_l), f);
+    cover(s, l, v, abs(cos_l), f);
 
     f.diffuse = f_diffuse(s, f, dot(l, v)) * (f.k_d * above);
     f.specular = f.k_s * (f.d * f.v);
     f.multiple *= above;
     f.sheen *= above;
-    f.clearcoat *= above;
     f.value = f.diffuse + f.specular + f.multiple + f.sheen + f.clearcoat + f.transmitted + f.diffuse_transmitted;
     return f;
 }

@@ -80,9 +80,10 @@ vec3 tonemap_neutral(vec3 x) {
     return mix(vec3(new_peak), x * (new_peak / peak), keep);
 }
 
-// `x` is exposed light; negative light has no place on a curve. The result is clamped to what a display can show.
+// `x` is exposed light. Negative light has no place on a curve; 1e6 is white on all of them, and its square still a float.
+// The result is clamped to what a display can show.
 vec3 tonemap(vec3 x, uint curve) {
-    x = max(x, 0.0);
+    x = clamp(x, 0.0, 1e6);
     switch (curve) {
         case TONEMAP_REINHARD: x = tonemap_reinhard(x); break;
         case TONEMAP_REINHARD_LUMINANCE: x = tonemap_reinhard_luminance(x); break;

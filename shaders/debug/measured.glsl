@@ -34,7 +34,7 @@ MeasuredLight measured_light(Fragment f, Surface s, vec3 v, LightRange range) {
 
 // Left of the middle of the view the one, right of it the other, and a white line of two pixels between.
 vec3 split(vec3 left, vec3 right) {
-    float x = gl_FragCoord.x - frame.viewport_origin_px.x - 0.5 * frame.viewport_px.x;
+    float x = gl_FragCoord.x - 0.5 * frame.viewport_px.x;
     if (abs(x) < 1.0) return vec3(1.0 / frame.exposure);
     return x < 0.0 ? left : right;
 }

@@ -18,9 +18,8 @@ struct SmallLight {
     float spread;              // variance of the directions along one axis, radians squared
 };
 
-// One buffer for a whole bake, all 0 before it. lighting/environment.glsl reads the head of it.
+// One buffer for a whole bake, all 0 before it.
 layout(set = SET_TASK, binding = BINDING_RESULTS, scalar) buffer Results {
-    vec3 irradiance_sh[9];     // see ibl/irradiance.comp
     uint brightness_count[BRIGHTNESS_STEPS];   // texels of level 0 by brightness_step
     uint small_light_count;
     SmallLight small_lights[LARGEST_COUNT];

@@ -1,5 +1,5 @@
 // Light from the environment, baked by ibl/*.comp: sharp, diffuse, and as rough surfaces mirror it. Directions are in
-// world space and need not have unit length, but for irradiance.
+// world space and need not have unit length.
 #ifndef LIGHTING_ENVIRONMENT_GLSL
 #define LIGHTING_ENVIRONMENT_GLSL
 
@@ -9,9 +9,7 @@
 layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform samplerCube prefiltered_cube;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED_SHEEN) uniform samplerCube prefiltered_sheen_cube;
-layout(set = SET_FRAME, binding = BINDING_IRRADIANCE, scalar) uniform Irradiance {
-    vec3 irradiance_sh[9];     // see ibl/irradiance.comp
-};
+layout(set = SET_FRAME, binding = BINDING_IRRADIANCE) uniform samplerCube irradiance_cube;
 
 // The map turns by an angle around +Y, counterclockwise from above: its center column is seen looking down -Z at 0
 // degrees, down -X at 90. So a direction turns back by it, into the map.
@@ -26,15 +24,9 @@ vec3 environment_radiance(vec3 direction, float lod) {
     return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;
 }
 
-// E / pi, the radiance that leaves a white Lambert surface (Ramamoorthi & Hanrahan 2001, eq. 13, with all constants in
-// the coefficients). n: unit. max: between the directions that the bake looked at, the polynomial may dip below 0.
+// E / pi, the radiance that leaves a white Lambert surface with the normal n.
 vec3 irradiance_over_pi(vec3 n) {
-    vec3 d = map_from_world(n);
-    vec3 e = irradiance_sh[0];
-    e += d.y * (irradiance_sh[1] + d.x * irradiance_sh[4] + d.z * irradiance_sh[5]);
-    e += d.z * (irradiance_sh[2] + d.z * irradiance_sh[6]);
-    e += d.x * (irradiance_sh[3] + d.z * irradiance_sh[7]) + (d.x * d.x - d.y * d.y) * irradiance_sh[8];
-    return max(e * frame.environment_intensity, 0.0);
+    return frame.environment_intensity * textureLod(irradiance_cube, map_from_world(n), 0.0).rgb;
 }
 
 // Mean of the radiance around r as GGX weights it, seen along the normal: the first sum of the split sum (Karis 2013).
@@ -53,6 +45,7 @@ vec3 prefiltered_sheen(vec3 r, float roughness) {
 // sharp image, which has more texels than the prefiltered level 0, is faded out.
 vec3 background_radiance(vec3 direction) {
     float lod = level_of_roughness(frame.environment_blur, textureQueryLevels(prefiltered_cube));
+    if (lod <= 0.0) return environment_radiance(direction, 0.0);
     if (lod >= 1.0) return prefiltered_radiance(direction, frame.environment_blur);
     vec3 blurred = textureLod(prefiltered_cube, map_from_world(direction), 1.0).rgb * frame.environment_intensity;
     return mix(environment_radiance(direction, 0.0), blurred, lod);

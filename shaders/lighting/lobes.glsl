@@ -8,6 +8,12 @@
 // Whether light from behind the surface can come through.
 const bool LIGHT_PASSES = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
 
+// Whether a coat can face a light that the base, by its bumps, turns away from.
+bool coat_lies_apart() {
+    return (FEATURES & FEATURE_CLEARCOAT) != 0u
+        && (FEATURES & (FEATURE_NORMAL_TEXTURE | FEATURE_CLEARCOAT_NORMAL)) != 0u;
+}
+
 struct Lobes {
     vec3 diffuse;
     vec3 specular;             // reflected by one microfacet

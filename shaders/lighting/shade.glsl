@@ -46,8 +46,8 @@ bool is_empty(LightRange range) { return range.first >= range.end; }
 void add_punctual(inout Lit lit, Surface s, vec3 v, Light light, bool for_terms) {
     Illumination illumination = illuminate(light, s.position_ws);
     float n_dot_l = dot(s.n, illumination.l);
-    // Behind the surface: f is 0, unless light passes through.
-    if (n_dot_l <= 0.0 && !LIGHT_PASSES && !for_terms) return;
+    // Behind the surface: f is 0, unless light passes through, or a coat has a normal of its own.
+    if (n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms) return;
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
     add(lit.lobes, lobes, vec3(1.0));

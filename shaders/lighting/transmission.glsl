@@ -19,10 +19,10 @@ layout(set = SET_PASS, binding = BINDING_BEHIND) uniform sampler2D behind;
 
 // Part of light left after `path` meters: exp(-sigma path), sigma = -log(color) / distance (Beer-Lambert;
 // KHR_materials_volume). 1e-6: log(0) is -infinity, and times a path of 0 it would be NaN. The distance is infinite
-// where a model gives none, so that the quotient is 0.
+// where a model gives none, so that the quotient is 0; 1e30: white lets all pass, but 0 times infinity is NaN.
 vec3 attenuation(Surface s, float path) {
     if ((FEATURES & FEATURE_VOLUME) == 0u) return vec3(1.0);
-    return exp(log(max(s.attenuation_color, 1e-6)) * (path / s.attenuation_distance));
+    return exp(log(max(s.attenuation_color, 1e-6)) * min(path / s.attenuation_distance, 1e30));
 }
 
 // The ray inside of the volume, from Snell's law; unit. An infinite ior (0 in glTF) refracts along -n. max: an ior
@@ -33,7 +33,7 @@ vec3 refracted(Surface s, vec3 v, float ior) { return refract(-v, s.n, ior > 0.0
 // the eye, and what is in front of the surface stands in for it.
 vec2 picture_uv(vec3 position_ws) {
     vec4 clip = frame.clip_from_world * vec4(position_ws, 1.0);
-    vec2 here = (gl_FragCoord.xy - frame.viewport_origin_px) / frame.viewport_px;
+    vec2 here = gl_FragCoord.xy / frame.viewport_px;
     return clip.w > 0.0 ? 0.5 + 0.5 * clip.xy / clip.w : here;
 }
 

@@ -56,7 +56,8 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let shown = if hit { modes.as_slice() } else { &[] };
     let values: Vec<_> = shown.iter().zip(headless.pixel(args.at, shown)?).collect();
     if args.json {
-        let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), json!(value))).collect();
+        let known = |value: &[f32; 4]| if is_absent(value) { Value::Null } else { json!(value) };
+        let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), known(value))).collect();
         let lights: Vec<Value> = shot.lights.iter().map(light).collect();
         let value = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&shot), "lights": lights });
         out!("{value:#}");
@@ -146,8 +147,14 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], shot: &Shot) {
             out!("\n{}", mode.group);
             group = &mode.group;
         }
-        out!("  {:width$}  {}", mode.slug, row(value));
+        let shown = if is_absent(value) { format!("{:>12}", "none") } else { row(value) };
+        out!("  {:width$}  {shown}", mode.slug);
     }
+}
+
+/// Whether the mode has no data here: the grays of `checkerboard` in shaders/common/color.glsl.
+fn is_absent(value: &[f32; 4]) -> bool {
+    [0.180_017, 0.260_017].iter().any(|gray| value[..3] == [*gray; 3])
 }
 
 fn row(numbers: &[f32]) -> String {

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
-use crate::interface::IRRADIANCE_SIZE;
 use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
 
 use super::bake_passes::{Passes, no_results};
@@ -28,7 +27,8 @@ const PREFILTERED_LEVELS: u32 = 9;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 256;
-pub(super) const IRRADIANCE_BYTES: u64 = IRRADIANCE_SIZE as u64;
+/// Irradiance changes as slowly as the cosine does, but for its kink where a sun sets.
+const IRRADIANCE_SIDE: u32 = 32;
 const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 /// Largest half float.
 const LARGEST_HALF: f32 = 65504.0;
@@ -36,7 +36,7 @@ const LARGEST_HALF: f32 = 65504.0;
 const LARGEST_RANGE: f32 = 4096.0;
 
 /// Samples a texel of each prefiltered level: small, rough levels need more and have fewer texels.
-const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 32, 64, 128, 256, 512, 512, 512, 512];
+const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512, 512, 512, 512];
 
 /// Why there is no image-based light.
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +47,9 @@ pub enum BakeError {
     /// The device.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// The map does not fit the device.
+    #[error("{0}x{1} pixels are too many: this device has images of at most {2} a side")]
+    TooLarge(u32, u32, u32),
     /// Something newer is wanted.
     #[error("a newer environment or shader came first")]
     Superseded,
@@ -67,7 +70,7 @@ pub struct BakeReport {
     pub upload_ms: f64,
     /// The map to a cube with its mip levels.
     pub cube_ms: f64,
-    /// The cube to spherical harmonics.
+    /// The cube to irradiance.
     pub irradiance_ms: f64,
     /// GGX prefilter, all levels.
     pub prefilter_ms: f64,
@@ -82,7 +85,7 @@ pub struct GpuEnvironment {
     pub(super) cube: Arc<Image>,
     pub(super) prefiltered: Arc<Image>,
     pub(super) sheen: Arc<Image>,
-    pub(super) irradiance: Arc<Buffer>,
+    pub(super) irradiance: Arc<Image>,
     pub(super) sampler: Arc<Sampler>,
     /// What the images hold is radiance times this.
     pub(super) scale: f32,
@@ -108,14 +111,12 @@ impl GpuEnvironment {
     pub(super) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let cube = |name: &str| Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage));
-        let this = Self::with(gpu, [cube("uniform cube")?, cube("uniform prefiltered")?, cube("uniform sheen")?], 1.0)?;
+        let names = ["uniform cube", "uniform prefiltered", "uniform sheen", "uniform irradiance"];
+        let [a, b, c, d] = names.map(cube);
+        let this = Self::with(gpu, [a?, b?, c?, d?])?;
         let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(half::f16::from_f32);
-        let texels = (this.bytes() - IRRADIANCE_BYTES) as usize / 8;
-        let mut bytes = bytemuck::cast_slice(&texel.map(half::f16::to_bits)).repeat(texels);
-        // Irradiance / pi is a polynomial of the normal (ibl/irradiance.comp); here only its constant is there.
-        bytes.extend_from_slice(bytemuck::cast_slice(&radiance));
-        bytes.resize(this.bytes() as usize, 0);
-        this.fill(gpu, &bytes)?;
+        let texels = this.bytes() as usize / size_of_val(&texel);
+        this.fill(gpu, &bytemuck::cast_slice(&texel.map(half::f16::to_bits)).repeat(texels))?;
         Ok(Arc::new(this))
     }
 
@@ -127,25 +128,23 @@ impl GpuEnvironment {
             cube("environment", CUBE_SIDE, CUBE_LEVELS)?,
             cube("prefiltered", PREFILTERED_SIDE, PREFILTERED_LEVELS)?,
             cube("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?,
+            cube("irradiance", IRRADIANCE_SIDE, 1)?,
         ];
-        Self::with(gpu, images, 1.0)
+        Self::with(gpu, images)
     }
 
-    fn with(gpu: &Arc<Gpu>, [cube, prefiltered, sheen]: [Arc<Image>; 3], scale: f32) -> Result<Self, GpuError> {
-        use vk::BufferUsageFlags as Usage;
-        let usage = Usage::STORAGE_BUFFER | Usage::UNIFORM_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
-        let irradiance = Buffer::new(gpu, "irradiance", IRRADIANCE_BYTES, usage, Memory::Device)?;
+    fn with(gpu: &Arc<Gpu>, [cube, prefiltered, sheen, irradiance]: [Arc<Image>; 4]) -> Result<Self, GpuError> {
         let sampler = task::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
-        Ok(Self { cube, prefiltered, sheen, irradiance, sampler, scale, report: BakeReport::default() })
+        Ok(Self { cube, prefiltered, sheen, irradiance, sampler, scale: 1.0, report: BakeReport::default() })
     }
 
-    fn images(&self) -> [&Arc<Image>; 3] {
-        [&self.cube, &self.prefiltered, &self.sheen]
+    fn images(&self) -> [&Arc<Image>; 4] {
+        [&self.cube, &self.prefiltered, &self.sheen, &self.irradiance]
     }
 
-    /// Bytes of all images and of the irradiance.
+    /// Bytes of all images.
     fn bytes(&self) -> u64 {
-        self.images().iter().map(|image| image.desc().bytes()).sum::<u64>() + IRRADIANCE_BYTES
+        self.images().iter().map(|image| image.desc().bytes()).sum()
     }
 
     /// Copies everything in, in the order of [`Self::read`].
@@ -157,22 +156,13 @@ impl GpuEnvironment {
             images.push((image, own));
             rest = others;
         }
-        task::upload(gpu, &images)?;
-        let staging = vk::BufferUsageFlags::TRANSFER_SRC;
-        let staging = Buffer::new(gpu, "staging", IRRADIANCE_BYTES, staging, Memory::Upload)?;
-        staging.write(0, rest);
-        one_shot(gpu, |encoder| {
-            encoder.copy_buffer(&staging, 0, &self.irradiance, IRRADIANCE_BYTES);
-            encoder.copies_done();
-            Ok(())
-        })
+        task::upload(gpu, &images)
     }
 
     /// Copies everything out.
     fn read(&self, gpu: &Arc<Gpu>) -> Result<Vec<u8>, GpuError> {
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
-        let out = Buffer::new(gpu, "baked", self.bytes() - IRRADIANCE_BYTES, usage, Memory::Readback)?;
-        let harmonics = Buffer::new(gpu, "baked irradiance", IRRADIANCE_BYTES, usage, Memory::Readback)?;
+        let out = Buffer::new(gpu, "baked", self.bytes(), usage, Memory::Readback)?;
         one_shot(gpu, |encoder| {
             let mut at = 0;
             for image in self.images() {
@@ -181,13 +171,10 @@ impl GpuEnvironment {
                 encoder.transition(image, Use::CopyFrom, Use::Sampled);
                 at += image.desc().bytes();
             }
-            encoder.copy_buffer(&self.irradiance, 0, &harmonics, IRRADIANCE_BYTES);
             encoder.copies_done();
             Ok(())
         })?;
-        let mut bytes = out.read();
-        bytes.extend(harmonics.read());
-        Ok(bytes)
+        Ok(out.read())
     }
 
     /// Bakes an environment with a set's stages, or takes the result from the disk.
@@ -230,6 +217,10 @@ impl GpuEnvironment {
             tracing::debug!("bake: {next}");
             if (control.superseded)() { Err(BakeError::Superseded) } else { Ok(Instant::now()) }
         };
+        let most = gpu.max_image_size();
+        if map.width.max(map.height) > most {
+            return Err(BakeError::TooLarge(map.width, map.height, most));
+        }
         let time = begin(0.05, "pipelines")?;
         let results = no_results(gpu)?;
         let passes = Passes { gpu, layouts, set, results: &results };
@@ -251,7 +242,7 @@ impl GpuEnvironment {
         self.report.cube_ms = ms(time);
 
         let time = begin(0.25, "irradiance")?;
-        passes.irradiance(&self.cube, &self.sampler, &self.irradiance)?;
+        passes.irradiance(&self.cube, &self.irradiance)?;
         self.report.irradiance_ms = ms(time);
 
         // On a software device frames get their turn between two levels; a GPU has done them all before anyone notices.
@@ -274,7 +265,7 @@ impl GpuEnvironment {
 
 /// Named by the stages, the numbers that they are given, and the map.
 fn key(set: &PipelineSet, file: &EnvironmentFile) -> Result<String, GpuError> {
-    let numbers = [CUBE_SIDE, PREFILTERED_SIDE, SHEEN_SIDE, SHEEN_SAMPLES];
+    let numbers = [CUBE_SIDE, PREFILTERED_SIDE, SHEEN_SIDE, SHEEN_SAMPLES, IRRADIANCE_SIDE];
     let fingerprint = file.fingerprint.to_le_bytes();
     let mut parts: Vec<&[u8]> = vec![&fingerprint, bytemuck::cast_slice(&numbers)];
     parts.push(bytemuck::cast_slice(&PREFILTER_SAMPLES));

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, Use, one_shot, vk};
 use crate::interface::Task;
 
-use super::bake::{CUBE, DOWNSAMPLE, IRRADIANCE, IRRADIANCE_BYTES};
+use super::bake::{CUBE, DOWNSAMPLE, IRRADIANCE};
 use super::pipelines::PipelineSet;
 use super::task;
 
-/// Level of the cube that irradiance is summed over: 64 x 64 texels.
-const IRRADIANCE_LEVEL: u32 = 3;
-/// `Results` of ibl/small_lights.glsl: the irradiance, 64 counters, the length of a list and its 192 entries.
-const RESULTS_BYTES: u64 = IRRADIANCE_BYTES + 64 * 4 + 4 + 192 * 28;
+/// Level of the cube that irradiance is summed over: 16 x 16 texels.
+const IRRADIANCE_LEVEL: u32 = 5;
+/// `Results` of ibl/small_lights.glsl: 64 counters, the length of a list and its 192 entries.
+const RESULTS_BYTES: u64 = 64 * 4 + 4 + 192 * 28;
 
 /// The buffer that the passes share, all 0.
 pub(super) fn no_results(gpu: &Arc<Gpu>) -> Result<Arc<Buffer>, GpuError> {
@@ -81,23 +81,21 @@ impl Passes<'_> {
         })
     }
 
-    pub(super) fn irradiance(
-        &self,
-        cube: &Arc<Image>,
-        sampler: &Arc<Sampler>,
-        to: &Arc<Buffer>,
-    ) -> Result<(), GpuError> {
-        let side = cube.desc().width >> IRRADIANCE_LEVEL;
-        let task = Task { size: [side; 2], level: IRRADIANCE_LEVEL, levels: cube.desc().mips, ..Task::default() };
+    /// The cube's light to each normal's. Both images end up in [`Use::Sampled`].
+    pub(super) fn irradiance(&self, cube: &Arc<Image>, to: &Arc<Image>) -> Result<(), GpuError> {
+        let side = to.desc().width;
+        let task = Task { size: [side; 2], levels: 1, ..Task::default() };
         let bindings = task::bindings(self.gpu, self.layouts, &task, |writer| {
-            task::results(task::source_cube(writer, cube, sampler), self.results)
+            let writer = task::level_above(task::target(writer, to, 0), cube, IRRADIANCE_LEVEL);
+            task::results(writer, self.results)
         })?;
         let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
         one_shot(self.gpu, |encoder| {
-            encoder.dispatch(self.layouts, &pipeline, &[&bindings], [1, 1, 1]);
-            encoder.computed();
-            encoder.copy_buffer(self.results, 0, to, IRRADIANCE_BYTES);
-            encoder.copies_done();
+            encoder.transition(to, Use::Undefined, Use::Storage);
+            encoder.transition(cube, Use::Sampled, Use::Storage);
+            encoder.dispatch(self.layouts, &pipeline, &[&bindings], task::groups(side, to.desc().layers));
+            encoder.transition(cube, Use::Storage, Use::Sampled);
+            encoder.transition(to, Use::Storage, Use::Sampled);
             Ok(())
         })
     }

@@ -1,13 +1,16 @@
 //! What was baked once, on disk: named by the hash of all that went in, so an entry is never stale, at most useless.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use xxhash_rust::xxh3::Xxh3;
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// Most bytes that are kept; the oldest entries go first.
 const MOST_BYTES: u64 = 512 << 20;
 const ENDING: &str = "bake";
+/// Bytes at the end of a file: XXH3 of what comes before.
+const CHECKSUM: u64 = 8;
 
 /// Names an entry after all that it was made from.
 pub(super) fn key(parts: &[&[u8]]) -> String {
@@ -33,14 +36,18 @@ fn file(folder: &Path, key: &str) -> PathBuf {
     folder.join(format!("{key}.{ENDING}"))
 }
 
-/// An entry of exactly `size` bytes; anything else counts as absent.
+/// An entry of exactly `size` bytes, whole; anything else counts as absent.
 pub(super) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
     let path = file(&folder()?, key);
     let metadata = std::fs::metadata(&path).ok()?;
-    if metadata.len() != size {
+    if metadata.len() != size + CHECKSUM {
         return None;
     }
-    std::fs::read(path).ok().filter(|bytes| bytes.len() as u64 == size)
+    let mut bytes = std::fs::read(path).ok()?;
+    let end = usize::try_from(size).ok().filter(|end| bytes.len() == end + CHECKSUM as usize)?;
+    let is_whole = bytes[end..] == xxh3_64(&bytes[..end]).to_le_bytes();
+    bytes.truncate(end);
+    is_whole.then_some(bytes)
 }
 
 /// Keeps an entry. A cache that cannot be written costs time, never the picture, so failures are only traced.
@@ -55,7 +62,10 @@ fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     // Whole or not at all: another Specula may read it at the same time.
     let temporary = folder.join(format!("{key}.{}.part", std::process::id()));
-    std::fs::write(&temporary, bytes)?;
+    let mut file_of_part = std::fs::File::create(&temporary)?;
+    file_of_part.write_all(bytes)?;
+    file_of_part.write_all(&xxh3_64(bytes).to_le_bytes())?;
+    drop(file_of_part);
     std::fs::rename(&temporary, file(folder, key))?;
     prune(folder)
 }

@@ -4,6 +4,7 @@
 use std::sync::{Arc, PoisonError};
 
 use crate::gpu::{Gpu, GpuError, SetLayouts};
+use crate::interface::ATTRIBUTE_COLOR;
 use crate::scene::{Material, Model, override_material};
 use crate::settings::{MaterialOverride, Settings};
 
@@ -59,7 +60,13 @@ fn dressed_draw(draw: &GpuDraw, model: &Model, dress: &Dress, over: Option<&Mate
     let Some(primitive) = model.primitives.get(draw.push.primitive_id as usize) else { return draw.clone() };
     let own = primitive.material_in(dress.variant);
     let (index, material) = over.map_or((own, &model.materials[own]), |over| (last_set, over));
+    // Colors of the vertices belong to the material that is replaced.
+    let mut push = draw.push;
+    if over.is_some() {
+        push.attributes &= !ATTRIBUTE_COLOR;
+    }
     GpuDraw {
+        push,
         material: index,
         double_sided: material.double_sided,
         variant: variant(model, primitive, material),

@@ -78,6 +78,8 @@ impl PipelineSet {
         let is_kept = |pass: Pass| pass.stages().iter().all(|path| is_same(path));
         let made = pipelines.iter().flat_map(|made| made.iter()).filter(|(key, _)| is_kept(key.pass));
         let made = made.map(|(key, pipeline)| (key.clone(), pipeline.clone())).collect();
+        // The window draws with it while this one is built.
+        drop(pipelines);
         let computes = before.map(|set| lock(&set.computes).clone()).unwrap_or_default();
         let computes = computes.into_iter().filter(|((path, _), _)| is_same(path)).collect();
         let same_tables = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().all(is_same);

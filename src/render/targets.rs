@@ -64,10 +64,9 @@ impl Targets {
         };
         let depth = image("depth", multi(vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT))?;
         let copied = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-        let half = vk::Format::R16G16B16A16_SFLOAT;
         let levels = mips::count(width, height);
         let behind = match purpose.transmission {
-            true => Some(image("behind", ImageDesc { mips: levels, ..ImageDesc::new(width, height, half, copied) })?),
+            true => Some(image("behind", ImageDesc { mips: levels, ..ImageDesc::new(width, height, format, copied) })?),
             false => None,
         };
         let mean = match purpose.accumulates {

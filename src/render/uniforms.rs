@@ -75,7 +75,7 @@ impl Uniforms {
             .texture(3, &environment.cube, &environment.sampler)
             .texture(4, &environment.prefiltered, &environment.sampler)
             .texture(5, &environment.sheen, &environment.sampler)
-            .buffer(6, &environment.irradiance)
+            .texture(6, &environment.irradiance, &constants.linear)
             .texture(7, &tables.dfg, &constants.linear)
             .texture(8, &constants.ltc, &constants.linear)
             .buffer(9, measured)

@@ -1,14 +1,15 @@
 //! Which features of the shaders a material needs: those that change the picture, so that the others cost nothing.
 
-use glam::Vec3;
+use glam::{Affine2, Vec3};
 
-use super::model::{Material, Model};
+use super::model::{Material, Model, TextureUse};
 use crate::interface::{
     ATTRIBUTE_TANGENT_FRAME, FEATURE_ANISOTROPY, FEATURE_CLEARCOAT, FEATURE_CLEARCOAT_NORMAL, FEATURE_CONDUCTOR,
     FEATURE_DIFFUSE_TRANSMISSION, FEATURE_DISPERSION, FEATURE_IRIDESCENCE, FEATURE_NORMAL_TEXTURE,
-    FEATURE_PACKED_OCCLUSION, FEATURE_SHEEN, FEATURE_SPECULAR, FEATURE_SPECULAR_GLOSSINESS, FEATURE_TRANSMISSION,
-    FEATURE_UNLIT, FEATURE_VOLUME, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_IRIDESCENCE_THICKNESS, TEXTURE_METALLIC_ROUGHNESS,
-    TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SPECULAR, TEXTURE_SPECULAR_COLOR,
+    FEATURE_PACKED_OCCLUSION, FEATURE_SHEEN, FEATURE_SPECULAR, FEATURE_SPECULAR_GLOSSINESS,
+    FEATURE_TEXTURE_COORDINATES, FEATURE_TRANSMISSION, FEATURE_UNLIT, FEATURE_VOLUME, TEXTURE_CLEARCOAT_NORMAL,
+    TEXTURE_IRIDESCENCE_THICKNESS, TEXTURE_METALLIC_ROUGHNESS, TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SPECULAR,
+    TEXTURE_SPECULAR_COLOR,
 };
 
 /// The `interface::FEATURE_*` bits of a material of `model` on a mesh with these `interface::ATTRIBUTE_*`. The bits
@@ -16,9 +17,11 @@ use crate::interface::{
 pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
     let has_frame = attributes & ATTRIBUTE_TANGENT_FRAME != 0;
     let has = |texture: u32| material.textures[texture as usize].is_some();
+    let is_moved = |used: &TextureUse| used.uv_set != 0 || used.uv_from_mesh != Affine2::IDENTITY;
+    let moved = if material.textures.iter().flatten().any(is_moved) { FEATURE_TEXTURE_COORDINATES } else { 0 };
     let normal = if has_frame && has(TEXTURE_NORMAL) { FEATURE_NORMAL_TEXTURE } else { 0 };
     if material.unlit {
-        return FEATURE_UNLIT | normal;
+        return FEATURE_UNLIT | normal | moved;
     }
     let clearcoat = material.clearcoat.factor > 0.0;
     let specular = &material.specular;
@@ -30,7 +33,7 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
     let conditions = [
         (FEATURE_CLEARCOAT, clearcoat),
         (FEATURE_CLEARCOAT_NORMAL, clearcoat && has_frame && has(TEXTURE_CLEARCOAT_NORMAL)),
-        (FEATURE_ANISOTROPY, has_frame && material.anisotropy.strength > 0.0),
+        (FEATURE_ANISOTROPY, material.anisotropy.strength > 0.0),
         (FEATURE_SHEEN, material.sheen.color.max_element() > 0.0),
         (
             FEATURE_SPECULAR,
@@ -51,7 +54,7 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
         // Without an occlusion texture its strength is 0, so what is read does not matter: then better no texture more.
         (FEATURE_PACKED_OCCLUSION, !has(TEXTURE_OCCLUSION) || packs_occlusion(model, material)),
     ];
-    conditions.iter().filter(|(_, used)| *used).fold(normal, |bits, (bit, _)| bits | bit)
+    conditions.iter().filter(|(_, used)| *used).fold(normal | moved, |bits, (bit, _)| bits | bit)
 }
 
 /// Whether occlusion can be the red channel of the metallic-roughness texture, which leaves it free: both are read

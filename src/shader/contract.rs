@@ -229,6 +229,12 @@ fn short_type(type_name: &str) -> &str {
 
 fn check_constants(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
+    // The first one says it: the same constant may be missing in many places.
+    if let Some(name) = reflection.without_value.first() {
+        let message = format!("`{name}` gets no value: the compiler cannot join specialization constants by && or ||");
+        let help = "join the numbers by & and |, as in `(FEATURES & (A | B)) != 0u`, or make it a function";
+        out.push(texts.error(&[name.as_str(), "const"], message).with_help(help));
+    }
     for constant in reflection.constants.iter().filter(|constant| constant.id < interface::USER_CONSTANTS) {
         let words = [constant.name.as_str(), "constant_id"];
         let found = format!("shader says constant_id {} is `{}`", constant.id, constant.name);

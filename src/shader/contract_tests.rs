@@ -77,6 +77,17 @@ fn constants() {
 }
 
 #[test]
+fn a_condition_that_the_compiler_loses_is_told() {
+    let text = "#version 460\nlayout(constant_id = 2) const uint FEATURES = 0u;\n\
+        const bool BOTH = (FEATURES & 1u) != 0u && (FEATURES & 2u) != 0u;\n\
+        layout(location = 0) out vec4 o;\nvoid main() { o = vec4(0); if (gl_FragCoord.x > 1.0 && !BOTH) o = vec4(1); }\n";
+    let found: Vec<String> = complaints_of("m.frag", &[("m.frag", text)]).iter().map(Diagnostic::one_line).collect();
+    let expected =
+        "m.frag:3:12: error: `BOTH` gets no value: the compiler cannot join specialization constants by && or ||";
+    assert_eq!(found, [expected]);
+}
+
+#[test]
 fn edited_structs_are_refused_by_member() {
     let cases = [
         ("    float exposure; ", "", "shader says `Frame.ambient` is at byte 204, Specula says 208"),

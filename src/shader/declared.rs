@@ -1,7 +1,7 @@
 //! A SPIR-V module's declarations: types, names, decorations, variables. See the SPIR-V specification, sections 3.52.2
 //! to 3.52.9, for the numbers.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::interface::BindingKind;
 
@@ -26,10 +26,12 @@ mod op {
     pub const TYPE_RUNTIME_ARRAY: u32 = 29;
     pub const TYPE_STRUCT: u32 = 30;
     pub const TYPE_POINTER: u32 = 32;
+    pub const CONSTANT_TRUE: u32 = 41;
     pub const CONSTANT: u32 = 43;
     pub const SPEC_CONSTANT_TRUE: u32 = 48;
     pub const SPEC_CONSTANT_FALSE: u32 = 49;
     pub const SPEC_CONSTANT: u32 = 50;
+    pub const SPEC_CONSTANT_OP: u32 = 52;
     pub const FUNCTION: u32 = 54;
     pub const VARIABLE: u32 = 59;
     pub const DECORATE: u32 = 71;
@@ -89,6 +91,8 @@ pub struct Module {
     variables: Vec<(Id, Id, u32)>,
     interface: Vec<Id>,
     capabilities: Vec<u32>,
+    with_value: HashSet<Id>,
+    without_value: Vec<Id>,
 }
 
 impl Module {
@@ -112,9 +116,25 @@ impl Module {
         module
     }
 
+    /// Notes a constant that has a value, and those that a condition is made of and that have none.
+    fn constant_result(&mut self, opcode: u32, operands: &[u32]) -> Option<()> {
+        /// SPIR-V's comparisons and logical operations: all operands are ids.
+        const CONDITIONS: std::ops::RangeInclusive<u32> = 164..=179;
+        let (result, operation) = (*operands.get(1)?, operands.get(2));
+        if opcode == op::SPEC_CONSTANT_OP && operation.is_some_and(|operation| CONDITIONS.contains(operation)) {
+            let missing = operands.get(3..)?.iter().filter(|id| !self.with_value.contains(id));
+            self.without_value.extend(missing);
+        }
+        self.with_value.insert(result);
+        Some(())
+    }
+
     /// `None` when operands are missing.
     fn instruction(&mut self, opcode: u32, operands: &[u32]) -> Option<()> {
         let at = |index: usize| operands.get(index).copied();
+        if (op::CONSTANT_TRUE..=op::SPEC_CONSTANT_OP).contains(&opcode) {
+            self.constant_result(opcode, operands)?;
+        }
         match opcode {
             op::NAME => {
                 self.names.insert(at(0)?, string(operands.get(1..)?).0);
@@ -172,6 +192,7 @@ impl Module {
                 _ => {}
             }
         }
+        out.without_value = self.without_value.iter().map(|id| self.name(*id)).collect();
         out.constants = self.specialization.iter().filter_map(|constant| self.constant(*constant)).collect();
         out.structs = self.structs();
         out.descriptors.sort_by_key(|descriptor| (descriptor.set, descriptor.binding));

@@ -102,6 +102,8 @@ pub struct Reflection {
     pub outputs: Vec<Location>,
     /// Every struct with member offsets, by name: also those behind arrays and buffer references.
     pub structs: BTreeMap<String, Block>,
+    /// Constants that the compiler left without a value: it makes no code for `&&` and `||` of specialization constants.
+    pub without_value: Vec<String>,
     /// SPIR-V's numbers of the capabilities that it asks for.
     pub capabilities: Vec<u32>,
 }

@@ -263,6 +263,9 @@ impl Function {
     fn take_branches(&mut self, known: &Known) -> bool {
         let mut local: HashMap<Id, u32> = HashMap::new();
         let mut any = false;
+        // The end of a loop must stay a choice even if it is always made: a loop has a way back and a way out.
+        let loops = self.blocks.iter().map(Block::structure).filter(|(_, next)| next.is_some());
+        let loop_ends: HashSet<Id> = loops.filter_map(|(merge, _)| merge).collect();
         for block in &mut self.blocks {
             let lookup = |id: Id| known.values.get(&id).or_else(|| local.get(&id)).copied();
             let mut found = Vec::new();
@@ -284,6 +287,9 @@ impl Function {
             let Some(last) = block.body.last().filter(|i| opcode(i) == op::BRANCH_CONDITIONAL) else { continue };
             let condition = last.get(1).and_then(|id| known.values.get(id).or_else(|| local.get(id)));
             let (Some(condition), Some([yes, no])) = (condition, last.get(2..4)) else { continue };
+            if loop_ends.contains(yes) || loop_ends.contains(no) {
+                continue;
+            }
             let taken = if *condition != 0 { *yes } else { *no };
             block.body.pop();
             block.body.pop_if(|i| opcode(i) == op::SELECTION_MERGE);

@@ -196,8 +196,7 @@ pub fn shade(s: &Surface, l: DVec3, v: DVec3, masking: Masking) -> Lobes {
         let weight = coat_weight(&s.coat, v);
         lobes = Lobes::default().plus(lobes, DVec3::splat(1.0 - weight));
         let (n, coat_cosine) = (s.coat.n, s.coat.n.dot(l));
-        // A limit of the program: where a normal texture turns the base away from the light, the coat is dark as well.
-        if cosine > 0.0 && coat_cosine > 0.0 {
+        if coat_cosine > 0.0 {
             let lobe = Widths::round(n, s.coat.roughness).lobe(n, l, v, masking);
             lobes.coat = DVec3::splat(weight * lobe * coat_cosine);
         }

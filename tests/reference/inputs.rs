@@ -66,7 +66,7 @@ impl Inputs {
     pub fn extra(&self, pixel: usize, slug: &str) -> Option<DVec3> {
         self.modes.get(slug)?;
         let value = self.shown(pixel, slug);
-        let checkerboard = [0.18_f32, 0.26].map(|gray| DVec3::splat(gray.into()));
+        let checkerboard = [0.180017_f32, 0.260017].map(|gray| DVec3::splat(gray.into()));
         (!checkerboard.contains(&value)).then_some(value)
     }
 

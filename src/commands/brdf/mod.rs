@@ -6,6 +6,7 @@ mod normalization;
 mod plot;
 mod plot_axes;
 mod reciprocity;
+mod split_sum;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -35,6 +36,8 @@ enum What {
     Reciprocity(reciprocity::Args),
     /// Whether the microfacets cover the surface: the integral of D NoH is 1
     Normalization(normalization::Args),
+    /// How far image-based light is from the truth, by roughness
+    SplitSum(split_sum::Args),
     /// Draw the lobes, and the albedo over the angle, to a PNG
     Plot(plot::Args),
 }
@@ -45,6 +48,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         What::Furnace(args) => furnace::run(&args),
         What::Reciprocity(args) => reciprocity::run(&args),
         What::Normalization(args) => normalization::run(&args),
+        What::SplitSum(args) => split_sum::run(&args),
         What::Plot(args) => plot::run(&args),
     }
 }
@@ -64,6 +68,23 @@ struct Options {
     /// Turn the Vulkan validation layers on; their messages fail the command
     #[arg(long)]
     validate: bool,
+}
+
+impl Options {
+    /// The default settings with what `--set` says.
+    fn settings(&self) -> Result<Settings, Failure> {
+        let mut settings = Settings::default();
+        for assignment in &self.set {
+            settings.assign(assignment).map_err(|e| Failure::Input(format!("--set: {e}")))?;
+        }
+        let foreign = Settings { shader: Settings::default().shader, ..settings.clone() } != Settings::default();
+        if foreign {
+            let message = "--set: here only the shader tree's own constants and parameters have a meaning, as \
+                NDF=Beckmann; `specula modes` lists them";
+            return Err(Failure::Input(message.into()));
+        }
+        Ok(settings)
+    }
 }
 
 /// What is measured.
@@ -95,16 +116,7 @@ struct Opened {
 
 impl Opened {
     fn new(options: &Options) -> Result<Self, Failure> {
-        let mut settings = Settings::default();
-        for assignment in &options.set {
-            settings.assign(assignment).map_err(|e| Failure::Input(format!("--set: {e}")))?;
-        }
-        let foreign = Settings { shader: Settings::default().shader, ..settings.clone() } != Settings::default();
-        if foreign {
-            let message = "--set: here only the shader tree's own constants and parameters have a meaning, as \
-                NDF=Beckmann; `specula modes` lists them";
-            return Err(Failure::Input(message.into()));
-        }
+        let settings = options.settings()?;
         let mut library = Library::new(source(options.shaders.as_deref())?, compiler()?, &all_stages());
         let shaders = match library.update(&Change::All) {
             Update::Ready(shaders, _) => shaders,

@@ -11,6 +11,8 @@ use super::textures::Collector;
 use super::values::{self, Fields};
 use crate::interface as contract;
 
+/// Far above any matter; its square is still a float.
+const LARGEST_IOR: f32 = 1e4;
 const SPECULAR: &str = "KHR_materials_specular";
 const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
@@ -150,13 +152,13 @@ fn ior(reader: &mut Reader<'_, '_>, reflects: bool) -> Result<(), Problem> {
     let value = reader.fields.number("ior", 1.5)?;
     let place = reader.fields.at("ior");
     let expected = format!(
-        "an index of refraction of at least 1 (1.5 for glass), or 0 beside {SPECULAR}, whose color is the \
+        "an index of refraction of 1 to 10000 (1.5 for glass), or 0 beside {SPECULAR}, whose color is the \
          reflectance then"
     );
     if value == 0.0 && reflects {
         let warning = format!("{place} is 0, for infinity: the reflectance is 1 times the specular color.");
         reader.collector.warnings.push(warning);
-    } else if value < 1.0 {
+    } else if !(1.0..=LARGEST_IOR).contains(&value) {
         return Err(Problem::invalid(place, expected, value.to_string()));
     }
     reader.material.ior = value;
@@ -234,10 +236,11 @@ fn conductor(material: &mut Material, source: &json::Material, place: &str) -> R
     let read = |key, least: f32, expected: &str| {
         let value = Vec3::from(fields.numbers(key, [0.0; 3])?);
         let found = || values::quote(fields.get(key).unwrap_or(&json::Value::Null));
-        if value.min_element() < least { Err(Problem::invalid(fields.at(key), expected, found())) } else { Ok(value) }
+        let fits = value.min_element() >= least && value.max_element() <= LARGEST_IOR;
+        if !fits { Err(Problem::invalid(fields.at(key), expected, found())) } else { Ok(value) }
     };
-    let n = read(n, f32::MIN_POSITIVE, "3 numbers above 0")?;
-    let k = read(k, 0.0, "3 numbers of at least 0")?;
+    let n = read(n, 1e-3, "3 numbers from 0.001 to 10000")?;
+    let k = read(k, 0.0, "3 numbers from 0 to 10000")?;
     material.conductor = Some(Conductor { n, k });
     Ok(())
 }

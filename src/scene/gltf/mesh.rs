@@ -230,9 +230,15 @@ impl Source<'_> {
         if let Some(colors) = self.attribute::<4>(Semantic::Colors(0), "COLOR_0", &COLOR, count)? {
             attributes |= contract::ATTRIBUTE_COLOR;
             let bad = colors.iter().filter(|color| !Vec4::from(**color).is_finite()).count();
-            let white = |color: [f32; 4]| if Vec4::from(color).is_finite() { color } else { [1.0; 4] };
-            vertices.iter_mut().zip(colors).for_each(|(vertex, color)| vertex.color = white(color));
+            let beyond = |color: &[f32; 4]| color.iter().any(|c| c.is_finite() && !(0.0..=1.0).contains(c));
+            let clamped = colors.iter().filter(|color| beyond(color)).count();
+            let usable = |color: [f32; 4]| match Vec4::from(color).is_finite() {
+                true => color.map(|c| c.clamp(0.0, 1.0)),
+                false => [1.0; 4],
+            };
+            vertices.iter_mut().zip(colors).for_each(|(vertex, color)| vertex.color = usable(color));
             self.note(bad, "vertex colors are not finite: white is used", warnings);
+            self.note(clamped, "vertex colors are not within 0..1: the nearest that is, is used", warnings);
         }
         Ok(attributes)
     }

@@ -1,4 +1,4 @@
-//! Tangent frames: the file's, or MikkTSpace's, or at least something orthogonal to the normal.
+//! Tangent frames: the file's, or MikkTSpace's, or around the Y axis.
 
 use bevy_mikktspace::{TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
@@ -19,8 +19,8 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
     let anisotropic = |material: usize| materials.get(material).is_some_and(|m| m.anisotropy.strength > 0.0);
     if !(from_file || made) && materials_of(primitive).any(anisotropic) {
         geometry.warnings.push(format!(
-            "{}: its material is anisotropic, but without tangents or texture coordinates there is no direction for \
-             it: it is shown isotropic.",
+            "{}: its material is anisotropic, but there are no tangents or texture coordinates to say along which \
+             direction: its highlights are drawn out around the object's Y axis.",
             primitive.name
         ));
     }
@@ -41,7 +41,10 @@ fn repair(vertex: &mut Vertex) -> Option<()> {
     let [x, y, z, w] = vertex.tangent;
     let sign = if w < 0.0 { -1.0 } else { 1.0 };
     let valid = Vec3::new(x, y, z).try_normalize();
-    let tangent = valid.unwrap_or_else(|| Vec3::from(vertex.normal).any_orthonormal_vector());
+    // Around the Y axis, as a lathe would brush it; at the poles, where that is no direction, any.
+    let normal = Vec3::from(vertex.normal);
+    let around_y = Vec3::Y.cross(normal).try_normalize();
+    let tangent = valid.or(around_y).unwrap_or_else(|| normal.any_orthonormal_vector());
     vertex.tangent = tangent.extend(sign).to_array();
     if valid.is_none() { Some(()) } else { None }
 }

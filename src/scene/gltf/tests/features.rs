@@ -84,14 +84,14 @@ fn features_that_need_others() {
     assert_eq!(glass(0.0, 1.0, 0.0), clear, "a thin wall does not bend light");
     assert_eq!(glass(1.0, 1.0, 0.0), clear | contract::FEATURE_VOLUME | contract::FEATURE_DISPERSION);
     assert_eq!(glass(1.0, 0.0, 1.0), diffuse | contract::FEATURE_VOLUME);
-    // Without texture coordinates there is no tangent frame.
+    // Without texture coordinates there is no tangent frame, but a direction around the object.
     let mut bare = with(json!({
         "KHR_materials_anisotropy": { "anisotropyStrength": 1 },
         "KHR_materials_clearcoat": { "clearcoatFactor": 1, "clearcoatNormalTexture": { "index": 0 } },
     }));
     bare.primitive()["attributes"].as_object_mut().unwrap().remove("TEXCOORD_0");
-    assert_eq!(bits(&bare), contract::FEATURE_CLEARCOAT);
-    assert!(bare.model().warnings[0].contains("shown isotropic"), "{:?}", bare.model().warnings);
+    assert_eq!(bits(&bare), contract::FEATURE_CLEARCOAT | contract::FEATURE_ANISOTROPY);
+    assert!(bare.model().warnings[0].contains("around the object's Y axis"), "{:?}", bare.model().warnings);
     // Unlit means without light.
     let unlit = json!({ "KHR_materials_unlit": {}, "KHR_materials_clearcoat": { "clearcoatFactor": 1 } });
     assert_eq!(bits(&with(unlit)), contract::FEATURE_UNLIT);

@@ -108,9 +108,9 @@ fn normalized_texture_coordinates_and_colors() {
     assert_eq!((vertex.color, vertex.uv1), ([1.0, 0.0, 0.2, 1.0], [1.0, 0.0]));
     let expected = contract::ATTRIBUTE_COLOR | contract::ATTRIBUTE_UV1 | contract::ATTRIBUTE_UV0;
     assert_eq!(model.primitives[0].attributes & expected, expected);
-    // RGB colors get an alpha of 1.
+    // RGB colors get an alpha of 1; beyond 1 no color reflects.
     builder.attribute_f32("COLOR_0", "VEC3", &[0.5, 0.25, 2.0].repeat(4));
-    assert_eq!(builder.model().primitives[0].vertices[0].color, [0.5, 0.25, 2.0, 1.0]);
+    assert_eq!(builder.model().primitives[0].vertices[0].color, [0.5, 0.25, 1.0, 1.0]);
 }
 
 #[test]

@@ -1,0 +1,110 @@
+//! `specula brdf split-sum`: image-based light as the picture has it, against the same integral by random paths.
+
+use std::path::Path;
+
+use serde_json::json;
+use specula::headless::Headless;
+use specula::render::Capture;
+use specula::scene::{self, LoadOptions};
+use specula::settings::{LightSource, MaterialOverride};
+
+use super::{Options, SurfaceOptions};
+use crate::commands::Failure;
+use crate::commands::common::{check_validation, compiler, open_gpu, source};
+
+/// A sphere.
+const MODEL: &str = "material-override";
+const SIDE: u32 = 64;
+const ROWS: u32 = 10;
+/// Where the surface is seen at a steeper angle than 84 degrees; beyond, a pixel shows the mesh's facets.
+const LEAST_N_DOT_V: f32 = 0.1;
+
+/// Options of `brdf split-sum`.
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    surface: SurfaceOptions,
+    /// Light from all around: studio, sky, furnace, or a .hdr or .exr file
+    #[arg(long, value_name = "WHAT", default_value = "studio")]
+    env: String,
+    /// Frames of random paths that are averaged
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    frames: u32,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// The split sum minus the truth, over the truth's mean.
+struct Row {
+    roughness: f32,
+    /// Mean of the difference.
+    bias: f64,
+    /// Root of the mean of its square; the truth's noise is in it.
+    rms: f64,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let mut settings = args.options.settings()?;
+    settings.lights.source = LightSource::None;
+    settings.environment.name.clone_from(&args.env);
+    settings.view.msaa = 1;
+    settings.view.background = "none".into();
+    settings.view.frames = args.frames;
+    let metallic = args.surface.metallic.unwrap_or(1.0);
+    let base_color = args.surface.base_color;
+    settings.material = MaterialOverride { enabled: true, base_color, metallic, ..MaterialOverride::default() };
+    settings.check().map_err(Failure::Input)?;
+
+    let gpu = open_gpu(args.options.device.as_deref(), args.options.validate)?;
+    let model = scene::open(Some(Path::new(MODEL)), &LoadOptions::default());
+    let model = model.map_err(|e| Failure::Input(e.to_string()))?;
+    let tree = source(args.options.shaders.as_deref())?;
+    let (mut headless, _) = Headless::new(&gpu, &compiler()?, tree, model, settings, (SIDE, SIDE))?;
+    let n_dot_v = capture(&mut headless, "n-dot-v")?;
+    let mut rows = Vec::new();
+    for row in 1..=ROWS {
+        let roughness = row as f32 / ROWS as f32;
+        headless.settings_mut().material.roughness = roughness;
+        let split_sum = capture(&mut headless, "final")?;
+        let truth = capture(&mut headless, "monte-carlo")?;
+        rows.push(compare(roughness, &split_sum, &truth, &n_dot_v));
+    }
+    if args.json {
+        let list = rows.iter().map(|r| json!({ "roughness": r.roughness, "bias": r.bias, "rms": r.rms }));
+        let list: Vec<_> = list.collect();
+        let options = json!({ "environment": args.env, "metallic": metallic, "frames": args.frames });
+        out!("{:#}", json!({ "rows": list, "options": options }));
+    } else {
+        out!("Split sum minus the mean of {} frames of random paths, over the mean, in {}", args.frames, args.env);
+        out!("\nroughness     bias      rms");
+        for row in &rows {
+            out!("{:9.1}  {:+6.2} %  {:5.2} %", row.roughness, row.bias * 100.0, row.rms * 100.0);
+        }
+    }
+    check_validation(&gpu)
+}
+
+fn capture(headless: &mut Headless, mode: &str) -> Result<Capture, Failure> {
+    headless.settings_mut().mode = mode.into();
+    Ok(headless.render()?)
+}
+
+fn compare(roughness: f32, split_sum: &Capture, truth: &Capture, n_dot_v: &Capture) -> Row {
+    let pixels = split_sum.raw.iter().zip(&truth.raw).zip(&n_dot_v.raw);
+    let seen = pixels.filter(|(_, cosine)| cosine[3] == 1.0 && cosine[0] > LEAST_N_DOT_V);
+    let (mut count, mut mean, mut bias, mut square) = (0.0, 0.0, 0.0, 0.0);
+    for ((a, b), _) in seen {
+        for (a, b) in a.iter().zip(b).take(3) {
+            let (a, b) = (f64::from(*a), f64::from(*b));
+            count += 1.0;
+            mean += b;
+            bias += a - b;
+            square += (a - b) * (a - b);
+        }
+    }
+    Row { roughness, bias: bias / mean, rms: (square / count).sqrt() * count / mean }
+}

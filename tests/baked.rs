@@ -1,0 +1,135 @@
+//! What is baked of the built-in environments, against sums over every texel of the map.
+
+mod support;
+
+use glam::{DVec3, Vec3};
+use specula::scene::environment::direction_from_uv;
+use specula::scene::{Environment, EnvironmentFile};
+use support::{Session, assert_validated, glb, load, ready, settings};
+
+const SIDE: u32 = 256;
+const LEVELS: u32 = 9;
+/// The lookup at the center of a texel of the level with this roughness, as [`texel`] has it.
+const AT_TEXEL: &str = "vec3 prefiltered_radiance(vec3 r, float roughness) {
+    float side = exp2(8.0 * (1.0 - roughness));
+    vec3 p = r / max(max(abs(r.x), abs(r.y)), abs(r.z));
+    vec3 center = (floor((p * 0.5 + 0.5) * side) + 0.5) / side * 2.0 - 1.0;
+    r = mix(center, p, greaterThanEqual(abs(p), vec3(0.999999)));
+";
+
+/// The center of the texel around `n` on a cube with `side` texels; none where floats may disagree which it is.
+fn texel(n: DVec3, side: f64) -> Option<DVec3> {
+    let p = n / n.abs().max_element();
+    let place = (p * 0.5 + 0.5) * side;
+    let is_sure = |i: usize| p[i].abs() == 1.0 || (p[i].abs() < 0.9999 && (0.01..0.99).contains(&place[i].fract()));
+    let center = (place.floor() + 0.5) / side * 2.0 - 1.0;
+    let at = DVec3::select(p.abs().cmpeq(DVec3::ONE), p, center);
+    (0..3).all(is_sure).then(|| at.normalize())
+}
+
+/// Every texel of a map: unit direction, radiance times solid angle, solid angle.
+struct Sky {
+    texels: Vec<(DVec3, DVec3, f64)>,
+}
+
+impl Sky {
+    fn new(map: &Environment) -> Self {
+        let (width, height) = (map.width as usize, map.height as usize);
+        let cosine = |edge: usize| (edge as f64 / height as f64 * std::f64::consts::PI).cos();
+        let texel = |(i, pixel): (usize, &[f32; 4])| {
+            let (x, y) = (i % width, i / width);
+            let at = direction_from_uv((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+            let solid_angle = (cosine(y) - cosine(y + 1)) * std::f64::consts::TAU / width as f64;
+            let radiance = Vec3::new(pixel[0], pixel[1], pixel[2]).as_dvec3();
+            (at.as_dvec3(), radiance * solid_angle, solid_angle)
+        };
+        Self { texels: map.pixels.iter().enumerate().map(texel).collect() }
+    }
+
+    /// Mean of the radiance, weighted by a function of the cosine to `n`.
+    fn mean(&self, n: DVec3, weight: impl Fn(f64) -> f64) -> DVec3 {
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        for (at, radiance, solid_angle) in &self.texels {
+            let cosine = at.dot(n);
+            if cosine > 0.0 {
+                let weight = weight(cosine);
+                sum += *radiance * weight;
+                weights += weight * solid_angle;
+            }
+        }
+        sum / weights
+    }
+}
+
+/// D NoL of GGX with N = V = R, without constant factors (Karis 2013): NoH^2 = (1 + NoL) / 2.
+fn ggx(alpha: f64) -> impl Fn(f64) -> f64 {
+    move |n_dot_l| {
+        let q = 1.0 - (1.0 - alpha * alpha) * (1.0 + n_dot_l) / 2.0;
+        n_dot_l / (q * q)
+    }
+}
+
+/// Values of a mode where the sphere is seen, some pixels of it, by normal.
+fn shown(session: &mut Session, slug: &str) -> Vec<(DVec3, DVec3)> {
+    let mut out = Vec::new();
+    for eye in ["[3, 1, 2]", "[-3, -1, -2]"] {
+        session.set(&format!("camera.eye={eye}"));
+        session.set("camera.target=[0, 0, 0]");
+        let normals = session.mode("shading-normal");
+        let values = session.mode(slug);
+        let pixels = values.raw.iter().zip(&normals.raw).filter(|(value, _)| value[3] == 1.0);
+        let vector = |v: &[f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
+        out.extend(pixels.step_by(7).map(|(value, normal)| (vector(normal).normalize(), vector(value))));
+    }
+    assert!(out.len() > 20, "{} pixels", out.len());
+    out
+}
+
+/// Root of the mean square of the differences, over the mean.
+fn rmse(pairs: &[(DVec3, DVec3)]) -> f64 {
+    let square: f64 = pairs.iter().map(|(a, b)| (*a - *b).length_squared() / 3.0).sum();
+    let mean: f64 = pairs.iter().map(|(_, truth)| truth.element_sum() / 3.0).sum();
+    (square / pairs.len() as f64).sqrt() / (mean / pairs.len() as f64)
+}
+
+fn baked_like_brute_force(environment: &str) {
+    let name = format!("environment.name={environment}");
+    let chosen = settings(&[&name, "lights.source=none", "view.msaa=1", "view.background=none"]);
+    let mut session = Session::new(load(&glb::model(&glb::sphere(24, 48), &glb::gray())), chosen);
+    // Looked up at the texel around the normal: what lies between texels is the sampler's.
+    let first_line = "vec3 prefiltered_radiance(vec3 r, float roughness) {\n";
+    ready(&session.edit("lighting/environment.glsl", first_line, AT_TEXEL));
+    ready(&session.edit("debug/light.glsl", "(mirrored(s, v), s.roughness)", "(s.n, s.roughness)"));
+    let sky = Sky::new(&EnvironmentFile::open(environment).unwrap().decode().unwrap());
+    session.set("material.enabled=true");
+    for level in 1..LEVELS {
+        let roughness = f64::from(level) / f64::from(LEVELS - 1);
+        session.set(&format!("material.roughness={roughness}"));
+        let found = shown(&mut session, "prefiltered");
+        let alpha = roughness * roughness;
+        let side = f64::from(SIDE >> level);
+        let at_texel = found.iter().filter_map(|(n, value)| Some((*value, texel(*n, side)?)));
+        let pairs: Vec<_> = at_texel.map(|(value, at)| (value, sky.mean(at, ggx(alpha)))).collect();
+        assert!(pairs.len() > 20, "{} texels", pairs.len());
+        let error = rmse(&pairs);
+        println!("{environment}, roughness {roughness}: {:.3} %", error * 100.0);
+        assert!(error < 0.01, "{environment}, roughness {roughness}: {error}");
+    }
+    let found = shown(&mut session, "irradiance");
+    let truth = |n: DVec3| sky.mean(n, |cosine| cosine) * std::f64::consts::PI;
+    let pairs: Vec<_> = found.iter().map(|(n, value)| (*value, truth(*n))).collect();
+    let error = rmse(&pairs);
+    println!("{environment}, irradiance: {:.3} %", error * 100.0);
+    assert!(error < 0.005, "{environment}, irradiance: {error}");
+    assert_validated();
+}
+
+#[test]
+fn the_studio() {
+    baked_like_brute_force("studio");
+}
+
+#[test]
+fn sun_and_sky() {
+    baked_like_brute_force("sky");
+}
