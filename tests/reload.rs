@@ -26,6 +26,7 @@ const ROUNDING: &[&str] = &[
     "ibl/cube.comp",
     "ibl/dfg.comp",
     "ibl/downsample.comp",
+    "ibl/irradiance.comp",
     "ibl/prefilter.comp",
     "ibl/prefilter_sheen.comp",
     "ibl/sheen_albedo.comp",

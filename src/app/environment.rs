@@ -94,6 +94,10 @@ impl Document {
         let wanted = &self.settings.environment;
         let all = &mut self.surroundings;
         if !wanted.is_lit() || (!all.stale && all.baked.is_for(&wanted.name, set)) {
+            // Back to what is on screen: what is under way is no longer wanted.
+            if all.attempt.take_if(|attempt| attempt.progress.is_some()).is_some() {
+                all.newest.fetch_add(1, Ordering::SeqCst);
+            }
             return;
         }
         let is_same = |tried: &Attempt| tried.name == wanted.name && Arc::ptr_eq(&tried.with, set);
