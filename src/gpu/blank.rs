@@ -32,16 +32,7 @@ impl Blank {
             encoder.transition(&cube, Use::Undefined, Use::Sampled);
             Ok(())
         })?;
-        let sampler = SamplerDesc {
-            mag: vk::Filter::NEAREST,
-            min: vk::Filter::NEAREST,
-            mip: vk::SamplerMipmapMode::NEAREST,
-            mips: false,
-            wrap_u: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-            wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-            anisotropy: 1,
-        };
-        let sampler = Sampler::new(gpu, &sampler)?;
+        let sampler = Sampler::new(gpu, &SamplerDesc::NEAREST)?;
         let buffer = Buffer::new(gpu, "blank", 16, Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, Memory::Device)?;
         Ok(Self { image, cube, sampler, buffer })
     }

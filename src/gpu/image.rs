@@ -214,6 +214,19 @@ pub struct SamplerDesc {
     pub anisotropy: u32,
 }
 
+impl SamplerDesc {
+    /// The nearest texel of level 0, clamped.
+    pub const NEAREST: Self = Self {
+        mag: vk::Filter::NEAREST,
+        min: vk::Filter::NEAREST,
+        mip: vk::SamplerMipmapMode::NEAREST,
+        mips: false,
+        wrap_u: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+        wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+        anisotropy: 1,
+    };
+}
+
 /// A sampler.
 pub struct Sampler {
     gpu: Arc<Gpu>,

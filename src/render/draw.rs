@@ -108,6 +108,28 @@ pub(super) fn average(
     encoder.transition(mean, Use::Color, Use::Sampled);
 }
 
+/// HDR to the picture, which the rest of the output surrounds: exposure, tone map, sRGB.
+pub(super) fn tone_map(
+    encoder: &mut Encoder,
+    layouts: &Arc<SetLayouts>,
+    targets: &Targets,
+    input: &FrameInput<'_>,
+    only: Option<Rect>,
+    output: &Attachments<'_>,
+) {
+    encoder.begin_rendering(output);
+    if let Some(pipeline) = input.pipelines.and_then(|(set, wanted)| set.get(&wanted.tonemap_key())) {
+        encoder.set_viewport(input.rect);
+        if let Some(only) = only {
+            encoder.set_scissor(only);
+        }
+        encoder.bind_pipeline(&pipeline);
+        encoder.bind_set(layouts, &targets.picture_set);
+        encoder.draw(3);
+    }
+    encoder.end_rendering();
+}
+
 fn draw_primitives(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, input: &FrameInput<'_>, draws: &[&GpuDraw]) {
     let (Some(scene), Some((pipelines, wanted))) = (input.scene, input.pipelines) else { return };
     encoder.keep(&scene.vertices);

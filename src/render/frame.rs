@@ -9,7 +9,7 @@ use crate::gpu::{
 
 use super::bake::GpuEnvironment;
 use super::capture::{self, Capture, Readback};
-use super::draw::{average, draw_model};
+use super::draw::{average, draw_model, tone_map};
 use super::ltc;
 use super::pipelines::PipelineSet;
 use super::scene::GpuScene;
@@ -87,7 +87,9 @@ struct Drawing {
 impl Drawing {
     fn of(input: &FrameInput<'_>, largest: f32, only: Option<Rect>) -> Option<Self> {
         let (pipelines, wanted) = input.pipelines?;
-        let frame = input.shot.uniforms(input.rect, largest, input.environment.scale, 0);
+        // Where in the window it goes is the tone map's business.
+        let rect = Rect { x: 0, y: 0, ..input.rect };
+        let frame = input.shot.uniforms(rect, largest, input.environment.scale, 0);
         let mut uniforms = bytemuck::bytes_of(&frame).to_vec();
         uniforms.extend_from_slice(bytemuck::cast_slice(&input.shot.lights));
         uniforms.extend_from_slice(&input.shot.params);
@@ -127,7 +129,6 @@ pub struct Renderer {
     targets: Option<Targets>,
     nearest: Arc<Sampler>,
     constants: Constants,
-    nothing: Arc<Image>,
     scene_format: vk::Format,
     kept: Option<Drawing>,
     redrawn: bool,
@@ -145,27 +146,17 @@ impl Renderer {
     /// # Errors
     /// Out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, scene_format: vk::Format) -> Result<Self, GpuError> {
-        let nearest = SamplerDesc {
-            mag: vk::Filter::NEAREST,
-            min: vk::Filter::NEAREST,
-            mip: vk::SamplerMipmapMode::NEAREST,
-            mips: false,
-            wrap_u: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-            wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-            anisotropy: 1,
-        };
         Ok(Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             frames: Frames::new(gpu, Self::IN_FLIGHT)?,
             uniforms: (0..Self::IN_FLIGHT).map(|_| Uniforms::new(gpu)).collect::<Result<_, _>>()?,
             targets: None,
-            nearest: Sampler::new(gpu, &nearest)?,
+            nearest: Sampler::new(gpu, &SamplerDesc::NEAREST)?,
             constants: Constants {
                 ltc: ltc::table(gpu)?,
                 linear: task::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?,
             },
-            nothing: nothing(gpu)?,
             scene_format,
             kept: None,
             redrawn: false,
@@ -279,17 +270,7 @@ impl Renderer {
             goes_on: false,
             area: whole,
         };
-        encoder.begin_rendering(&attachments);
-        if let Some(pipeline) = input.pipelines.and_then(|(set, wanted)| set.get(&wanted.tonemap_key())) {
-            encoder.set_viewport(input.rect);
-            if let Some(only) = only {
-                encoder.set_scissor(only);
-            }
-            encoder.bind_pipeline(&pipeline);
-            encoder.bind_set(&self.layouts, &targets.picture_set);
-            encoder.draw(3);
-        }
-        encoder.end_rendering();
+        tone_map(&mut encoder, &self.layouts, targets, &input, only, &attachments);
 
         // The user interface over it.
         if let Target::Window(_, ui) = &mut target {
@@ -343,15 +324,7 @@ impl Renderer {
         }
         self.kept = None;
         let samplers = (&self.nearest, &self.constants.linear);
-        self.targets = Some(Targets::new(&self.gpu, &self.layouts, purpose, &self.nothing, samplers)?);
+        self.targets = Some(Targets::new(&self.gpu, &self.layouts, purpose, samplers)?);
         Ok(())
     }
-}
-
-/// One transparent texel.
-fn nothing(gpu: &Arc<Gpu>) -> Result<Arc<Image>, GpuError> {
-    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
-    let image = Image::new(gpu, "nothing", ImageDesc::new(1, 1, vk::Format::R8G8B8A8_UNORM, usage))?;
-    task::upload(gpu, &[(&image, &[0; 4])])?;
-    Ok(image)
 }

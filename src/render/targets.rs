@@ -44,12 +44,10 @@ pub(super) struct Targets {
 }
 
 impl Targets {
-    /// `nothing`: an image of one texel, bound where there is none.
     pub(super) fn new(
         gpu: &Arc<Gpu>,
         layouts: &Arc<SetLayouts>,
         purpose: Purpose,
-        nothing: &Arc<Image>,
         (nearest, linear): (&Arc<Sampler>, &Arc<Sampler>),
     ) -> Result<Self, GpuError> {
         use vk::ImageUsageFlags as Usage;
@@ -73,15 +71,14 @@ impl Targets {
             true => Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?),
             false => None,
         };
-        let set = |scene: &Arc<Image>, behind: &Arc<Image>| {
-            let writer = SetWriter::default().texture(0, scene, nearest).texture(1, behind, linear);
-            DescriptorSet::new(layouts, SET_PASS, writer)
-        };
+        let scene =
+            |image: &Arc<Image>| DescriptorSet::new(layouts, SET_PASS, SetWriter::default().texture(0, image, nearest));
+        let seen = behind.iter().fold(SetWriter::default(), |writer, behind| writer.texture(1, behind, linear));
         Ok(Self {
             purpose,
-            model_set: set(nothing, behind.as_ref().unwrap_or(nothing))?,
-            color_set: set(&color, nothing)?,
-            picture_set: set(mean.as_ref().unwrap_or(&color), nothing)?,
+            model_set: DescriptorSet::new(layouts, SET_PASS, seen)?,
+            color_set: scene(&color)?,
+            picture_set: scene(mean.as_ref().unwrap_or(&color))?,
             color,
             multisampled,
             depth,

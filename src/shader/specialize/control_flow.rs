@@ -1,0 +1,196 @@
+//! A function's blocks: branches that known values decide are taken, and blocks that nobody reaches go.
+
+use std::collections::{HashMap, HashSet};
+
+use super::{Id, Instruction, Known, evaluate, instruction, op, opcode};
+
+/// A block: its label and what follows, the branch at the end included.
+struct Block {
+    label: Id,
+    body: Vec<Instruction>,
+}
+
+impl Block {
+    /// The merge and continue blocks that its last instructions name.
+    fn structure(&self) -> (Option<Id>, Option<Id>) {
+        let merge = self.body.iter().rev().nth(1);
+        match merge.map(|i| (opcode(i), i)) {
+            Some((op::SELECTION_MERGE, i)) => (i.get(1).copied(), None),
+            Some((op::LOOP_MERGE, i)) => (i.get(1).copied(), i.get(2).copied()),
+            _ => (None, None),
+        }
+    }
+
+    fn targets(&self) -> Vec<Id> {
+        let Some(last) = self.body.last() else { return Vec::new() };
+        match opcode(last) {
+            op::BRANCH => last[1..].to_vec(),
+            op::BRANCH_CONDITIONAL => last.get(2..4).unwrap_or_default().to_vec(),
+            op::SWITCH => last.iter().skip(2).enumerate().filter(|(at, _)| at % 2 == 0).map(|(_, id)| *id).collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// A function: what stands before its first block, and the blocks.
+pub(super) struct Function {
+    pub(super) id: Id,
+    head: Vec<Instruction>,
+    blocks: Vec<Block>,
+}
+
+impl Function {
+    pub(super) fn parse(instructions: &[&[u32]]) -> Option<Self> {
+        let id = *instructions.first()?.get(2)?;
+        let mut function = Self { id, head: Vec::new(), blocks: Vec::new() };
+        for i in instructions.iter().filter(|i| opcode(i) != op::FUNCTION_END) {
+            match (opcode(i), function.blocks.last_mut()) {
+                (op::LABEL, _) => function.blocks.push(Block { label: *i.get(1)?, body: Vec::new() }),
+                (_, Some(block)) => block.body.push(i.to_vec()),
+                (_, None) => function.head.push(i.to_vec()),
+            }
+        }
+        Some(function)
+    }
+
+    /// What it always returns, when it does nothing else.
+    pub(super) fn constant(&self, known: &Known) -> Option<u32> {
+        match (self.blocks.as_slice(), self.blocks.first()?.body.as_slice()) {
+            ([_], [only]) if opcode(only) == op::RETURN_VALUE => known.values.get(only.get(1)?).copied(),
+            _ => None,
+        }
+    }
+
+    /// Takes the branches that are decided and drops the blocks that are not reached, until nothing changes: a dropped block
+    /// can decide the next branch.
+    pub(super) fn fold(&mut self, known: &Known, removed: &mut HashSet<Id>) {
+        while self.take_branches(known) {
+            self.drop_unreached(removed);
+        }
+    }
+
+    /// Whether there was one to take.
+    fn take_branches(&mut self, known: &Known) -> bool {
+        let mut local: HashMap<Id, u32> = HashMap::new();
+        let mut any = false;
+        // The end of a loop must stay a choice even if it is always made: a loop has a way back and a way out.
+        let loops = self.blocks.iter().map(Block::structure).filter(|(_, next)| next.is_some());
+        let loop_ends: HashSet<Id> = loops.filter_map(|(merge, _)| merge).collect();
+        for block in &mut self.blocks {
+            let lookup = |id: Id| known.values.get(&id).or_else(|| local.get(&id)).copied();
+            let mut found = Vec::new();
+            for i in block.body.iter().filter(|i| i.len() > 3) {
+                let value = match opcode(i) {
+                    op::FUNCTION_CALL => known.returned.get(&i[3]).copied(),
+                    op::PHI => {
+                        let mut values = i[3..].iter().step_by(2).map(|id| lookup(*id));
+                        let first = values.next().flatten();
+                        first.filter(|_| values.all(|value| value == first))
+                    }
+                    // What follows in the same block sees values of the blocks before.
+                    operation => evaluate(operation, &i[3..], &lookup),
+                };
+                found.extend(value.map(|value| (i[2], value)));
+            }
+            local.extend(found);
+            any |= take_case(block, &|id| known.values.get(&id).or_else(|| local.get(&id)).copied());
+            let Some(last) = block.body.last().filter(|i| opcode(i) == op::BRANCH_CONDITIONAL) else { continue };
+            let condition = last.get(1).and_then(|id| known.values.get(id).or_else(|| local.get(id)));
+            let (Some(condition), Some([yes, no])) = (condition, last.get(2..4)) else { continue };
+            if loop_ends.contains(yes) || loop_ends.contains(no) {
+                continue;
+            }
+            let taken = if *condition != 0 { *yes } else { *no };
+            block.body.pop();
+            block.body.pop_if(|i| opcode(i) == op::SELECTION_MERGE);
+            block.body.push(instruction(op::BRANCH, &[taken]));
+            any = true;
+        }
+        any
+    }
+
+    fn drop_unreached(&mut self, removed: &mut HashSet<Id>) {
+        let at: HashMap<Id, usize> = self.blocks.iter().enumerate().map(|(index, b)| (b.label, index)).collect();
+        let block = |id: &Id| at.get(id).map(|index| &self.blocks[*index]);
+        let mut reached = HashSet::new();
+        let mut open: Vec<Id> = self.blocks.first().map(|b| b.label).into_iter().collect();
+        while let Some(label) = open.pop() {
+            if reached.insert(label) {
+                open.extend(block(&label).into_iter().flat_map(Block::targets));
+            }
+        }
+        // A merge or continue block must be there even when nobody gets to it: then it is empty.
+        let (mut merges, mut continues) = (HashSet::new(), HashMap::new());
+        for header in self.blocks.iter().filter(|b| reached.contains(&b.label)) {
+            let (merge, next) = header.structure();
+            merges.extend(merge);
+            continues.extend(next.map(|next| (next, header.label)));
+        }
+        let mut sources: HashMap<Id, HashSet<Id>> = HashMap::new();
+        for (index, block) in self.blocks.iter_mut().enumerate() {
+            if index > 0 && !reached.contains(&block.label) {
+                results(&block.body, removed);
+                block.body = match continues.get(&block.label) {
+                    Some(header) => vec![instruction(op::BRANCH, &[*header])],
+                    None => vec![instruction(op::UNREACHABLE, &[])],
+                };
+                if !merges.contains(&block.label) && !continues.contains_key(&block.label) {
+                    removed.insert(block.label);
+                    continue;
+                }
+            }
+            for target in block.targets() {
+                sources.entry(target).or_default().insert(block.label);
+            }
+        }
+        self.blocks.retain(|b| !removed.contains(&b.label));
+        // A phi has one value for each block that branches to it.
+        for block in &mut self.blocks {
+            let from = sources.get(&block.label);
+            for phi in block.body.iter_mut().filter(|i| opcode(i) == op::PHI) {
+                let is_source = |pair: &&[u32]| pair.len() == 2 && from.is_some_and(|from| from.contains(&pair[1]));
+                let pairs: Vec<u32> = phi[3..].chunks(2).filter(is_source).flatten().copied().collect();
+                let operands = [&phi[1..3], &pairs].concat();
+                *phi = instruction(op::PHI, &operands);
+            }
+        }
+    }
+
+    pub(super) fn calls(&self) -> impl Iterator<Item = Id> {
+        let all = self.blocks.iter().flat_map(|b| &b.body);
+        all.filter(|i| opcode(i) == op::FUNCTION_CALL).filter_map(|i| i.get(3).copied())
+    }
+
+    /// Adds every id that it defines.
+    pub(super) fn results(&self, out: &mut HashSet<Id>) {
+        results(&self.head, out);
+        for block in &self.blocks {
+            out.insert(block.label);
+            results(&block.body, out);
+        }
+    }
+
+    pub(super) fn write(&self, out: &mut Vec<u32>) {
+        out.extend(self.head.iter().flatten());
+        for block in &self.blocks {
+            out.extend(instruction(op::LABEL, &[block.label]));
+            out.extend(block.body.iter().flatten());
+        }
+        out.extend(instruction(op::FUNCTION_END, &[]));
+    }
+}
+
+/// Leaves a switch whose value is known with the case that it takes, as its default: breaks within need the switch itself.
+fn take_case(block: &mut Block, lookup: &dyn Fn(Id) -> Option<u32>) -> bool {
+    let Some(last) = block.body.last_mut().filter(|i| opcode(i) == op::SWITCH && i.len() > 3) else { return false };
+    let Some(value) = lookup(last[1]) else { return false };
+    let case = last[3..].chunks_exact(2).find(|case| case[0] == value).map(|case| case[1]);
+    *last = instruction(op::SWITCH, &[last[1], case.unwrap_or(last[2])]);
+    true
+}
+
+/// Adds the ids that these instructions define.
+fn results(instructions: &[Instruction], out: &mut HashSet<Id>) {
+    let with_result = instructions.iter().filter(|i| !op::WITHOUT_RESULT.contains(&opcode(i)));
+    out.extend(with_result.filter_map(|i| i.get(2)));
+}
