@@ -42,7 +42,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     for constant in &shaders.constants {
         let choices: Vec<&str> = constant.choices.iter().map(|(name, _)| name.as_str()).collect();
-        out!("  {:width$}  {} {}", constant.name, constant.label, choices.join(" | "));
+        let chosen = constant.choices.iter().find(|(_, value)| *value == i64::from(constant.default));
+        let default = chosen.map(|(name, _)| format!(" = {name}")).unwrap_or_default();
+        out!("  {:width$}  {} {}{default}", constant.name, constant.label, choices.join(" | "));
     }
     for parameter in &shaders.parameters {
         let range = parameter.range.map(|(low, high)| format!("{low}..{high} ")).unwrap_or_default();
