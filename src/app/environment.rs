@@ -95,7 +95,8 @@ impl Document {
         let all = &mut self.surroundings;
         if !wanted.is_lit() || (!all.stale && all.baked.is_for(&wanted.name, set)) {
             // Back to what is on screen: what is under way is no longer wanted.
-            if all.attempt.take_if(|attempt| attempt.progress.is_some()).is_some() {
+            let is_other = |attempt: &mut Attempt| attempt.progress.is_some() && attempt.name != wanted.name;
+            if all.attempt.take_if(is_other).is_some() {
                 all.newest.fetch_add(1, Ordering::SeqCst);
             }
             return;
