@@ -5,38 +5,10 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::interface::BindingKind;
 
+use super::opcode as op;
 use super::reflect::{Block, Descriptor, Location, Member, Reflection, Scalar, SpecConstant};
 
 type Id = u32;
-
-mod op {
-    pub const NAME: u32 = 5;
-    pub const MEMBER_NAME: u32 = 6;
-    pub const ENTRY_POINT: u32 = 15;
-    pub const CAPABILITY: u32 = 17;
-    pub const TYPE_BOOL: u32 = 20;
-    pub const TYPE_INT: u32 = 21;
-    pub const TYPE_FLOAT: u32 = 22;
-    pub const TYPE_VECTOR: u32 = 23;
-    pub const TYPE_MATRIX: u32 = 24;
-    pub const TYPE_IMAGE: u32 = 25;
-    pub const TYPE_SAMPLER: u32 = 26;
-    pub const TYPE_SAMPLED_IMAGE: u32 = 27;
-    pub const TYPE_ARRAY: u32 = 28;
-    pub const TYPE_RUNTIME_ARRAY: u32 = 29;
-    pub const TYPE_STRUCT: u32 = 30;
-    pub const TYPE_POINTER: u32 = 32;
-    pub const CONSTANT_TRUE: u32 = 41;
-    pub const CONSTANT: u32 = 43;
-    pub const SPEC_CONSTANT_TRUE: u32 = 48;
-    pub const SPEC_CONSTANT_FALSE: u32 = 49;
-    pub const SPEC_CONSTANT: u32 = 50;
-    pub const SPEC_CONSTANT_OP: u32 = 52;
-    pub const FUNCTION: u32 = 54;
-    pub const VARIABLE: u32 = 59;
-    pub const DECORATE: u32 = 71;
-    pub const MEMBER_DECORATE: u32 = 72;
-}
 
 mod decoration {
     pub const SPEC_ID: u32 = 1;

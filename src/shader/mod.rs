@@ -22,6 +22,7 @@ pub mod include;
 mod layout;
 pub mod library;
 pub mod log;
+mod opcode;
 pub mod reflect;
 mod slot;
 pub mod snapshot;
