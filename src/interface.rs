@@ -141,6 +141,8 @@ pub struct Specialization {
 
 /// `constant_id` of [`SPECIALIZATION`]'s debug mode.
 pub const SPEC_MODE: u32 = 0;
+/// [`SPEC_MODE`]: the picture. The other modes are the tree's.
+pub const MODE_FINAL: u32 = 0;
 /// `constant_id` of the material's alpha mode: [`ALPHA_OPAQUE`], [`ALPHA_MASK`] or [`ALPHA_BLEND`].
 pub const SPEC_ALPHA_MODE: u32 = 1;
 /// `constant_id` of the material's features: the `FEATURE_*` bits.

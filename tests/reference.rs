@@ -6,13 +6,16 @@
 mod reference {
     pub mod brdf;
     pub mod film;
+    pub mod glass;
     pub mod inputs;
     pub mod sheen;
 }
 mod support;
 
+use exr::prelude::{Image, SpecificChannels, WritableImage as _};
 use glam::DVec3;
 use reference::brdf::{self, Lobes, Masking};
+use reference::glass::Glass;
 use reference::inputs::Inputs;
 use serde_json::json;
 use specula::headless::Headless;
@@ -250,4 +253,163 @@ fn every_layer_over_every_other() {
     let inputs = Inputs::render(&mut headless, &modes);
     let parts = [DIFFUSE, SPECULAR, TRANSMITTED, SHEEN, COAT, EMITTED];
     compare(&mut headless, &inputs, &parts, Masking::Separable);
+}
+
+/// An environment that is brighter towards +Y: 1 + 0.8 y.
+fn light_from_above() -> Vec<u8> {
+    const ROWS: usize = 256;
+    let radiance = |at: exr::prelude::Vec2<usize>| {
+        let polar = std::f64::consts::PI * (at.y() as f64 + 0.5) / ROWS as f64;
+        let value = (1.0 + 0.8 * polar.cos()) as f32;
+        (value, value, value)
+    };
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    Image::from_channels((2 * ROWS, ROWS), SpecificChannels::rgb(radiance)).write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+/// glTF's material of it.
+fn material_of(glass: &Glass) -> serde_json::Value {
+    json!({
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [glass.base_color.x, glass.base_color.y, glass.base_color.z, 1.0],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 0.0,
+        },
+        "extensions": {
+            "KHR_materials_transmission": { "transmissionFactor": 1.0 },
+            "KHR_materials_ior": { "ior": glass.ior },
+            "KHR_materials_dispersion": { "dispersion": glass.dispersion },
+            "KHR_materials_volume": {
+                "thicknessFactor": glass.thickness,
+                "attenuationColor": glass.attenuation_color.to_array(),
+                "attenuationDistance": glass.attenuation_distance,
+            },
+        },
+    })
+}
+
+/// Compares what is seen through `glass` at each sampled pixel with `expected`, which gets position, normal and v. The
+/// extremes of what it expects must differ, or nothing would be compared.
+#[track_caller]
+fn compare_glass(headless: &mut Headless, what: &str, expected: impl Fn(DVec3, DVec3, DVec3) -> DVec3) {
+    let mut shown = |slug: &str| render(headless, slug).raw;
+    let (positions, normals, found) = (shown("position"), shown("shading-normal"), shown("transmitted-light"));
+    let is_glass = shown("transmission");
+    let eye = headless.shot().view.eye.as_dvec3();
+    const HALF: f64 = 5e-4;
+    let (mut least, mut most, mut count) = (f64::INFINITY, 0.0_f64, 0);
+    for pixel in (0..positions.len()).filter(|i| is_glass[*i][0] == 1.0 && is_glass[*i][3] == 1.0) {
+        let at = |values: &[[f32; 4]]| vector([values[pixel][0], values[pixel][1], values[pixel][2]]);
+        let (position, n) = (at(&positions), at(&normals).normalize());
+        let v = (eye - position).normalize();
+        // The table of albedos has steps; towards the rim F rises within one of them. Environments are half floats.
+        if n.dot(v) < 0.15 {
+            continue;
+        }
+        let (found, expected) = (at(&found), expected(position, n, v));
+        let error = ((found - expected).abs() / expected).max_element();
+        assert!(
+            error < TOLERANCE + HALF,
+            "{what}, pixel {pixel}: found {found}, expected {expected}, off by {error:.2e}"
+        );
+        (least, most, count) = (least.min(expected.min_element()), most.max(expected.max_element()), count + 1);
+    }
+    assert!(count > 200 && most > 1.3 * least, "{what}: {count} pixels from {least} to {most}");
+}
+
+/// A drop in front of a sky whose radiance says which way each color was bent.
+#[test]
+fn glass_bends_swallows_and_spreads() {
+    let directory = tempfile::tempdir().unwrap();
+    let sky = directory.path().join("above.exr");
+    std::fs::write(&sky, light_from_above()).unwrap();
+    let pane = Glass {
+        base_color: DVec3::new(0.9, 0.8, 0.7),
+        ior: 1.5,
+        dispersion: 0.0,
+        thickness: 0.0,
+        attenuation_color: DVec3::ONE,
+        attenuation_distance: 1.0,
+    };
+    let body = Glass { thickness: 0.4, ior: 1.33, ..pane };
+    let colored = Glass { attenuation_color: DVec3::new(0.2, 0.9, 0.5), attenuation_distance: 0.3, ..body };
+    let prism = Glass { ior: 1.8, dispersion: 12.0, ..colored };
+    for (what, glass) in [("pane", pane), ("body", body), ("colored", colored), ("prism", prism)] {
+        let settings = settings(&[
+            "view.msaa=1",
+            "view.background=none",
+            "lights.source=none",
+            "camera.elevation=25",
+            &format!("environment.name={}", sky.display()),
+        ]);
+        let model = load(&glb::model(&glb::sphere(48, 96), &material_of(&glass)));
+        let mut headless = renderer(model, settings, SIZE);
+        let radiance = |direction: DVec3| 1.0 + 0.8 * direction.y;
+        compare_glass(&mut headless, what, |_, n, v| {
+            let seen = glass.iors().map(|ior| radiance(glass.refracted(n, v, ior)));
+            glass.passes(n, v) * DVec3::from_array(seen)
+        });
+    }
+}
+
+/// Red is x and green is y of a wall 1 m behind a slab of glass: the wall is seen where the bent ray leaves the slab.
+#[test]
+fn glass_shifts_what_is_behind_it() {
+    const REACH: f64 = 4.0;
+    let glass = Glass {
+        base_color: DVec3::ONE,
+        ior: 1.6,
+        dispersion: 8.0,
+        thickness: 0.5,
+        attenuation_color: DVec3::new(0.7, 0.8, 0.9),
+        attenuation_distance: 1.0,
+    };
+    let (mut json, mut bin) = glb::document(&glb::quad(0.4), &material_of(&glass));
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let of_corners = |value: fn(f64, f64) -> [f32; 3]| corners.map(|(x, y)| value(x, y));
+    let walls = [
+        of_corners(|x, y| [(REACH * x) as f32, (REACH * y) as f32, -1.0]),
+        of_corners(|x, y| [(0.5 + 0.5 * x) as f32, (0.5 + 0.5 * y) as f32, 0.5]),
+    ];
+    let list = |name: &str, json: &serde_json::Value| json[name].as_array().unwrap().len();
+    let first = list("accessors", &json);
+    for values in walls {
+        let bytes: Vec<u8> = values.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
+        let view = json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": bytes.len() });
+        let accessor = json!({ "bufferView": list("bufferViews", &json), "componentType": 5126, "count": 4, "type": "VEC3",
+            "min": [-REACH, -REACH, -1.0], "max": [REACH, REACH, 1.0] });
+        json["bufferViews"].as_array_mut().unwrap().push(view);
+        json["accessors"].as_array_mut().unwrap().push(accessor);
+        bin.extend(bytes);
+    }
+    json["buffers"][0]["byteLength"] = json!(bin.len());
+    let indices = json["meshes"][0]["primitives"][0]["indices"].clone();
+    let attributes = json!({ "POSITION": first, "COLOR_0": first + 1 });
+    let wall = json!({ "primitives": [{ "attributes": attributes, "indices": indices, "material": 1 }] });
+    json["meshes"].as_array_mut().unwrap().push(wall);
+    json["materials"].as_array_mut().unwrap().push(json!({ "extensions": { "KHR_materials_unlit": {} } }));
+    json["nodes"] = json!([{ "mesh": 0 }, { "mesh": 1 }]);
+    json["scenes"] = json!([{ "nodes": [0, 1] }]);
+
+    let settings = settings(&[
+        "view.msaa=1",
+        "view.background=none",
+        "lights.source=none",
+        "lights.ambient_strength=0",
+        "environment.name=none",
+        "camera.eye=[0.6, 0.4, 2.5]",
+        "camera.target=[0.0, 0.0, 0.0]",
+    ]);
+    let mut headless = renderer(load(&glb::container(&json, &bin)), settings, SIZE);
+    let eye = headless.shot().view.eye.as_dvec3();
+    compare_glass(&mut headless, "slab", |position, n, v| {
+        let seen = glass.iors().map(|ior| {
+            let exit = position + glass.refracted(n, v, ior) * glass.thickness;
+            let ray = exit - eye;
+            let wall = eye + ray * ((-1.0 - eye.z) / ray.z);
+            0.5 + 0.5 * wall / REACH
+        });
+        glass.passes(n, v) * DVec3::new(seen[0].x, seen[1].y, 0.5)
+    });
 }

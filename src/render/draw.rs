@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::gpu::{Attachments, Encoder, Rect, SetLayouts, Use, vk};
+use crate::gpu::{Attachments, Encoder, Image, Rect, SetLayouts, Use, vk};
 use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
 
 use super::frame::FrameInput;
 use super::scene::{GpuDraw, GpuScene};
 use super::targets::Targets;
+use super::wanted::{MaterialVariant, PipelineKey, Wanted};
 
 /// Draws the scene, or `only` a part of it, to the HDR target and resolves it, which leaves color in [`Use::Color`].
 pub(super) fn draw_model(
@@ -29,38 +30,30 @@ pub(super) fn draw_model(
         None => (&targets.color, None),
     };
     let (width, height) = targets.purpose.size;
-    let area = Rect { x: 0, y: 0, width, height };
-    let clear = Some([0.0; 4]);
-    let attachments =
-        Attachments { color, clear, resolve, depth: Some(&targets.depth), goes_on: targets.behind.is_some(), area };
+    let attachments = Attachments {
+        color,
+        clear: Some([0.0; 4]),
+        resolve,
+        depth: Some(&targets.depth),
+        goes_on: targets.behind.is_some(),
+        area: Rect { x: 0, y: 0, width, height },
+    };
     let (opaque, passed, blended) = input.scene.map(|scene| sorted(scene, input.shot.view.eye)).unwrap_or_default();
     if let Some(behind) = &targets.behind {
-        encoder.transition(behind, Use::Undefined, Use::Sampled);
+        draw_behind(encoder, layouts, targets, input, &opaque, &attachments, behind);
     }
-    encoder.begin_rendering(&attachments);
-    if let Some(only) = only.filter(|_| targets.behind.is_none()) {
+    let last = Attachments { goes_on: false, ..attachments };
+    // A mode that shows a part of the light shows opaque surfaces otherwise than they are seen through others.
+    let is_drawn = targets.behind.is_some() && !input.pipelines.is_some_and(|(_, wanted)| wanted.has_own_behind());
+    encoder.begin_rendering(&Attachments { clear: last.clear.filter(|_| !is_drawn), ..last });
+    if let Some(only) = only {
         encoder.set_scissor(only);
     }
     encoder.bind_set(layouts, &targets.model_set);
-    draw_primitives(encoder, layouts, input, &opaque);
-    if let Some(behind) = &targets.behind {
-        // What is drawn so far, blurred level by level, is what the next surfaces show of what lies behind them.
-        encoder.end_rendering();
-        encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
-        encoder.transition(behind, Use::Sampled, Use::CopyTo);
-        encoder.fill_levels(&targets.color, behind);
-        encoder.transition(behind, Use::CopyFrom, Use::Sampled);
-        encoder.transition(&targets.color, Use::CopyFrom, Use::Color);
-        encoder.transition(&targets.depth, Use::Depth, Use::Depth);
-        if let Some(multisampled) = &targets.multisampled {
-            encoder.transition(multisampled, Use::Color, Use::Color);
-        }
-        encoder.begin_rendering(&Attachments { clear: None, goes_on: false, ..attachments });
-        if let Some(only) = only {
-            encoder.set_scissor(only);
-        }
-        draw_primitives(encoder, layouts, input, &passed);
+    if !is_drawn {
+        draw_primitives(encoder, layouts, input, &opaque, Wanted::model_key);
     }
+    draw_primitives(encoder, layouts, input, &passed, Wanted::model_key);
     if let Some((pipelines, wanted)) = input.pipelines
         && let Some(pipeline) = wanted.sky_key().and_then(|key| pipelines.get(&key))
     {
@@ -72,8 +65,35 @@ pub(super) fn draw_model(
         );
         encoder.draw(3);
     }
-    draw_primitives(encoder, layouts, input, &blended);
+    draw_primitives(encoder, layouts, input, &blended, Wanted::model_key);
     encoder.end_rendering();
+}
+
+/// Draws what is opaque. Its picture, blurred level by level, is what surfaces that light passes through show of what lies
+/// behind them.
+fn draw_behind(
+    encoder: &mut Encoder,
+    layouts: &Arc<SetLayouts>,
+    targets: &Targets,
+    input: &FrameInput<'_>,
+    opaque: &[&GpuDraw],
+    attachments: &Attachments<'_>,
+    behind: &Arc<Image>,
+) {
+    encoder.transition(behind, Use::Undefined, Use::Sampled);
+    encoder.begin_rendering(attachments);
+    encoder.bind_set(layouts, &targets.model_set);
+    draw_primitives(encoder, layouts, input, opaque, Wanted::behind_key);
+    encoder.end_rendering();
+    encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
+    encoder.transition(behind, Use::Sampled, Use::CopyTo);
+    encoder.fill_levels(&targets.color, behind);
+    encoder.transition(behind, Use::CopyFrom, Use::Sampled);
+    encoder.transition(&targets.color, Use::CopyFrom, Use::Color);
+    encoder.transition(&targets.depth, Use::Depth, Use::Depth);
+    if let Some(multisampled) = &targets.multisampled {
+        encoder.transition(multisampled, Use::Color, Use::Color);
+    }
 }
 
 /// Adds the newest frame to the mean of those before it, and leaves the mean in [`Use::Sampled`].
@@ -130,12 +150,18 @@ pub(super) fn tone_map(
     encoder.end_rendering();
 }
 
-fn draw_primitives(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, input: &FrameInput<'_>, draws: &[&GpuDraw]) {
+fn draw_primitives(
+    encoder: &mut Encoder,
+    layouts: &Arc<SetLayouts>,
+    input: &FrameInput<'_>,
+    draws: &[&GpuDraw],
+    key: fn(&Wanted, MaterialVariant) -> PipelineKey,
+) {
     let (Some(scene), Some((pipelines, wanted))) = (input.scene, input.pipelines) else { return };
     encoder.keep(&scene.vertices);
     encoder.bind_indices(&scene.indices);
     for draw in draws {
-        if let Some(pipeline) = pipelines.get(&wanted.model_key(draw.variant)) {
+        if let Some(pipeline) = pipelines.get(&key(wanted, draw.variant)) {
             encoder.bind_pipeline(&pipeline);
             draw_primitive(encoder, layouts, scene, draw);
         }

@@ -132,6 +132,21 @@ impl Wanted {
         }
     }
 
+    /// Whether opaque surfaces look otherwise through those that light passes through: in a mode of light, which is not all of it.
+    pub(super) fn has_own_behind(&self) -> bool {
+        let passes = self.materials.iter().any(|material| passes_light(*material));
+        passes && self.mode != interface::MODE_FINAL && self.tonemap != TONEMAP_OFF && !self.accumulates
+    }
+
+    /// The pipeline that draws a material for those to see: that of the picture, if it is opaque.
+    pub(super) fn behind_key(&self, material: MaterialVariant) -> PipelineKey {
+        let is_opaque = material.alpha != interface::ALPHA_BLEND && !passes_light(material);
+        if !is_opaque || !self.has_own_behind() {
+            return self.model_key(material);
+        }
+        Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, ..self.clone() }.model_key(material)
+    }
+
     pub(super) fn tonemap_key(&self) -> PipelineKey {
         let mut specialization = vec![(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, self.encode)];
         specialization.extend_from_slice(&self.constants);
@@ -161,11 +176,15 @@ impl Wanted {
     pub(super) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         self.materials
             .iter()
-            .map(|m| self.model_key(*m))
+            .flat_map(|m| [self.model_key(*m), self.behind_key(*m)])
             .chain([self.tonemap_key()])
             .chain(self.sky_key())
             .chain(self.average_key())
     }
+}
+
+fn passes_light(material: MaterialVariant) -> bool {
+    material.features & interface::FEATURE_TRANSMISSION != 0
 }
 
 /// What a frame's materials have in common.
