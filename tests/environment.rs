@@ -11,7 +11,8 @@ use specula::headless::Headless;
 use specula::render::Capture;
 use support::process::{Finished, Running, run, specula};
 use support::{
-    Session, Tree, assert_differ, assert_same, failed, glb, hdr, load, open_image, ready, render, renderer, settings,
+    Session, Tree, assert_differ, assert_same, failed, glb, hdr, load, model, open_image, ready, render, renderer,
+    settings,
 };
 use tempfile::TempDir;
 
@@ -237,6 +238,22 @@ fn a_white_metal_cannot_be_seen_in_a_furnace() {
     let mean = off_one(&on_model(&render(&mut headless, "monte-carlo"), &n_dot_v));
     assert!(mean.1 < 0.02, "of 64 frames: off 1 by {} (r.m.s.)", mean.1);
     assert!(noisy.1 > 3.0 * mean.1, "of one frame: off 1 by {}, of 64 by {}", noisy.1, mean.1);
+}
+
+/// Both ways to light brushed metal: from images that were filtered for round lobes, and by random paths.
+#[test]
+fn stretched_highlights_are_those_of_random_paths() {
+    let chosen = ["environment.name=studio", "view.msaa=1", "view.background=none", "lights.source=none"];
+    let mut headless = renderer(model("anisotropy"), settings(&chosen), (96, 54));
+    headless.settings_mut().view.frames = 32;
+    let n_dot_v = render(&mut headless, "n-dot-v");
+    let truth = on_model(&render(&mut headless, "monte-carlo"), &n_dot_v);
+    let split_sum = on_model(&render(&mut headless, "final"), &n_dot_v);
+    let mean = truth.iter().sum::<f32>() / truth.len() as f32;
+    let off = truth.iter().zip(&split_sum).map(|(a, b)| (a - b).abs()).sum::<f32>() / truth.len() as f32;
+    let bias = split_sum.iter().sum::<f32>() / split_sum.len() as f32 / mean - 1.0;
+    assert!(truth.len() > 3000 && off < 0.13 * mean, "{} values: off by {off}, of {mean}", truth.len());
+    assert!(bias.abs() < 0.02, "all in all off by {bias}");
 }
 
 #[test]

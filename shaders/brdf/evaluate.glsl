@@ -63,7 +63,7 @@ void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
         f.v = v_specular(f.n_dot_l, f.n_dot_v, alpha);
         return;
     }
-    vec2 stretched = vec2(mix(alpha, 1.0, s.anisotropy * s.anisotropy), alpha);
+    vec2 stretched = alpha_sides(s);
     mat3 ts_from_ws = transpose(mat3(s.t, s.b, s.n));
     f.d = d_specular_anisotropic(vec3((ts_from_ws * h).xy, f.n_dot_h), stretched);
     float a2_l = a2_towards(ts_from_ws * l, stretched);
@@ -159,7 +159,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     f.f_metal = metal_fresnel(s, f.v_dot_h);
 
     vec4 dfg_l = s.dfg;
-    if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) dfg_l = dfg(abs(cos_l), s.roughness);
+    if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) dfg_l = dfg(abs(cos_l), table_roughness(s));
     f.multiple = vec3(0.0);
     if (MULTI_SCATTER != SINGLE_SCATTER) f.multiple = f_multiple(s, dfg_l);
 

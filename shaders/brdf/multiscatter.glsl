@@ -46,10 +46,9 @@ vec3 f_multiple(Surface s, vec4 dfg_l) {
 }
 
 // What no light changes: s.dfg, and s.multiple, the F_ms of Kulla & Conty or the whole lobe of Fdez-Aguera. To be called
-// after the last change of the material and the normal, before the surface is lit. A stretched lobe takes the entry of
-// the round one; `v`: unit, towards the eye.
+// after the last change of the material and the normal, before the surface is lit. `v`: unit, towards the eye.
 void complete_surface(inout Surface s, vec3 v) {
-    s.dfg = dfg(clamp(dot(s.n, v), MIN_N_DOT_V, 1.0), s.roughness);
+    s.dfg = dfg(clamp(dot(s.n, v), MIN_N_DOT_V, 1.0), table_roughness(s));
     s.multiple = vec3(0.0);
     FresnelCurve dielectric = dielectric_curve(s);
     FresnelCurve metal = metal_curve(s);
@@ -75,7 +74,7 @@ float boundary_albedo_average(Surface s) {
     float e_avg = 1.0 - lost_avg;
     vec3 f90 = vec3(s.f90);
     vec3 average = dielectric_curve(s).average;
-    vec3 single = s.f0 * e_avg + (f90 - s.f0) * b_average(s.roughness);
+    vec3 single = s.f0 * e_avg + (f90 - s.f0) * b_average(table_roughness(s));
     single += e_avg * (average - curve_average(s.f0, f90, vec3(0.0)));
     if (MULTI_SCATTER != SINGLE_SCATTER) single += multiple_fresnel(average, lost_avg) * lost_avg;
     return max_component(single);

@@ -93,7 +93,7 @@ bool debug_environment(Surface s, vec3 v, Lit lit, out vec3 value) {
     if (MODE == MODE_IBL_DIFFUSE) value = lit.ambient.diffuse;
     else if (MODE == MODE_IBL_SPECULAR) value = lit.ambient.specular;
     else if (MODE == MODE_IRRADIANCE) value = PI * irradiance_over_pi(s.n);
-    else if (MODE == MODE_PREFILTERED) value = prefiltered_radiance(mirrored(s, v), s.roughness);
+    else if (MODE == MODE_PREFILTERED) value = specular_radiance(s, v);
     else if (MODE == MODE_ENVIRONMENT) value = environment_radiance(reflect(-v, s.n), 0.0);
     else known = false;
     if (known) value = if_present(has_feature(FEATURE_ENVIRONMENT) && !has_feature(FEATURE_UNLIT), value);

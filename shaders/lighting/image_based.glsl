@@ -9,6 +9,7 @@
 
 #include "interface.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "lighting/albedo.glsl"
 #include "lighting/environment.glsl"
@@ -23,20 +24,38 @@ vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
     return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
 }
 
-// The facets of a stretched lobe lean along t: of those in the plane of t and n, the one that faces the eye. The
-// rounder the lobe, the more the normal itself (McAuley 2015, "Rendering the world of Far Cry 4", after Revie 2011).
-vec3 stretched_normal(Surface s, vec3 v) {
-    vec3 facing = v - s.b * dot(s.b, v);
-    float round_part = 1.0 - s.anisotropy * (1.0 - s.roughness);
-    round_part *= round_part;
-    return safe_normalize(mix(safe_normalize(facing, s.n), s.n, round_part * round_part), s.n);
+// A stretched lobe (KHR_materials_anisotropy) is a row of round ones, as wide as its narrow side, whose normals lean
+// along t. The slopes of GGX along t have the density 1 / (2 a (1 + x^2 / a^2)^(3/2)); x takes the middle of each eighth
+// of it. A round lobe has a width of its own, so a^2 is what the long side has more than the short one: without
+// anisotropy all are the same. Each counts as much as a facet that leans so sends to the eye, V NoL VoH / NoH (Walter
+// et al. 2007, eq. 41).
+const int STRIPS = 8;
+
+vec3 stretched_radiance(Surface s, vec3 v) {
+    vec2 stretched = alpha_sides(s);
+    float spread = sqrt(stretched.x * stretched.x - stretched.y * stretched.y);
+    mat3 ts_from_ws = transpose(mat3(s.t, s.b, s.n));
+    float n_dot_v = n_dot_v_of(s.n, v);
+    float a2_v = a2_towards(ts_from_ws * v, stretched);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < STRIPS; ++i) {
+        float u = (2.0 * float(i) + 1.0) / float(STRIPS) - 1.0;
+        vec3 h = normalize(s.n + s.t * (spread * u * inversesqrt(1.0 - u * u)));
+        vec3 l = reflect(-v, h);
+        float n_dot_l = dot(s.n, l);
+        float v_dot_h = dot(v, h);
+        if (n_dot_l <= 0.0 || v_dot_h <= 0.0) continue;
+        float visible = v_specular(n_dot_l, n_dot_v, a2_towards(ts_from_ws * l, stretched), a2_v);
+        float weight = visible * n_dot_l * v_dot_h / dot(s.n, h);
+        sum += vec4(prefiltered_radiance(lobe_direction(h, v, s.roughness), s.roughness), 1.0) * weight;
+    }
+    return sum.rgb / max(sum.a, 1e-6);
 }
 
-// Where the specular lobe of the base looks.
-vec3 mirrored(Surface s, vec3 v) {
-    vec3 n = s.n;
-    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) n = stretched_normal(s, v);
-    return lobe_direction(n, v, s.roughness);
+// What the specular lobe of the base gathers.
+vec3 specular_radiance(Surface s, vec3 v) {
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) return stretched_radiance(s, v);
+    return prefiltered_radiance(lobe_direction(s.n, v, s.roughness), s.roughness);
 }
 
 // Occlusion is the part of the hemisphere that is open; glTF says that it dims indirect light, not how it dims a lobe
@@ -54,7 +73,7 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
     Lobes light = no_light();
     light.diffuse = albedo.diffuse * irradiance;
     light.multiple = albedo.multiple * irradiance;
-    light.specular = albedo.specular * prefiltered_radiance(mirrored(s, v), s.roughness);
+    light.specular = albedo.specular * specular_radiance(s, v);
     light.specular *= specular_occlusion(n_dot_v, s.occlusion, s.roughness);
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
         vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);

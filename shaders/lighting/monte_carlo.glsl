@@ -42,9 +42,8 @@ LobeFrame lobe_frame(mat3 world_from_lobe, vec3 v, vec2 alpha) {
 }
 
 LobeFrame specular_frame(Surface s, vec3 v) {
-    float alpha = alpha_from_roughness(s.roughness);
-    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) return lobe_frame(basis_around(s.n), v, vec2(alpha));
-    return lobe_frame(mat3(s.t, s.b, s.n), v, vec2(mix(alpha, 1.0, s.anisotropy * s.anisotropy), alpha));
+    bool is_round = (FEATURES & FEATURE_ANISOTROPY) == 0u;
+    return lobe_frame(is_round ? basis_around(s.n) : mat3(s.t, s.b, s.n), v, alpha_sides(s));
 }
 
 LobeFrame coat_frame(Surface s, vec3 v) {
