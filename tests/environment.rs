@@ -240,20 +240,43 @@ fn a_white_metal_cannot_be_seen_in_a_furnace() {
     assert!(noisy.1 > 3.0 * mean.1, "of one frame: off 1 by {}, of 64 by {}", noisy.1, mean.1);
 }
 
-/// Both ways to light brushed metal: from images that were filtered for round lobes, and by random paths.
+/// Image-based light from filtered images minus the same by random paths, over the mean of these: the mean of the difference,
+/// and of its size.
+fn split_sum_error(headless: &mut Headless, frames: u32) -> (f32, f32) {
+    headless.settings_mut().view.frames = frames;
+    let n_dot_v = render(headless, "n-dot-v");
+    let truth = on_model(&render(headless, "monte-carlo"), &n_dot_v);
+    let split_sum = on_model(&render(headless, "final"), &n_dot_v);
+    assert!(truth.len() > 1000, "{} values", truth.len());
+    let differences = || split_sum.iter().zip(&truth).map(|(a, b)| a - b);
+    let total = truth.iter().sum::<f32>();
+    (differences().sum::<f32>() / total, differences().map(f32::abs).sum::<f32>() / total)
+}
+
 #[test]
 fn stretched_highlights_are_those_of_random_paths() {
     let chosen = ["environment.name=studio", "view.msaa=1", "view.background=none", "lights.source=none"];
     let mut headless = renderer(model("anisotropy"), settings(&chosen), (96, 54));
-    headless.settings_mut().view.frames = 32;
-    let n_dot_v = render(&mut headless, "n-dot-v");
-    let truth = on_model(&render(&mut headless, "monte-carlo"), &n_dot_v);
-    let split_sum = on_model(&render(&mut headless, "final"), &n_dot_v);
-    let mean = truth.iter().sum::<f32>() / truth.len() as f32;
-    let off = truth.iter().zip(&split_sum).map(|(a, b)| (a - b).abs()).sum::<f32>() / truth.len() as f32;
-    let bias = split_sum.iter().sum::<f32>() / split_sum.len() as f32 / mean - 1.0;
-    assert!(truth.len() > 3000 && off < 0.13 * mean, "{} values: off by {off}, of {mean}", truth.len());
-    assert!(bias.abs() < 0.02, "all in all off by {bias}");
+    let (bias, off) = split_sum_error(&mut headless, 32);
+    assert!(bias.abs() < 0.02 && off < 0.13, "off by {off}, all in all by {bias}");
+}
+
+/// The sun fills 5e-6 of the sky and brings most of the light: paths that do not look for it would miss it.
+#[test]
+fn random_paths_find_the_sun() {
+    let chosen = settings(&[
+        "environment.name=sky",
+        "environment.rotation=70",
+        "view.msaa=1",
+        "view.background=none",
+        "lights.source=none",
+        "material.enabled=true",
+        "material.metallic=0",
+        "material.roughness=0.8",
+    ]);
+    let mut headless = renderer(load(&glb::model(&glb::sphere(24, 48), &glb::gray())), chosen, (48, 32));
+    let (bias, off) = split_sum_error(&mut headless, 8);
+    assert!(bias.abs() < 0.02 && off < 0.25, "off by {off}, all in all by {bias}");
 }
 
 #[test]

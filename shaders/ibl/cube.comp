@@ -7,6 +7,8 @@
 
 // From an equirectangular image to level 0 of a cube map. One invocation is a texel; z of the group is the face.
 //
+// Alpha is the brightest component; below, of all texels that a texel covers. So who follows it down finds the sun.
+//
 // The image's center column is seen looking down -Z, what is right of it towards +X:
 // u = 0.5 + atan(x, -z) / 2 pi, v = acos(y) / pi.
 
@@ -44,8 +46,9 @@ void main() {
     barrier();
     if (all(lessThan(texel.xy, task.size))) {
         vec3 radiance = mean_radiance(texel);
-        imageStore(target, ivec3(texel), vec4(radiance, 1.0));
-        atomicAdd(group_count[brightness_step(max_component(radiance))], 1u);
+        float brightness = max_component(radiance);
+        imageStore(target, ivec3(texel), vec4(radiance, brightness));
+        atomicAdd(group_count[brightness_step(brightness)], 1u);
     }
     barrier();
     uint count = group_count[gl_LocalInvocationIndex];

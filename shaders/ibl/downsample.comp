@@ -9,7 +9,7 @@
 // holds as much light as the one above, and a texel's value is the mean radiance of what it covers. (In a corner of a
 // face a texel covers a fifth of one at the center, so an even mean would move light about.)
 //
-// From level 0 to 1, small lights are taken out: see ibl/small_lights.glsl.
+// From level 0 to 1, small lights are taken out: see ibl/small_lights.glsl. Alpha still tells of them: it is the largest.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray level_above;
@@ -27,20 +27,23 @@ void main() {
 
     float reach = 0.5 / float(task.size.x);
     vec4 kept = vec4(0.0);     // w: of the solid angles
+    float brightest = 0.0;
     vec3 cut = vec3(0.0);
     vec3 center = vec3(0.0);   // of what was cut
     for (uint i = 0u; i < 4u; ++i) {
         uvec2 above = 2u * texel.xy + uvec2(i & 1u, i >> 1);
         vec2 st = texel_center(above, 2u * task.size);
         float steradians = solid_angle(st, reach);
-        vec3 radiance = imageLoad(level_above, ivec3(above, texel.z)).rgb;
+        vec4 texel_above = imageLoad(level_above, ivec3(above, texel.z));
+        vec3 radiance = texel_above.rgb;
+        brightest = max(brightest, texel_above.a);
         float brightness = max_component(radiance);
         float part = brightness > limit ? limit / brightness : 1.0;
         kept += vec4(radiance * part, 1.0) * steradians;
         cut += radiance * ((1.0 - part) * steradians);
         center += normalize(cube_position(st, texel.z)) * (brightness * (1.0 - part) * steradians);
     }
-    imageStore(target, ivec3(texel), vec4(rounded_to_half(kept.rgb / kept.w), 1.0));
+    imageStore(target, ivec3(texel), vec4(rounded_to_half(kept.rgb / kept.w), brightest));
 
     if (max_component(cut) > 0.0) {
         uint place = atomicAdd(small_light_count, 1u);

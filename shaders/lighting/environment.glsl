@@ -19,6 +19,12 @@ vec3 map_from_world(vec3 d) {
     return vec3(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
 }
 
+vec3 world_from_map(vec3 d) {
+    float c = frame.environment_rotation.x;
+    float s = frame.environment_rotation.y;
+    return vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
+}
+
 // Level `lod` of the sharp image.
 vec3 environment_radiance(vec3 direction, float lod) {
     return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;

@@ -5,7 +5,8 @@
 // One density fits no f: the highlight wants directions where D is large, the diffuse part where the cosine is. So p is
 // the mean of one density for each lobe, from which one is drawn by chance: the balance heuristic (Veach & Guibas 1995,
 // eq. 14; one-sample form: Veach 1997, section 9.2.4), which is never much worse than the best of them. Nothing is
-// prefiltered or clamped, so a small sun makes bright dots ("fireflies") until enough frames have come together.
+// prefiltered or clamped. Lights smaller than the sun's surroundings, all but the brightest, make bright dots
+// ("fireflies") until enough frames have come together; the brightest has a density of its own (lighting/sun.glsl).
 // Occlusion is left out: it is the texture's word about a shape, which an integral over the whole sky does not know.
 #ifndef LIGHTING_MONTE_CARLO_GLSL
 #define LIGHTING_MONTE_CARLO_GLSL
@@ -17,6 +18,7 @@
 #include "common/sampling.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/lobes.glsl"
+#include "lighting/sun.glsl"
 #include "lighting/transmission.glsl"
 
 const bool HAS_COAT = (FEATURES & FEATURE_CLEARCOAT) != 0u;
@@ -61,24 +63,34 @@ float pdf_lobe(LobeFrame lobe, vec3 l) {
     return pdf_reflected(pdf_ggx_vndf(lobe.v, h, lobe.alpha), dot(lobe.v, h));
 }
 
-// `lobe` < PATH_LOBES chooses the density. `behind`: the direction is mirrored to the other side of the surface, where
-// thin transmission has the same lobes. All choices are to be made equally often.
-Path sample_path(Surface s, vec3 v, vec2 u, uint lobe, bool behind) {
+// The mirror image of a direction behind the surface: thin transmission has the same lobes on both sides.
+vec3 in_front(vec3 n, vec3 l) { return l - 2.0 * min(dot(n, l), 0.0) * n; }
+
+// One of `choices` densities, each drawn equally often: those of the lobes, the same mirrored behind the surface where
+// light passes, and the sun.
+Path sample_path(Surface s, vec3 v, vec2 u, uint choice, uint choices, Sun sun) {
     LobeFrame specular = specular_frame(s, v);
     LobeFrame coat = specular;
     if (HAS_COAT) coat = coat_frame(s, v);
 
+    uint lobe = choice % PATH_LOBES;
     vec3 l;
-    if (HAS_COAT && lobe == 2u) l = sample_lobe(coat, u);
+    if (choice >= PATH_LOBES * PATH_SIDES) l = sample_sun(sun, u);
+    else if (HAS_COAT && lobe == 2u) l = sample_lobe(coat, u);
     else if (lobe == 1u) l = specular.world_from_lobe * sample_cosine(u);
     else l = sample_lobe(specular, u);
 
+    // A reflection into the surface, and a sun below it, where no light passes.
+    bool by_sun = choice >= PATH_LOBES * PATH_SIDES;
     float n_dot_l = dot(s.n, l);
-    if (n_dot_l <= 0.0) return Path(s.n, 0.0);   // a reflection into the surface
-    float pdf = pdf_lobe(specular, l) + pdf_cosine(n_dot_l);
-    if (HAS_COAT) pdf += pdf_lobe(coat, l);
-    pdf /= float(PATH_LOBES * PATH_SIDES);
-    return Path(behind ? l - 2.0 * n_dot_l * s.n : l, n_dot_l / pdf);
+    if (n_dot_l == 0.0 || (n_dot_l < 0.0 && !(by_sun && LIGHT_PASSES))) return Path(s.n, 0.0);
+    bool mirrored = !by_sun && choice >= PATH_LOBES;
+    if (mirrored) l -= 2.0 * n_dot_l * s.n;
+
+    vec3 front = in_front(s.n, l);
+    float pdf = pdf_lobe(specular, front) + pdf_cosine(abs(n_dot_l)) + pdf_sun(sun, l);
+    if (HAS_COAT) pdf += pdf_lobe(coat, front);
+    return Path(l, abs(n_dot_l) * float(choices) / pdf);
 }
 
 // Additive recurrence in three dimensions: point i is the fraction of i times (1/g, 1/g^2, 1/g^3), g^4 = g + 1 (Roberts
@@ -101,17 +113,20 @@ vec2 lattice_point(uint i) { return vec2(float(i) + 0.5, float(i * 55u % LATTICE
 // beam from the eye that is not absorbed. It takes FURNACE_PATHS, from 0.
 vec3 monte_carlo(Surface s, vec3 v, bool furnace, uint first, uint count) {
     uvec3 shift = random_words(uvec3(gl_FragCoord.xy, 0u));
+    Sun sun = Sun(s.n, false);
+    if (!furnace) sun = find_sun();
+    uint choices = PATH_LOBES * PATH_SIDES + (sun.counts ? 1u : 0u);
     vec3 sum = vec3(0.0);
     for (uint i = first; i < first + count; ++i) {
         vec3 u = path_numbers(i, shift);
-        uint choice = uint(u.z * float(PATH_LOBES * PATH_SIDES));
+        uint choice = uint(u.z * float(choices));
         if (furnace) {
             u.xy = lattice_point(i % LATTICE);
             choice = i / LATTICE;
         }
-        bool behind = LIGHT_PASSES && choice >= PATH_LOBES;
-        Path path = sample_path(s, v, u.xy, behind ? choice - PATH_LOBES : choice, behind);
+        Path path = sample_path(s, v, u.xy, choice, choices, sun);
         if (path.weight == 0.0) continue;
+        bool behind = LIGHT_PASSES && dot(s.n, path.l) < 0.0;
         Brdf f = evaluate_brdf(s, path.l, v);
         vec3 value = f.value * path.weight;
         // What passes straight through is not the sky's alone: lighting/transmission.glsl looks up the scene for it.
