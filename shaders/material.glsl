@@ -9,6 +9,7 @@
 #include "common/math.glsl"
 #include "material_textures.glsl"
 
+// For debug modes: a condition that should cost nothing has the comparison itself (ARCHITECTURE.md, "Features").
 bool has_feature(uint feature) { return (FEATURES & feature) != 0u; }
 
 // A normal texture's texel, tangent space: 0..1 stands for -1..1, x and y are scaled (glTF 2.0, 3.9.3). Its length is

@@ -62,6 +62,9 @@ impl BindingKind {
     }
 }
 
+/// Binding in [`SET_TASK`] of the buffer that a task leaves numbers in; it is as large as the stages declare it.
+pub const BINDING_RESULTS: u32 = 5;
+
 /// One descriptor of the contract. A shader may use any subset.
 #[derive(Clone, Copy, Debug)]
 pub struct Binding {
@@ -125,7 +128,7 @@ pub const BINDINGS: &[Binding] = &[
     binding(SET_TASK, 2, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
     binding(SET_TASK, 3, "BINDING_TARGET", BindingKind::StorageImage, 0),
     binding(SET_TASK, 4, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
-    binding(SET_TASK, 5, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
+    binding(SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
 ];
 
 /// A specialization constant that Rust sets.
@@ -204,7 +207,9 @@ pub const FEATURE_ENVIRONMENT: u32 = 1 << 15;
 /// There are rectangular lights. The same for all materials of a frame.
 pub const FEATURE_RECT_LIGHTS: u32 = 1 << 16;
 /// Some texture is not read at TEXCOORD_0 as it is: at TEXCOORD_1, or moved by KHR_texture_transform.
-pub const FEATURE_TEXTURE_COORDINATES: u32 = 1 << 17;
+pub const FEATURE_TEXTURE_COORDINATES: u32 = 1 << LAST_FEATURE;
+/// Number of the highest of these bits; all below it are features.
+pub const LAST_FEATURE: u32 = 17;
 
 /// Index of the base color texture in `Material::uv_from_texture` and in the bit masks. sRGB; glTF specular-glossiness: the diffuse texture.
 pub const TEXTURE_BASE_COLOR: u32 = 0;

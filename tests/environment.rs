@@ -231,6 +231,10 @@ fn a_white_metal_cannot_be_seen_in_a_furnace() {
     let n_dot_v = render(&mut headless, "n-dot-v");
     let split_sum = off_one(&on_model(&render(&mut headless, "final"), &n_dot_v));
     assert!(split_sum.0 < 0.005, "split sum: off 1 by up to {}", split_sum.0);
+    headless.settings_mut().assign("MULTI_SCATTER=None").unwrap();
+    let single = off_one(&on_model(&render(&mut headless, "final"), &n_dot_v));
+    assert!(single.1 > 0.1, "without multiple scattering: off 1 by {} (r.m.s.) only", single.1);
+    headless.settings_mut().assign("MULTI_SCATTER=KullaConty").unwrap();
     // The truth is a mean over frames: of 64 it is closer to 1 than of one.
     headless.settings_mut().view.frames = 1;
     let noisy = off_one(&on_model(&render(&mut headless, "monte-carlo"), &n_dot_v));
@@ -261,6 +265,16 @@ fn stretched_highlights_are_those_of_random_paths() {
     assert!(bias.abs() < 0.02 && off < 0.13, "off by {off}, all in all by {bias}");
 }
 
+/// Where the bumps of the base turn away, the coat above them does not; neither way to light may forget it.
+#[test]
+fn coats_over_bumps_are_lit_by_random_paths() {
+    let chosen = ["environment.name=furnace", "view.msaa=1", "view.background=none", "lights.source=none"];
+    let mut headless = renderer(model("clearcoat"), settings(&chosen), (96, 54));
+    let (bias, off) = split_sum_error(&mut headless, 32);
+    // In a few pixels the coat's own bumps turn it away from the eye, where it has no reflection.
+    assert!(bias.abs() < 0.01 && off < 0.03, "off by {off}, all in all by {bias}");
+}
+
 /// The sun fills 5e-6 of the sky and brings most of the light: paths that do not look for it would miss it.
 #[test]
 fn random_paths_find_the_sun() {
@@ -275,8 +289,8 @@ fn random_paths_find_the_sun() {
         "material.roughness=0.8",
     ]);
     let mut headless = renderer(load(&glb::model(&glb::sphere(24, 48), &glb::gray())), chosen, (48, 32));
-    let (bias, off) = split_sum_error(&mut headless, 8);
-    assert!(bias.abs() < 0.02 && off < 0.25, "off by {off}, all in all by {bias}");
+    let (bias, off) = split_sum_error(&mut headless, 16);
+    assert!(bias.abs() < 0.02 && off < 0.3, "off by {off}, all in all by {bias}");
 }
 
 #[test]

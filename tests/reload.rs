@@ -153,6 +153,8 @@ fn loops_and_choices_of_any_kind_draw() {
     while (ALPHA_MODE == 77u) radiance *= 0.5;
     for (uint i = 0u; i < 3u; ++i) { if (MODE == 12345u) break; radiance += 0.0; }
     if (material.alpha_cutoff > 2.0 && frame.near < 0.0) return vec3(0.0);
+    switch (ALPHA_MODE) { case ALPHA_OPAQUE: radiance += 0.0; default: radiance *= 1.0; }
+    switch (ALPHA_MODE) { case 7u: radiance += 1.0; case ALPHA_OPAQUE: radiance *= 1.0; break; default: radiance += 2.0; }
     return radiance;";
     let plain = session.render();
     ready(&session.edit("user.glsl", "    return radiance;", loops));

@@ -73,8 +73,8 @@ void complex_ior(vec3 f0, vec3 edge_tint, out vec3 n, out vec3 k) {
 //
 //   F = F0 + (1 - F0) (1 - c)^5 - beta c (1 - c)^6        beta such that F(82 degrees) = f82
 //
-// The last term is largest at c = 1 / 7, or 82 degrees, so that is where it is measured: 1/7 (6/7)^6 = 0.0566559.
+// The last term is largest at c = 1 / 7, or 82 degrees, so that is where it is measured: 1/7 (6/7)^6 = 0.0566528.
 const float COS_82 = 1.0 / 7.0;
-vec3 f82_beta(vec3 f0, vec3 f82) { return (f_schlick(f0, vec3(1.0), COS_82) - f82) / 0.0566559; }
+vec3 f82_beta(vec3 f0, vec3 f82) { return (f_schlick(f0, vec3(1.0), COS_82) - f82) / 0.0566528; }
 
 #endif

@@ -6,8 +6,10 @@
 //   reciprocal   f(l, v) = f(v, l)
 //
 // A combination claims what all of its choices claim; the claims are about materials without extensions, so of index
-// 1.5: beside it, the dielectric Exact under the coupling Albedo gains up to 2 % (n = 1.1, grazing). Who does not claim,
-// and why:
+// 1.5: beside it, the dielectric Exact under the coupling Albedo gains up to 2 % (measured: n = 1.1, grazing). Formulas
+// and sources stand with each model; what is claimed of energy follows from them: Kulla & Conty 2017 and Fdez-Aguera
+// 2019 for multiple scattering, Kelemen & Szirmay-Kalos 2001 for the coupling Albedo, Portsmouth et al. 2025 (EON) for
+// OrenNayar, glTF 2.0, appendix B.3.5, for the coupling Fresnel, which only mixes. Who does not claim, and why:
 //
 //   Burley, CallOfDuty    fits to the look of real surfaces; both add light at grazing angles.
 //   Coupling Fresnel      light enters by 1 - F at the angle to h. For v at a grazing angle F(NoV) of the light is

@@ -2,7 +2,8 @@
 //
 // To add one: an annotation and a constant here, its value in `your_mode` at the end of this file, save.
 //
-//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [accumulate] [draw=lines|layers] [key=d] doc=""
+//   @mode SLUG "Name" group="Group" encode=color|data|vector [tonemap] [accumulate] [through]
+//         [draw=lines|layers] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
 // The first line in a comment that starts with the at sign; any number that no other mode has.
@@ -12,6 +13,7 @@
 //   tonemap   the value is light: exposure and tone map apply
 //   accumulate  the value is an estimate by frame.sample_count random paths a pixel, others in each frame
 //             (frame.sample_index counts them): the renderer shows the mean over the frames since the picture changed
+//   through   what is seen through glass is the picture, not this mode of it
 //   key       a letter that shows the mode in the window
 //
 // Values are raw: a depth is in meters, D exceeds 1. A checkerboard means that the model or the light has no such data.
@@ -199,7 +201,7 @@ const uint MODE_DFG = 415u;
 const uint MODE_CLEARCOAT_LIGHT = 416u;
 //@mode sheen-light "Sheen light" group="Light" encode=color tonemap doc="What the fibers scatter."
 const uint MODE_SHEEN_LIGHT = 417u;
-//@mode transmitted-light "Transmitted light" group="Light" encode=color tonemap doc="What passes through the surface."
+//@mode transmitted-light "Transmitted light" group="Light" encode=color tonemap through doc="What passes through the surface."
 const uint MODE_TRANSMITTED_LIGHT = 418u;
 //@mode multiple-scattering "Multiple scattering" group="Light" encode=color tonemap doc="Off two microfacets or more."
 const uint MODE_MULTIPLE_SCATTERING = 419u;

@@ -2,8 +2,15 @@
 #ifndef IBL_LEVELS_GLSL
 #define IBL_LEVELS_GLSL
 
-// Even steps from a mirror at level 0 to roughness 1 at the last level.
-float roughness_of_level(uint level, uint levels) { return float(level) / float(max(levels, 2u) - 1u); }
-float level_of_roughness(float roughness, int levels) { return roughness * float(levels - 1); }
+// Roughness 1 is at the level with 8 x 8 texels a face: with fewer, what the sampler makes between their centers is off
+// by up to a tenth. Those below it, which nothing looks up, hold roughness 1 too.
+const int LEVELS_LEFT = 3;
+float last_level(int levels) { return float(max(levels - 1 - LEVELS_LEFT, 1)); }
+
+// level / last = r (2 - r): close together at low roughness, where lobes change most.
+float level_of_roughness(float roughness, int levels) { return last_level(levels) * roughness * (2.0 - roughness); }
+float roughness_of_level(uint level, uint levels) {
+    return 1.0 - sqrt(max(1.0 - float(level) / last_level(int(levels)), 0.0));
+}
 
 #endif

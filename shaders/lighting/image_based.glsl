@@ -33,7 +33,7 @@ const int STRIPS = 8;
 
 vec3 stretched_radiance(Surface s, vec3 v) {
     vec2 stretched = alpha_sides(s);
-    float spread = sqrt(stretched.x * stretched.x - stretched.y * stretched.y);
+    float spread = sqrt(max(stretched.x * stretched.x - stretched.y * stretched.y, 0.0));
     mat3 ts_from_ws = transpose(mat3(s.t, s.b, s.n));
     float n_dot_v = n_dot_v_of(s.n, v);
     float a2_v = a2_towards(ts_from_ws * v, stretched);

@@ -80,17 +80,23 @@ Path sample_path(Surface s, vec3 v, vec2 u, uint choice, uint choices, Sun sun) 
     else if (lobe == 1u) l = specular.world_from_lobe * sample_cosine(u);
     else l = sample_lobe(specular, u);
 
-    // A reflection into the surface, and a sun below it, where no light passes.
+    // A reflection into the surface leads nowhere; below it the sun shines through, and a coat that lies flatter than the
+    // bumps of its base is lit.
     bool by_sun = choice >= PATH_LOBES * PATH_SIDES;
-    float n_dot_l = dot(s.n, l);
-    if (n_dot_l == 0.0 || (n_dot_l < 0.0 && !(by_sun && LIGHT_PASSES))) return Path(s.n, 0.0);
     bool mirrored = !by_sun && choice >= PATH_LOBES;
+    float n_dot_l = dot(s.n, l);
+    bool by_coat = HAS_COAT && lobe == 2u && !by_sun && !mirrored;
+    bool may_be_below = (by_sun && LIGHT_PASSES) || (coat_lies_apart() && (by_sun || by_coat));
+    if (n_dot_l == 0.0 || (n_dot_l < 0.0 && !may_be_below)) return Path(s.n, 0.0);
     if (mirrored) l -= 2.0 * n_dot_l * s.n;
 
-    vec3 front = in_front(s.n, l);
-    float pdf = pdf_lobe(specular, front) + pdf_cosine(abs(n_dot_l)) + pdf_sun(sun, l);
+    vec3 front = LIGHT_PASSES ? in_front(s.n, l) : l;
+    float pdf = pdf_lobe(specular, front) + pdf_cosine(dot(s.n, front)) + pdf_sun(sun, l);
     if (HAS_COAT) pdf += pdf_lobe(coat, front);
-    return Path(l, abs(n_dot_l) * float(choices) / pdf);
+    // What the coat sends below the base, beside what is mirrored there.
+    if (HAS_COAT && LIGHT_PASSES && dot(s.n, l) < 0.0 && coat_lies_apart()) pdf += pdf_lobe(coat, l);
+    // 0: a reflection into the coat.
+    return Path(l, pdf > 0.0 ? abs(n_dot_l) * float(choices) / pdf : 0.0);
 }
 
 // Additive recurrence in three dimensions: point i is the fraction of i times (1/g, 1/g^2, 1/g^3), g^4 = g + 1 (Roberts
@@ -130,7 +136,9 @@ vec3 monte_carlo(Surface s, vec3 v, bool furnace, uint first, uint count) {
         Brdf f = evaluate_brdf(s, path.l, v);
         vec3 value = f.value * path.weight;
         // What passes straight through is not the sky's alone: lighting/transmission.glsl looks up the scene for it.
-        if (behind && !furnace) value = f.diffuse_transmitted * attenuation(s, s.thickness) * path.weight;
+        if (behind && !furnace) {
+            value = (f.diffuse_transmitted * attenuation(s, s.thickness) + f.clearcoat) * path.weight;
+        }
         sum += furnace ? value : value * environment_radiance(path.l, 0.0);
     }
     return sum / float(max(count, 1u));

@@ -15,9 +15,9 @@ struct Sun {
     bool counts;               // bright enough to be looked for
 };
 
-// 0.7 degrees: the brightest texel may lie on the rim of the real sun, whose disc is 0.53 degrees wide, and a texel in
-// the middle of a face is 0.22.
-const float ONE_MINUS_SUN_COSINE = 7.46e-5;
+// 1 degree: the brightest texel may lie on the rim of the real sun, whose disc is 0.53 degrees wide, and the filter of
+// the cube map spreads it by a texel, which is 0.22 in the middle of a face.
+const float ONE_MINUS_SUN_COSINE = 1.523e-4;
 const float SUN_STERADIANS = 2.0 * PI * ONE_MINUS_SUN_COSINE;
 // Of the light that a surface gets, the part that a spot must be able to bring.
 const float SUN_PART = 0.02;

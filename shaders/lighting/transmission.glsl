@@ -45,7 +45,8 @@ vec3 surroundings(vec3 direction, float roughness) {
 }
 
 // Radiance that comes out of the surface towards v, before the boundary's own losses and tint. The blurred picture:
-// each level doubles the width of a texel, and roughness 1 is as wide as the picture.
+// each level doubles the width of a texel, and roughness 1 is as wide as the picture (as in Khronos's glTF Sample
+// Renderer, getTransmissionSample).
 vec3 radiance_behind(Surface s, vec3 v, float ior) {
     bool thin = (FEATURES & FEATURE_VOLUME) == 0u;
     vec3 direction = thin ? -v : refracted(s, v, ior);
@@ -60,8 +61,10 @@ vec3 radiance_behind(Surface s, vec3 v, float ior) {
 // dispersion = 20 / Abbe number (KHR_materials_dispersion).
 vec3 transmitted_radiance(Surface s, vec3 v) {
     if ((FEATURES & FEATURE_DISPERSION) == 0u) return radiance_behind(s, v, s.ior);
-    float half_spread = (s.ior - 1.0) * s.dispersion * (0.5 / 20.0);
-    return vec3(radiance_behind(s, v, s.ior - half_spread).r,
+    // An infinite index has no spread; nothing bends less than air.
+    float half_spread = max(s.ior - 1.0, 0.0) * s.dispersion * (0.5 / 20.0);
+    float red = s.ior > 0.0 ? max(s.ior - half_spread, 1.0) : 0.0;
+    return vec3(radiance_behind(s, v, red).r,
                 radiance_behind(s, v, s.ior).g,
                 radiance_behind(s, v, s.ior + half_spread).b);
 }

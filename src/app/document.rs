@@ -14,7 +14,7 @@ use crate::headless;
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
 use crate::render::{GpuEnvironment, GpuScene, MaterialVariant, PipelineSet, Wanted};
 use crate::scene::Model;
-use crate::settings::Settings;
+use crate::settings::{LightSource, Settings};
 use crate::shader::{Batch, Change, Diagnostic, Mode, ShaderSet, Source, TreePath, Watcher, is_specula_tree};
 
 use super::camera::CameraHand;
@@ -192,6 +192,31 @@ impl Document {
         self.shaders()?.modes.iter().find(|m| m.slug == self.settings.mode)
     }
 
+    /// The mode of the picture on screen.
+    fn shown_mode(&self) -> Option<&Mode> {
+        let shown = self.shown.as_ref()?;
+        shown.pipelines.shaders.modes.iter().find(|m| m.id == shown.wanted.mode)
+    }
+
+    /// The mode that is set, while the picture still shows another.
+    fn next_mode(&self) -> Option<&Mode> {
+        let shown = self.shown_mode()?;
+        self.mode().filter(|m| m.slug != shown.slug)
+    }
+
+    /// What stands over the picture: its mode, and the one that is on its way. The plain picture needs no title.
+    pub(super) fn title(&mut self) -> Option<String> {
+        if self.next_mode().is_some() {
+            // It may be complete by now; then the frame after this title shows it.
+            self.shown();
+        }
+        let shown = self.shown_mode()?;
+        match self.next_mode() {
+            Some(next) => Some(format!("{}  ➡  {} …", shown.name, next.name)),
+            None => Some(shown.name.clone()).filter(|_| shown.slug != "final"),
+        }
+    }
+
     /// Lets the lights go on orbiting for `seconds`.
     pub(super) fn turn_lights(&mut self, seconds: f32) {
         let lights = &mut self.settings.lights;
@@ -307,6 +332,9 @@ impl Document {
 
     fn show(&mut self, pipelines: Arc<PipelineSet>, wanted: Wanted, scene: Option<Arc<GpuScene>>) {
         if let Some((model, scene)) = self.next_scene.take() {
+            if self.settings.lights.source == LightSource::Model && model.lights.is_empty() {
+                self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
+            }
             self.model = model;
             self.scene = Some(scene);
         }

@@ -95,13 +95,15 @@ impl Document {
         let all = &mut self.surroundings;
         if !wanted.is_lit() || (!all.stale && all.baked.is_for(&wanted.name, set)) {
             // Back to what is on screen: what is under way is no longer wanted.
-            let is_other = |attempt: &mut Attempt| attempt.progress.is_some() && attempt.name != wanted.name;
+            let is_other = |attempt: &mut Attempt| {
+                attempt.progress.is_some() && (attempt.name != wanted.name || !attempt.with.bakes_like(set))
+            };
             if all.attempt.take_if(is_other).is_some() {
                 all.newest.fetch_add(1, Ordering::SeqCst);
             }
             return;
         }
-        let is_same = |tried: &Attempt| tried.name == wanted.name && Arc::ptr_eq(&tried.with, set);
+        let is_same = |tried: &Attempt| tried.name == wanted.name && tried.with.bakes_like(set);
         if all.attempt.as_ref().is_some_and(is_same) {
             return;
         }

@@ -74,8 +74,8 @@ fn build_choices(
     let settings = args.common.settings()?;
     let materials =
         BTreeSet::from([MaterialVariant { features: interface::FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
-    // Each feature alone; the bits below NORMAL_TEXTURE and above are one another's neighbors.
-    let features = [0, interface::FEATURE_UNLIT].into_iter().chain((1..=14).map(|bit| 1 << bit));
+    // Each feature alone, those of a whole frame too.
+    let features = std::iter::once(0).chain((0..=interface::LAST_FEATURE).map(|bit| 1 << bit));
     let all_materials: BTreeSet<_> =
         [ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND]
             .into_iter()

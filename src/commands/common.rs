@@ -1,7 +1,7 @@
 //! The options that every command takes, and what they come to.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use clap::ValueEnum;
 use specula::gpu::{Gpu, GpuOptions};
@@ -78,8 +78,22 @@ pub enum EventFormat {
 }
 
 impl Common {
-    /// The settings: defaults, then the look file, then options, then `--set` in order.
+    /// The settings: defaults, then the look file, then options, then `--set` in order. Warns of those that change nothing.
     pub fn settings(&self) -> Result<Settings, Failure> {
+        let settings = self.settings_silently()?;
+        warn_unmeasured(&settings.mode, &settings);
+        let of_material = |set: &&String| {
+            let path = set.split('=').next().unwrap_or_default().trim();
+            path.starts_with("material.") && path != "material.enabled"
+        };
+        if let Some(set) = self.set.iter().find(of_material).filter(|_| !settings.material.enabled) {
+            warn_once(&format!("--set {set} changes nothing without --set material.enabled=true"));
+        }
+        Ok(settings)
+    }
+
+    /// The same without the warnings.
+    fn settings_silently(&self) -> Result<Settings, Failure> {
         let mut settings = match &self.look {
             None => Settings::default(),
             Some(path) => {
@@ -130,11 +144,16 @@ impl Common {
         Ok(model)
     }
 
-    /// The same without printing its warnings.
+    /// The same without printing its warnings, but for that of `--lights model`.
     pub fn model_silently(&self, path: Option<&Path>) -> Result<Model, Failure> {
         check_model_path(path)?;
         let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
-        loaded.map_err(|e| Failure::Input(e.to_string()))
+        let model = loaded.map_err(|e| Failure::Input(e.to_string()))?;
+        let wants_its_lights = || self.settings_silently().is_ok_and(|s| s.lights.source == LightSource::Model);
+        if model.lights.is_empty() && wants_its_lights() {
+            warn_once(&format!("{} has no lights of its own for `--lights model`", model.name));
+        }
+        Ok(model)
     }
 
     /// Opens the device without a window.
@@ -145,6 +164,23 @@ impl Common {
     /// Whether events are printed.
     pub fn emits(&self) -> bool {
         self.events.is_some()
+    }
+}
+
+/// Warns of a mode that needs a measured BRDF when there is none.
+pub fn warn_unmeasured(slug: &str, settings: &Settings) {
+    if slug.starts_with("measured") && settings.measured.is_empty() {
+        warn_once(&format!("mode {slug} shows nothing without --measured FILE"));
+    }
+}
+
+/// Prints a warning, but never twice: settings and models may be read again and again.
+fn warn_once(message: &str) {
+    static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
+    let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+    if !told.iter().any(|old| old == message) {
+        eprintln!("specula: warning: {message}");
+        told.push(message.to_owned());
     }
 }
 

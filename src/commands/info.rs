@@ -66,7 +66,7 @@ fn summary(model: &Model) -> serde_json::Value {
         "instances": model.instances.len(),
         "vertices": vertices,
         "indices": indices,
-        "materials": model.materials.len(),
+        "materials": model.materials.len().saturating_sub(1), // without the loader's own
         "images": model.images.iter().map(|i| format!("{} {}x{}", i.name, i.width, i.height)).collect::<Vec<_>>(),
         "lights": model.lights.len(),
         "variants": model.variants,

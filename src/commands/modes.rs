@@ -41,15 +41,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         out!("\nFor --set");
     }
     for constant in &shaders.constants {
-        let choices: Vec<&str> = constant.choices.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> = constant.choices.iter().map(|(name, _)| name.as_str()).collect();
+        let choices = if names.is_empty() { String::new() } else { format!(": {}", names.join(" | ")) };
         let chosen = constant.choices.iter().find(|(_, value)| *value == i64::from(constant.default));
         let default = chosen.map(|(name, _)| format!(" = {name}")).unwrap_or_default();
-        out!("  {:width$}  {} {}{default}", constant.name, constant.label, choices.join(" | "));
+        out!("  {:width$}  {}{choices}{default}", constant.name, constant.label);
     }
     for parameter in &shaders.parameters {
-        let range = parameter.range.map(|(low, high)| format!("{low}..{high} ")).unwrap_or_default();
+        let range = parameter.range.map(|(low, high)| format!(": {low}..{high}")).unwrap_or_default();
         let default: Vec<String> = parameter.default.iter().map(f64::to_string).collect();
-        out!("  {:width$}  {} {range}= {}", parameter.name, parameter.label, default.join(" "));
+        out!("  {:width$}  {}{range} = {}", parameter.name, parameter.label, default.join(" "));
     }
     Ok(())
 }

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 use specula::headless::Headless;
 use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
-use specula::render::Shot;
+use specula::render::{Shot, is_absent};
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::Failure;
-use super::common::{Common, check_mode, check_validation, compiler};
+use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
 
 /// Options of `probe`.
 #[derive(clap::Args)]
@@ -46,6 +46,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     }
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;
+    slugs.iter().for_each(|slug| warn_unmeasured(slug, &settings));
     let source = args.common.source()?;
     let gpu = args.common.gpu()?;
     let model = args.common.model(args.model.as_deref())?;
@@ -56,7 +57,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let shown = if hit { modes.as_slice() } else { &[] };
     let values: Vec<_> = shown.iter().zip(headless.pixel(args.at, shown)?).collect();
     if args.json {
-        let known = |value: &[f32; 4]| if is_absent(value) { Value::Null } else { json!(value) };
+        let known = |value: &[f32; 4]| if is_absent(*value) { Value::Null } else { json!(value) };
         let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), known(value))).collect();
         let lights: Vec<Value> = shot.lights.iter().map(light).collect();
         let value = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&shot), "lights": lights });
@@ -147,14 +148,9 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], shot: &Shot) {
             out!("\n{}", mode.group);
             group = &mode.group;
         }
-        let shown = if is_absent(value) { format!("{:>12}", "none") } else { row(value) };
+        let shown = if is_absent(*value) { format!("{:>12}", "none") } else { row(value) };
         out!("  {:width$}  {shown}", mode.slug);
     }
-}
-
-/// Whether the mode has no data here: the grays of `checkerboard` in shaders/common/color.glsl.
-fn is_absent(value: &[f32; 4]) -> bool {
-    [0.180_017, 0.260_017].iter().any(|gray| value[..3] == [*gray; 3])
 }
 
 fn row(numbers: &[f32]) -> String {

@@ -24,7 +24,7 @@ impl ShaderModule {
     /// The driver refuses the module.
     pub fn new(gpu: &Arc<Gpu>, spirv: &[u32]) -> Result<Arc<Self>, GpuError> {
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
-        // SAFETY: the words come from shaderc, which makes valid SPIR-V.
+        // SAFETY: the words come from shaderc and `shader::specialize`, which make valid SPIR-V of what they compile.
         let raw = unsafe { gpu.device.create_shader_module(&info, None) }.context("creating a shader module")?;
         Ok(Arc::new(Self { gpu: gpu.clone(), raw }))
     }

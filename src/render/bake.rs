@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
 use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
 
-use super::bake_passes::{Passes, no_results};
+use super::bake_passes::{IRRADIANCE_LEVEL, Passes, no_results};
 use super::cache;
 use super::pipelines::PipelineSet;
 use super::task;
@@ -222,7 +222,7 @@ impl GpuEnvironment {
             return Err(BakeError::TooLarge(map.width, map.height, most));
         }
         let time = begin(0.05, "pipelines")?;
-        let results = no_results(gpu)?;
+        let results = no_results(gpu, set)?;
         let passes = Passes { gpu, layouts, set, results: &results };
         for stage in BAKE_STAGES {
             set.compute(stage, &Vec::new())?;
@@ -265,7 +265,15 @@ impl GpuEnvironment {
 
 /// Named by the stages, the numbers that they are given, and the map.
 fn key(set: &PipelineSet, file: &EnvironmentFile) -> Result<String, GpuError> {
-    let numbers = [CUBE_SIDE, PREFILTERED_SIDE, SHEEN_SIDE, SHEEN_SAMPLES, IRRADIANCE_SIDE];
+    let numbers = [
+        CUBE_SIDE,
+        PREFILTERED_SIDE,
+        SHEEN_SIDE,
+        SHEEN_SAMPLES,
+        IRRADIANCE_SIDE,
+        IRRADIANCE_LEVEL,
+        LARGEST_RANGE.to_bits(),
+    ];
     let fingerprint = file.fingerprint.to_le_bytes();
     let mut parts: Vec<&[u8]> = vec![&fingerprint, bytemuck::cast_slice(&numbers)];
     parts.push(bytemuck::cast_slice(&PREFILTER_SAMPLES));

@@ -4,26 +4,28 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, Use, one_shot, vk};
-use crate::interface::Task;
+use crate::interface::{BINDING_RESULTS, SET_TASK, Task};
 
-use super::bake::{CUBE, DOWNSAMPLE, IRRADIANCE};
+use super::bake::{BAKE_STAGES, CUBE, DOWNSAMPLE, IRRADIANCE};
 use super::pipelines::PipelineSet;
 use super::task;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
-const IRRADIANCE_LEVEL: u32 = 5;
-/// `Results` of ibl/small_lights.glsl: 64 counters, the length of a list and its 192 entries.
-const RESULTS_BYTES: u64 = 64 * 4 + 4 + 192 * 28;
-
-/// The buffer that the passes share, all 0.
-pub(super) fn no_results(gpu: &Arc<Gpu>) -> Result<Arc<Buffer>, GpuError> {
+pub(super) const IRRADIANCE_LEVEL: u32 = 5;
+/// The buffer that the passes share, all 0, as large as they declare it (ibl/small_lights.glsl).
+pub(super) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer>, GpuError> {
+    let stages = BAKE_STAGES.iter().filter_map(|path| set.shaders.stages.get(*path));
+    let declared = stages.flat_map(|stage| &stage.reflection.descriptors);
+    let results = declared.filter(|d| (d.set, d.binding) == (SET_TASK, BINDING_RESULTS));
+    let sizes = results.filter_map(|descriptor| descriptor.block.as_ref()).map(|block| u64::from(block.size));
+    let bytes = sizes.max().unwrap_or(0).max(16);
     use vk::BufferUsageFlags as Usage;
     let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-    let results = Buffer::new(gpu, "bake", RESULTS_BYTES, usage, Memory::Device)?;
-    let staging = Buffer::new(gpu, "staging", RESULTS_BYTES, Usage::TRANSFER_SRC, Memory::Upload)?;
-    staging.write(0, &[0; RESULTS_BYTES as usize]);
+    let results = Buffer::new(gpu, "bake", bytes, usage, Memory::Device)?;
+    let staging = Buffer::new(gpu, "staging", bytes, Usage::TRANSFER_SRC, Memory::Upload)?;
+    staging.write(0, &vec![0; bytes as usize]);
     one_shot(gpu, |encoder| {
-        encoder.copy_buffer(&staging, 0, &results, RESULTS_BYTES);
+        encoder.copy_buffer(&staging, 0, &results, bytes);
         encoder.copies_done();
         Ok(())
     })?;

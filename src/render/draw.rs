@@ -43,7 +43,7 @@ pub(super) fn draw_model(
         draw_behind(encoder, layouts, targets, input, &opaque, &attachments, behind);
     }
     let last = Attachments { goes_on: false, ..attachments };
-    // A mode that shows a part of the light shows opaque surfaces otherwise than they are seen through others.
+    // The mode may show opaque surfaces otherwise than they are seen through others.
     let is_drawn = targets.behind.is_some() && !input.pipelines.is_some_and(|(_, wanted)| wanted.has_own_behind());
     encoder.begin_rendering(&Attachments { clear: last.clear.filter(|_| !is_drawn), ..last });
     if let Some(only) = only {

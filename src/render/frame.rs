@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Attachments, Buffer, Frames, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain,
-    UiRenderer, Use, vk,
+    Acquired, Attachments, Buffer, Encoder, Frames, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc,
+    SetLayouts, Swapchain, UiRenderer, Use, vk,
 };
 
 use super::bake::GpuEnvironment;
@@ -281,10 +281,20 @@ impl Renderer {
             encoder.end_rendering();
         }
 
-        // Off to the screen, or back to memory.
+        self.send(encoder, &output, target, acquired)
+    }
+
+    /// Off to the screen, or back to memory.
+    fn send(
+        &mut self,
+        mut encoder: Encoder,
+        output: &Arc<Image>,
+        target: Target<'_>,
+        acquired: Option<Acquired>,
+    ) -> Result<Drawn, GpuError> {
         match (target, acquired) {
             (Target::Window(swapchain, _), Some(acquired)) => {
-                encoder.transition(&output, Use::Color, Use::Present);
+                encoder.transition(output, Use::Color, Use::Present);
                 self.frames.submit(encoder, acquired.submission)?;
                 Ok(Drawn::Shown { fits: swapchain.present(&acquired)? })
             }
@@ -294,9 +304,10 @@ impl Renderer {
                 Ok(Drawn::Finished)
             }
             _ => {
-                encoder.transition(&output, Use::Color, Use::CopyFrom);
+                let Some(targets) = &self.targets else { return Ok(Drawn::NoImage) };
+                encoder.transition(output, Use::Color, Use::CopyFrom);
                 encoder.transition(targets.picture(), Use::Sampled, Use::CopyFrom);
-                let readback = Readback::record(&self.gpu, &mut encoder, &output, targets.picture())?;
+                let readback = Readback::record(&self.gpu, &mut encoder, output, targets.picture())?;
                 encoder.transition(targets.picture(), Use::CopyFrom, Use::Sampled);
                 self.frames.submit(encoder, Default::default())?;
                 self.frames.wait()?;

@@ -37,5 +37,5 @@ pub use pipelines::{MEASURE_STAGES, PipelineSet, all_stages, stages};
 pub use reload::{Outcome, Reload, Reloader, tree_name};
 pub use scene::{GpuScene, UploadError};
 pub use shot::Shot;
-pub use values::{misfits, number, unknown_names};
+pub use values::{is_absent, misfits, number, unknown_names};
 pub use wanted::{MaterialVariant, Wanted};

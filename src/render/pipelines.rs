@@ -141,7 +141,7 @@ impl PipelineSet {
     }
 
     /// Whether an environment looks the same when baked with either set.
-    pub(super) fn bakes_like(&self, other: &Self) -> bool {
+    pub(crate) fn bakes_like(&self, other: &Self) -> bool {
         BAKE_STAGES.iter().all(|path| match (self.shaders.stages.get(*path), other.shaders.stages.get(*path)) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a.spirv == b.spirv,
             _ => false,

@@ -79,7 +79,10 @@ fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Resu
         Some(value) => number(value, &parameter.choices).map(|n| vec![n]),
     };
     match numbers {
-        Some(numbers) if numbers.len() == count && numbers.iter().all(|n| n.is_finite()) => Ok(numbers),
+        Some(numbers) if numbers.len() == count && numbers.iter().all(|n| n.is_finite()) => {
+            value.map_or(Ok(()), |_| within(parameter, &numbers))?;
+            Ok(numbers)
+        }
         _ => {
             let expected = match count {
                 _ if !parameter.choices.is_empty() => format!("one of {}", names(&parameter.choices)),
@@ -90,6 +93,14 @@ fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Resu
             Err(format!("{} cannot be {found}; it takes {expected}", parameter.name))
         }
     }
+}
+
+/// Refuses numbers outside of the declared range.
+fn within(parameter: &Parameter, numbers: &[f64]) -> Result<(), String> {
+    let Some((low, high)) = parameter.range else { return Ok(()) };
+    let Some(at) = numbers.iter().position(|n| !(low..=high).contains(n)) else { return Ok(()) };
+    let component = if numbers.len() > 1 { format!(".{at}") } else { String::new() };
+    Err(format!("{}{component} is {}; it can be {low} to {high}", parameter.name, numbers[at]))
 }
 
 /// Names in `values` that the tree does not have, as a message with those it has; `None` when all exist.
@@ -114,6 +125,13 @@ pub fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
             choices.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|(_, value)| *value as f64)
         }
     }
+}
+
+/// Whether a mode's value says that it has no data there: the grays of `checkerboard` in shaders/common/color.glsl, or
+/// their mean over frames.
+pub fn is_absent([r, g, b, _]: [f32; 4]) -> bool {
+    let is_gray = |gray: f32| (r - gray).abs() <= 1e-6 * gray;
+    r == g && g == b && [0.180_017, 0.260_017].into_iter().any(is_gray)
 }
 
 fn names(choices: &[(String, i64)]) -> String {

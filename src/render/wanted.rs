@@ -47,6 +47,8 @@ pub struct Wanted {
     pub sky: bool,
     /// Whether frames add up to a mean while nothing changes.
     pub accumulates: bool,
+    /// Whether what is seen through glass is the picture, not this mode of it.
+    pub through: bool,
 }
 
 /// One pipeline of a [`Wanted`].
@@ -95,6 +97,7 @@ impl Wanted {
             shared_features: shared_features(settings),
             sky: settings.environment.is_shown(&settings.view) && mode.is_some_and(|m| m.tonemap),
             accumulates: mode.is_some_and(|m| m.accumulate),
+            through: mode.is_some_and(|m| m.through),
         }
     }
 
@@ -107,6 +110,7 @@ impl Wanted {
             draw: mode.draw,
             sky: self.sky && mode.tonemap,
             accumulates: mode.accumulate,
+            through: mode.through,
             ..self.clone()
         }
     }
@@ -132,10 +136,10 @@ impl Wanted {
         }
     }
 
-    /// Whether opaque surfaces look otherwise through those that light passes through: in a mode of light, which is not all of it.
+    /// Whether opaque surfaces look otherwise through those that light passes through.
     pub(super) fn has_own_behind(&self) -> bool {
         let passes = self.materials.iter().any(|material| passes_light(*material));
-        passes && self.mode != interface::MODE_FINAL && self.tonemap != TONEMAP_OFF && !self.accumulates
+        passes && self.through && self.mode != interface::MODE_FINAL
     }
 
     /// The pipeline that draws a material for those to see: that of the picture, if it is opaque.

@@ -78,6 +78,8 @@ pub struct Mode {
     pub tonemap: bool,
     /// Whether frames add up to a mean: each is a noisy sample of the picture.
     pub accumulate: bool,
+    /// What is seen through glass is the picture, not this mode of it.
+    pub through: bool,
     /// How the model is drawn.
     pub draw: DrawAs,
     /// Key in the window.

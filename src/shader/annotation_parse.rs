@@ -106,6 +106,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         encode: Encode::Color,
         tonemap: false,
         accumulate: false,
+        through: false,
         draw: DrawAs::Surfaces,
         key: None,
         doc: String::new(),
@@ -122,6 +123,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         match key {
             "tonemap" => mode.tonemap = true,
             "accumulate" => mode.accumulate = true,
+            "through" => mode.through = true,
             "group" => mode.group = cursor.value(key)?.1,
             "doc" => mode.doc = cursor.value(key)?.1,
             "encode" => {
@@ -158,8 +160,8 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 mode.key = Some(one);
             }
             other => {
-                let message =
-                    format!("expected group=, encode=, tonemap, accumulate, draw=, key= or doc=, found `{other}`");
+                let known = "group=, encode=, tonemap, accumulate, through, draw=, key= or doc=";
+                let message = format!("expected {known}, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }
         }

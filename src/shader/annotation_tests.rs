@@ -107,7 +107,7 @@ fn what_does_not_parse_says_what_was_expected() {
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
-        "m.frag:3:34: error: expected group=, encode=, tonemap, accumulate, draw=, key= or doc=, found `colour`",
+        "m.frag:3:34: error: expected group=, encode=, tonemap, accumulate, through, draw=, key= or doc=, found `colour`",
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" accumulate accumulate",

@@ -230,10 +230,13 @@ fn short_type(type_name: &str) -> &str {
 fn check_constants(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     // The first one says it: the same constant may be missing in many places.
-    if let Some(name) = reflection.without_value.first() {
-        let message = format!("`{name}` gets no value: the compiler cannot join specialization constants by && or ||");
-        let help = "join the numbers by & and |, as in `(FEATURES & (A | B)) != 0u`, or make it a function";
-        out.push(texts.error(&[name.as_str(), "const"], message).with_help(help));
+    if let Some(first) = reflection.without_value.first() {
+        let named = reflection.without_value.iter().find(|name| !name.is_empty()).unwrap_or(first);
+        let what = if named.is_empty() { "a global constant".into() } else { format!("`{named}`") };
+        let message = format!("{what} gets no value: the compiler cannot join comparisons of constants by && or ||");
+        let help =
+            "give each comparison a name of its own (`const bool A = ...;`) and join the names, or make it a function";
+        out.push(texts.error(&[named.as_str(), "const"], message).with_help(help));
     }
     for constant in reflection.constants.iter().filter(|constant| constant.id < interface::USER_CONSTANTS) {
         let words = [constant.name.as_str(), "constant_id"];

@@ -81,10 +81,27 @@ fn a_condition_that_the_compiler_loses_is_told() {
     let text = "#version 460\nlayout(constant_id = 2) const uint FEATURES = 0u;\n\
         const bool BOTH = (FEATURES & 1u) != 0u && (FEATURES & 2u) != 0u;\n\
         layout(location = 0) out vec4 o;\nvoid main() { o = vec4(0); if (gl_FragCoord.x > 1.0 && !BOTH) o = vec4(1); }\n";
-    let found: Vec<String> = complaints_of("m.frag", &[("m.frag", text)]).iter().map(Diagnostic::one_line).collect();
+    let found = |text: &str| -> Vec<String> {
+        complaints_of("m.frag", &[("m.frag", text)]).iter().map(Diagnostic::one_line).collect()
+    };
     let expected =
-        "m.frag:3:12: error: `BOTH` gets no value: the compiler cannot join specialization constants by && or ||";
-    assert_eq!(found, [expected]);
+        "m.frag:3:12: error: `BOTH` gets no value: the compiler cannot join comparisons of constants by && or ||";
+    assert_eq!(found(text), [expected]);
+    // In two functions, without an operation: only the first has the value.
+    let head = "#version 460\nlayout(constant_id = 2) const uint FEATURES = 0u;\n";
+    let functions = "layout(location = 0) out vec4 o;\nfloat a() { if (BOTH) return 1.0; return 2.0; }\n\
+        float b() { if (BOTH) return 3.0; return 4.0; }\nvoid main() { o = vec4(a() + b()); }\n";
+    let joined = "const bool BOTH = (FEATURES & 1u) != 0u && (FEATURES & 2u) != 0u;\n";
+    let lost = found(&format!("{head}{joined}{functions}"));
+    assert!(lost.len() == 1 && lost[0].contains("gets no value"), "{lost:?}");
+    let named =
+        "const bool A = (FEATURES & 1u) != 0u;\nconst bool B = (FEATURES & 2u) != 0u;\nconst bool BOTH = A && B;\n";
+    assert_eq!(found(&format!("{head}{named}{functions}")), Vec::<String>::new());
+    let negated = found(&format!(
+        "{head}{}{functions}",
+        joined.replace("= (FEATURES & 1u)", "= !((FEATURES & 1u)").replace(";", ");")
+    ));
+    assert!(negated.len() == 1 && negated[0].contains("gets no value"), "{negated:?}");
 }
 
 #[test]

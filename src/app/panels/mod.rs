@@ -95,6 +95,11 @@ fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R
     .inner
 }
 
+/// "1 draw", "2 draws".
+fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A color as linear RGB.
 fn color(ui: &mut Ui, linear: &mut [f32; 3]) {
     egui::widgets::color_picker::color_edit_button_rgb(ui, linear);

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Slider, Ui};
 
-use super::{QUIET, WARNING, color, row, section};
+use super::{QUIET, WARNING, color, plural, row, section};
 use crate::app::document::Document;
 use crate::settings::MaterialOverride;
 
@@ -32,8 +32,12 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         let size = if model.bounds.is_empty() { glam::Vec3::ZERO } else { model.bounds.max - model.bounds.min };
         let timing = model.timing;
         let lines = [
-            format!("{triangles} triangles in {} draws", model.instances.len()),
-            format!("{} materials, {} images", model.materials.len().saturating_sub(1), model.images.len()),
+            format!("{} in {}", plural(triangles, "triangle"), plural(model.instances.len(), "draw")),
+            format!(
+                "{}, {}",
+                plural(model.materials.len().saturating_sub(1), "material"),
+                plural(model.images.len(), "image")
+            ),
             format!("{:.3} × {:.3} × {:.3} m", size.x, size.y, size.z),
             format!(
                 "loaded in {:.0} ms: parse {:.0}, decode {:.0}, tangents {:.0}",
@@ -44,7 +48,8 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         for warning in &document.model.warnings {
             ui.label(RichText::new(warning).small().color(WARNING));
         }
-        ui.label(RichText::new("Drop a .gltf, a .glb or a shader folder on the window.").small().color(QUIET));
+        let hint = "Drop a model (.gltf, .glb), an environment (.hdr, .exr) or a shader folder on the window.";
+        ui.label(RichText::new(hint).small().color(QUIET));
     });
 }
 

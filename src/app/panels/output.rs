@@ -9,6 +9,7 @@ use crate::settings::Tonemap;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     let look = document.settings.to_toml();
+    let mut copied = false;
     let view = &mut document.settings.view;
     section(ui, "Output", true, |ui| {
         row(ui, "Exposure", "EV100: exposure is 1 / (1.2 * 2^EV) (--ev)", |ui| {
@@ -33,10 +34,14 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         });
         if ui.button("Copy as look file").on_hover_text("All settings as TOML, for --look").clicked() {
             ui.ctx().copy_text(look);
+            copied = true;
         }
         row(ui, "Samples", "Multisampling", |ui| {
             ui.selectable_value(&mut view.msaa, 1, "1x");
             ui.selectable_value(&mut view.msaa, 4, "4x");
         });
     });
+    if copied {
+        document.say("copied: all settings as TOML");
+    }
 }

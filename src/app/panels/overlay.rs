@@ -4,15 +4,16 @@ use std::time::Duration;
 
 use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichText, Stroke};
 
-use super::{ERROR, QUIET, WARNING};
+use super::{ERROR, QUIET, WARNING, plural};
 use crate::app::document::Document;
+use crate::render::is_absent;
 use crate::shader::{Diagnostic, Severity};
 
 const NOTICE: Duration = Duration::from_secs(6);
 
 pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui::Rect) {
-    if !document.diagnostics.is_empty() {
-        diagnostics(egui, &document.diagnostics, picture);
+    if !document.diagnostics.is_empty() && diagnostics(egui, &document.diagnostics, picture) {
+        document.diagnostics.clear();
     }
     let loading = document.loading.then(|| "Loading the model…".to_owned());
     // Without a model the reason stays; anything else is said for a while.
@@ -23,7 +24,7 @@ pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui:
     }
     let text = notice.map(|(text, _)| text.clone()).or(loading);
     if let Some(text) = text {
-        area("notice", Align2::CENTER_BOTTOM, picture).show(egui, |ui| {
+        area(Id::new("notice"), Align2::CENTER_BOTTOM, picture).show(egui, |ui| {
             card(Color32::from_gray(90)).show(ui, |ui| {
                 ui.set_max_width((picture.width() - 60.0).clamp(200.0, 560.0));
                 ui.add(egui::Label::new(text).wrap_mode(if picture.width() > 500.0 {
@@ -35,16 +36,17 @@ pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui:
         });
     }
     if document.show_ui {
-        let mode = document.mode().filter(|mode| mode.slug != "final").map(|mode| mode.name.clone());
+        let title = document.title();
         let value = document.hover.map(|hover| {
             let [r, g, b, _] = hover.value.map(number);
-            format!("{r} {g} {b}   at {}, {}", hover.x, hover.y)
+            let numbers = if is_absent(hover.value) { "none".into() } else { format!("{r} {g} {b}") };
+            format!("{numbers}   at {}, {}", hover.x, hover.y)
         });
-        if mode.is_some() || value.is_some() {
-            area("mode", Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
+        if title.is_some() || value.is_some() {
+            area(Id::new("mode"), Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
                 card(Color32::from_gray(60)).show(ui, |ui| {
                     ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-                    mode.map(|name| ui.label(RichText::new(name).strong()));
+                    title.map(|title| ui.label(RichText::new(title).strong()));
                     value.map(|value| ui.label(RichText::new(value).monospace()));
                 });
             });
@@ -52,11 +54,22 @@ pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui:
     }
 }
 
-fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::Rect) {
-    area("diagnostics", Align2::LEFT_BOTTOM, picture).show(egui, |ui| {
-        let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+/// Shows them; returns whether the user wants them away, which only warnings offer.
+fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::Rect) -> bool {
+    let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    let mut hide = false;
+    // An area keeps its first size, so other messages or another picture are another area.
+    let id = Id::new(("diagnostics", diagnostics, picture.width() as u32, picture.height() as u32));
+    let area = area(id, Align2::LEFT_BOTTOM, picture).default_size(picture.size()).fade_in(false);
+    area.show(egui, |ui| {
         card(if failed { ERROR } else { WARNING }).show(ui, |ui| {
             ui.set_max_width((picture.width() - 60.0).max(200.0));
+            if diagnostics.len() > 1 || !failed {
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(counts(diagnostics)).strong());
+                    hide = !failed && ui.small_button("Hide").on_hover_text("Until the next reload").clicked();
+                });
+            }
             egui::ScrollArea::vertical().max_height((picture.height() * 0.6).max(80.0)).show(ui, |ui| {
                 for diagnostic in diagnostics {
                     one(ui, diagnostic);
@@ -67,6 +80,15 @@ fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::
             });
         });
     });
+    hide
+}
+
+/// As "3 errors, 1 warning".
+fn counts(diagnostics: &[Diagnostic]) -> String {
+    let count = |severity: Severity| diagnostics.iter().filter(|d| d.severity == severity).count();
+    let parts = [Severity::Error, Severity::Warning].map(|severity| (count(severity), severity));
+    let words = parts.iter().filter(|(n, _)| *n > 0).map(|(n, severity)| plural(*n, &severity.to_string()));
+    words.collect::<Vec<_>>().join(", ")
 }
 
 fn one(ui: &mut egui::Ui, diagnostic: &Diagnostic) {
@@ -99,9 +121,9 @@ fn number(value: f32) -> String {
     }
 }
 
-fn area(id: &str, corner: Align2, picture: egui::Rect) -> Area {
+fn area(id: Id, corner: Align2, picture: egui::Rect) -> Area {
     let at = corner.pos_in_rect(&picture.shrink(12.0));
-    Area::new(Id::new(id)).order(Order::Foreground).pivot(corner).fixed_pos(at).constrain_to(picture)
+    Area::new(id).order(Order::Foreground).pivot(corner).fixed_pos(at).constrain_to(picture)
 }
 
 fn card(edge: Color32) -> Frame {

@@ -29,7 +29,8 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
             }
         }
         let set = !document.settings.shader.is_empty();
-        if ui.add_enabled(set, egui::Button::new("Defaults")).clicked() {
+        let button = ui.add_enabled(set, egui::Button::new("Defaults"));
+        if button.on_hover_text("All parameters above as the shader files say; no other setting changes").clicked() {
             document.settings.shader.clear();
         }
     });

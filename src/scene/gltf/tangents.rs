@@ -30,8 +30,8 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
     if replaced > 0 && (from_file || (made && shows)) {
         let (name, total) = (&primitive.name, primitive.vertices.len());
         geometry.warnings.push(format!(
-            "{name}: {replaced} of {total} tangents are zero or not finite: any direction \
-             orthogonal to the normal is used there."
+            "{name}: {replaced} of {total} tangents are zero or not finite: the direction around \
+             the object's Y axis is used there."
         ));
     }
 }

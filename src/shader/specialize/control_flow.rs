@@ -64,9 +64,35 @@ impl Function {
     /// Takes the branches that are decided and drops the blocks that are not reached, until nothing changes: a dropped block
     /// can decide the next branch.
     pub(super) fn fold(&mut self, known: &Known, removed: &mut HashSet<Id>) {
+        let mut any = false;
         while self.take_branches(known) {
             self.drop_unreached(removed);
+            any = true;
         }
+        if any {
+            self.sort();
+        }
+    }
+
+    /// Brings each block behind those that every way to it goes through (SPIR-V specification, section 2.4): where a case of a
+    /// switch falls through, that may be another since a branch was taken. Blocks that nobody reaches come last.
+    fn sort(&mut self) {
+        let at: HashMap<Id, usize> = self.blocks.iter().enumerate().map(|(index, b)| (b.label, index)).collect();
+        let ways = |index: usize| self.blocks[index].targets().into_iter().filter_map(|id| at.get(&id).copied());
+        let (mut seen, mut finished) = (vec![false; self.blocks.len()], Vec::new());
+        let mut open: Vec<(usize, bool)> = vec![(0, false)];
+        while let Some((index, is_done)) = open.pop() {
+            if is_done {
+                finished.push(index);
+            } else if !std::mem::replace(&mut seen[index], true) {
+                open.push((index, true));
+                open.extend(ways(index).filter(|to| !seen[*to]).map(|to| (to, false)));
+            }
+        }
+        let rest = (0..self.blocks.len()).filter(|index| !seen[*index]);
+        let order: Vec<usize> = finished.into_iter().rev().chain(rest).collect();
+        let mut blocks: Vec<Option<Block>> = self.blocks.drain(..).map(Some).collect();
+        self.blocks = order.into_iter().filter_map(|index| blocks[index].take()).collect();
     }
 
     /// Whether there was one to take.

@@ -187,3 +187,23 @@ fn mistakes_in_variants_are_named() {
     twins.json["extensions"]["KHR_materials_variants"]["variants"][2]["name"] = json!("Fire");
     assert!(twins.model().warnings[0].contains("'Fire' is there more than once"));
 }
+
+#[test]
+fn coordinates_other_than_the_first_are_a_feature() {
+    let moved = contract::FEATURE_TEXTURE_COORDINATES;
+    let transform = |values: Value| json!({ "index": 0, "extensions": { "KHR_texture_transform": values } });
+    for (texture, expected) in [
+        (json!({ "index": 0 }), 0),
+        (json!({ "index": 0, "texCoord": 1 }), moved),
+        (transform(json!({})), 0),
+        (transform(json!({ "offset": [0, 0], "rotation": 0, "scale": [1, 1] })), 0),
+        (transform(json!({ "offset": [0.5, 0] })), moved),
+        (transform(json!({ "rotation": 1 })), moved),
+        (transform(json!({ "scale": [2, 1] })), moved),
+        (transform(json!({ "texCoord": 1 })), moved),
+    ] {
+        let mut builder = with(json!({}));
+        builder.json["materials"][0] = json!({ "emissiveTexture": texture });
+        assert_eq!(bits(&builder) & moved, expected, "{texture}");
+    }
+}
