@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::interface::BindingKind;
 
+use super::conditions::missing_in_conditions;
 use super::opcode as op;
 use super::reflect::{Block, Descriptor, Location, Member, Reflection, Scalar, SpecConstant};
 
@@ -85,35 +86,9 @@ impl Module {
             }
             rest = &rest[length..];
         }
-        module.functions(rest);
+        let missing = missing_in_conditions(rest, &module.with_value);
+        module.without_value.extend(missing);
         module
-    }
-
-    /// Notes what conditions of functions use without having it: the compiler computes a global constant of `&&` or `||` within the
-    /// first function that needs it, where no other has it.
-    fn functions(&mut self, mut rest: &[u32]) {
-        let mut known: HashSet<Id> = HashSet::new();
-        let mut used: Vec<Id> = Vec::new();
-        while let Some(first) = rest.first() {
-            let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
-            let Some(operands) = rest.get(1..length) else { break };
-            match opcode {
-                op::FUNCTION_END => {
-                    let missing = used.drain(..).filter(|id| !known.contains(id) && !self.with_value.contains(id));
-                    self.without_value.extend(missing);
-                    known.clear();
-                }
-                op::LABEL => known.extend(operands.first()),
-                op::BRANCH_CONDITIONAL => used.extend(operands.first()),
-                // Logical operations and choices have nothing but ids.
-                164..=169 => used.extend(operands.get(2..).unwrap_or_default()),
-                _ => {}
-            }
-            if !op::WITHOUT_RESULT.contains(&opcode) {
-                known.extend(operands.get(1));
-            }
-            rest = &rest[length..];
-        }
     }
 
     /// Notes a constant that has a value, and those that a condition is made of and that have none.

@@ -12,6 +12,7 @@ mod annotation_value;
 mod capability;
 pub mod check;
 pub mod compile;
+mod conditions;
 pub mod contract;
 mod declared;
 pub mod diagnostic;

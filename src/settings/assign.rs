@@ -1,0 +1,202 @@
+//! `path=value`, as `--set` takes it.
+
+use super::Settings;
+
+impl Settings {
+    /// Applies `path=value`, as `--set` takes it: a dotted path (`lights.orbit.0.strength`), or the bare name of a shader's own
+    /// constant or parameter; a TOML value, numbers joined by commas, or text without quotes.
+    ///
+    /// # Errors
+    /// No `=`, a path that does not exist, or a value of the wrong kind, in words.
+    pub fn assign(&mut self, assignment: &str) -> Result<(), String> {
+        let (path, text) = assignment
+            .split_once('=')
+            .ok_or_else(|| format!("'{assignment}' is not path=value, as in lights.ambient_strength=0.2"))?;
+        let (path, text) = (path.trim(), text.trim());
+        let known = self.known()?;
+        let is_own = !path.contains('.') && known.get(path).is_none();
+        let full = if is_own { format!("shader.{path}") } else { path.to_owned() };
+        let old = find(&known, &full)?;
+        let is_text = matches!(old, Some(toml::Value::String(_))) && !full.starts_with("shader.");
+        let value = match parse(text) {
+            value if is_text && !value.is_str() => toml::Value::String(text.into()),
+            value => value,
+        };
+        let mut root = toml::Value::try_from(&*self).map_err(|e| e.to_string())?;
+        set_at(&mut root, &full, value)?;
+        *self = root
+            .try_into()
+            .map_err(|e: toml::de::Error| format!("{path} cannot be '{text}'; {}", takes(&full, old, e.message())))?;
+        Ok(())
+    }
+
+    /// A table of all settings, also of those that are not set, to look up paths and types.
+    fn known(&self) -> Result<toml::Value, String> {
+        let mut all = self.clone();
+        all.camera.eye.get_or_insert_default();
+        all.camera.target.get_or_insert_default();
+        toml::Value::try_from(all).map_err(|e| e.to_string())
+    }
+}
+
+/// A TOML value, or numbers joined by commas; anything else is text.
+fn parse(text: &str) -> toml::Value {
+    let plain = toml::from_str::<toml::Table>(&format!("value = {text}")).ok();
+    let numbers = || {
+        let numbers = text.split(',').map(|n| n.trim().parse().ok().map(toml::Value::Float));
+        numbers.collect::<Option<Vec<_>>>().filter(|numbers| numbers.len() > 1).map(toml::Value::Array)
+    };
+    let value = plain.and_then(|mut table| table.remove("value")).or_else(numbers);
+    value.unwrap_or_else(|| toml::Value::String(text.into()))
+}
+
+/// What is at a path; nothing where a value of the shader author's can be put.
+fn find<'a>(root: &'a toml::Value, path: &str) -> Result<Option<&'a toml::Value>, String> {
+    let mut place = root;
+    let mut above = String::new();
+    for key in path.split('.') {
+        let below = match place {
+            toml::Value::Table(table) => table.get(key),
+            toml::Value::Array(array) => key.parse::<usize>().ok().and_then(|i| array.get(i)),
+            _ => return Err(format!("there is nothing below the part before '{key}' in {path}")),
+        };
+        let full = if above.is_empty() { key.to_owned() } else { format!("{above}.{key}") };
+        place = match (below, place) {
+            (Some(below), _) => below,
+            (None, toml::Value::Array(array)) => {
+                let (length, last) = (array.len(), array.len().saturating_sub(1));
+                return Err(format!("'{key}' in {path} is not one of the {length} entries, 0 to {last}"));
+            }
+            (None, _) if above == "shader" && full == path => return Ok(None),
+            (None, _) if above.is_empty() => return Err(format!("there is no {full}; there are {}", keys(place))),
+            (None, _) => return Err(format!("there is no {full}; below {above} there are {}", keys(place))),
+        };
+        above = full;
+    }
+    Ok(Some(place))
+}
+
+fn keys(value: &toml::Value) -> String {
+    let mut keys: Vec<&str> = value.as_table().into_iter().flat_map(|table| table.keys().map(String::as_str)).collect();
+    keys.sort_unstable();
+    if keys.is_empty() { "none".into() } else { keys.join(", ") }
+}
+
+/// What fits at a path where `old` is, when serde refused something else because of `cause`.
+fn takes(path: &str, old: Option<&toml::Value>, cause: &str) -> String {
+    let names = cause.strip_prefix("unknown variant").and_then(|cause| cause.split_once("expected "));
+    if let Some((_, names)) = names {
+        return format!("it can be {}", names.trim_start_matches("one of ").replace('`', ""));
+    }
+    match old {
+        _ if path.starts_with("shader.") => "it takes a number, numbers as 1,0.8,0.6, true, false or a name".into(),
+        Some(toml::Value::Float(_)) => "it takes a number".into(),
+        Some(toml::Value::Integer(_)) => "it takes a whole number, 0 or more".into(),
+        Some(toml::Value::Boolean(_)) => "it takes true or false".into(),
+        Some(toml::Value::Array(list)) if list.iter().all(toml::Value::is_float) => {
+            format!("it takes {} numbers, as 0.9{}", list.len(), ",0.1".repeat(list.len().saturating_sub(1)))
+        }
+        Some(toml::Value::Array(_)) => format!("it is a list of settings, as {path}.0"),
+        Some(group) => format!("it is a group; below it there are {}", keys(group)),
+        None => cause.to_owned(),
+    }
+}
+
+/// Puts a value at a path that [`find`] knows.
+fn set_at(root: &mut toml::Value, path: &str, value: toml::Value) -> Result<(), String> {
+    let (above, last) = path.rsplit_once('.').map_or((None, path), |(above, last)| (Some(above), last));
+    let index = |key: &str| key.parse::<usize>().ok();
+    let mut place = root;
+    for key in above.into_iter().flat_map(|above| above.split('.')) {
+        let below = match place {
+            toml::Value::Table(table) => table.get_mut(key),
+            toml::Value::Array(array) => index(key).and_then(|i| array.get_mut(i)),
+            _ => None,
+        };
+        place = below.ok_or_else(|| format!("{path} cannot be set alone: there is no {key} yet; set all of it"))?;
+    }
+    match place {
+        toml::Value::Table(table) => {
+            table.insert(last.into(), value);
+        }
+        toml::Value::Array(array) => {
+            if let Some(entry) = index(last).and_then(|i| array.get_mut(i)) {
+                *entry = value;
+            }
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ShaderValue, Tonemap};
+    use super::*;
+
+    #[test]
+    fn assign_reaches_every_depth() {
+        let mut settings = Settings::default();
+        for assignment in [
+            "mode=base-color",
+            "view.ev = -1",
+            "view.tonemap=reinhard-luminance",
+            "lights.orbit.2.color=[1, 0, 0.5]",
+            "camera.eye=[1,2,3]",
+            "variant=midnight",
+            "material.base_color=1, 0.5,0",
+            "environment.name=7",
+            "rim_color=1,.5,0",
+            "measured=1,2",
+            "lights.rect.enabled=true",
+            "shader.rim=0.5",
+            "NDF_MODEL=Beckmann",
+        ] {
+            settings.assign(assignment).unwrap();
+        }
+        assert_eq!(settings.mode, "base-color");
+        assert_eq!(settings.view.ev, -1.0);
+        assert_eq!(settings.view.tonemap, Tonemap::ReinhardLuminance);
+        assert_eq!(settings.lights.orbit[2].color, [1.0, 0.0, 0.5]);
+        assert_eq!(settings.camera.eye, Some([1.0, 2.0, 3.0]));
+        assert_eq!((settings.variant.as_str(), settings.material.base_color), ("midnight", [1.0, 0.5, 0.0]));
+        assert_eq!((settings.environment.name.as_str(), settings.measured.as_str()), ("7", "1,2"));
+        assert_eq!(settings.shader["rim_color"], ShaderValue::Vector(vec![1.0, 0.5, 0.0]));
+        assert!(settings.lights.rect.enabled);
+        assert_eq!(settings.shader["rim"], ShaderValue::Float(0.5));
+        assert_eq!(settings.shader["NDF_MODEL"], ShaderValue::Name("Beckmann".into()));
+    }
+
+    #[test]
+    fn assign_explains_what_it_cannot_do() {
+        let mut settings = Settings::default();
+        let before = settings.clone();
+        for (assignment, part) in [
+            (
+                "view.exposure=1",
+                "there is no view.exposure; below view there are background, ev, frames, msaa, tonemap",
+            ),
+            ("views.ev=1", "there is no views; there are camera, "),
+            ("shader.rim.x=1", "there is no shader.rim; below shader there are none"),
+            ("camera.eye.0=1", "there is no eye yet"),
+            ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number"),
+            ("view.msaa=-1", "view.msaa cannot be '-1'; it takes a whole number, 0 or more"),
+            ("view=1", "view cannot be '1'; it is a group; below it there are background, ev,"),
+            ("lights.orbit=1", "lights.orbit cannot be '1'; it is a list of settings, as lights.orbit.0"),
+            ("lights.rect.enabled=yes", "lights.rect.enabled cannot be 'yes'; it takes true or false"),
+            ("material.base_color=0.9,0.1", "cannot be '0.9,0.1'; it takes 3 numbers, as 0.9,0.1,0.1"),
+            ("material.base_color=red", "material.base_color cannot be 'red'; it takes 3 numbers"),
+            ("camera.eye=[1, 2, 3, 4]", "camera.eye cannot be '[1, 2, 3, 4]'; it takes 3 numbers"),
+            ("rim={ x = 1 }", "rim cannot be '{ x = 1 }'; it takes a number, numbers as"),
+            ("lights.orbit.3.strength=1", "0 to 2"),
+            ("view.ev.x=1", "nothing below"),
+            ("view.ev", "path=value"),
+            ("view.tonemap=filmic", "view.tonemap cannot be 'filmic'; it can be none, reinhard, reinhard-luminance, "),
+            ("lights.source=5", "lights.source cannot be '5'; it can be orbit, model, none"),
+        ] {
+            let error = settings.assign(assignment).unwrap_err();
+            assert!(error.contains(part), "{assignment}: {error}");
+            assert_eq!(settings, before, "{assignment} left a trace");
+        }
+    }
+}
