@@ -63,9 +63,6 @@ float pdf_lobe(LobeFrame lobe, vec3 l) {
     return pdf_reflected(pdf_ggx_vndf(lobe.v, h, lobe.alpha), dot(lobe.v, h));
 }
 
-// The mirror image of a direction behind the surface: thin transmission has the same lobes on both sides.
-vec3 in_front(vec3 n, vec3 l) { return l - 2.0 * min(dot(n, l), 0.0) * n; }
-
 // One of `choices` densities, each drawn equally often: those of the lobes, the same mirrored behind the surface where
 // light passes, and the sun.
 Path sample_path(Surface s, vec3 v, vec2 u, uint choice, uint choices, Sun sun) {
@@ -90,7 +87,7 @@ Path sample_path(Surface s, vec3 v, vec2 u, uint choice, uint choices, Sun sun) 
     if (n_dot_l == 0.0 || (n_dot_l < 0.0 && !may_be_below)) return Path(s.n, 0.0);
     if (mirrored) l -= 2.0 * n_dot_l * s.n;
 
-    vec3 front = LIGHT_PASSES ? in_front(s.n, l) : l;
+    vec3 front = LIGHT_PASSES ? unfolded(s.n, l) : l;
     float pdf = pdf_lobe(specular, front) + pdf_cosine(dot(s.n, front)) + pdf_sun(sun, l);
     if (HAS_COAT) pdf += pdf_lobe(coat, front);
     // What the coat sends below the base, beside what is mirrored there.
