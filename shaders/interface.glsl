@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
 
-const uint INTERFACE_VERSION = 2u;
+const uint INTERFACE_VERSION = 3u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
@@ -74,6 +74,8 @@ const uint FEATURE_PACKED_OCCLUSION = 16384u;
 const uint FEATURE_ENVIRONMENT = 32768u;
 const uint FEATURE_RECT_LIGHTS = 0x10000u;
 const uint FEATURE_TEXTURE_COORDINATES = 0x20000u;
+const uint FEATURE_UV1 = 0x40000u;
+const uint FEATURE_VERTEX_COLOR = 0x80000u;
 const uint TEXTURE_BASE_COLOR = 0u;
 const uint TEXTURE_METALLIC_ROUGHNESS = 1u;
 const uint TEXTURE_NORMAL = 2u;
@@ -118,6 +120,7 @@ layout(constant_id = 1) const uint ALPHA_MODE = 0u; // glTF alphaMode, one of AL
 layout(constant_id = 2) const uint FEATURES = 0u; // what the material uses, FEATURE_* bits
 layout(constant_id = 3) const uint TONEMAP = 0u; // tone map, one of TONEMAP_* in common/tonemap.glsl
 layout(constant_id = 4) const uint ENCODE = 0u; // how the picture stores values, one of ENCODE_*
+layout(constant_id = 5) const uint LIGHT_COUNT = 0u; // lights, if they are few; 0: see frame.light_count
 
 layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     mat4 clip_from_world;      // reversed depth: 1 near, 0 at infinity
@@ -146,13 +149,13 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
 } frame;
 
 struct Light {
-    vec3 position_ws;
-    uint kind;                 // LIGHT_*
+    vec4 position_ws;          // w 1; directional: towards it, unit, w 0
     vec3 direction_ws;         // where it shines to
-    float range;               // meters, 0 without end
+    uint kind;                 // LIGHT_*
     vec3 intensity;            // linear RGB times candela (point, spot), lux (directional), radiance (rectangle)
-    float cos_inner;
-    float cos_outer;
+    float inverse_range;       // 1/m, 0 without end
+    float cone_scale;          // falloff: square of scale times cosine plus offset, within 0..1; no spot: 0
+    float cone_offset;         // no spot: 1
     vec3 half_x_ws;            // rectangle: from the center to an edge, meters
     vec3 half_y_ws;
 };

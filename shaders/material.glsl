@@ -166,7 +166,8 @@ Surface make_surface(Fragment f, vec3 v) {
     if ((FEATURES & FEATURE_PACKED_OCCLUSION) == 0u) {
         occlusion = texture(occlusion_texture, texture_uv(f, TEXTURE_OCCLUSION)).r;
     }
-    base_color *= material.base_color_factor * f.color;
+    base_color *= material.base_color_factor;
+    if ((FEATURES & FEATURE_VERTEX_COLOR) != 0u) base_color *= f.color;
 
     Surface s;
     s.position_ws = f.position_ws;

@@ -14,7 +14,7 @@ layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;
 
 void main() {
-    vec3 v = safe_normalize(frame.eye_ws - fragment.position_ws, vec3(0.0, 0.0, 1.0));
+    vec3 v = safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0));
     Surface surface = make_surface(fragment, v);
     user_surface(surface);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;

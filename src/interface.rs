@@ -12,7 +12,7 @@ pub use blocks::{Draw, Frame, Light, Material, Task, Vertex};
 pub use print::glsl;
 
 /// Raised whenever a shader tree written for the previous contract would misread memory.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Set 0: bound once a frame.
 pub const SET_FRAME: u32 = 0;
@@ -156,6 +156,11 @@ pub const SPEC_TONEMAP: u32 = 3;
 /// `constant_id` of the encoding, `ENCODE_*`; for the tone mapping pass.
 pub const SPEC_ENCODE: u32 = 4;
 
+/// `constant_id` of the number of lights, up to [`UNROLLED_LIGHTS`]; 0: only `Frame::light_count` knows.
+pub const SPEC_LIGHT_COUNT: u32 = 5;
+/// So many lights, or fewer, are worth pipelines of their own, in which the loop over them is unrolled.
+pub const UNROLLED_LIGHTS: usize = 4;
+
 /// The specialization constants that Rust sets for every stage; those from [`USER_CONSTANTS`] on are the author's.
 pub const SPECIALIZATION: &[Specialization] = &[
     Specialization { id: SPEC_MODE, name: "MODE", doc: "debug mode, one of MODE_* in debug/modes.glsl" },
@@ -163,6 +168,11 @@ pub const SPECIALIZATION: &[Specialization] = &[
     Specialization { id: SPEC_FEATURES, name: "FEATURES", doc: "what the material uses, FEATURE_* bits" },
     Specialization { id: SPEC_TONEMAP, name: "TONEMAP", doc: "tone map, one of TONEMAP_* in common/tonemap.glsl" },
     Specialization { id: SPEC_ENCODE, name: "ENCODE", doc: "how the picture stores values, one of ENCODE_*" },
+    Specialization {
+        id: SPEC_LIGHT_COUNT,
+        name: "LIGHT_COUNT",
+        doc: "lights, if they are few; 0: see frame.light_count",
+    },
 ];
 
 /// glTF `alphaMode` OPAQUE.
@@ -207,9 +217,13 @@ pub const FEATURE_ENVIRONMENT: u32 = 1 << 15;
 /// There are rectangular lights. The same for all materials of a frame.
 pub const FEATURE_RECT_LIGHTS: u32 = 1 << 16;
 /// Some texture is not read at TEXCOORD_0 as it is: at TEXCOORD_1, or moved by KHR_texture_transform.
-pub const FEATURE_TEXTURE_COORDINATES: u32 = 1 << LAST_FEATURE;
+pub const FEATURE_TEXTURE_COORDINATES: u32 = 1 << 17;
+/// The mesh has TEXCOORD_1.
+pub const FEATURE_UV1: u32 = 1 << 18;
+/// The mesh has COLOR_0, and the material does not replace it.
+pub const FEATURE_VERTEX_COLOR: u32 = 1 << LAST_FEATURE;
 /// Number of the highest of these bits; all below it are features.
-pub const LAST_FEATURE: u32 = 17;
+pub const LAST_FEATURE: u32 = 19;
 
 /// Index of the base color texture in `Material::uv_from_texture` and in the bit masks. sRGB; glTF specular-glossiness: the diffuse texture.
 pub const TEXTURE_BASE_COLOR: u32 = 0;

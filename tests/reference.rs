@@ -95,7 +95,8 @@ fn points(headless: &Headless, inputs: &Inputs, masking: Masking) -> Vec<Point> 
             return None;
         }
         let lobes = shot.lights.iter().fold(Lobes::default(), |sum, light| {
-            let to_light = vector(light.position_ws) - position;
+            let [x, y, z, _] = light.position_ws;
+            let to_light = vector([x, y, z]) - position;
             let irradiance = vector(light.intensity) / to_light.length_squared();
             sum.plus(brdf::shade(&surface, to_light.normalize(), v, masking), irradiance)
         });

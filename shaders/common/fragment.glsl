@@ -5,6 +5,7 @@
 
 struct Fragment {
     vec3 position_ws;
+    vec3 to_eye_ws;            // meters
     vec3 normal_ws;
     vec4 tangent_ws;           // w: sign of the bitangent
     vec2 uv0;

@@ -74,7 +74,7 @@ bool clip_edge(inout vec3 a, inout vec3 b, inout Rim rim) {
 // (1 + cos beta) / 2 of a cosine, beta being the angle between both horizons (Lambert again: E of a lune), and the
 // surface's normal is (-c, 0, a) in the cosine's space. So a light that fills the sky gives exactly 1 in both lobes.
 AreaLight integrate_rect(Light light, vec3 position_ws, vec3 n, vec3 v, float roughness) {
-    vec3 to_center = light.position_ws - position_ws;
+    vec3 to_center = light.position_ws.xyz - position_ws;
     if (dot(to_center, light.direction_ws) >= 0.0) return AreaLight(0.0, 0.0);   // behind it, or in its plane
 
     // E does not depend on size; 1 keeps squares and cubes within floats.

@@ -12,7 +12,7 @@
 
 // As it is seen in the surface's plane.
 Light mirrored_rectangle(Light light, vec3 position_ws, vec3 n) {
-    light.position_ws = position_ws + reflect(light.position_ws - position_ws, n);
+    light.position_ws.xyz = position_ws + reflect(light.position_ws.xyz - position_ws, n);
     light.direction_ws = reflect(light.direction_ws, n);
     light.half_x_ws = reflect(light.half_x_ws, n);
     light.half_y_ws = reflect(light.half_y_ws, n);

@@ -31,7 +31,8 @@ struct LightRange {
     bool for_terms;            // Lit's `lobes` and `last` are wanted: of each light, even one that cannot shine here
 };
 
-LightRange all_lights() { return LightRange(0u, frame.light_count, false); }
+// A number that is known beforehand lets the driver unroll the loop over the lights.
+LightRange all_lights() { return LightRange(0u, LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count, false); }
 
 // What the debug modes of one light look at: the chosen light, or all. Empty if there is none, or nothing to light.
 LightRange chosen_lights() {

@@ -130,6 +130,7 @@ impl Document {
         let needs = Needs {
             settings: options.settings.clone(),
             materials: BTreeSet::from([likely]),
+            own_lights: 0,
             samples: headless::samples(gpu, &options.settings).unwrap_or(1),
             scene_format: SCENE_FORMAT,
         };
@@ -306,6 +307,7 @@ impl Document {
             let needs = Needs {
                 settings: self.settings.clone(),
                 materials: scene.as_ref().map(|s| s.variants().clone()).unwrap_or_default(),
+                own_lights: scene.as_ref().map_or(0, |s| s.own_lights()),
                 samples: headless::samples(&self.gpu, &self.settings).unwrap_or(1),
                 scene_format: SCENE_FORMAT,
             };

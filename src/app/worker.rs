@@ -21,6 +21,7 @@ use super::Message;
 pub(super) struct Needs {
     pub(super) settings: Settings,
     pub(super) materials: BTreeSet<MaterialVariant>,
+    pub(super) own_lights: usize,
     pub(super) samples: u32,
     pub(super) scene_format: vk::Format,
 }
@@ -29,7 +30,14 @@ impl Needs {
     /// The pipelines that these shaders must have.
     pub(super) fn wanted(&self, shaders: &ShaderSet) -> Wanted {
         let (samples, format) = (self.samples, self.scene_format);
-        Wanted::new(&self.settings, shaders, &self.materials, samples, format, Renderer::OUTPUT_FORMAT)
+        Wanted::new(
+            &self.settings,
+            shaders,
+            (&self.materials, self.own_lights),
+            samples,
+            format,
+            Renderer::OUTPUT_FORMAT,
+        )
     }
 }
 

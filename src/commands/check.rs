@@ -86,7 +86,8 @@ fn build_choices(
             })
             .collect();
     let format = vk::Format::R16G16B16A16_SFLOAT;
-    let wanted = |settings: &Settings| Wanted::new(settings, shaders, &materials, 1, format, Renderer::OUTPUT_FORMAT);
+    let wanted =
+        |settings: &Settings| Wanted::new(settings, shaders, (&materials, 0), 1, format, Renderer::OUTPUT_FORMAT);
     let plain = wanted(&settings);
     let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None) {
         Ok(set) => set,

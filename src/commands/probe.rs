@@ -103,16 +103,21 @@ fn kind(light: &Light) -> &'static str {
     }
 }
 
+fn position(light: &Light) -> [f32; 3] {
+    let [x, y, z, _] = light.position_ws;
+    [x, y, z]
+}
+
 /// With what its kind needs to be redone; `range` where it ends.
 fn light(light: &Light) -> Value {
-    let mut value = json!({ "kind": kind(light), "position": light.position_ws, "direction": light.direction_ws,
+    let mut value = json!({ "kind": kind(light), "position": position(light), "direction": light.direction_ws,
         "intensity": light.intensity });
-    if light.range > 0.0 {
-        value["range"] = json!(light.range);
+    if light.inverse_range > 0.0 {
+        value["range"] = json!(light.inverse_range.recip());
     }
     if light.kind == LIGHT_SPOT {
-        value["cos_inner"] = json!(light.cos_inner);
-        value["cos_outer"] = json!(light.cos_outer);
+        value["cone_scale"] = json!(light.cone_scale);
+        value["cone_offset"] = json!(light.cone_offset);
     }
     if light.kind == LIGHT_RECT {
         value["half_x"] = json!(light.half_x_ws);
@@ -133,8 +138,8 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], shot: &Shot) {
     for light in &shot.lights {
         let place = match light.kind {
             LIGHT_DIRECTIONAL => format!("direction {}", row(&light.direction_ws)),
-            LIGHT_POINT => format!("position {}", row(&light.position_ws)),
-            _ => format!("position {}  direction {}", row(&light.position_ws), row(&light.direction_ws)),
+            LIGHT_POINT => format!("position {}", row(&position(light))),
+            _ => format!("position {}  direction {}", row(&position(light)), row(&light.direction_ws)),
         };
         out!("light      {:11} {place}  intensity {}", kind(light), row(&light.intensity));
     }

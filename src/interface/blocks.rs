@@ -60,20 +60,20 @@ pub struct Frame {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Light {
-    /// World position (point, spot).
-    pub position_ws: [f32; 3],
+    /// World position, and 1. Of a directional light the direction towards it, unit, and 0: a place at infinity.
+    pub position_ws: [f32; 4],
+    /// Where the light shines to, unit.
+    pub direction_ws: [f32; 3],
     /// `LIGHT_*`.
     pub kind: u32,
-    /// Where the light shines to, unit (directional, spot).
-    pub direction_ws: [f32; 3],
-    /// Distance at which it ends, meters; 0 is without end.
-    pub range: f32,
     /// Linear RGB times candela (point, spot), lux (directional) or radiance (rectangle).
     pub intensity: [f32; 3],
-    /// Spot: cosine of the angle where the falloff starts.
-    pub cos_inner: f32,
-    /// Spot: cosine of the angle where it ends.
-    pub cos_outer: f32,
+    /// 1 / the distance at which it ends, 1/m; 0 is without end.
+    pub inverse_range: f32,
+    /// Spot: the falloff is the square of scale x cosine + offset, held within 0..1. Scale; 0 for what is no spot.
+    pub cone_scale: f32,
+    /// Offset; 1 for what is no spot.
+    pub cone_offset: f32,
     /// Rectangle: from its center to the middle of one edge, meters.
     pub half_x_ws: [f32; 3],
     /// Rectangle: from its center to the middle of a neighboring edge, meters.

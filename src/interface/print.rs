@@ -63,6 +63,8 @@ const UINTS: &[(&str, u32)] = &[
     ("FEATURE_ENVIRONMENT", FEATURE_ENVIRONMENT),
     ("FEATURE_RECT_LIGHTS", FEATURE_RECT_LIGHTS),
     ("FEATURE_TEXTURE_COORDINATES", FEATURE_TEXTURE_COORDINATES),
+    ("FEATURE_UV1", FEATURE_UV1),
+    ("FEATURE_VERTEX_COLOR", FEATURE_VERTEX_COLOR),
     ("TEXTURE_BASE_COLOR", TEXTURE_BASE_COLOR),
     ("TEXTURE_METALLIC_ROUGHNESS", TEXTURE_METALLIC_ROUGHNESS),
     ("TEXTURE_NORMAL", TEXTURE_NORMAL),
@@ -130,13 +132,13 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
 } frame;
 
 struct Light {
-    vec3 position_ws;
-    uint kind;                 // LIGHT_*
+    vec4 position_ws;          // w 1; directional: towards it, unit, w 0
     vec3 direction_ws;         // where it shines to
-    float range;               // meters, 0 without end
+    uint kind;                 // LIGHT_*
     vec3 intensity;            // linear RGB times candela (point, spot), lux (directional), radiance (rectangle)
-    float cos_inner;
-    float cos_outer;
+    float inverse_range;       // 1/m, 0 without end
+    float cone_scale;          // falloff: square of scale times cosine plus offset, within 0..1; no spot: 0
+    float cone_offset;         // no spot: 1
     vec3 half_x_ws;            // rectangle: from the center to an edge, meters
     vec3 half_y_ws;
 };

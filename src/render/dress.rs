@@ -66,10 +66,10 @@ fn dressed_draw(draw: &GpuDraw, model: &Model, dress: &Dress, over: Option<&Mate
         push.attributes &= !ATTRIBUTE_COLOR;
     }
     GpuDraw {
-        push,
         material: index,
         double_sided: material.double_sided,
-        variant: variant(model, primitive, material),
+        variant: variant(model, primitive, material, push.attributes),
+        push,
         ..draw.clone()
     }
 }

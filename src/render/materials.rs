@@ -98,15 +98,20 @@ pub(super) fn pack(material: &model::Material, id: u32) -> interface::Material {
     packed
 }
 
-/// What a material asks of its pipeline on a primitive.
-pub(super) fn variant(model: &Model, primitive: &model::Primitive, material: &model::Material) -> MaterialVariant {
+/// What a material asks of its pipeline on a primitive that is drawn with these `interface::ATTRIBUTE_*`.
+pub(super) fn variant(
+    model: &Model,
+    primitive: &model::Primitive,
+    material: &model::Material,
+    attributes: u32,
+) -> MaterialVariant {
     MaterialVariant {
         alpha: match material.alpha_mode {
             AlphaMode::Opaque => interface::ALPHA_OPAQUE,
             AlphaMode::Mask => interface::ALPHA_MASK,
             AlphaMode::Blend => interface::ALPHA_BLEND,
         },
-        features: model::features(model, material, primitive.attributes),
+        features: model::features(model, material, attributes),
         class: match primitive.topology {
             Topology::Points => PrimitiveClass::Points,
             Topology::Lines | Topology::LineStrip => PrimitiveClass::Lines,

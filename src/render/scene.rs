@@ -61,6 +61,7 @@ pub struct GpuScene {
     /// The last one that was made of it by [`GpuScene::dressed`].
     pub(super) last_dress: Mutex<Option<(Dress, Arc<GpuScene>)>>,
     variants: BTreeSet<MaterialVariant>,
+    own_lights: usize,
 }
 
 impl GpuScene {
@@ -78,7 +79,8 @@ impl GpuScene {
         let variants = draws.iter().map(|d| d.variant).collect();
         let stand_ins = textures.into_iter().filter(|(source, _)| source.image(model).is_none()).collect();
         let last_dress = Mutex::new(None);
-        Ok(Arc::new(Self { indices, vertices, materials, draws, stand_ins, last_dress, variants }))
+        let own_lights = model.lights.len();
+        Ok(Arc::new(Self { indices, vertices, materials, draws, stand_ins, last_dress, variants, own_lights }))
     }
 
     /// The same with only those of the model's instances that are `kept`.
@@ -96,6 +98,7 @@ impl GpuScene {
             stand_ins: self.stand_ins.clone(),
             last_dress: Mutex::new(None),
             variants: draws.iter().map(|draw| draw.variant).collect(),
+            own_lights: self.own_lights,
             draws,
         })
     }
@@ -103,6 +106,11 @@ impl GpuScene {
     /// Whether light passes through a surface, so that what lies behind it must be drawn first.
     pub fn is_transmissive(&self) -> bool {
         self.variants.iter().any(|v| v.features & FEATURE_TRANSMISSION != 0)
+    }
+
+    /// How many lights the model has.
+    pub fn own_lights(&self) -> usize {
+        self.own_lights
     }
 
     /// The kinds of material in the scene.
@@ -285,7 +293,7 @@ fn draws(model: &Model, vertices: u64, ranges: &[Range]) -> Vec<GpuDraw> {
             front: if determinant < 0.0 { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE },
             double_sided: material.double_sided,
             material: primitive.material,
-            variant: variant(model, primitive, material),
+            variant: variant(model, primitive, material, primitive.attributes),
             center_ws: world.transform_point3(primitive.bounds.center()),
         }
     };

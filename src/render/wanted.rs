@@ -3,7 +3,11 @@
 use std::collections::BTreeSet;
 
 use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
-use crate::interface::{self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF};
+use crate::interface::{
+    self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
+    UNROLLED_LIGHTS,
+};
+use crate::scene::light_count;
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::{DrawAs, Encode, Mode, ShaderSet};
 
@@ -43,6 +47,8 @@ pub struct Wanted {
     pub materials: BTreeSet<MaterialVariant>,
     /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_RECT_LIGHTS`.
     pub shared_features: u32,
+    /// How many lights shine, if they are few enough to unroll the loop over them; else 0.
+    pub light_count: u32,
     /// Whether the environment is seen behind the model.
     pub sky: bool,
     /// Whether frames add up to a mean while nothing changes.
@@ -74,16 +80,18 @@ pub(super) enum Pass {
 }
 
 impl Wanted {
-    /// What `settings` ask of `shaders` for a scene with these materials. A mode that the tree lost falls back to its first.
+    /// What `settings` ask of `shaders` for a scene with these materials and so many lights of its own. A mode that the tree lost
+    /// falls back to its first.
     pub fn new(
         settings: &Settings,
         shaders: &ShaderSet,
-        materials: &BTreeSet<MaterialVariant>,
+        (materials, own_lights): (&BTreeSet<MaterialVariant>, usize),
         samples: u32,
         scene_format: vk::Format,
         output_format: vk::Format,
     ) -> Self {
         let mode = mode(shaders, &settings.mode);
+        let lights = light_count(&settings.lights, own_lights);
         Self {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
@@ -95,6 +103,7 @@ impl Wanted {
             output_format,
             materials: materials.clone(),
             shared_features: shared_features(settings),
+            light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
             sky: settings.environment.is_shown(&settings.view) && mode.is_some_and(|m| m.tonemap),
             accumulates: mode.is_some_and(|m| m.accumulate),
             through: mode.is_some_and(|m| m.through),
@@ -120,6 +129,7 @@ impl Wanted {
             (SPEC_MODE, self.mode),
             (SPEC_ALPHA_MODE, material.alpha),
             (SPEC_FEATURES, material.features | self.shared_features),
+            (SPEC_LIGHT_COUNT, self.light_count),
         ];
         specialization.extend_from_slice(&self.constants);
         let raster = match self.draw {

@@ -4,12 +4,12 @@ use glam::{Affine2, Vec3};
 
 use super::model::{Material, Model, TextureUse};
 use crate::interface::{
-    ATTRIBUTE_TANGENT_FRAME, FEATURE_ANISOTROPY, FEATURE_CLEARCOAT, FEATURE_CLEARCOAT_NORMAL, FEATURE_CONDUCTOR,
-    FEATURE_DIFFUSE_TRANSMISSION, FEATURE_DISPERSION, FEATURE_IRIDESCENCE, FEATURE_NORMAL_TEXTURE,
-    FEATURE_PACKED_OCCLUSION, FEATURE_SHEEN, FEATURE_SPECULAR, FEATURE_SPECULAR_GLOSSINESS,
-    FEATURE_TEXTURE_COORDINATES, FEATURE_TRANSMISSION, FEATURE_UNLIT, FEATURE_VOLUME, TEXTURE_CLEARCOAT_NORMAL,
-    TEXTURE_IRIDESCENCE_THICKNESS, TEXTURE_METALLIC_ROUGHNESS, TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SPECULAR,
-    TEXTURE_SPECULAR_COLOR,
+    ATTRIBUTE_COLOR, ATTRIBUTE_TANGENT_FRAME, ATTRIBUTE_UV1, FEATURE_ANISOTROPY, FEATURE_CLEARCOAT,
+    FEATURE_CLEARCOAT_NORMAL, FEATURE_CONDUCTOR, FEATURE_DIFFUSE_TRANSMISSION, FEATURE_DISPERSION, FEATURE_IRIDESCENCE,
+    FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION, FEATURE_SHEEN, FEATURE_SPECULAR, FEATURE_SPECULAR_GLOSSINESS,
+    FEATURE_TEXTURE_COORDINATES, FEATURE_TRANSMISSION, FEATURE_UNLIT, FEATURE_UV1, FEATURE_VERTEX_COLOR,
+    FEATURE_VOLUME, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_IRIDESCENCE_THICKNESS, TEXTURE_METALLIC_ROUGHNESS,
+    TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SPECULAR, TEXTURE_SPECULAR_COLOR,
 };
 
 /// The `interface::FEATURE_*` bits of a material of `model` on a mesh with these `interface::ATTRIBUTE_*`. The bits
@@ -19,9 +19,12 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
     let has = |texture: u32| material.textures[texture as usize].is_some();
     let is_moved = |used: &TextureUse| used.uv_set != 0 || used.uv_from_mesh != Affine2::IDENTITY;
     let moved = if material.textures.iter().flatten().any(is_moved) { FEATURE_TEXTURE_COORDINATES } else { 0 };
+    let uv1 = if attributes & ATTRIBUTE_UV1 != 0 { FEATURE_UV1 } else { 0 };
+    let color = if attributes & ATTRIBUTE_COLOR != 0 { FEATURE_VERTEX_COLOR } else { 0 };
+    let of_mesh = moved | uv1 | color;
     let normal = if has_frame && has(TEXTURE_NORMAL) { FEATURE_NORMAL_TEXTURE } else { 0 };
     if material.unlit {
-        return FEATURE_UNLIT | normal | moved;
+        return FEATURE_UNLIT | normal | of_mesh;
     }
     let clearcoat = material.clearcoat.factor > 0.0;
     let specular = &material.specular;
@@ -54,7 +57,7 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
         // Without an occlusion texture its strength is 0, so what is read does not matter: then better no texture more.
         (FEATURE_PACKED_OCCLUSION, !has(TEXTURE_OCCLUSION) || packs_occlusion(model, material)),
     ];
-    conditions.iter().filter(|(_, used)| *used).fold(normal | moved, |bits, (bit, _)| bits | bit)
+    conditions.iter().filter(|(_, used)| *used).fold(normal | of_mesh, |bits, (bit, _)| bits | bit)
 }
 
 /// Whether occlusion can be the red channel of the metallic-roughness texture, which leaves it free: both are read

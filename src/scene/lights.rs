@@ -21,16 +21,27 @@ pub fn lights(settings: &LightSettings, model: &Model, time_s: f32) -> Vec<Light
     lights
 }
 
+/// How many lights shine, of a model with `in_model` of its own.
+pub fn light_count(settings: &LightSettings, in_model: usize) -> usize {
+    let punctual = match settings.source {
+        LightSource::None => return 0,
+        LightSource::Orbit => settings.orbit.len(),
+        LightSource::Model => in_model,
+    };
+    punctual + usize::from(settings.rect.enabled)
+}
+
 /// Distances and intensities grow with the model, so that every model is lit alike.
 fn orbit(light: &OrbitLight, turned_deg: f32, model: &Model) -> Light {
     let (center, radius) = (model.bounds.center(), model.bounds.radius());
     let azimuth_rad = (light.azimuth + turned_deg).to_radians();
     let outward = direction(azimuth_rad, (90.0 - light.polar).to_radians());
     Light {
-        position_ws: (center + outward * radius * light.distance).to_array(),
-        kind: interface::LIGHT_POINT,
+        position_ws: (center + outward * radius * light.distance).extend(1.0).to_array(),
         direction_ws: (-outward).to_array(),
+        kind: interface::LIGHT_POINT,
         intensity: (Vec3::from(light.color) * light.strength * radius * radius).to_array(),
+        cone_offset: 1.0,
         ..Light::default()
     }
 }
@@ -44,36 +55,51 @@ fn rectangle(light: &RectLight, model: &Model) -> Light {
     let x = Vec3::new(azimuth_rad.cos(), 0.0, -azimuth_rad.sin());
     let y = (-outward).cross(x);
     Light {
-        position_ws: (center + outward * radius * light.distance).to_array(),
-        kind: interface::LIGHT_RECT,
+        position_ws: (center + outward * radius * light.distance).extend(1.0).to_array(),
         direction_ws: (-outward).to_array(),
+        kind: interface::LIGHT_RECT,
         intensity: (Vec3::from(light.color) * light.strength).to_array(),
         half_x_ws: (x * radius * light.width * 0.5).to_array(),
         half_y_ws: (y * radius * light.height * 0.5).to_array(),
+        cone_offset: 1.0,
         ..Light::default()
     }
 }
 
 fn punctual(light: &super::model::Light) -> Light {
-    let (kind, cos_inner, cos_outer) = match light.kind {
-        LightKind::Directional => (interface::LIGHT_DIRECTIONAL, 0.0, 0.0),
-        LightKind::Point => (interface::LIGHT_POINT, 0.0, 0.0),
-        LightKind::Spot { inner, outer } => (interface::LIGHT_SPOT, inner.cos(), outer.cos()),
+    let (kind, position_ws) = match light.kind {
+        LightKind::Directional => (interface::LIGHT_DIRECTIONAL, (-light.direction).extend(0.0)),
+        LightKind::Point => (interface::LIGHT_POINT, light.position.extend(1.0)),
+        LightKind::Spot { .. } => (interface::LIGHT_SPOT, light.position.extend(1.0)),
     };
+    let (cone_scale, cone_offset) = match light.kind {
+        LightKind::Spot { inner, outer } => cone(inner, outer),
+        _ => (0.0, 1.0),
+    };
+    let range = light.range.filter(|range| *range > 0.0 && light.kind != LightKind::Directional);
     Light {
-        position_ws: light.position.to_array(),
-        kind,
+        position_ws: position_ws.to_array(),
         direction_ws: light.direction.to_array(),
-        range: light.range.unwrap_or(0.0),
+        kind,
         intensity: light.intensity.to_array(),
-        cos_inner,
-        cos_outer,
+        inverse_range: range.map_or(0.0, f32::recip),
+        cone_scale,
+        cone_offset,
         ..Light::default()
     }
 }
 
+/// Scale and offset that bring the cosine of the angle to the axis to 0 at `outer` and 1 at `inner`, radians (the glTF
+/// extension KHR_lights_punctual). Where both are the same the ramp is a step; 1e-3, also from there, keeps it divisible.
+fn cone(inner: f32, outer: f32) -> (f32, f32) {
+    let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
+    (scale, -outer.cos() * scale)
+}
+
 #[cfg(test)]
 mod tests {
+    use glam::Vec4;
+
     use super::super::model::{self, Bounds};
     use super::*;
 
@@ -95,7 +121,7 @@ mod tests {
         let lights = lights(&settings, &model(), 0.0);
         let center = Vec3::new(1.0, 2.0, 2.0);
         for (light, side) in lights.iter().zip([Vec3::Z, Vec3::X, Vec3::Y]) {
-            assert!(Vec3::from(light.position_ws).distance(center + side * 12.0) < 1e-4, "{light:?}");
+            assert!(Vec4::from(light.position_ws).distance((center + side * 12.0).extend(1.0)) < 1e-4, "{light:?}");
             assert!(Vec3::from(light.direction_ws).distance(-side) < 1e-5);
             assert_eq!((light.intensity, light.kind), ([18.0, 9.0, 0.0], interface::LIGHT_POINT));
         }
@@ -104,7 +130,7 @@ mod tests {
     #[test]
     fn spin_adds_azimuth() {
         let settings = LightSettings { spin: 45.0, orbit: [light(0.0, 90.0); 3], ..LightSettings::default() };
-        let position = Vec3::from(lights(&settings, &model(), 2.0)[0].position_ws);
+        let position = Vec4::from(lights(&settings, &model(), 2.0)[0].position_ws).truncate();
         assert!(position.distance(Vec3::new(13.0, 2.0, 2.0)) < 1e-4, "{position}");
     }
 
@@ -124,8 +150,8 @@ mod tests {
             let settings = LightSettings { rect, spin: 45.0, ..LightSettings::default() };
             let lights = lights(&settings, &model(), 3.0);
             let light = lights[3];
-            let [position, direction, x, y] =
-                [light.position_ws, light.direction_ws, light.half_x_ws, light.half_y_ws].map(Vec3::from);
+            let position = Vec4::from(light.position_ws).truncate();
+            let [direction, x, y] = [light.direction_ws, light.half_x_ws, light.half_y_ws].map(Vec3::from);
             assert_eq!((lights.len(), light.kind, light.intensity), (4, interface::LIGHT_RECT, [6.0; 3]));
             assert!((position + direction * 6.0).distance(Vec3::new(1.0, 2.0, 2.0)) < 1e-4, "{light:?}");
             assert!((x.length() - 1.5).abs() < 1e-5 && (y.length() - 0.75).abs() < 1e-5 && x.y == 0.0, "{light:?}");
@@ -133,7 +159,10 @@ mod tests {
         }
         let with = |source| {
             let rect = RectLight { enabled: true, ..RectLight::default() };
-            lights(&LightSettings { source, rect, ..LightSettings::default() }, &model(), 0.0).len()
+            let settings = LightSettings { source, rect, ..LightSettings::default() };
+            let count = lights(&settings, &model(), 0.0).len();
+            assert_eq!(light_count(&settings, 0), count);
+            count
         };
         assert_eq!([LightSource::Model, LightSource::None].map(with), [1, 0]);
     }
@@ -151,8 +180,9 @@ mod tests {
         });
         let from = |source| lights(&LightSettings { source, ..LightSettings::default() }, &model, 0.0);
         let spot = from(LightSource::Model)[0];
-        assert_eq!((spot.kind, spot.range, spot.cos_inner), (interface::LIGHT_SPOT, 7.0, 1.0));
-        assert!((spot.cos_outer - 0.5).abs() < 1e-6);
+        assert_eq!((spot.kind, spot.inverse_range, spot.position_ws), (interface::LIGHT_SPOT, 1.0 / 7.0, [1.0; 4]));
+        let ramp = |cosine: f32| cosine * spot.cone_scale + spot.cone_offset;
+        assert!(ramp(0.5).abs() < 1e-6 && (ramp(1.0) - 1.0).abs() < 1e-6, "{spot:?}");
         assert!(from(LightSource::None).is_empty());
     }
 }

@@ -26,7 +26,7 @@ pub use control::{FlyCamera, OrbitCamera};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
-pub use lights::lights;
+pub use lights::{light_count, lights};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pick::near_pixel;

@@ -111,7 +111,7 @@ fn edited_structs_are_refused_by_member() {
         (
             "    uint kind;  ",
             "    uint sort;  ",
-            "shader says `Light.sort` is at byte 12, Specula has `kind` at 12 there",
+            "shader says `Light.sort` is at byte 28, Specula has `kind` at 28 there",
         ),
         ("    vec2 uv1;\n", "", "shader says `Vertex.color` is at byte 48, Specula says 56"),
         (

@@ -32,7 +32,9 @@ pub const LAYOUTS: &[Layout] = &[
         scene_radius viewport_px viewport_origin_px near far light_count chosen_light mode largest_value
         environment_rotation environment_intensity environment_blur sample_index sample_count
     }),
-    layout!(Light { position_ws kind direction_ws range intensity cos_inner cos_outer half_x_ws half_y_ws }),
+    layout!(Light {
+        position_ws direction_ws kind intensity inverse_range cone_scale cone_offset half_x_ws half_y_ws
+    }),
     layout!(Material {
         base_color_factor emissive_factor metallic_factor roughness_factor normal_scale occlusion_strength alpha_cutoff
         texture_mask uv1_mask id clearcoat_factor clearcoat_roughness clearcoat_normal_scale anisotropy_strength

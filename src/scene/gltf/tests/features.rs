@@ -207,3 +207,21 @@ fn coordinates_other_than_the_first_are_a_feature() {
         assert_eq!(bits(&builder) & moved, expected, "{texture}");
     }
 }
+
+#[test]
+fn what_a_mesh_has_not_is_no_feature() {
+    let builder = with(json!({}));
+    let model = builder.model();
+    let asked = contract::FEATURE_UV1 | contract::FEATURE_VERTEX_COLOR;
+    for (attributes, expected) in [
+        (0, 0),
+        (contract::ATTRIBUTE_UV1, contract::FEATURE_UV1),
+        (contract::ATTRIBUTE_COLOR, contract::FEATURE_VERTEX_COLOR),
+    ] {
+        for unlit in [false, true] {
+            let mut material = model.materials[1].clone();
+            material.unlit = unlit;
+            assert_eq!(features(&model, &material, attributes) & asked, expected, "{attributes} {unlit}");
+        }
+    }
+}
