@@ -10,7 +10,7 @@
 //! - [`gpu`]: Vulkan objects, the only `unsafe`. Knows no files and no glTF.
 //! - [`scene`]: CPU data: glTF, tangents, camera, lights.
 //! - [`render`]: where shaders, device and scene meet.
-//! - [`picture`], [`headless`]: captures as files; rendering without a window.
+//! - [`picture`], [`comparison`], [`headless`]: captures as files; how far two are apart; rendering without a window.
 //! - [`app`]: the window.
 //!
 //! The way of an edit: a file event becomes a settled set of changed paths ([`shader::watch`]), the set becomes dirty stages and new
@@ -18,6 +18,7 @@
 //! An error anywhere before the swap yields diagnostics and changes nothing else.
 
 pub mod app;
+pub mod comparison;
 pub mod events;
 pub mod gpu;
 pub mod headless;

@@ -11,8 +11,8 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use image::RgbImage;
-use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
+use image::{DynamicImage, RgbImage};
+use specula::comparison::{Comparison, Picture};
 use specula::render::Capture;
 use specula::scene::BUILT_IN;
 use support::{model, render, renderer, settings};
@@ -20,7 +20,7 @@ use support::{model, render, renderer, settings};
 const SIZE: (u32, u32) = (160, 120);
 /// Charts of balls.
 const CHART: (u32, u32) = (320, 180);
-const MOST_MEAN: f32 = 0.02;
+const MOST_MEAN: f64 = 0.02;
 const BLESS: &str = "SPECULA_BLESS=1 cargo test --release --test golden";
 
 #[test]
@@ -93,22 +93,13 @@ fn compare(slug: &str, actual: &RgbImage) -> Result<(), String> {
         let kept = keep(actual, "actual");
         format!("{slug}: there is no golden {} ({error}); the picture is {kept}", golden(slug).display())
     })?;
-    let expected = expected.into_rgb8();
-    if expected.dimensions() != actual.dimensions() {
-        return Err(format!(
-            "{slug}: the golden has {:?} pixels, not {:?}",
-            expected.dimensions(),
-            actual.dimensions()
-        ));
-    }
-    let image = |of: &RgbImage| FlipImageRgb8::with_data(of.width(), of.height(), of);
-    let error = flip(image(&expected), image(actual), DEFAULT_PIXELS_PER_DEGREE);
-    let mean = FlipPool::from_image(&error).mean();
+    let display = |image: DynamicImage| Picture::Display(image.into_rgba8());
+    let found = Comparison::new(&display(expected), &display(actual.clone().into()))
+        .map_err(|error| format!("{slug}: the golden and the picture, {error}"))?;
+    let mean = found.error;
     if mean <= MOST_MEAN {
         return Ok(());
     }
-    let colors = error.apply_color_lut(&magma_lut());
-    let difference = RgbImage::from_raw(colors.width(), colors.height(), colors.to_vec()).unwrap();
-    let (kept, difference) = (keep(actual, "actual"), keep(&difference, "difference"));
+    let (kept, difference) = (keep(actual, "actual"), keep(&found.map().to_rgb8(), "difference"));
     Err(format!("{slug}: FLIP mean {mean:.4}, at most {MOST_MEAN}; see {kept} and {difference}"))
 }

@@ -12,6 +12,7 @@ mod bench;
 mod brdf;
 mod check;
 mod common;
+mod diff;
 mod info;
 mod modes;
 mod new;
@@ -58,6 +59,8 @@ enum Command {
     New(new::Args),
     /// Measure reloads, frames and loading
     Bench(bench::Args),
+    /// Compare pictures, or folders of them
+    Diff(diff::Args),
     /// Measure the BRDF of the shader tree, or plot it
     Brdf(brdf::Args),
     /// Print the raw values of a pixel in every debug mode
@@ -115,6 +118,7 @@ pub fn main(start: Instant) -> ExitCode {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::New(args)) => new::run(&args),
         Some(Command::Bench(args)) => bench::run(args, start),
+        Some(Command::Diff(args)) => diff::run(&args),
         Some(Command::Brdf(args)) => brdf::run(args),
         Some(Command::Probe(args)) => probe::run(args),
     };

@@ -108,9 +108,10 @@ fn position(light: &Light) -> [f32; 3] {
     [x, y, z]
 }
 
-/// With what its kind needs to be redone; `range` where it ends.
+/// With what its kind needs to be redone: no position at infinity, `range` where it ends.
 fn light(light: &Light) -> Value {
-    let mut value = json!({ "kind": kind(light), "position": position(light), "direction": light.direction_ws,
+    let placed = (light.kind != LIGHT_DIRECTIONAL).then(|| position(light));
+    let mut value = json!({ "kind": kind(light), "position": placed, "direction": light.direction_ws,
         "intensity": light.intensity });
     if light.inverse_range > 0.0 {
         value["range"] = json!(light.inverse_range.recip());

@@ -1,0 +1,169 @@
+//! `specula diff A B`: how far pictures are apart.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use specula::comparison::{Comparison, Measure, Picture};
+
+use super::Failure;
+
+/// Options of `diff`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "PNGs are compared as an eye sees them: the mean of FLIP (Andersson et al. 2020), 0..1; 0.01 is hardly \
+    seen, 0.1 at once. EXRs are compared as numbers: RMSE, in their own unit.\n\
+    Exit codes: 0 within --max, 1 beyond it, or a picture that is only on one side.\n\n\
+    In CI:  specula render --mode all --out now/ball.png && specula diff golden now --max 0.01"
+)]
+pub struct Args {
+    /// Picture, .png or .exr, or a folder of them
+    a: PathBuf,
+    /// What to compare with it: a picture of the same size, or a folder whose pictures have the same names
+    b: PathBuf,
+    /// Largest error that passes
+    #[arg(long, value_name = "ERROR", default_value_t = 0.0)]
+    max: f64,
+    /// Write where they differ: a file; for folders a folder, one file for each picture beyond --max
+    #[arg(long, value_name = "FILE|DIR")]
+    out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// One picture of both sides, or why there is no comparison.
+struct Pair {
+    name: String,
+    compared: Result<Comparison, String>,
+}
+
+impl Pair {
+    fn passes(&self, max: f64) -> bool {
+        self.compared.as_ref().is_ok_and(|found| found.error <= max)
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if args.max.is_nan() || args.max < 0.0 {
+        return Err(Failure::Input(format!("--max {}: expected 0 or more", args.max)));
+    }
+    let folders = match (args.a.is_dir(), args.b.is_dir()) {
+        (a, b) if a == b => a,
+        _ => return Err(Failure::Input("a folder and a file cannot be compared: name two of one kind".to_owned())),
+    };
+    let pairs = if folders { in_folders(&args.a, &args.b)? } else { vec![pair_of_files(&args.a, &args.b)?] };
+    if let Some(out) = &args.out {
+        write_maps(&pairs, out, folders, args.max).map_err(Failure::Input)?;
+    }
+    if args.json {
+        let pictures: Vec<Value> = pairs.iter().map(|pair| as_json(pair, args.max)).collect();
+        let passes = pairs.iter().all(|pair| pair.passes(args.max));
+        out!("{:#}", json!({ "pictures": pictures, "max": args.max, "passes": passes }));
+    } else {
+        pairs.iter().for_each(print);
+    }
+    let failed = pairs.iter().filter(|pair| !pair.passes(args.max)).count();
+    match failed {
+        0 => Ok(()),
+        _ if args.json || pairs.len() == 1 => Err(Failure::Printed),
+        _ => Err(Failure::Input(format!("{failed} of {} pictures are beyond --max {}", pairs.len(), args.max))),
+    }
+}
+
+fn pair_of_files(a: &Path, b: &Path) -> Result<Pair, Failure> {
+    let open = |path: &Path| Picture::open(path).map_err(Failure::Input);
+    let compared = Comparison::new(&open(a)?, &open(b)?).map_err(Failure::Input)?;
+    Ok(Pair { name: b.display().to_string(), compared: Ok(compared) })
+}
+
+fn in_folders(a: &Path, b: &Path) -> Result<Vec<Pair>, Failure> {
+    let (in_a, in_b) = (pictures_in(a)?, pictures_in(b)?);
+    if in_a.is_empty() && in_b.is_empty() {
+        let message = format!("no .png or .exr in {}, nor in {}", a.display(), b.display());
+        return Err(Failure::Input(message));
+    }
+    let pair = |name: &String| {
+        let compared = match (in_a.contains(name), in_b.contains(name)) {
+            (true, true) => Picture::open(&a.join(name))
+                .and_then(|from| Ok((from, Picture::open(&b.join(name))?)))
+                .and_then(|(from, to)| Comparison::new(&from, &to)),
+            (true, false) => Err(format!("only in {}", a.display())),
+            _ => Err(format!("only in {}", b.display())),
+        };
+        Pair { name: name.clone(), compared }
+    };
+    Ok(in_a.union(&in_b).map(pair).collect())
+}
+
+/// Names of the pictures in a folder, not in those below it.
+fn pictures_in(folder: &Path) -> Result<BTreeSet<String>, Failure> {
+    let error = |e: std::io::Error| Failure::Input(format!("cannot read {}: {e}", folder.display()));
+    let mut names = BTreeSet::new();
+    for entry in std::fs::read_dir(folder).map_err(error)? {
+        let path = entry.map_err(error)?.path();
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        if let (Some(name), "png" | "exr") = (path.file_name(), ending.as_str()) {
+            names.insert(name.to_string_lossy().into_owned());
+        }
+    }
+    Ok(names)
+}
+
+/// Maps of raw pictures are raw too, so the file's ending must fit.
+fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(), String> {
+    let save = |map: &image::DynamicImage, path: &Path| {
+        map.save(path).map_err(|e| format!("cannot write {}: {e}", path.display()))
+    };
+    if !folders {
+        return pairs.iter().flat_map(|pair| &pair.compared).try_for_each(|found| {
+            let ending = if found.measure == Measure::Flip { "png" } else { "exr" };
+            if !out.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
+                return Err(format!("cannot write {}: a map of these pictures ends in .{ending}", out.display()));
+            }
+            save(found.map(), out)
+        });
+    }
+    std::fs::create_dir_all(out).map_err(|e| format!("cannot make {}: {e}", out.display()))?;
+    for pair in pairs.iter().filter(|pair| !pair.passes(max)) {
+        if let Ok(found) = &pair.compared {
+            save(found.map(), &out.join(&pair.name))?;
+        }
+    }
+    Ok(())
+}
+
+fn print(pair: &Pair) {
+    let name = &pair.name;
+    match &pair.compared {
+        Err(why) => out!("{:10} {name}  {why}", "-"),
+        Ok(found) if found.differing == 0 => out!("{:10} {name}", "same"),
+        Ok(found) => {
+            let measure = if found.measure == Measure::Flip { "FLIP" } else { "RMSE" };
+            let (x, y) = found.largest_at;
+            out!(
+                "{:<10} {name}  {measure}; largest {:.4} at {x},{y}; {} of {} pixels differ",
+                number(found.error),
+                found.largest,
+                found.differing,
+                found.pixels
+            );
+        }
+    }
+}
+
+/// Four digits after the point; less than that is told as such.
+fn number(error: f64) -> String {
+    if error < 0.00005 { "< 0.0001".to_owned() } else { format!("{error:.4}") }
+}
+
+fn as_json(pair: &Pair, max: f64) -> Value {
+    let passes = pair.passes(max);
+    match &pair.compared {
+        Err(why) => json!({ "name": pair.name, "passes": passes, "why": why }),
+        Ok(found) => json!({ "name": pair.name, "passes": passes, "measure": found.measure, "error": found.error,
+            "largest": found.largest, "largest_at": found.largest_at, "differing": found.differing,
+            "pixels": found.pixels }),
+    }
+}

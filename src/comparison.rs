@@ -1,0 +1,159 @@
+//! How far two pictures are apart: for goldens, and for what an edit changed.
+
+use std::path::Path;
+
+use image::{DynamicImage, Rgb32FImage, RgbImage, Rgba32FImage, RgbaImage};
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
+
+/// A picture as a file holds it.
+pub enum Picture {
+    /// 8 bits a channel, encoded for a display, alpha straight.
+    Display(RgbaImage),
+    /// Floats, linear, in any unit.
+    Raw(Rgba32FImage),
+}
+
+impl Picture {
+    /// Reads a file; what it holds says what it is, not its ending.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no picture, in words.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let error = |e: &dyn std::fmt::Display| format!("cannot read {}: {e}", path.display());
+        let reader = image::ImageReader::open(path).map_err(|e| error(&e))?;
+        let decoded = reader.with_guessed_format().map_err(|e| error(&e))?.decode().map_err(|e| error(&e))?;
+        Ok(match decoded {
+            DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => Self::Raw(decoded.into_rgba32f()),
+            _ => Self::Display(decoded.into_rgba8()),
+        })
+    }
+
+    fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Display(image) => image.dimensions(),
+            Self::Raw(image) => image.dimensions(),
+        }
+    }
+
+    /// RGBA, each pixel of a display's picture in 0..1.
+    fn pixels(&self) -> Vec<[f32; 4]> {
+        match self {
+            Self::Display(image) => image.pixels().map(|pixel| pixel.0.map(|c| f32::from(c) / 255.0)).collect(),
+            Self::Raw(image) => image.pixels().map(|pixel| pixel.0).collect(),
+        }
+    }
+}
+
+/// What [`Comparison::error`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Measure {
+    /// Mean of FLIP (Andersson et al. 2020), 0..1: what an eye sees from 0.7 m on a 4K screen, over middle gray.
+    Flip,
+    /// Root of the mean square of the difference, over all pixels and channels, in the pictures' own unit.
+    Rmse,
+}
+
+/// Two pictures of one size, compared.
+pub struct Comparison {
+    /// What `error` is: FLIP for a display's pictures, RMSE for raw ones.
+    pub measure: Measure,
+    /// 0: they are the same, each pixel of them. Infinite where one of two has NaN or infinity.
+    pub error: f64,
+    /// Largest difference of one channel, alpha too; infinite as above.
+    pub largest: f64,
+    /// The first pixel that has it, from the top left.
+    pub largest_at: (u32, u32),
+    /// Pixels that are not the same.
+    pub differing: usize,
+    /// All pixels.
+    pub pixels: usize,
+    map: DynamicImage,
+}
+
+impl Comparison {
+    /// Compares `b` with `a`.
+    ///
+    /// # Errors
+    /// Pictures of different sizes, or one for a display and one raw, in words.
+    pub fn new(a: &Picture, b: &Picture) -> Result<Self, String> {
+        let (width, height) = a.size();
+        if b.size() != a.size() {
+            let (other_width, other_height) = b.size();
+            return Err(format!("{width}x{height} and {other_width}x{other_height} pixels cannot be compared"));
+        }
+        let differences = differences(&a.pixels(), &b.pixels());
+        let mut largest = (0.0, 0);
+        for (index, pixel) in differences.iter().enumerate() {
+            let most = pixel.iter().fold(0.0_f32, |most, d| most.max(d.abs()));
+            if most > largest.0 {
+                largest = (most, index);
+            }
+        }
+        let differing = differences.iter().filter(|pixel| pixel.iter().any(|d| *d != 0.0)).count();
+        let (measure, error, map) = match (a, b) {
+            (Picture::Display(a), Picture::Display(b)) => {
+                let (mean, map) = flip_of(a, b)?;
+                (Measure::Flip, mean, map)
+            }
+            (Picture::Raw(_), Picture::Raw(_)) => {
+                let squares: f64 = differences.iter().flatten().map(|d| f64::from(*d) * f64::from(*d)).sum();
+                let rmse = (squares / (4 * differences.len()).max(1) as f64).sqrt();
+                (Measure::Rmse, rmse, raw_map(&differences, width, height)?)
+            }
+            _ => return Err("a picture for a display (PNG) and a raw one (EXR) cannot be compared".to_owned()),
+        };
+        // FLIP of what no eye can see rounds to 0.
+        let error = if differing == 0 { 0.0 } else { error.max(f64::MIN_POSITIVE) };
+        let index = largest.1 as u32;
+        Ok(Self {
+            measure,
+            error,
+            largest: largest.0.into(),
+            largest_at: (index % width.max(1), index / width.max(1)),
+            differing,
+            pixels: differences.len(),
+            map,
+        })
+    }
+
+    /// Where they differ, and how much: FLIP from black to white through the colors of magma; of raw pictures |a - b|, raw.
+    pub fn map(&self) -> &DynamicImage {
+        &self.map
+    }
+}
+
+/// b - a; 0 where both are the same even if that is NaN, infinite where only one of them is a number.
+fn differences(a: &[[f32; 4]], b: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let difference = |a: f32, b: f32| match b - a {
+        _ if a == b || (a.is_nan() && b.is_nan()) => 0.0,
+        finite if finite.is_finite() => finite,
+        _ => f32::INFINITY,
+    };
+    let pair = |(a, b): (&[f32; 4], &[f32; 4])| std::array::from_fn(|c| difference(a[c], b[c]));
+    a.iter().zip(b).map(pair).collect()
+}
+
+fn flip_of(a: &RgbaImage, b: &RgbaImage) -> Result<(f64, DynamicImage), String> {
+    let (width, height) = a.dimensions();
+    let image = |of: &RgbaImage| FlipImageRgb8::with_data(width, height, &over_gray(of));
+    let error = flip(image(a), image(b), DEFAULT_PIXELS_PER_DEGREE);
+    let colors = error.apply_color_lut(&magma_lut());
+    let map = RgbImage::from_raw(width, height, colors.to_vec()).ok_or("FLIP's map has another size")?;
+    Ok((f64::from(FlipPool::from_image(&error).mean()), map.into()))
+}
+
+/// In encoded values, as a browser lays pictures over a page.
+fn over_gray(image: &RgbaImage) -> Vec<u8> {
+    let blend = |c: u8, alpha: u8| {
+        let (c, alpha) = (u32::from(c), u32::from(alpha));
+        ((c * alpha + 128 * (255 - alpha) + 127) / 255) as u8
+    };
+    image.pixels().flat_map(|p| [0, 1, 2].map(|channel| blend(p.0[channel], p.0[3]))).collect()
+}
+
+fn raw_map(differences: &[[f32; 4]], width: u32, height: u32) -> Result<DynamicImage, String> {
+    let floats = differences.iter().flat_map(|pixel| [0, 1, 2].map(|channel| pixel[channel].abs())).collect();
+    let map = Rgb32FImage::from_raw(width, height, floats).ok_or("the difference has another size")?;
+    Ok(map.into())
+}
