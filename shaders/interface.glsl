@@ -113,7 +113,7 @@ const uint ENCODE_DATA = 1u;
 const uint ENCODE_VECTOR = 2u;
 const uint TONEMAP_OFF = 0xffffffffu;
 const int TEXTURE_COUNT = 19;
-const int MAX_LIGHTS = 215;
+const int MAX_LIGHTS = 204;
 
 layout(constant_id = 0) const uint MODE = 0u; // debug mode, one of MODE_* in debug/modes.glsl
 layout(constant_id = 1) const uint ALPHA_MODE = 0u; // glTF alphaMode, one of ALPHA_*
@@ -154,8 +154,8 @@ struct Light {
     uint kind;                 // LIGHT_*
     vec3 intensity;            // linear RGB times candela (point, spot), lux (directional), radiance (rectangle)
     float inverse_range;       // 1/m, 0 without end
-    float cone_scale;          // falloff: square of scale times cosine plus offset, within 0..1; no spot: 0
-    float cone_offset;         // no spot: 1
+    float angle_scale;          // falloff: square of scale times cosine plus offset, within 0..1; no spot: 0
+    float angle_offset;         // no spot: 1
     vec3 half_x_ws;            // rectangle: from the center to an edge, meters
     vec3 half_y_ws;
 };

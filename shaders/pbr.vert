@@ -12,16 +12,17 @@ void main() {
     mat3 directions = mat3(draw.world_from_object);
 
     fragment.position_ws = draw.world_from_object * vec4(vertex.position, 1.0);
-    fragment.to_eye_ws = frame.eye_ws - fragment.position_ws;
     // Unit length at each vertex, or a stretched mesh would interpolate towards its longer normals. Zero stays zero.
     fragment.normal_ws = safe_normalize(draw.normal_ws_from_object * vertex.normal, vec3(0.0));
     // A mirroring transform turns cross(n, t) around, so the sign of the bitangent turns with it.
     float mirrored = determinant(directions) < 0.0 ? -1.0 : 1.0;
     fragment.tangent_ws = vec4(safe_normalize(directions * vertex.tangent.xyz, vec3(0.0)), vertex.tangent.w * mirrored);
     fragment.uv0 = vertex.uv0;
-    fragment.uv1 = (FEATURES & FEATURE_UV1) != 0u ? vertex.uv1 : vec2(0.0);
+    fragment.uv1 = (FEATURES & FEATURE_UV1) != 0u ? vertex.uv1 : vertex.uv0;
     fragment.color = (FEATURES & FEATURE_VERTEX_COLOR) != 0u ? vertex.color : vec4(1.0);
 
+    // After all that moves the vertex.
+    fragment.to_eye_ws = frame.eye_ws - fragment.position_ws;
     gl_Position = frame.clip_from_world * vec4(fragment.position_ws, 1.0);
     gl_PointSize = 4.0;
 }

@@ -29,7 +29,7 @@ pub const PUSH_CONSTANT_SIZE: u32 = 128;
 pub const PARAMS_SIZE: u32 = 4096;
 
 /// Most lights of a frame: as many as fit into 16 KiB, the largest uniform block that every device has.
-pub const MAX_LIGHTS: usize = 215;
+pub const MAX_LIGHTS: usize = 16384 / size_of::<Light>();
 
 /// Specialization constants from this id on belong to the shader author (`//@ui` on a `constant_id`).
 pub const USER_CONSTANTS: u32 = 32;

@@ -11,7 +11,7 @@ use specula::render::Capture;
 use specula::scene::{BUILT_IN, Model};
 use specula::settings::Settings;
 use specula::shader::Encode;
-use support::{SIZE, glb, load, model, render, renderer, settings, srgb};
+use support::{SIZE, Session, glb, load, model, ready, render, renderer, settings, srgb};
 
 /// The slugs that programs outside rely on.
 const FIXED: &str = "final base-color alpha metallic roughness occlusion emissive normal-texture geometric-normal \
@@ -310,5 +310,35 @@ fn light_adds_up_and_materials_mix() {
             near(dielectric[i][c] * (1.0 - m) + metal[i][c] * m, "dielectric and metal");
             near(once[i][c] + more[i][c], "scattered once and more often");
         }
+    }
+}
+
+/// A material may read TEXCOORD_1 of a mesh that has only TEXCOORD_0.
+#[test]
+fn a_second_set_of_coordinates_that_is_not_there_is_the_first() {
+    let mut session = Session::new(model("sphere-grid"), settings(&["environment.name=none"]));
+    let first = session.mode("uv0");
+    let show = "out_color = vec4(fragment.uv1, 0.0, 1.0);";
+    ready(&session.edit("pbr.frag", "out_color = vec4(value * coverage, coverage);", show));
+    let second = session.mode("uv0");
+    let spread = first.raw.iter().map(|value| value[0]).fold(0.0, f32::max);
+    assert!(spread > 0.5 && first.raw == second.raw, "{spread}");
+}
+
+/// Where the eye is seen from is worked out after an edit has moved the vertex.
+#[test]
+fn moved_vertices_are_seen_from_where_they_are() {
+    let eye = glam::Vec3::new(2.0, 2.0, 3.4);
+    let view = ["environment.name=none", "camera.eye=[2.0, 2.0, 3.4]", "view.msaa=1"];
+    let mut session = Session::new(model("shader-ball"), settings(&view));
+    let moved = "    fragment.position_ws += 0.2 * vertex.normal;\n    // Unit length at each vertex";
+    ready(&session.edit("pbr.vert", "    // Unit length at each vertex", moved));
+    let [positions, normals, found] = ["position", "shading-normal", "n-dot-v"].map(|slug| session.mode(slug).raw);
+    let on = (0..positions.len()).filter(|i| positions[*i][3] == 1.0).collect::<Vec<_>>();
+    assert!(on.len() > 500, "{}", on.len());
+    for i in on {
+        let [position, normal] = [positions[i], normals[i]].map(|[x, y, z, _]| glam::Vec3::new(x, y, z));
+        let expected = normal.dot((eye - position).normalize()).clamp(1e-4, 1.0);
+        assert!((found[i][0] - expected).abs() < 1e-4, "{position}: {} instead of {expected}", found[i][0]);
     }
 }

@@ -4,9 +4,9 @@ mod support;
 
 use std::path::Path;
 
-use serde_json::Value;
-use support::open_image;
+use serde_json::{Value, json};
 use support::process::{Finished, run};
+use support::{glb, open_image};
 
 const VIEW: [&str; 9] =
     ["--size", "96x64", "--env", "none", "--validate", "--set", "view.frames=4", "--set", "lights.rect.enabled=true"];
@@ -71,6 +71,31 @@ fn camera_and_lights_are_told_in_world_space() {
     let forward = [0.0, -0.5 / 16.25_f64.sqrt(), -4.0 / 16.25_f64.sqrt()];
     let along: f64 = position.iter().zip([0.0, 0.5, 4.0]).zip(forward).map(|((p, e), f)| (p - e) * f).sum();
     assert!((along - depth).abs() < 1e-4, "{along} {depth}");
+}
+
+/// A light at infinity has no position; a spot tells how it falls off.
+#[test]
+fn each_kind_of_light_tells_what_it_needs() {
+    let directory = tempfile::tempdir().unwrap();
+    let spot = json!({ "type": "spot", "intensity": 4.0, "range": 8.0,
+        "spot": { "innerConeAngle": 0.1, "outerConeAngle": 0.3 } });
+    for (light, kind) in [(spot, "spot"), (json!({ "type": "directional", "intensity": 4.0 }), "directional")] {
+        let node = json!({ "translation": [0.0, 0.0, 5.0] });
+        let bytes = glb::model_with_light(&glb::quad(1.0), &glb::gray(), &light, &node);
+        std::fs::write(directory.path().join("lit.glb"), bytes).unwrap();
+        let args = ["lit.glb", "--at", "48,32", "--json", "--mode", "final", "--lights", "model"];
+        let found = probe(directory.path(), &args).expect(0, &[]).json();
+        let light = &found["lights"][0];
+        assert_eq!((&light["kind"], numbers(&light["direction"])), (&json!(kind), vec![0.0, 0.0, -1.0]));
+        if kind == "directional" {
+            assert!(light["position"].is_null() && light.get("range").is_none(), "{light}");
+            continue;
+        }
+        assert_eq!((numbers(&light["position"]), &light["range"]), (vec![0.0, 0.0, 5.0], &json!(8.0)));
+        let ramp =
+            |angle: f64| angle.cos() * light["angle_scale"].as_f64().unwrap() + light["angle_offset"].as_f64().unwrap();
+        assert!(ramp(0.3).abs() < 1e-4 && (ramp(0.1) - 1.0).abs() < 1e-4, "{light}");
+    }
 }
 
 #[test]

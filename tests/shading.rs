@@ -242,6 +242,26 @@ fn the_picture_is_the_sum_over_light_ambient_and_emission() {
     }
 }
 
+/// The loop over lights is unrolled for up to four of them, and counts more.
+#[test]
+fn many_lights_are_as_bright_as_one_that_has_their_light() {
+    let (material, lamp) = (&MATERIALS[0], &lamps()[0]);
+    let mut headless = open(&model(material, lamp));
+    let one = render(&mut headless, "final");
+    let brightest = one.raw.iter().map(|value| value[0]).fold(0.0, f32::max);
+    assert!(brightest > 0.2, "{brightest}");
+    for count in [2, 4, 5, 9] {
+        let mut light = lamp.json.clone();
+        light["intensity"] = json!(12.0 / count as f64);
+        let bytes = glb::model_with_lights(&glb::sphere(48, 96), &material.json(), &light, &lamp.node, count);
+        headless.set_model(load(&bytes)).unwrap();
+        let many = render(&mut headless, "final");
+        let apart = one.raw.iter().flatten().zip(many.raw.iter().flatten()).map(|(a, b)| (a - b).abs());
+        let most = apart.fold(0.0, f32::max);
+        assert!(most < 1e-4 * brightest, "{count} lights are off by {most}");
+    }
+}
+
 /// The part of white light that a metal of F = 1 sends towards v after one reflection: an integral over the hemisphere.
 fn white_albedo(n_dot_v: f64, roughness: f64) -> f64 {
     let white = Material { base_color: [1.0; 3], metallic: 1.0, roughness, emissive: [0.0; 3] };

@@ -32,7 +32,7 @@ Illumination illuminate(Light light, vec3 position_ws) {
     float distance_squared = max(dot(to_light, to_light), MIN_DISTANCE_SQUARED);
     vec3 l = to_light * inversesqrt(distance_squared);
     float falloff = range_window(distance_squared, light.inverse_range)
-                  * spot_falloff(dot(-l, light.direction_ws), light.cone_scale, light.cone_offset);
+                  * spot_falloff(dot(-l, light.direction_ws), light.angle_scale, light.angle_offset);
     return Illumination(l, light.intensity * (falloff / distance_squared));
 }
 

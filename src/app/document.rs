@@ -33,6 +33,10 @@ pub(super) struct Shown {
     pub(super) measured: Arc<Buffer>,
     /// Slug of the mode that `wanted` draws.
     pub(super) mode: String,
+    /// The lights that `wanted` counts.
+    pub(super) lights: LightSource,
+    /// Whether the rectangle is one of them.
+    pub(super) rect: bool,
 }
 
 /// The raw value under the mouse.
@@ -344,7 +348,9 @@ impl Document {
         let mode = self.settings.mode.clone();
         let environment = self.surroundings.baked.environment.clone();
         let measured = self.surroundings.measured.clone();
-        self.shown = Some(Shown { pipelines, wanted, scene, environment, measured, mode });
+        let lights = self.settings.lights.source;
+        let rect = self.settings.lights.rect.enabled;
+        self.shown = Some(Shown { pipelines, wanted, scene, environment, measured, mode, lights, rect });
     }
 
     /// A frame with these pipelines is finished, `ms` after it was begun.

@@ -208,13 +208,15 @@ impl Drop for Screen {
     }
 }
 
-/// Camera, lights and values of a frame. The mode is the one whose pipelines are shown.
+/// Camera, lights and values of a frame. The mode is the one whose pipelines are shown, and so are the kinds of light.
 fn shot(document: &Document, shown: Option<&Shown>, aspect: f32) -> Shot {
     // A picture that does not move by itself is kept, so its time stands still.
     let time_s = if document.moves() { document.start.elapsed().as_secs_f32() } else { 0.0 };
     let mut settings = document.settings.clone();
     if let Some(shown) = shown {
         settings.mode.clone_from(&shown.mode);
+        settings.lights.source = shown.lights;
+        settings.lights.rect.enabled = shown.rect;
     }
     let view = CameraHand::view(&settings.camera, &document.model, aspect);
     Shot::new(&settings, shown.map(|s| &*s.pipelines.shaders), &document.model, view, time_s)

@@ -104,7 +104,8 @@ fn build_choices(
                 .push(Diagnostic::error(file, format!("{what} builds no pipeline: {error}")).on_line(line, None));
         }
     };
-    let every_material = Wanted { materials: all_materials, samples: 4, ..plain.clone() };
+    // With lights that the frame counts; those of a known number are in all others.
+    let every_material = Wanted { materials: all_materials, samples: 4, light_count: 0, ..plain.clone() };
     build(&every_material, &tree_name(&args.common.source()?), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
         build(&plain.with_mode(mode, settings.view.tonemap), &mode.file, mode.line, format!("mode {}", mode.slug));

@@ -16,7 +16,8 @@ use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasu
 #[command(
     after_help = "Values are in world space, before exposure, tone map and encoding, color multiplied by coverage.\n\
     One sample in the middle of the pixel: view.msaa is 1, so that no edge mixes two surfaces.\n\
-    Modes that accumulate are the mean of view.frames frames. Angles are in degrees. --mode may repeat; without, all."
+    Modes that accumulate are the mean of view.frames frames. Angles are in degrees. --mode may repeat; without, all.\n\
+    A spot falls off by the square of angle_scale times cosine plus angle_offset, within 0..1 (KHR_lights_punctual)."
 )]
 pub struct Args {
     /// glTF model, .gltf or .glb [default: the built-in shader ball]
@@ -117,8 +118,8 @@ fn light(light: &Light) -> Value {
         value["range"] = json!(light.inverse_range.recip());
     }
     if light.kind == LIGHT_SPOT {
-        value["cone_scale"] = json!(light.cone_scale);
-        value["cone_offset"] = json!(light.cone_offset);
+        value["angle_scale"] = json!(light.angle_scale);
+        value["angle_offset"] = json!(light.angle_offset);
     }
     if light.kind == LIGHT_RECT {
         value["half_x"] = json!(light.half_x_ws);

@@ -71,9 +71,9 @@ pub struct Light {
     /// 1 / the distance at which it ends, 1/m; 0 is without end.
     pub inverse_range: f32,
     /// Spot: the falloff is the square of scale x cosine + offset, held within 0..1. Scale; 0 for what is no spot.
-    pub cone_scale: f32,
+    pub angle_scale: f32,
     /// Offset; 1 for what is no spot.
-    pub cone_offset: f32,
+    pub angle_offset: f32,
     /// Rectangle: from its center to the middle of one edge, meters.
     pub half_x_ws: [f32; 3],
     /// Rectangle: from its center to the middle of a neighboring edge, meters.

@@ -53,10 +53,7 @@ impl Uniforms {
     /// Writes everything. The slot's fence has signaled.
     pub(super) fn write(&self, frame: &Frame, lights: &[Light], params: &[u8]) {
         self.frame.write(0, bytemuck::bytes_of(frame));
-        // Dark ones follow, for pipelines of a moment ago whose loop is unrolled for more.
-        let mut lights = lights.to_vec();
-        lights.resize(lights.len().max(interface::UNROLLED_LIGHTS), Light::default());
-        self.lights.write(0, bytemuck::cast_slice(&lights));
+        self.lights.write(0, bytemuck::cast_slice(lights));
         self.params.write(0, params);
     }
 

@@ -21,10 +21,10 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
     let moved = if material.textures.iter().flatten().any(is_moved) { FEATURE_TEXTURE_COORDINATES } else { 0 };
     let uv1 = if attributes & ATTRIBUTE_UV1 != 0 { FEATURE_UV1 } else { 0 };
     let color = if attributes & ATTRIBUTE_COLOR != 0 { FEATURE_VERTEX_COLOR } else { 0 };
-    let of_mesh = moved | uv1 | color;
+    let read = moved | uv1 | color;
     let normal = if has_frame && has(TEXTURE_NORMAL) { FEATURE_NORMAL_TEXTURE } else { 0 };
     if material.unlit {
-        return FEATURE_UNLIT | normal | of_mesh;
+        return FEATURE_UNLIT | normal | read;
     }
     let clearcoat = material.clearcoat.factor > 0.0;
     let specular = &material.specular;
@@ -57,7 +57,7 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
         // Without an occlusion texture its strength is 0, so what is read does not matter: then better no texture more.
         (FEATURE_PACKED_OCCLUSION, !has(TEXTURE_OCCLUSION) || packs_occlusion(model, material)),
     ];
-    conditions.iter().filter(|(_, used)| *used).fold(normal | of_mesh, |bits, (bit, _)| bits | bit)
+    conditions.iter().filter(|(_, used)| *used).fold(normal | read, |bits, (bit, _)| bits | bit)
 }
 
 /// Whether occlusion can be the red channel of the metallic-roughness texture, which leaves it free: both are read

@@ -41,7 +41,7 @@ fn orbit(light: &OrbitLight, turned_deg: f32, model: &Model) -> Light {
         direction_ws: (-outward).to_array(),
         kind: interface::LIGHT_POINT,
         intensity: (Vec3::from(light.color) * light.strength * radius * radius).to_array(),
-        cone_offset: 1.0,
+        angle_offset: 1.0,
         ..Light::default()
     }
 }
@@ -61,7 +61,7 @@ fn rectangle(light: &RectLight, model: &Model) -> Light {
         intensity: (Vec3::from(light.color) * light.strength).to_array(),
         half_x_ws: (x * radius * light.width * 0.5).to_array(),
         half_y_ws: (y * radius * light.height * 0.5).to_array(),
-        cone_offset: 1.0,
+        angle_offset: 1.0,
         ..Light::default()
     }
 }
@@ -72,7 +72,7 @@ fn punctual(light: &super::model::Light) -> Light {
         LightKind::Point => (interface::LIGHT_POINT, light.position.extend(1.0)),
         LightKind::Spot { .. } => (interface::LIGHT_SPOT, light.position.extend(1.0)),
     };
-    let (cone_scale, cone_offset) = match light.kind {
+    let (angle_scale, angle_offset) = match light.kind {
         LightKind::Spot { inner, outer } => cone(inner, outer),
         _ => (0.0, 1.0),
     };
@@ -83,8 +83,8 @@ fn punctual(light: &super::model::Light) -> Light {
         kind,
         intensity: light.intensity.to_array(),
         inverse_range: range.map_or(0.0, f32::recip),
-        cone_scale,
-        cone_offset,
+        angle_scale,
+        angle_offset,
         ..Light::default()
     }
 }
@@ -106,6 +106,11 @@ mod tests {
     fn model() -> Model {
         // Half the diagonal is 3.
         Model { bounds: Bounds { min: Vec3::new(0.0, 0.0, 0.0), max: Vec3::new(2.0, 4.0, 4.0) }, ..Model::default() }
+    }
+
+    fn own(kind: LightKind) -> model::Light {
+        let (position, direction, intensity) = (Vec3::ONE, Vec3::NEG_Y, Vec3::splat(5.0));
+        model::Light { name: String::new(), kind, position, direction, intensity, range: Some(7.0) }
     }
 
     fn light(azimuth: f32, polar: f32) -> OrbitLight {
@@ -157,32 +162,39 @@ mod tests {
             assert!((x.length() - 1.5).abs() < 1e-5 && (y.length() - 0.75).abs() < 1e-5 && x.y == 0.0, "{light:?}");
             assert!(x.cross(y).normalize().distance(direction) < 1e-5, "{light:?}");
         }
-        let with = |source| {
-            let rect = RectLight { enabled: true, ..RectLight::default() };
+    }
+
+    #[test]
+    fn the_count_is_known_without_the_lights() {
+        let mut model = model();
+        model.lights = vec![own(LightKind::Point), own(LightKind::Directional)];
+        let count = |source, enabled| {
+            let rect = RectLight { enabled, ..RectLight::default() };
             let settings = LightSettings { source, rect, ..LightSettings::default() };
-            let count = lights(&settings, &model(), 0.0).len();
-            assert_eq!(light_count(&settings, 0), count);
+            let count = lights(&settings, &model, 0.0).len();
+            assert_eq!(light_count(&settings, model.lights.len()), count, "{source:?} {enabled}");
             count
         };
-        assert_eq!([LightSource::Model, LightSource::None].map(with), [1, 0]);
+        let all = [LightSource::Orbit, LightSource::Model, LightSource::None];
+        assert_eq!(
+            (all.map(|source| count(source, false)), all.map(|source| count(source, true))),
+            ([3, 2, 0], [4, 3, 0])
+        );
     }
 
     #[test]
     fn the_models_own_or_none() {
         let mut model = model();
-        model.lights.push(model::Light {
-            name: String::new(),
-            kind: LightKind::Spot { inner: 0.0, outer: std::f32::consts::FRAC_PI_3 },
-            position: Vec3::ONE,
-            direction: Vec3::NEG_Y,
-            intensity: Vec3::splat(5.0),
-            range: Some(7.0),
-        });
+        let outer = std::f32::consts::FRAC_PI_3;
+        model.lights = vec![own(LightKind::Spot { inner: 0.3, outer }), own(LightKind::Directional)];
         let from = |source| lights(&LightSettings { source, ..LightSettings::default() }, &model, 0.0);
-        let spot = from(LightSource::Model)[0];
+        let (spot, sun) = (from(LightSource::Model)[0], from(LightSource::Model)[1]);
         assert_eq!((spot.kind, spot.inverse_range, spot.position_ws), (interface::LIGHT_SPOT, 1.0 / 7.0, [1.0; 4]));
-        let ramp = |cosine: f32| cosine * spot.cone_scale + spot.cone_offset;
-        assert!(ramp(0.5).abs() < 1e-6 && (ramp(1.0) - 1.0).abs() < 1e-6, "{spot:?}");
+        let ramp = |cosine: f32| cosine * spot.angle_scale + spot.angle_offset;
+        assert!(ramp(outer.cos()).abs() < 1e-6 && (ramp(0.3_f32.cos()) - 1.0).abs() < 1e-6, "{spot:?}");
+        // Straight above, infinitely far away, without an end, and the same in all directions.
+        assert_eq!((sun.position_ws, sun.inverse_range), ([0.0, 1.0, 0.0, 0.0], 0.0));
+        assert_eq!((sun.angle_scale, sun.angle_offset), (0.0, 1.0));
         assert!(from(LightSource::None).is_empty());
     }
 }

@@ -33,7 +33,7 @@ pub const LAYOUTS: &[Layout] = &[
         environment_rotation environment_intensity environment_blur sample_index sample_count
     }),
     layout!(Light {
-        position_ws direction_ws kind intensity inverse_range cone_scale cone_offset half_x_ws half_y_ws
+        position_ws direction_ws kind intensity inverse_range angle_scale angle_offset half_x_ws half_y_ws
     }),
     layout!(Material {
         base_color_factor emissive_factor metallic_factor roughness_factor normal_scale occlusion_strength alpha_cutoff

@@ -113,13 +113,20 @@ pub fn model(mesh: &Mesh, material: &Value) -> Vec<u8> {
 
 /// The same with a light: a KHR_lights_punctual light on a node with this placement.
 pub fn model_with_light(mesh: &Mesh, material: &Value, light: &Value, node: &Value) -> Vec<u8> {
+    model_with_lights(mesh, material, light, node, 1)
+}
+
+/// The same with `count` such lights at one place.
+pub fn model_with_lights(mesh: &Mesh, material: &Value, light: &Value, node: &Value, count: usize) -> Vec<u8> {
     let (mut json, bin) = document(mesh, material);
     json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
     json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
     let mut node = node.clone();
     node["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
-    json["nodes"] = json!([{ "mesh": 0 }, node]);
-    json["scenes"] = json!([{ "nodes": [0, 1] }]);
+    let mut nodes = vec![json!({ "mesh": 0 })];
+    nodes.resize(1 + count, node);
+    json["nodes"] = json!(nodes);
+    json["scenes"] = json!([{ "nodes": (0..=count).collect::<Vec<_>>() }]);
     container(&json, &bin)
 }
 
