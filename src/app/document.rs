@@ -80,6 +80,8 @@ pub(super) struct Document {
     pub(super) hand: CameraHand,
     pub(super) mouse: Mouse,
     pub(super) hover: Option<Hover>,
+    /// How many frames the picture on screen is the mean of.
+    pub(super) accumulated: u32,
     /// The mode that the list was last scrolled to.
     pub(super) shown_in_list: String,
     pub(super) show_ui: bool,
@@ -156,6 +158,7 @@ impl Document {
             hand: CameraHand::default(),
             mouse: Mouse::default(),
             hover: None,
+            accumulated: 1,
             shown_in_list: String::new(),
             show_ui: true,
             quit: false,
@@ -218,6 +221,10 @@ impl Document {
         let shown = self.shown_mode()?;
         match self.next_mode() {
             Some(next) => Some(format!("{}  ➡  {} …", shown.name, next.name)),
+            None if self.accumulates() => Some(match self.accumulated {
+                1 => format!("{}   1 frame", shown.name),
+                frames => format!("{}   mean of {frames} frames", shown.name),
+            }),
             None => Some(shown.name.clone()).filter(|_| shown.slug != "final"),
         }
     }

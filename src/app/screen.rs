@@ -96,6 +96,7 @@ impl Screen {
         let Some(extent) = self.swapchain.as_ref().map(Swapchain::extent) else { return Ok(None) };
 
         document.hover = self.hover(document)?;
+        document.accumulated = self.renderer.accumulated();
 
         // The user interface, which also tells where the picture goes.
         let input = self.input.take_egui_input(window);
