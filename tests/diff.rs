@@ -128,7 +128,7 @@ fn folders_by_name() {
     png(&b, "other.png", [255, 128, 128, 255]);
     png(&b, "new.png", [0, 0, 0, 255]);
     let told = diff(folder.path(), &["a", "b", "--out", "maps"]);
-    told.expect(1, &["2 of 3 pictures are beyond --max 0"]);
+    told.expect(1, &["2 of 3 pictures fail at --max 0"]);
     let lines: Vec<&str> = told.stdout.lines().collect();
     assert!(lines.len() == 3 && lines[0].contains("new.png  only in b"), "{lines:?}");
     assert!(lines[1].contains("other.png  FLIP") && lines[2].starts_with("same "), "{lines:?}");
@@ -153,7 +153,9 @@ fn what_cannot_be_compared_is_told() {
         (&["a.png", "tall.png"][..], "32x32 and 32x33 pixels"),
         (&["a.png", "a.exr"], "cannot be compared"),
         (&["a.png", "text.png"], "cannot read text.png"),
-        (&["a.png", "none.png"], "cannot read none.png"),
+        (&["a.png", "none.png"], "none.png: there is no such file"),
+        (&["a.png", "a.png", "--max", "-1"], "expected 0 or more"),
+        (&["a.png", "a.png", "--out", "./a.png"], "it is what is compared"),
         (&["a.png", "empty"], "a folder and a file"),
         (&["empty", "empty"], "no .png or .exr in empty"),
         (&["a.png", "a.png", "--max", "nan"], "expected 0 or more"),

@@ -5,7 +5,7 @@ mod support;
 
 use std::io::{BufRead as _, BufReader, ErrorKind};
 use std::process::{Child, Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use image::RgbaImage;
 use support::process::{Finished, PATIENCE, Running, finish, specula};
@@ -192,6 +192,28 @@ fn any_size_and_any_number_of_sizes() {
     }
     viewer.resize(640, 480);
     assert!(viewer.screenshot() == first, "back at the first size");
+    viewer.quit();
+}
+
+/// Nothing moves, nothing is drawn: the processor is the next save's.
+#[test]
+fn a_window_in_which_nothing_happens_rests() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    let deadline = Instant::now() + PATIENCE;
+    // Shaders may still warm up. One second of rest is enough; a window that draws on and on has none.
+    loop {
+        let before = viewer.running.ticks();
+        std::thread::sleep(Duration::from_secs(1));
+        if viewer.running.ticks() - before < 10 {
+            break;
+        }
+        assert!(Instant::now() < deadline, "it never rests. {}", viewer.running.story());
+    }
+    // It wakes again.
+    let picture = viewer.screenshot();
+    viewer.key("n");
+    viewer.until("shading normals", |shot| *shot != picture);
     viewer.quit();
 }
 

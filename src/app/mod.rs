@@ -217,7 +217,8 @@ impl ApplicationHandler<Message> for App {
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
         let response = open.screen.on_window_event(&open.window, &event);
-        if response.repaint {
+        // egui answers a redraw with the wish for another: the window would never rest.
+        if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {
             open.window.request_redraw();
         }
         match event {

@@ -22,7 +22,7 @@ pub struct Args {
     /// What to compare with it: a picture of the same size, or a folder whose pictures have the same names
     b: PathBuf,
     /// Largest error that passes
-    #[arg(long, value_name = "ERROR", default_value_t = 0.0)]
+    #[arg(long, value_name = "ERROR", default_value_t = 0.0, allow_negative_numbers = true)]
     max: f64,
     /// Write where they differ: a file; for folders a folder, one file for each picture beyond --max
     #[arg(long, value_name = "FILE|DIR")]
@@ -49,11 +49,18 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.max.is_nan() || args.max < 0.0 {
         return Err(Failure::Input(format!("--max {}: expected 0 or more", args.max)));
     }
+    if let Some(absent) = [&args.a, &args.b].into_iter().find(|path| !path.exists()) {
+        return Err(Failure::Input(format!("{}: there is no such file or folder", absent.display())));
+    }
     let folders = match (args.a.is_dir(), args.b.is_dir()) {
         (a, b) if a == b => a,
         _ => return Err(Failure::Input("a folder and a file cannot be compared: name two of one kind".to_owned())),
     };
     let pairs = if folders { in_folders(&args.a, &args.b)? } else { vec![pair_of_files(&args.a, &args.b)?] };
+    let same_place = |x: &Path, y: &Path| matches!((x.canonicalize(), y.canonicalize()), (Ok(x), Ok(y)) if x == y);
+    if let Some(out) = args.out.iter().find(|out| same_place(out, &args.a) || same_place(out, &args.b)) {
+        return Err(Failure::Input(format!("cannot write to {}: it is what is compared", out.display())));
+    }
     if let Some(out) = &args.out {
         write_maps(&pairs, out, folders, args.max).map_err(Failure::Input)?;
     }
@@ -68,7 +75,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     match failed {
         0 => Ok(()),
         _ if args.json || pairs.len() == 1 => Err(Failure::Printed),
-        _ => Err(Failure::Input(format!("{failed} of {} pictures are beyond --max {}", pairs.len(), args.max))),
+        _ => Err(Failure::Input(format!("{failed} of {} pictures fail at --max {}", pairs.len(), args.max))),
     }
 }
 
@@ -124,6 +131,9 @@ fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(),
             }
             save(found.map(), out)
         });
+    }
+    if out.is_file() {
+        return Err(format!("cannot write to {}: for folders, --out is a folder", out.display()));
     }
     std::fs::create_dir_all(out).map_err(|e| format!("cannot make {}: {e}", out.display()))?;
     for pair in pairs.iter().filter(|pair| !pair.passes(max)) {

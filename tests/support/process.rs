@@ -159,6 +159,14 @@ impl Running {
         status
     }
 
+    /// Processor time that the program took so far, all threads, in ticks of 10 ms (proc(5)).
+    pub fn ticks(&self) -> u64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
+        // The name, in parentheses, may hold anything; user and system time are fields 14 and 15.
+        let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+        fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
+    }
+
     /// What the program said on stderr so far; all of it after [`Self::end`].
     pub fn stderr(&self) -> String {
         self.stderr.lock().unwrap().clone()
