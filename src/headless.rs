@@ -311,7 +311,7 @@ impl Headless {
 /// What the settings ask of these shaders for this scene, when the HDR target has full floats.
 fn wanted(settings: &Settings, samples: u32, shaders: &crate::shader::ShaderSet, scene: &GpuScene) -> Wanted {
     let format = vk::Format::R32G32B32A32_SFLOAT;
-    Wanted::new(settings, shaders, (scene.variants(), scene.own_lights()), samples, format, Renderer::OUTPUT_FORMAT)
+    Wanted::new(settings, shaders, scene.variants(), scene.own_lights(), samples, format, Renderer::OUTPUT_FORMAT)
 }
 
 /// Samples a pixel as the settings ask, checked against the device.

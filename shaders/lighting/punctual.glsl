@@ -25,8 +25,8 @@ float spot_falloff(float cos_angle, float scale, float offset) {
     return ramp * ramp;
 }
 
-// One formula for all kinds: a directional light is a point at infinity, in homogeneous coordinates, seen
-// from a distance of 1; a light that is no spot has a ramp that is 1 everywhere; one without end has the range 1 / 0.
+// One formula for all kinds: a directional light is a point at infinity, in homogeneous coordinates, seen from a
+// distance of 1; a light that is no spot has a ramp that is 1 everywhere; one without end has the range 1 / 0.
 Illumination illuminate(Light light, vec3 position_ws) {
     vec3 to_light = light.position_ws.xyz - light.position_ws.w * position_ws;
     float distance_squared = max(dot(to_light, to_light), MIN_DISTANCE_SQUARED);

@@ -30,14 +30,7 @@ impl Needs {
     /// The pipelines that these shaders must have.
     pub(super) fn wanted(&self, shaders: &ShaderSet) -> Wanted {
         let (samples, format) = (self.samples, self.scene_format);
-        Wanted::new(
-            &self.settings,
-            shaders,
-            (&self.materials, self.own_lights),
-            samples,
-            format,
-            Renderer::OUTPUT_FORMAT,
-        )
+        Wanted::new(&self.settings, shaders, &self.materials, self.own_lights, samples, format, Renderer::OUTPUT_FORMAT)
     }
 }
 

@@ -87,7 +87,7 @@ fn build_choices(
             .collect();
     let format = vk::Format::R16G16B16A16_SFLOAT;
     let wanted =
-        |settings: &Settings| Wanted::new(settings, shaders, (&materials, 0), 1, format, Renderer::OUTPUT_FORMAT);
+        |settings: &Settings| Wanted::new(settings, shaders, &materials, 0, 1, format, Renderer::OUTPUT_FORMAT);
     let plain = wanted(&settings);
     let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None) {
         Ok(set) => set,

@@ -56,11 +56,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         (a, b) if a == b => a,
         _ => return Err(Failure::Input("a folder and a file cannot be compared: name two of one kind".to_owned())),
     };
-    let pairs = if folders { in_folders(&args.a, &args.b)? } else { vec![pair_of_files(&args.a, &args.b)?] };
     let same_place = |x: &Path, y: &Path| matches!((x.canonicalize(), y.canonicalize()), (Ok(x), Ok(y)) if x == y);
     if let Some(out) = args.out.iter().find(|out| same_place(out, &args.a) || same_place(out, &args.b)) {
         return Err(Failure::Input(format!("cannot write to {}: it is what is compared", out.display())));
     }
+    let pairs = if folders { in_folders(&args.a, &args.b)? } else { vec![pair_of_files(&args.a, &args.b)?] };
     if let Some(out) = &args.out {
         write_maps(&pairs, out, folders, args.max).map_err(Failure::Input)?;
     }

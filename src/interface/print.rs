@@ -137,7 +137,7 @@ struct Light {
     uint kind;                 // LIGHT_*
     vec3 intensity;            // linear RGB times candela (point, spot), lux (directional), radiance (rectangle)
     float inverse_range;       // 1/m, 0 without end
-    float angle_scale;          // falloff: square of scale times cosine plus offset, within 0..1; no spot: 0
+    float angle_scale;         // falloff: square of scale times cosine plus offset, within 0..1; no spot: 0
     float angle_offset;         // no spot: 1
     vec3 half_x_ws;            // rectangle: from the center to an edge, meters
     vec3 half_y_ws;

@@ -85,7 +85,8 @@ impl Wanted {
     pub fn new(
         settings: &Settings,
         shaders: &ShaderSet,
-        (materials, own_lights): (&BTreeSet<MaterialVariant>, usize),
+        materials: &BTreeSet<MaterialVariant>,
+        own_lights: usize,
         samples: u32,
         scene_format: vk::Format,
         output_format: vk::Format,
