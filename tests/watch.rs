@@ -229,7 +229,7 @@ fn the_tree_may_go_away_and_come_back() {
     watched.shows(90, "an edit after the tree came back");
     // A branch switch by whole folders: another tree takes the place at once.
     let other = watched.tree.beside("other");
-    specula::shader::embedded::write_to(&other).unwrap();
+    specula::shader::source::embedded::write_to(&other).unwrap();
     fs::write(other.join(USER), watched.text(120)).unwrap();
     fs::rename(watched.tree.root(), &away).unwrap();
     fs::rename(&other, watched.tree.root()).unwrap();

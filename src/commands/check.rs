@@ -8,7 +8,7 @@ use specula::gpu::{PrimitiveClass, SetLayouts, vk};
 use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
 use specula::render::{MaterialVariant, PipelineSet, Renderer, Wanted, tree_name};
 use specula::settings::{Settings, ShaderValue};
-use specula::shader::reflect::Scalar;
+use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
 
 use super::common::{Common, check_validation, compiler};

@@ -7,10 +7,10 @@ use glam::Vec3;
 use crate::gpu::{Attachments, Encoder, Image, Rect, SetLayouts, Use, vk};
 use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
 
-use super::frame::FrameInput;
-use super::scene::{GpuDraw, GpuScene};
-use super::targets::Targets;
-use super::wanted::{MaterialVariant, PipelineKey, Wanted};
+use crate::render::frame::FrameInput;
+use crate::render::scene::{GpuDraw, GpuScene};
+use crate::render::targets::Targets;
+use crate::render::wanted::{MaterialVariant, PipelineKey, Wanted};
 
 /// Draws the scene, or `only` a part of it, to the HDR target and resolves it, which leaves color in [`Use::Color`].
 pub(super) fn draw_model(

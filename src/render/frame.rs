@@ -7,17 +7,17 @@ use crate::gpu::{
     SetLayouts, Swapchain, UiRenderer, Use, vk,
 };
 
-use super::bake::GpuEnvironment;
-use super::capture::{self, Capture, Readback};
-use super::draw::{average, draw_model, tone_map};
-use super::ltc;
-use super::pipelines::PipelineSet;
-use super::scene::GpuScene;
-use super::shot::Shot;
-use super::targets::{Purpose, Targets};
-use super::task;
-use super::uniforms::{Constants, Sources, Uniforms};
-use super::wanted::Wanted;
+use crate::render::brdf::ltc;
+use crate::render::capture::{self, Capture, Readback};
+use crate::render::compute;
+use crate::render::draw::{average, draw_model, tone_map};
+use crate::render::environment::bake::GpuEnvironment;
+use crate::render::pipelines::PipelineSet;
+use crate::render::scene::GpuScene;
+use crate::render::shot::Shot;
+use crate::render::targets::{Purpose, Targets};
+use crate::render::uniforms::{Constants, Sources, Uniforms};
+use crate::render::wanted::Wanted;
 
 /// What to draw.
 #[derive(Clone, Copy)]
@@ -155,7 +155,7 @@ impl Renderer {
             nearest: Sampler::new(gpu, &SamplerDesc::NEAREST)?,
             constants: Constants {
                 ltc: ltc::table(gpu)?,
-                linear: task::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?,
+                linear: compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?,
             },
             scene_format,
             kept: None,

@@ -3,36 +3,27 @@
 //! [`Reloader`] turns a set of changed files into a [`PipelineSet`], all or nothing, on any thread. [`GpuScene`] is a model on the
 //! device. [`Renderer::frame`] draws one with the other.
 
-mod bake;
-mod bake_passes;
-mod cache;
+pub mod brdf;
 mod capture;
+mod compute;
+mod disk_cache;
 mod draw;
-mod dress;
 mod environment;
 mod frame;
-mod ltc;
-mod materials;
-pub mod measure;
-mod measured;
-mod mips;
 mod pipelines;
 mod reload;
 mod scene;
 mod shot;
-mod sources;
-mod tables;
 mod targets;
-mod task;
 mod uniforms;
 mod values;
 mod wanted;
 
-pub use bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
+pub use brdf::measured::measured_buffer;
 pub use capture::Capture;
 pub use environment::Baked;
+pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
 pub use frame::{Drawn, FrameInput, Renderer, Target, UiFrame};
-pub use measured::measured_buffer;
 pub use pipelines::{MEASURE_STAGES, PipelineSet, all_stages, stages};
 pub use reload::{Outcome, Reload, Reloader, tree_name};
 pub use scene::{GpuScene, UploadError};

@@ -9,9 +9,9 @@ use crate::gpu::{
 };
 use crate::shader::{ShaderSet, specialize};
 
-use super::bake::BAKE_STAGES;
-use super::tables::{self, Tables};
-use super::wanted::{Pass, PipelineKey, Wanted};
+use crate::render::brdf::tables::{self, Tables};
+use crate::render::environment::bake::BAKE_STAGES;
+use crate::render::wanted::{Pass, PipelineKey, Wanted};
 
 /// The stages that a picture is drawn with.
 const GRAPHICS: [&str; 7] =

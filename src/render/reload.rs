@@ -7,8 +7,8 @@ use crate::events::ReloadEvent;
 use crate::gpu::{Gpu, SetLayouts};
 use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, Update};
 
-use super::pipelines::{PipelineSet, stages};
-use super::wanted::Wanted;
+use crate::render::pipelines::{PipelineSet, stages};
+use crate::render::wanted::Wanted;
 
 /// Compiles a shader tree and builds its pipelines. `app` holds it on a thread of its own; headless calls it directly.
 pub struct Reloader {

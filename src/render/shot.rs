@@ -6,8 +6,8 @@ use crate::scene::{self, Model, View};
 use crate::settings::Settings;
 use crate::shader::ShaderSet;
 
-use super::values;
-use super::wanted;
+use crate::render::values;
+use crate::render::wanted;
 
 /// Paths a pixel in each frame of a mode that accumulates.
 const PATHS: u32 = 8;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::gpu::{DescriptorSet, Gpu, GpuError, Image, ImageDesc, Sampler, SetLayouts, SetWriter, vk};
 use crate::interface::SET_PASS;
 
-use super::mips;
+use crate::render::scene::mips;
 
 /// What the targets must be able to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

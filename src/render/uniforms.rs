@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, vk};
 use crate::interface::{self, Frame, Light};
 
-use super::bake::GpuEnvironment;
-use super::tables::Tables;
+use crate::render::brdf::tables::Tables;
+use crate::render::environment::bake::GpuEnvironment;
 
 /// What set 0 points to that outlives a frame.
 #[derive(Clone)]

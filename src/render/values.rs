@@ -6,7 +6,7 @@ use crate::gpu::Specialization;
 use crate::interface::PARAMS_SIZE;
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
-use crate::shader::reflect::Scalar;
+use crate::shader::spirv::reflect::Scalar;
 use crate::shader::{Constant, Parameter, ShaderSet};
 
 type Values = BTreeMap<String, ShaderValue>;

@@ -11,7 +11,7 @@ use crate::scene::light_count;
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::{DrawAs, Encode, Mode, ShaderSet};
 
-use super::values;
+use crate::render::values;
 
 /// What a material asks of its pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -7,7 +7,7 @@ use crate::app::document::Document;
 use crate::render::number;
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
-use crate::shader::reflect::Scalar;
+use crate::shader::spirv::reflect::Scalar;
 use crate::shader::{Constant, Parameter};
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use clap::Subcommand;
 use specula::gpu::Gpu;
-use specula::render::measure::{Bench, Claim, Surface, unclaimed};
+use specula::render::brdf::measure::{Bench, Claim, Surface, unclaimed};
 use specula::render::{all_stages, misfits, unknown_names};
 use specula::settings::Settings;
 use specula::shader::{Change, Constant, Library, ShaderSet, Update};

@@ -1,7 +1,7 @@
 //! `specula brdf normalization`: the integral of D NoH, which is 1 for every distribution of facets.
 
 use serde_json::json;
-use specula::render::measure::Grid;
+use specula::render::brdf::measure::Grid;
 
 use super::{Opened, Options};
 use crate::commands::Failure;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use specula::picture;
-use specula::render::measure::{Bench, Claim, Grid, Lobe, Surface, choices};
+use specula::render::brdf::measure::{Bench, Claim, Grid, Lobe, Surface, choices};
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
 use super::furnace::extremes;

@@ -1,7 +1,7 @@
 //! `specula brdf reciprocity`: whether light and eye can change places.
 
 use serde_json::json;
-use specula::render::measure::{Claim, Grid, Surface, Worst};
+use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
 
 use super::{Opened, Options, SurfaceOptions, direction, listed};
 use crate::commands::Failure;

@@ -1,0 +1,252 @@
+//! The BRDF as it stands in the user's shaders, measured on the device: albedo, reciprocity, integral of D, lobes.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
+use crate::interface::{self, Task};
+use crate::settings::Settings;
+use crate::shader::{Constant, ShaderSet};
+
+use crate::render::brdf::ltc;
+use crate::render::brdf::measured::measured_buffer;
+use crate::render::compute;
+use crate::render::environment::Baked;
+use crate::render::pipelines::{MEASURE_STAGES, PipelineSet};
+use crate::render::uniforms::{Constants, Sources, Uniforms};
+use crate::render::values;
+use crate::render::wanted::Wanted;
+
+/// What is measured. All else has glTF's defaults.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Linear RGB.
+    pub base_color: [f32; 3],
+    /// 0 dielectric .. 1 metal.
+    pub metallic: f32,
+}
+
+/// Rows of roughness and columns of angles, even steps, first and last included.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    /// How many values of roughness.
+    pub rows: u32,
+    /// First and last.
+    pub roughness: (f32, f32),
+    /// How many angles.
+    pub columns: u32,
+    /// First and last angle to the normal, degrees.
+    pub theta: (f32, f32),
+    /// Samples for each cell.
+    pub samples: u32,
+}
+
+impl Grid {
+    /// Roughness of a row.
+    pub fn roughness_of(&self, row: u32) -> f64 {
+        step(self.roughness, row, self.rows)
+    }
+
+    /// Angle of a column, degrees.
+    pub fn theta_of(&self, column: u32) -> f64 {
+        step(self.theta, column, self.columns)
+    }
+}
+
+/// To six digits, since 0.05 as a float is 0.05000000074505806.
+fn step((first, last): (f32, f32), index: u32, count: u32) -> f64 {
+    let (first, last) = (f64::from(first), f64::from(last));
+    let value = first + (last - first) * f64::from(index) / f64::from(count.max(2) - 1);
+    (value * 1e6).round() / 1e6
+}
+
+/// A pair of directions, and how much f differs when they change places.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Worst {
+    /// |f(l, v) - f(v, l)| over their mean, the worst channel; 1e30 where one is no number.
+    pub error: f32,
+    /// Towards the light; z is the normal.
+    pub l: [f32; 3],
+    /// Towards the eye.
+    pub v: [f32; 3],
+}
+
+/// f NoV by lobe: what leaves into a solid angle, of light that arrives with an irradiance of 1; 1/sr, linear RGB.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Lobe {
+    /// Diffuse.
+    pub diffuse: [f32; 3],
+    /// Specular, single scattering.
+    pub specular: [f32; 3],
+    /// Multiple scattering.
+    pub multiple: [f32; 3],
+}
+
+/// What a choice of the author's may be claimed to do: see brdf/models.glsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Claim {
+    /// A white surface reflects no more light than it gets.
+    Conserves,
+    /// f(l, v) = f(v, l)
+    Reciprocal,
+}
+
+impl Claim {
+    /// The choices of a constant that make this claim; `None` where the constant has no part in it.
+    pub fn of(self, constant: &Constant) -> Option<&Vec<String>> {
+        match self {
+            Self::Conserves => constant.conserves.as_ref(),
+            Self::Reciprocal => constant.reciprocal.as_ref(),
+        }
+    }
+}
+
+/// The author's constants in the order of their ids, each with what `settings` choose of it: a choice's name, or a
+/// number.
+pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
+    let chosen = values::constants(&settings.shader, &shaders.constants);
+    let name = |constant: &Constant, bits: u32| {
+        // Choices are whole numbers: of an int they may be negative.
+        let is = |value: i64| value == i64::from(bits) || value == i64::from(bits.cast_signed());
+        let found = constant.choices.iter().find(|(_, value)| is(*value));
+        found.map_or_else(|| bits.to_string(), |(name, _)| name.clone())
+    };
+    shaders.constants.iter().zip(chosen).map(|(constant, (_, bits))| (constant, name(constant, bits))).collect()
+}
+
+/// Those of the [`choices`] that do not make `claim`: when there are none, the combination claims it.
+pub fn unclaimed<'a>(claim: Claim, settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
+    let lacks =
+        |(constant, chosen): &(&Constant, String)| claim.of(constant).is_some_and(|names| !names.contains(chosen));
+    choices(settings, shaders).into_iter().filter(lacks).collect()
+}
+
+/// What measurements of one shader set share, whatever is chosen.
+struct Stand {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    shaders: Arc<ShaderSet>,
+    set: Arc<PipelineSet>,
+    environment: Baked,
+    measured: Arc<Buffer>,
+    constants: Constants,
+}
+
+/// Measures with the stages of one shader set and one choice of models.
+pub struct Bench {
+    stand: Arc<Stand>,
+    constants: Specialization,
+    frame: Arc<DescriptorSet>,
+}
+
+impl Bench {
+    /// For shaders that hold [`super::all_stages`], with the author's constants and parameters as `settings` have them.
+    ///
+    /// # Errors
+    /// The device refuses a stage.
+    pub fn new(gpu: &Arc<Gpu>, shaders: &Arc<ShaderSet>, settings: &Settings) -> Result<Self, GpuError> {
+        let layouts = SetLayouts::new(gpu)?;
+        let set = PipelineSet::new(gpu, &layouts, shaders.clone(), &wanted(settings, shaders), None)?;
+        let linear = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        let stand = Stand {
+            gpu: gpu.clone(),
+            layouts,
+            shaders: shaders.clone(),
+            set,
+            environment: Baked::uniform(gpu, [1.0; 3])?,
+            measured: measured_buffer(gpu, None)?,
+            constants: Constants { ltc: ltc::table(gpu)?, linear },
+        };
+        Self::on(Arc::new(stand), settings)
+    }
+
+    /// The same shaders with other choices.
+    ///
+    /// # Errors
+    /// As [`Bench::new`].
+    pub fn with(&self, settings: &Settings) -> Result<Self, GpuError> {
+        Self::on(self.stand.clone(), settings)
+    }
+
+    fn on(stand: Arc<Stand>, settings: &Settings) -> Result<Self, GpuError> {
+        let wanted = wanted(settings, &stand.shaders);
+        stand.set.build(&wanted)?;
+        let tables = stand.set.tables(&wanted).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
+        let environment = stand.environment.environment.clone();
+        let sources = Sources { environment, tables, measured: stand.measured.clone() };
+        let mut uniforms = Uniforms::new(&stand.gpu)?;
+        let params = values::params(&settings.shader, &stand.shaders.parameters);
+        uniforms.write(&interface::Frame::default(), &[], &params);
+        let frame = uniforms.set(&stand.layouts, &sources, &stand.constants)?;
+        Ok(Self { stand, constants: wanted.constants, frame })
+    }
+
+    /// Albedo (linear RGB) of each cell, row by row.
+    ///
+    /// # Errors
+    /// The device.
+    pub fn furnace(&self, surface: Surface, grid: Grid) -> Result<Vec<[f32; 3]>, GpuError> {
+        self.run(MEASURE_STAGES[0], surface, grid)
+    }
+
+    /// The worst pair of directions of each cell; columns only share the work.
+    ///
+    /// # Errors
+    /// The device.
+    pub fn reciprocity(&self, surface: Surface, grid: Grid) -> Result<Vec<Worst>, GpuError> {
+        self.run(MEASURE_STAGES[1], surface, grid)
+    }
+
+    /// Integral of D NoH for each roughness; of `grid` only rows and samples count.
+    ///
+    /// # Errors
+    /// The device.
+    pub fn normalization(&self, grid: Grid) -> Result<Vec<f32>, GpuError> {
+        self.run(MEASURE_STAGES[2], Surface { base_color: [1.0; 3], metallic: 1.0 }, Grid { columns: 1, ..grid })
+    }
+
+    /// Lobes in the plane of incidence: the eye goes from -90 to 90 degrees, by the centers of the columns; the light
+    /// stands at `grid.theta.0` degrees on the negative side.
+    ///
+    /// # Errors
+    /// The device.
+    pub fn lobes(&self, surface: Surface, grid: Grid) -> Result<Vec<Lobe>, GpuError> {
+        self.run(MEASURE_STAGES[3], surface, grid)
+    }
+
+    fn run<T: Pod>(&self, stage: &str, surface: Surface, grid: Grid) -> Result<Vec<T>, GpuError> {
+        let Stand { gpu, layouts, set, .. } = &*self.stand;
+        let task = Task {
+            size: [grid.columns, grid.rows],
+            samples: grid.samples,
+            roughness_first: grid.roughness.0,
+            roughness_last: grid.roughness.1,
+            theta_first: grid.theta.0,
+            theta_last: grid.theta.1,
+            base_color: surface.base_color,
+            metallic: surface.metallic,
+            ..Task::default()
+        };
+        let size = (grid.columns * grid.rows) as usize * size_of::<T>();
+        let results = Buffer::new(gpu, "results", size as u64, vk::BufferUsageFlags::STORAGE_BUFFER, Memory::Readback)?;
+        let writer = |writer: SetWriter| compute::results(writer, &results);
+        let bindings = compute::bindings(gpu, layouts, &task, writer)?;
+        let pipeline = set.compute(stage, &self.constants)?;
+        let groups = [grid.columns.div_ceil(8), grid.rows.div_ceil(8), 1];
+        one_shot(gpu, |encoder| {
+            encoder.dispatch(layouts, &pipeline, &[&self.frame, &bindings], groups);
+            encoder.computed();
+            Ok(())
+        })?;
+        Ok(results.read().chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect())
+    }
+}
+
+fn wanted(settings: &Settings, shaders: &ShaderSet) -> Wanted {
+    let half = vk::Format::R16G16B16A16_SFLOAT;
+    Wanted::new(settings, shaders, &BTreeSet::new(), 0, 1, half, super::Renderer::OUTPUT_FORMAT)
+}

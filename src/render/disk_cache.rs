@@ -1,0 +1,92 @@
+//! What was baked once, on disk: named by the hash of all that went in, so an entry is never stale, at most useless.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+/// Most bytes that are kept; the oldest entries go first.
+const MOST_BYTES: u64 = 512 << 20;
+const ENDING: &str = "bake";
+/// Bytes at the end of a file: XXH3 of what comes before.
+const CHECKSUM: u64 = 8;
+
+/// Names an entry after all that it was made from.
+pub(crate) fn key(parts: &[&[u8]]) -> String {
+    let mut hasher = Xxh3::new();
+    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
+    for part in parts {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part);
+    }
+    format!("{:032x}", hasher.digest128())
+}
+
+/// `$SPECULA_CACHE`, or `specula` in the user's cache folder; `None` where there is no home.
+fn folder() -> Option<PathBuf> {
+    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let base = set("SPECULA_CACHE")
+        .or_else(|| set("XDG_CACHE_HOME").map(|p| p.join("specula")))
+        .or_else(|| set("HOME").map(|p| p.join(".cache/specula")))?;
+    Some(base.join("baked"))
+}
+
+fn file(folder: &Path, key: &str) -> PathBuf {
+    folder.join(format!("{key}.{ENDING}"))
+}
+
+/// An entry of exactly `size` bytes, whole; anything else counts as absent.
+pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
+    let path = file(&folder()?, key);
+    let metadata = std::fs::metadata(&path).ok()?;
+    if metadata.len() != size + CHECKSUM {
+        return None;
+    }
+    let mut bytes = std::fs::read(path).ok()?;
+    let end = usize::try_from(size).ok().filter(|end| bytes.len() == end + CHECKSUM as usize)?;
+    let is_whole = bytes[end..] == xxh3_64(&bytes[..end]).to_le_bytes();
+    bytes.truncate(end);
+    is_whole.then_some(bytes)
+}
+
+/// Keeps an entry. A cache that cannot be written costs time, never the picture, so failures are only traced.
+pub(crate) fn store(key: &str, bytes: &[u8]) {
+    let Some(folder) = folder() else { return };
+    if let Err(error) = write(&folder, key, bytes) {
+        tracing::debug!("{}: the cache was not written: {error}", folder.display());
+    }
+}
+
+fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    // Whole or not at all: another Specula may read it at the same time.
+    let temporary = folder.join(format!("{key}.{}.part", std::process::id()));
+    let mut file_of_part = std::fs::File::create(&temporary)?;
+    file_of_part.write_all(bytes)?;
+    file_of_part.write_all(&xxh3_64(bytes).to_le_bytes())?;
+    drop(file_of_part);
+    std::fs::rename(&temporary, file(folder, key))?;
+    prune(folder)
+}
+
+fn prune(folder: &Path) -> std::io::Result<()> {
+    let mut entries: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|e| e == ENDING) {
+            let metadata = std::fs::metadata(&path)?;
+            entries.push((metadata.modified()?, metadata.len(), path));
+        }
+    }
+    entries.sort();
+    let mut total: u64 = entries.iter().map(|(_, size, _)| size).sum();
+    for (_, size, path) in entries {
+        if total <= MOST_BYTES {
+            break;
+        }
+        std::fs::remove_file(path)?;
+        total -= size;
+    }
+    Ok(())
+}

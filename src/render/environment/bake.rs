@@ -1,0 +1,288 @@
+//! Image-based light: from an environment map to what the shaders read. Runs on any thread, pass by pass, so that frames get
+//! their turn between two passes.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
+use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
+
+use crate::render::compute;
+use crate::render::disk_cache;
+use crate::render::environment::passes::{IRRADIANCE_LEVEL, Passes, no_results};
+use crate::render::pipelines::PipelineSet;
+
+pub(crate) const CUBE: &str = "ibl/cube.comp";
+pub(crate) const DOWNSAMPLE: &str = "ibl/downsample.comp";
+pub(crate) const IRRADIANCE: &str = "ibl/irradiance.comp";
+const PREFILTER: &str = "ibl/prefilter.comp";
+const PREFILTER_SHEEN: &str = "ibl/prefilter_sheen.comp";
+/// The stages that an environment is baked with: when one changes, it is baked anew.
+pub const BAKE_STAGES: [&str; 5] = [CUBE, DOWNSAMPLE, IRRADIANCE, PREFILTER, PREFILTER_SHEEN];
+
+const CUBE_SIDE: u32 = 512;
+const CUBE_LEVELS: u32 = 10;
+const PREFILTERED_SIDE: u32 = 256;
+const PREFILTERED_LEVELS: u32 = 9;
+const SHEEN_SIDE: u32 = 32;
+const SHEEN_LEVELS: u32 = 6;
+const SHEEN_SAMPLES: u32 = 256;
+/// Irradiance changes as slowly as the cosine does, but for its kink where a sun sets.
+const IRRADIANCE_SIDE: u32 = 32;
+const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+/// Largest half float.
+const LARGEST_HALF: f32 = 65504.0;
+/// A peak this many times brighter than a half float holds is clipped: scaled down further, the dark parts would be lost.
+const LARGEST_RANGE: f32 = 4096.0;
+
+/// Samples a texel of each prefiltered level: small, rough levels need more and have fewer texels.
+const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512, 512, 512, 512];
+
+/// Why there is no image-based light.
+#[derive(Debug, thiserror::Error)]
+pub enum BakeError {
+    /// The map.
+    #[error(transparent)]
+    Environment(#[from] EnvironmentError),
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The map does not fit the device.
+    #[error("{0}x{1} pixels are too many: this device has images of at most {2} a side")]
+    TooLarge(u32, u32, u32),
+    /// Something newer is wanted.
+    #[error("a newer environment or shader came first")]
+    Superseded,
+}
+
+/// Where the time of a bake went, wall milliseconds.
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct BakeReport {
+    /// Name of the environment.
+    pub environment: String,
+    /// Whether the result was on disk.
+    pub cached: bool,
+    /// Reading or making the map.
+    pub decode_ms: f64,
+    /// Making the compute pipelines.
+    pub pipeline_ms: f64,
+    /// Copying the map, or the cached result, to the device.
+    pub upload_ms: f64,
+    /// The map to a cube with its mip levels.
+    pub cube_ms: f64,
+    /// The cube to irradiance.
+    pub irradiance_ms: f64,
+    /// GGX prefilter, all levels.
+    pub prefilter_ms: f64,
+    /// Sheen prefilter, all levels.
+    pub sheen_ms: f64,
+    /// Everything but writing the cache.
+    pub total_ms: f64,
+}
+
+/// An environment on the device; all images in [`Use::Sampled`].
+pub struct GpuEnvironment {
+    pub(crate) cube: Arc<Image>,
+    pub(crate) prefiltered: Arc<Image>,
+    pub(crate) sheen: Arc<Image>,
+    pub(crate) irradiance: Arc<Image>,
+    pub(crate) sampler: Arc<Sampler>,
+    /// What the images hold is radiance times this.
+    pub(crate) scale: f32,
+    /// What the bake took.
+    pub report: BakeReport,
+}
+
+/// What the caller of a bake wants to know and to decide.
+pub struct BakeControl<'a> {
+    /// Told the part that is done, 0..1, and what is next.
+    pub progress: &'a (dyn Fn(f32, &str) + Sync),
+    /// Asked between passes whether to give up.
+    pub superseded: &'a (dyn Fn() -> bool + Sync),
+    /// Whether a result on disk will do; if not, it is made again and kept.
+    pub from_disk: bool,
+}
+
+impl GpuEnvironment {
+    /// The same radiance from everywhere, in images of one texel.
+    ///
+    /// # Errors
+    /// The device.
+    pub(crate) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let cube = |name: &str| Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage));
+        let names = ["uniform cube", "uniform prefiltered", "uniform sheen", "uniform irradiance"];
+        let [a, b, c, d] = names.map(cube);
+        let this = Self::with(gpu, [a?, b?, c?, d?])?;
+        let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(half::f16::from_f32);
+        let texels = this.bytes() as usize / size_of_val(&texel);
+        this.fill(gpu, &bytemuck::cast_slice(&texel.map(half::f16::to_bits)).repeat(texels))?;
+        Ok(Arc::new(this))
+    }
+
+    fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+        use vk::ImageUsageFlags as Usage;
+        let usage = Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
+        let cube = |name: &str, side, levels| Image::new(gpu, name, ImageDesc::cube(side, levels, HALF, usage));
+        let images = [
+            cube("environment", CUBE_SIDE, CUBE_LEVELS)?,
+            cube("prefiltered", PREFILTERED_SIDE, PREFILTERED_LEVELS)?,
+            cube("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?,
+            cube("irradiance", IRRADIANCE_SIDE, 1)?,
+        ];
+        Self::with(gpu, images)
+    }
+
+    fn with(gpu: &Arc<Gpu>, [cube, prefiltered, sheen, irradiance]: [Arc<Image>; 4]) -> Result<Self, GpuError> {
+        let sampler = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        Ok(Self { cube, prefiltered, sheen, irradiance, sampler, scale: 1.0, report: BakeReport::default() })
+    }
+
+    fn images(&self) -> [&Arc<Image>; 4] {
+        [&self.cube, &self.prefiltered, &self.sheen, &self.irradiance]
+    }
+
+    /// Bytes of all images.
+    fn bytes(&self) -> u64 {
+        self.images().iter().map(|image| image.desc().bytes()).sum()
+    }
+
+    /// Copies everything in, in the order of [`Self::read`].
+    fn fill(&self, gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<(), GpuError> {
+        let mut rest = bytes;
+        let mut images = Vec::new();
+        for image in self.images() {
+            let (own, others) = rest.split_at(image.desc().bytes() as usize);
+            images.push((image, own));
+            rest = others;
+        }
+        compute::upload(gpu, &images)
+    }
+
+    /// Copies everything out.
+    fn read(&self, gpu: &Arc<Gpu>) -> Result<Vec<u8>, GpuError> {
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let out = Buffer::new(gpu, "baked", self.bytes(), usage, Memory::Readback)?;
+        one_shot(gpu, |encoder| {
+            let mut at = 0;
+            for image in self.images() {
+                encoder.transition(image, Use::Sampled, Use::CopyFrom);
+                encoder.copy_levels_from_image(image, &out, at);
+                encoder.transition(image, Use::CopyFrom, Use::Sampled);
+                at += image.desc().bytes();
+            }
+            encoder.copies_done();
+            Ok(())
+        })?;
+        Ok(out.read())
+    }
+
+    /// Bakes an environment with a set's stages, or takes the result from the disk.
+    ///
+    /// # Errors
+    /// A bad map, a device that fails, or `control` gave up.
+    pub fn bake(set: &PipelineSet, file: &EnvironmentFile, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
+        let start = Instant::now();
+        let gpu = set.gpu();
+        let mut this = Self::new(gpu)?;
+        this.report.environment.clone_from(&file.name);
+        let key = key(set, file)?;
+        // The scale comes last.
+        if let Some(bytes) = disk_cache::load(&key, this.bytes() + 4).filter(|_| control.from_disk) {
+            let upload = Instant::now();
+            let (images, scale) = bytes.split_at(bytes.len() - 4);
+            this.fill(gpu, images)?;
+            this.scale = bytemuck::pod_read_unaligned(scale);
+            this.report.cached = true;
+            this.report.upload_ms = ms(upload);
+            this.report.total_ms = ms(start);
+            return Ok(Arc::new(this));
+        }
+        (control.progress)(0.0, "reading");
+        let map = file.decode()?;
+        this.report.decode_ms = ms(start);
+        this.run(set, &map, control)?;
+        this.report.total_ms = ms(start);
+        let mut bytes = this.read(gpu)?;
+        bytes.extend(this.scale.to_ne_bytes());
+        disk_cache::store(&key, &bytes);
+        Ok(Arc::new(this))
+    }
+
+    /// All passes, each a submission of its own.
+    fn run(&mut self, set: &PipelineSet, map: &Environment, control: &BakeControl<'_>) -> Result<(), BakeError> {
+        let (gpu, layouts) = (set.gpu(), set.layouts());
+        let begin = |done: f32, next: &str| -> Result<Instant, BakeError> {
+            (control.progress)(done, next);
+            tracing::debug!("bake: {next}");
+            if (control.superseded)() { Err(BakeError::Superseded) } else { Ok(Instant::now()) }
+        };
+        let most = gpu.max_image_size();
+        if map.width.max(map.height) > most {
+            return Err(BakeError::TooLarge(map.width, map.height, most));
+        }
+        let time = begin(0.05, "pipelines")?;
+        let results = no_results(gpu, set)?;
+        let passes = Passes { gpu, layouts, set, results: &results };
+        for stage in BAKE_STAGES {
+            set.compute(stage, &Vec::new())?;
+        }
+        self.report.pipeline_ms = ms(time);
+
+        let time = begin(0.1, "upload")?;
+        self.scale = (LARGEST_HALF / map.peak.max(LARGEST_HALF)).max(1.0 / LARGEST_RANGE);
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let desc = ImageDesc::new(map.width, map.height, vk::Format::R32G32B32A32_SFLOAT, usage);
+        let equirect = Image::new(gpu, "environment map", desc)?;
+        compute::upload(gpu, &[(&equirect, bytemuck::cast_slice(&map.pixels))])?;
+        self.report.upload_ms = ms(time);
+
+        let time = begin(0.15, "cube map")?;
+        passes.cube(&equirect, &self.cube, self.scale)?;
+        self.report.cube_ms = ms(time);
+
+        let time = begin(0.25, "irradiance")?;
+        passes.irradiance(&self.cube, &self.irradiance)?;
+        self.report.irradiance_ms = ms(time);
+
+        // On a software device frames get their turn between two levels; a GPU has done them all before anyone notices.
+        let at_once = if gpu.info().kind == "cpu" { 1 } else { PREFILTERED_LEVELS };
+        let source = (&self.cube, &self.sampler);
+        for first in (0..PREFILTERED_LEVELS).step_by(at_once as usize) {
+            let time = begin(0.3 + 0.6 * first as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
+            let levels = first..(first + at_once).min(PREFILTERED_LEVELS);
+            passes.prefilter(PREFILTER, source, &self.prefiltered, levels, &PREFILTER_SAMPLES)?;
+            self.report.prefilter_ms += ms(time);
+        }
+        let time = begin(0.9, "sheen")?;
+        let samples = [SHEEN_SAMPLES; SHEEN_LEVELS as usize];
+        passes.prefilter(PREFILTER_SHEEN, source, &self.sheen, 0..SHEEN_LEVELS, &samples)?;
+        self.report.sheen_ms = ms(time);
+        (control.progress)(1.0, "");
+        Ok(())
+    }
+}
+
+/// Named by the stages, the numbers that they are given, and the map.
+fn key(set: &PipelineSet, file: &EnvironmentFile) -> Result<String, GpuError> {
+    let numbers = [
+        CUBE_SIDE,
+        PREFILTERED_SIDE,
+        SHEEN_SIDE,
+        SHEEN_SAMPLES,
+        IRRADIANCE_SIDE,
+        IRRADIANCE_LEVEL,
+        LARGEST_RANGE.to_bits(),
+    ];
+    let fingerprint = file.fingerprint.to_le_bytes();
+    let mut parts: Vec<&[u8]> = vec![&fingerprint, bytemuck::cast_slice(&numbers)];
+    parts.push(bytemuck::cast_slice(&PREFILTER_SAMPLES));
+    for stage in BAKE_STAGES {
+        parts.push(bytemuck::cast_slice(set.spirv(stage)?));
+    }
+    Ok(disk_cache::key(&parts))
+}
+
+fn ms(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}

@@ -1,0 +1,122 @@
+//! Mip levels of 8-bit images, made on the CPU: a software device blits them seven times slower, and every device gets the same.
+
+use std::sync::LazyLock;
+
+use crate::settings::linear_from_srgb;
+
+/// Number of levels down to 1x1.
+pub(crate) fn count(width: u32, height: u32) -> u32 {
+    width.max(height).max(1).ilog2() + 1
+}
+
+/// Size of a level.
+pub(crate) fn size(width: u32, height: u32, level: u32) -> (u32, u32) {
+    ((width >> level).max(1), (height >> level).max(1))
+}
+
+/// Bytes of all levels.
+pub(crate) fn bytes(width: u32, height: u32) -> usize {
+    let pixels = |level| {
+        let (width, height) = size(width, height, level);
+        width as usize * height as usize
+    };
+    (0..count(width, height)).map(pixels).sum::<usize>() * 4
+}
+
+/// Levels 1 and up of an RGBA image, one after the other: each pixel is the mean of up to 2x2 pixels above it, of the linear
+/// values when the image is sRGB-encoded. Alpha is linear always.
+pub(crate) fn below(rgba8: &[u8], width: u32, height: u32, srgb: bool) -> Vec<u8> {
+    let mut chain: Vec<u8> = Vec::with_capacity(bytes(width, height) - rgba8.len());
+    for level in 1..count(width, height) {
+        let start = chain.len();
+        let above = if level == 1 { rgba8 } else { &chain[start - level_bytes(width, height, level - 1)..] };
+        let halved = halve(above, size(width, height, level - 1), size(width, height, level), srgb);
+        chain.extend_from_slice(&halved);
+    }
+    chain
+}
+
+fn level_bytes(width: u32, height: u32, level: u32) -> usize {
+    let (width, height) = size(width, height, level);
+    width as usize * height as usize * 4
+}
+
+fn halve(above: &[u8], (from_w, from_h): (u32, u32), (to_w, to_h): (u32, u32), srgb: bool) -> Vec<u8> {
+    let mut out = vec![0; to_w as usize * to_h as usize * 4];
+    let row_bytes = from_w as usize * 4;
+    let curve = srgb.then(|| &*CURVE);
+    for (y, row) in out.chunks_exact_mut(to_w as usize * 4).enumerate() {
+        // A side of one pixel has no second one to average.
+        let (top, bottom) = if from_h > 1 { (2 * y, 2 * y + 1) } else { (0, 0) };
+        let top = &above[top * row_bytes..][..row_bytes];
+        let bottom = &above[bottom * row_bytes..][..row_bytes];
+        if from_w == 1 {
+            mean_of_four(row, [top, top, bottom, bottom], curve);
+            continue;
+        }
+        let pairs = top.chunks_exact(8).zip(bottom.chunks_exact(8));
+        for (pixel, (top, bottom)) in row.chunks_exact_mut(4).zip(pairs) {
+            mean_of_four(pixel, [&top[..4], &top[4..], &bottom[..4], &bottom[4..]], curve);
+        }
+    }
+    out
+}
+
+fn mean_of_four(pixel: &mut [u8], taps: [&[u8]; 4], curve: Option<&Curve>) {
+    let mean = |channel: usize| {
+        let sum: u32 = taps.iter().map(|tap| u32::from(tap[channel])).sum();
+        ((sum + 2) / 4) as u8
+    };
+    let light = |channel: usize| curve.map(|curve| curve.mean(taps.map(|tap| tap[channel])));
+    for (channel, value) in pixel.iter_mut().enumerate() {
+        *value = if channel < 3 { light(channel).unwrap_or_else(|| mean(channel)) } else { mean(channel) };
+    }
+}
+
+/// The sRGB curve both ways (IEC 61966-2-1) as tables; 16 bits of linear light keep every dark step apart.
+struct Curve {
+    linear: [u32; 256],
+    encoded: Vec<u8>,
+}
+
+static CURVE: LazyLock<Curve> = LazyLock::new(|| {
+    let encode = |l: f32| if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+    Curve {
+        linear: std::array::from_fn(|i| (linear_from_srgb(i as f32 / 255.0) * 65535.0).round() as u32),
+        encoded: (0..=65535u32).map(|l| (encode(l as f32 / 65535.0) * 255.0).round() as u8).collect(),
+    }
+});
+
+impl Curve {
+    fn mean(&self, taps: [u8; 4]) -> u8 {
+        let sum: u32 = taps.iter().map(|t| self.linear[usize::from(*t)]).sum();
+        self.encoded[(sum as usize + 2) / 4]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flat_image_stays_flat_at_every_level() {
+        for (width, height) in [(1, 1), (1, 8), (7, 1), (5, 3), (8, 8), (13, 32)] {
+            for color in [[0, 1, 2, 3], [17, 128, 255, 64]] {
+                for srgb in [false, true] {
+                    let image = color.repeat((width * height) as usize);
+                    let chain = below(&image, width, height, srgb);
+                    assert_eq!(chain.len() + image.len(), bytes(width, height));
+                    assert!(chain.chunks_exact(4).all(|p| p == color), "{width}x{height} {color:?} srgb {srgb}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn srgb_averages_light_and_not_code_values() {
+        let image: Vec<u8> = [[0, 0, 0, 0], [255, 255, 255, 255]].concat().repeat(2);
+        // Half the light of white is sRGB 188; half its code value is 128, as for alpha.
+        assert_eq!(below(&image, 2, 2, true), [188, 188, 188, 128]);
+        assert_eq!(below(&image, 2, 2, false), [128, 128, 128, 128]);
+    }
+}

@@ -1,0 +1,189 @@
+//! Which images a model's materials read, and in which form they go to the device.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+
+use crate::interface::{
+    TEXTURE_BASE_COLOR, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_DIFFUSE_TRANSMISSION_COLOR, TEXTURE_EMISSIVE,
+    TEXTURE_METALLIC_ROUGHNESS, TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SHEEN_COLOR, TEXTURE_SPECULAR_COLOR,
+};
+use crate::scene::{Image, Material, Model, packs_occlusion};
+
+/// An image as materials read it. Indices are into `Model::images`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Source {
+    /// Stands in for a missing texture, whose factor is all there is.
+    White,
+    /// Stands in for a missing normal texture.
+    FlatNormal,
+    /// One of the model's images.
+    Image { image: usize, srgb: bool },
+    /// A metallic-roughness image with the red channel of an occlusion image of the same size: one texture to read
+    /// for each pixel instead of two.
+    Packed { metallic_roughness: usize, occlusion: usize },
+}
+
+/// Pixels that one task of the merge works on.
+const PIXELS_A_TASK: usize = 1 << 16;
+
+impl Source {
+    /// What a material has in a slot, `interface::TEXTURE_*`.
+    pub(crate) fn of(model: &Model, material: &Material, slot: usize) -> Self {
+        let image_in = |slot: usize| material.textures[slot].map(|used| model.textures[used.texture].image);
+        let is = |of: &[u32]| of.iter().any(|texture| *texture as usize == slot);
+        let Some(image) = image_in(slot) else {
+            return if is(&[TEXTURE_NORMAL, TEXTURE_CLEARCOAT_NORMAL]) { Self::FlatNormal } else { Self::White };
+        };
+        if is(&[TEXTURE_METALLIC_ROUGHNESS, TEXTURE_OCCLUSION])
+            && let Some(metallic_roughness) = image_in(TEXTURE_METALLIC_ROUGHNESS as usize)
+            && let Some(occlusion) = image_in(TEXTURE_OCCLUSION as usize)
+            && metallic_roughness != occlusion
+            && packs_occlusion(model, material)
+        {
+            return Self::Packed { metallic_roughness, occlusion };
+        }
+        let colors = [
+            TEXTURE_BASE_COLOR,
+            TEXTURE_EMISSIVE,
+            TEXTURE_SHEEN_COLOR,
+            TEXTURE_SPECULAR_COLOR,
+            TEXTURE_DIFFUSE_TRANSMISSION_COLOR,
+        ];
+        let is_glossiness = material.specular_glossiness && is(&[TEXTURE_METALLIC_ROUGHNESS]);
+        Self::Image { image, srgb: is(&colors) || is_glossiness }
+    }
+
+    /// Whether its colors are sRGB-encoded.
+    pub(crate) fn is_srgb(self) -> bool {
+        matches!(self, Self::Image { srgb: true, .. })
+    }
+
+    /// The image that it has its name and size from; `None` for a stand-in, which is a pixel.
+    pub(crate) fn image(self, model: &Model) -> Option<&Image> {
+        match self {
+            Self::White | Self::FlatNormal => None,
+            Self::Image { image, .. } | Self::Packed { metallic_roughness: image, .. } => Some(&model.images[image]),
+        }
+    }
+
+    /// Its pixels, RGBA, rows top to bottom. The model's images stay as they are.
+    pub(crate) fn pixels(self, model: &Model) -> Cow<'_, [u8]> {
+        match self {
+            Self::White => Cow::Borrowed(&[255; 4]),
+            Self::FlatNormal => Cow::Borrowed(&[128, 128, 255, 255]),
+            Self::Image { image, .. } => Cow::Borrowed(&model.images[image].rgba8),
+            Self::Packed { metallic_roughness, occlusion } => {
+                let [below, red] = [metallic_roughness, occlusion].map(|image| model.images[image].rgba8.as_slice());
+                let mut merged = vec![0; below.len()];
+                merged.par_chunks_mut(4 * PIXELS_A_TASK).enumerate().for_each(|(task, merged)| {
+                    let at = task * 4 * PIXELS_A_TASK;
+                    merged.copy_from_slice(&below[at..at + merged.len()]);
+                    for (to, from) in merged.chunks_exact_mut(4).zip(red[at..].chunks_exact(4)) {
+                        to[0] = from[0];
+                    }
+                });
+                Cow::Owned(merged)
+            }
+        }
+    }
+}
+
+/// Everything that the materials of a model read, the stand-ins first.
+pub(crate) fn sources(model: &Model) -> BTreeSet<Source> {
+    let used = model
+        .materials
+        .iter()
+        .flat_map(|material| (0..material.textures.len()).map(move |slot| Source::of(model, material, slot)));
+    used.chain([Source::White, Source::FlatNormal]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Sampler, Texture, TextureUse};
+
+    /// Images of these sizes, each with a texture, each pixel unlike all others.
+    fn model(sizes: &[(u32, u32)]) -> Model {
+        let image = |(index, &(width, height)): (usize, &(u32, u32))| {
+            let rgba8 = (0..width * height * 4).map(|byte| (byte as usize * 7 + index * 101) as u8).collect();
+            Image { name: format!("image {index}"), width, height, rgba8 }
+        };
+        let texture = |image| Texture { image, sampler: Sampler::default() };
+        Model {
+            images: sizes.iter().enumerate().map(image).collect(),
+            textures: (0..sizes.len()).map(texture).collect(),
+            ..Model::default()
+        }
+    }
+
+    fn material(slots: &[(u32, usize)]) -> Material {
+        let mut material = Material::default();
+        for &(slot, texture) in slots {
+            let used = TextureUse { texture, uv_set: 0, uv_from_mesh: glam::Affine2::IDENTITY };
+            material.textures[slot as usize] = Some(used);
+        }
+        material
+    }
+
+    #[test]
+    fn occlusion_goes_into_the_red_channel_of_a_copy() {
+        // More pixels than a task has, and no multiple of them.
+        let size = (411, 333);
+        let mut model = model(&[size, size]);
+        let material = material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 1)]);
+        model.materials = vec![material.clone(), self::material(&[(TEXTURE_BASE_COLOR, 0)])];
+        let packed = Source::Packed { metallic_roughness: 0, occlusion: 1 };
+        let of = |slot: u32| Source::of(&model, &material, slot as usize);
+        assert_eq!([of(TEXTURE_METALLIC_ROUGHNESS), of(TEXTURE_OCCLUSION)], [packed; 2]);
+        let pixels = packed.pixels(&model);
+        let images = [&model.images[0].rgba8, &model.images[1].rgba8].map(|image| image.chunks_exact(4));
+        let [roughness, occlusion] = images;
+        assert_eq!(pixels.len(), 411 * 333 * 4);
+        for (merged, (roughness, occlusion)) in pixels.chunks_exact(4).zip(roughness.zip(occlusion)) {
+            assert_eq!(merged, [occlusion[0], roughness[1], roughness[2], roughness[3]]);
+        }
+        // The occlusion image itself is not uploaded; the other one is for its other user.
+        let image = Source::Image { image: 0, srgb: true };
+        assert_eq!(Vec::from_iter(sources(&model)), [Source::White, Source::FlatNormal, image, packed]);
+    }
+
+    #[test]
+    fn images_that_differ_stay_apart() {
+        let apart = |model: &Model, material: &Material| {
+            let of = |slot: u32| Source::of(model, material, slot as usize);
+            [of(TEXTURE_METALLIC_ROUGHNESS), of(TEXTURE_OCCLUSION)]
+        };
+        let material = material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 1)]);
+        let both = |srgb| [Source::Image { image: 0, srgb }, Source::Image { image: 1, srgb: false }];
+        assert_eq!(apart(&model(&[(4, 4), (4, 2)]), &material), both(false));
+        let glossy = Material { specular_glossiness: true, ..material.clone() };
+        assert_eq!(apart(&model(&[(4, 4), (4, 4)]), &glossy), both(true));
+        let mut nearest = model(&[(4, 4), (4, 4)]);
+        nearest.textures[1].sampler.mag_linear = false;
+        assert_eq!(apart(&nearest, &material), both(false));
+        let mut second = material.clone();
+        second.textures[TEXTURE_OCCLUSION as usize].as_mut().unwrap().uv_set = 1;
+        assert_eq!(apart(&model(&[(4, 4), (4, 4)]), &second), both(false));
+        // One image for both needs no merge.
+        let one = self::material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 0)]);
+        assert_eq!(apart(&model(&[(4, 4)]), &one), [Source::Image { image: 0, srgb: false }; 2]);
+    }
+
+    #[test]
+    fn colors_are_srgb_and_numbers_are_not() {
+        let model = model(&[(1, 1)]);
+        let all: Vec<(u32, usize)> = (0..crate::interface::TEXTURE_COUNT as u32).map(|slot| (slot, 0)).collect();
+        let srgb = |glossy| {
+            let material = Material { specular_glossiness: glossy, ..material(&all) };
+            (0..all.len()).filter(|&slot| Source::of(&model, &material, slot).is_srgb()).collect::<Vec<_>>()
+        };
+        assert_eq!(srgb(false), [0, 4, 9, 12, 18]);
+        assert_eq!(srgb(true), [0, 1, 4, 9, 12, 18]);
+        let bare = Material::default();
+        let flat: Vec<usize> =
+            (0..all.len()).filter(|&slot| Source::of(&model, &bare, slot) == Source::FlatNormal).collect();
+        assert_eq!(flat, [TEXTURE_NORMAL as usize, TEXTURE_CLEARCOAT_NORMAL as usize]);
+    }
+}

@@ -1,0 +1,354 @@
+//! What the shader author declares for people: debug modes, constants and parameters, read from `//@` comments.
+//!
+//! ```glsl
+//! //@mode d "Normal distribution D" group="BRDF terms" encode=data doc="GGX"
+//! const uint MODE_BRDF_D = 120u;
+//! layout(constant_id = USER_CONSTANTS + 0) const bool WRAP = false;   //@ui "Wrapped diffuse"
+//! layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {
+//!     float rim;         //@ui "Rim" 0..1 = 0.2
+//!     vec3  rim_color;   //@ui color = 1 0.8 0.6
+//! };
+//! ```
+//!
+//! An annotation stands behind its declaration or on the line before it.
+
+mod cursor;
+mod parse;
+mod value;
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::interface;
+
+use self::cursor::Place;
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::reflect::{Reflection, Scalar};
+use parse::{Declared, Found, Ui, outside_of_choices, parse_file};
+
+/// How a mode's values become 8-bit pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Encode {
+    /// Linear color, sRGB-encoded.
+    Color,
+    /// Numbers, stored as they are.
+    Data,
+    /// Vectors, stored as `v * 0.5 + 0.5`.
+    Vector,
+}
+
+impl Encode {
+    /// The `interface::ENCODE_*` number.
+    pub fn id(self) -> u32 {
+        match self {
+            Self::Color => interface::ENCODE_COLOR,
+            Self::Data => interface::ENCODE_DATA,
+            Self::Vector => interface::ENCODE_VECTOR,
+        }
+    }
+}
+
+/// How a mode draws the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DrawAs {
+    /// As it is.
+    #[default]
+    Surfaces,
+    /// The edges of its triangles.
+    Lines,
+    /// Every fragment added to those before it, whatever lies in front: overdraw.
+    Layers,
+}
+
+/// A debug mode.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Mode {
+    /// Value of the specialization constant `MODE`.
+    pub id: u32,
+    /// Name on the command line and in file names.
+    pub slug: String,
+    /// Name for people.
+    pub name: String,
+    /// Heading in lists; empty when none was given.
+    pub group: String,
+    /// How its values are stored.
+    pub encode: Encode,
+    /// Whether exposure and tone mapping apply.
+    pub tonemap: bool,
+    /// Whether frames add up to a mean: each is a noisy sample of the picture.
+    pub accumulate: bool,
+    /// What is seen through glass is the picture, not this mode of it.
+    pub through: bool,
+    /// How the model is drawn.
+    pub draw: DrawAs,
+    /// Key in the window.
+    pub key: Option<char>,
+    /// What it shows.
+    pub doc: String,
+    /// File as printed.
+    #[serde(skip)]
+    pub file: String,
+    /// 1-based line of the annotation.
+    #[serde(skip)]
+    pub line: u32,
+}
+
+/// A specialization constant of the author's: changing it builds pipelines.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Constant {
+    /// Name in GLSL; the key in `settings.shader`.
+    pub name: String,
+    /// `constant_id`
+    pub id: u32,
+    /// Name for people.
+    pub label: String,
+    /// Type.
+    #[serde(skip)]
+    pub scalar: Scalar,
+    /// Bits of the default; 0 or 1 for `bool`.
+    pub default: u32,
+    /// Smallest and largest value to offer.
+    pub range: Option<(f64, f64)>,
+    /// Named values; empty for free choice.
+    pub choices: Vec<(String, i64)>,
+    /// Choices that are claimed never to reflect more light than arrives; `None` where the constant has no part in that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub conserves: Option<Vec<String>>,
+    /// Choices that are claimed to be the same with light and eye exchanged; `None` as above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reciprocal: Option<Vec<String>>,
+    /// File as printed.
+    #[serde(skip)]
+    pub file: String,
+    /// 1-based line of the annotation.
+    #[serde(skip)]
+    pub line: u32,
+}
+
+/// Type of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ParameterType {
+    /// `float`
+    Float,
+    /// `int`
+    Int,
+    /// `uint`
+    Uint,
+    /// `bool`, four bytes in a block
+    Bool,
+    /// `vec2`
+    Vec2,
+    /// `vec3`
+    Vec3,
+    /// `vec4`
+    Vec4,
+}
+
+impl ParameterType {
+    /// The type of each of its numbers.
+    pub fn scalar(self) -> Scalar {
+        match self {
+            Self::Int => Scalar::Int,
+            Self::Uint => Scalar::Uint,
+            Self::Bool => Scalar::Bool,
+            Self::Float | Self::Vec2 | Self::Vec3 | Self::Vec4 => Scalar::Float,
+        }
+    }
+
+    /// How many numbers a value has.
+    pub fn components(self) -> usize {
+        match self {
+            Self::Vec2 => 2,
+            Self::Vec3 => 3,
+            Self::Vec4 => 4,
+            _ => 1,
+        }
+    }
+}
+
+/// A member of the author's `Params` block: changing it costs nothing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Name in GLSL; the key in `settings.shader`.
+    pub name: String,
+    /// Name for people.
+    pub label: String,
+    /// Bytes from the start of the block.
+    pub offset: u32,
+    /// Type.
+    #[serde(rename = "type")]
+    pub kind: ParameterType,
+    /// Smallest and largest value to offer.
+    pub range: Option<(f64, f64)>,
+    /// One number for each component; `bool` is 0 or 1.
+    pub default: Vec<f64>,
+    /// Show a color picker (linear RGB).
+    pub color: bool,
+    /// Named values; empty for free choice.
+    pub choices: Vec<(String, i64)>,
+    /// File as printed.
+    #[serde(skip)]
+    pub file: String,
+    /// 1-based line of the annotation.
+    #[serde(skip)]
+    pub line: u32,
+}
+
+/// All annotations of a tree.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Annotations {
+    /// Ordered by id.
+    pub modes: Vec<Mode>,
+    /// Ordered by id.
+    pub constants: Vec<Constant>,
+    /// Ordered by offset.
+    pub parameters: Vec<Parameter>,
+}
+
+/// Reads the annotations of `files`; ids, defaults and offsets come from the compiled modules, so they are the real ones.
+///
+/// # Errors
+/// Every annotation that does not parse, every name, slug or id given twice, every `//@ui` on what no module has.
+pub fn read<'p>(
+    snapshot: &Snapshot<'_>,
+    files: impl IntoIterator<Item = &'p TreePath>,
+    modules: &[&Reflection],
+) -> Result<Annotations, Vec<Diagnostic>> {
+    let mut out = Annotations::default();
+    let mut errors = Vec::new();
+    let mut seen = Seen::default();
+    for path in files {
+        let Ok(text) = snapshot.read(path) else { continue };
+        let file = snapshot.display_path(path);
+        let (found, bad) = parse_file(&file, &text);
+        errors.extend(bad);
+        for found in found {
+            let added = match found {
+                Found::Mode(mode, place) => seen.mode(&mode, &place).map(|()| out.modes.push(mode)),
+                Found::Ui(ui) => seen.ui(&ui).and_then(|()| resolve(ui, modules, &mut out)),
+            };
+            errors.extend(added.err().map(|error| *error));
+        }
+    }
+    out.modes.sort_by_key(|mode| mode.id);
+    out.constants.sort_by_key(|constant| constant.id);
+    out.parameters.sort_by_key(|parameter| parameter.offset);
+    if let Some(pair) = out.constants.windows(2).find(|pair| pair[0].id == pair[1].id) {
+        let message = format!("constant_id {} is given twice: `{}` and `{}`", pair[0].id, pair[0].name, pair[1].name);
+        let note = format!("the other is at {}:{}", pair[0].file, pair[0].line);
+        errors.push(Diagnostic::error(&pair[1].file, message).on_line(pair[1].line, None).with_note(note));
+    }
+    if errors.is_empty() { Ok(out) } else { Err(errors) }
+}
+
+/// Where each name was first given.
+#[derive(Default)]
+struct Seen(BTreeMap<(&'static str, String), (String, u32)>);
+
+impl Seen {
+    fn mode(&mut self, mode: &Mode, place: &Place) -> Result<(), Box<Diagnostic>> {
+        self.first("mode slug", &mode.slug, place)?;
+        self.first("mode id", &mode.id.to_string(), place)?;
+        self.first("mode name", &mode.name, place)?;
+        match mode.key {
+            Some(key) => self.first("mode key", &key.to_string(), place),
+            None => Ok(()),
+        }
+    }
+
+    fn ui(&mut self, ui: &Ui) -> Result<(), Box<Diagnostic>> {
+        // Constants and parameters share one name space: the settings file has one table for both.
+        self.first("//@ui name", &ui.name, &ui.place)
+    }
+
+    fn first(&mut self, what: &'static str, value: &str, place: &Place) -> Result<(), Box<Diagnostic>> {
+        let here = (place.file.clone(), place.line);
+        match self.0.insert((what, value.to_owned()), here) {
+            None => Ok(()),
+            Some((file, line)) => {
+                let error = place.error(None, format!("{what} `{value}` is given twice"));
+                Err(Box::new(error.with_note(format!("the other is at {file}:{line}"))))
+            }
+        }
+    }
+}
+
+/// Joins a `//@ui` with its declaration in the compiled modules.
+fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(), Box<Diagnostic>> {
+    let Ui { name, label, range, choices, conserves, reciprocal, color, default, declared, place } = ui;
+    let (file, line) = (place.file.clone(), place.line);
+    match declared {
+        Declared::Constant(_) => {
+            let found = modules.iter().flat_map(|module| &module.constants).find(|constant| constant.name == name);
+            let Some(found) = found else {
+                return Err(place.error(None, format!("`{name}` is in no compiled stage, so //@ui cannot set it")));
+            };
+            let value = match found.scalar {
+                Scalar::Int => f64::from(found.default.cast_signed()),
+                _ => f64::from(found.default),
+            };
+            if let Some(message) = outside_of_choices(&choices, value) {
+                return Err(place.error(None, message));
+            }
+            let (id, scalar, default) = (found.id, found.scalar, found.default);
+            out.constants.push(Constant {
+                name,
+                id,
+                label,
+                scalar,
+                default,
+                range,
+                choices,
+                conserves,
+                reciprocal,
+                file,
+                line,
+            });
+        }
+        Declared::Member(kind) => {
+            let offset = offset_in_params(&name, modules, &place)?;
+            let default = default.unwrap_or_else(|| match choices.first() {
+                // Without a word of the author's it is 0, where that may be chosen.
+                Some((_, first)) if outside_of_choices(&choices, 0.0).is_some() => vec![*first as f64],
+                _ => vec![0.0; kind.components()],
+            });
+            out.parameters.push(Parameter { name, label, offset, kind, range, default, color, choices, file, line });
+        }
+    }
+    Ok(())
+}
+
+/// Every module that has the member must have it at the same place: one buffer serves them all.
+fn offset_in_params(name: &str, modules: &[&Reflection], place: &Place) -> Result<u32, Box<Diagnostic>> {
+    let params = interface::BINDINGS.iter().find(|binding| binding.name == "BINDING_PARAMS");
+    let blocks = modules.iter().filter_map(|module| module.descriptor(params?.set, params?.binding)?.block.as_ref());
+    let mut offsets: Vec<u32> = blocks
+        .flat_map(|block| &block.members)
+        .filter(|member| member.name == name)
+        .map(|member| member.offset)
+        .collect();
+    offsets.dedup();
+    match offsets.as_slice() {
+        [only] => Ok(*only),
+        [] => {
+            let message =
+                format!("`{name}` is no member of the block at SET_FRAME, BINDING_PARAMS in any compiled stage");
+            Err(place.error(None, message))
+        }
+        [first, other, ..] => {
+            let message = format!("`{name}` is at byte {first} in one stage and at byte {other} in another");
+            let help = "declare the Params block once, in a file that all stages include";
+            Err(Box::new(place.error(None, message).with_help(help)))
+        }
+    }
+}
+
+// Run against the compiler; see `annotation_tests.rs`.
+#[cfg(test)]
+mod tests;

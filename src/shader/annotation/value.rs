@@ -1,0 +1,123 @@
+//! The numbers of a `//@ui`: its range, choices and default, held against the type that they are for.
+
+use std::ops::Range;
+
+use super::ParameterType;
+use super::cursor::Cursor;
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::spirv::reflect::Scalar;
+
+/// What a number of a scalar type can be: its name in GLSL, the smallest and the largest.
+pub fn limits(scalar: Scalar) -> (&'static str, f64, f64) {
+    match scalar {
+        Scalar::Bool => ("bool", 0.0, 1.0),
+        Scalar::Int => ("int", f64::from(i32::MIN), f64::from(i32::MAX)),
+        Scalar::Uint => ("uint", 0.0, f64::from(u32::MAX)),
+        Scalar::Float => ("float", f64::from(f32::MIN), f64::from(f32::MAX)),
+    }
+}
+
+/// A number that is none of the type's, as an error under `bytes`.
+fn check(cursor: &Cursor<'_>, bytes: &Range<usize>, scalar: Scalar, value: f64) -> Result<(), Box<Diagnostic>> {
+    let (name, least, most) = limits(scalar);
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    let (least, most) = match scalar {
+        Scalar::Float => (format!("{least:e}"), format!("{most:e}")),
+        _ => (least.to_string(), most.to_string()),
+    };
+    let message = format!("expected a value of the type {name}, {least} to {most}, found {value}");
+    Err(cursor.error(bytes.clone(), message))
+}
+
+/// The numbers after `=`: one for each component, with the bytes where they stand.
+pub fn default(cursor: &mut Cursor<'_>, kind: ParameterType) -> Result<(Range<usize>, Vec<f64>), Box<Diagnostic>> {
+    let start = cursor.position();
+    let mut out = Vec::new();
+    while !cursor.at_end() {
+        let (bytes, word) = cursor.word();
+        let value = match word {
+            "true" => Some(1.0),
+            "false" => Some(0.0),
+            word => number(word),
+        };
+        let Some(value) = value else {
+            return Err(cursor.error(bytes, format!("expected a number, found `{word}`")));
+        };
+        check(cursor, &bytes, kind.scalar(), value)?;
+        out.push(value);
+    }
+    let bytes = start..cursor.position();
+    if out.len() != kind.components() {
+        let message = format!("expected {} number(s) after `=`, found {}", kind.components(), out.len());
+        return Err(cursor.error(bytes, message));
+    }
+    if kind.scalar() != Scalar::Float && out.iter().any(|value| value.fract() != 0.0) {
+        return Err(cursor.error(bytes, "expected a whole number after `=`"));
+    }
+    Ok((bytes, out))
+}
+
+/// The words that say of which choices something is claimed.
+const CLAIMS: [&str; 2] = ["conserves=", "reciprocal="];
+
+/// Which of the claims comes next, without its `=`.
+pub fn claim(cursor: &mut Cursor<'_>) -> Option<&'static str> {
+    CLAIMS.into_iter().find(|claim| cursor.peek_text(claim)).map(|claim| claim.trim_end_matches('='))
+}
+
+/// `"A B"` after `conserves=` or `reciprocal=`: names among `choices`.
+pub fn claimed(cursor: &mut Cursor<'_>, choices: &[(String, i64)]) -> Result<Vec<String>, Box<Diagnostic>> {
+    let (_, key) = cursor.key();
+    let (bytes, value) = cursor.value(key)?;
+    let names: Vec<String> = value.split_whitespace().map(str::to_owned).collect();
+    match names.iter().find(|name| !choices.iter().any(|(choice, _)| choice == *name)) {
+        Some(unknown) => {
+            let message = format!("expected names of the choices before `{key}=`, found `{unknown}`");
+            Err(cursor.error(bytes, message))
+        }
+        None => Ok(names),
+    }
+}
+
+/// `A=0 B=1` up to something that is no choice; values of the type.
+pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Vec<(String, i64)>, Box<Diagnostic>> {
+    let mut out: Vec<(String, i64)> = Vec::new();
+    while !cursor.at_end() && !cursor.peek('=') && claim(cursor).is_none() {
+        let (bytes, word) = cursor.word();
+        let choice = word.split_once('=').and_then(|(name, value)| Some((name, value.parse::<i64>().ok()?)));
+        let Some((name, value)) = choice.filter(|(name, _)| !name.is_empty()) else {
+            return Err(cursor.error(bytes, format!("expected NAME=NUMBER after `choice`, found `{word}`")));
+        };
+        if out.iter().any(|(known, number)| known == name || *number == value) {
+            return Err(cursor.error(bytes, format!("choice `{word}` repeats a name or a number")));
+        }
+        // Every number that a type can have is exact in f64, and rounding makes none of one that it cannot.
+        check(cursor, &bytes, scalar, value as f64)?;
+        out.push((name.to_owned(), value));
+    }
+    if out.is_empty() { Err(cursor.expected("NAME=NUMBER after `choice`")) } else { Ok(out) }
+}
+
+/// `lo..hi` in `word`; both ends are values of the type.
+pub fn range(
+    cursor: &Cursor<'_>,
+    bytes: Range<usize>,
+    word: &str,
+    scalar: Scalar,
+) -> Result<(f64, f64), Box<Diagnostic>> {
+    let ends = word.split_once("..").and_then(|(lo, hi)| Some((number(lo)?, number(hi)?)));
+    match ends {
+        Some((lo, hi)) if lo < hi => {
+            check(cursor, &bytes, scalar, lo)?;
+            check(cursor, &bytes, scalar, hi)?;
+            Ok((lo, hi))
+        }
+        _ => Err(cursor.error(bytes, format!("expected a range lo..hi with lo < hi, found `{word}`"))),
+    }
+}
+
+fn number(word: &str) -> Option<f64> {
+    word.parse().ok().filter(|value: &f64| value.is_finite())
+}

@@ -1,0 +1,293 @@
+//! Reads the compiler's log. glslang gives lines but no columns: the caret goes under the token that the message names.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use crate::shader::diagnostic::{Diagnostic, Severity};
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::{Line, find_word, is_word, lines, tokens};
+
+/// Splits a log, whose file names are tree paths, into errors and warnings. `stage` is the outermost file;
+/// `dependencies` are the files that may appear.
+pub fn parse(
+    log: &str,
+    stage: &TreePath,
+    snapshot: &Snapshot<'_>,
+    dependencies: &BTreeSet<TreePath>,
+) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
+    let mut out: Vec<Diagnostic> = Vec::new();
+    for row in log.lines() {
+        let Some((severity, place, message)) = split(row) else {
+            // Linker messages go on below: "FILE:     f(f1; calling g(f1;".
+            let rest = row.strip_prefix(stage.as_str()).and_then(|rest| rest.strip_prefix(": ")).unwrap_or(row).trim();
+            match out.last_mut() {
+                Some(last) if !rest.is_empty() && !is_summary(rest) => last.notes.push(rest.to_owned()),
+                _ => {}
+            }
+            continue;
+        };
+        let (file, line) = split_line(place);
+        let path = dependencies.iter().find(|path| path.as_str() == file);
+        let printed = path.map_or_else(|| file.to_owned(), |path| snapshot.display_path(path));
+        let text = path.and_then(|path| snapshot.read(path).ok());
+        let diagnostic = diagnose(printed, line, message, text.as_deref());
+        let diagnostic = Diagnostic { severity, ..diagnostic };
+        if !out.last().is_some_and(|last| is_consequence(last, &diagnostic)) {
+            out.push(diagnostic);
+        }
+    }
+    out.into_iter().partition(|diagnostic| diagnostic.severity == Severity::Error)
+}
+
+/// `PLACE: error: MESSAGE`
+fn split(row: &str) -> Option<(Severity, &str, &str)> {
+    let error = row.find(": error: ").map(|at| (at, Severity::Error, ": error: ".len()));
+    let warning = row.find(": warning: ").map(|at| (at, Severity::Warning, ": warning: ".len()));
+    let (at, severity, length) = [error, warning].into_iter().flatten().min_by_key(|found| found.0)?;
+    Some((severity, &row[..at], row[at + length..].trim()))
+}
+
+/// `FILE:LINE` or `FILE`
+fn split_line(place: &str) -> (&str, Option<u32>) {
+    match place.rsplit_once(':') {
+        Some((file, line)) => line.trim().parse().map_or((place, None), |line| (file, Some(line))),
+        None => (place, None),
+    }
+}
+
+/// `2 errors generated.`
+fn is_summary(row: &str) -> bool {
+    row.starts_with(|c: char| c.is_ascii_digit()) && row.ends_with("generated.")
+}
+
+/// glslang goes on with a made-up `float` after an unknown name, and then complains about that `float`.
+fn is_consequence(first: &Diagnostic, next: &Diagnostic) -> bool {
+    let unknown =
+        ["undeclared identifier", "no matching overloaded function found", "out of range", "swizzle selection"];
+    let conversion = ["cannot convert from", "type does not match", "wrong operand type", "can't use function"];
+    first.severity == Severity::Error
+        && (&first.file, first.line) == (&next.file, next.line)
+        && unknown.iter().any(|text| first.message.contains(text))
+        && conversion.iter().any(|text| next.message.contains(text))
+}
+
+fn diagnose(file: String, line: Option<u32>, message: &str, text: Option<&str>) -> Diagnostic {
+    let lines = text.map(lines).unwrap_or_default();
+    let (token, said) = split_token(message);
+    let Some(line) = line else { return without_line(file, said, &lines) };
+    let index = line as usize - usize::from(line > 0);
+    let source = lines.get(index).filter(|_| line > 0);
+    if message.ends_with("(followed by invalid UTF-8 characters)") {
+        return not_ascii(file, line, source);
+    }
+    if let Some(rest) = said.strip_prefix("syntax error, unexpected ") {
+        return syntax_error(file, line, rest, &lines, index);
+    }
+    if token == "#include" {
+        let said = said.rsplit_once(" for header name: ").map_or(said, |(said, _)| said);
+        let diagnostic = Diagnostic::error(file, said).on_line(line, source.map(|line| line.raw));
+        return match source.and_then(|line| include_name(line.raw)) {
+            Some(bytes) => diagnostic.under(bytes),
+            None => diagnostic,
+        };
+    }
+    let shown = if token.is_empty() { said.to_owned() } else { format!("'{token}' : {said}") };
+    let diagnostic = Diagnostic::error(file, shown).on_line(line, source.map(|line| line.raw));
+    match source.and_then(|line| locate(line, token, said)) {
+        Some(bytes) => diagnostic.under(bytes),
+        None => diagnostic,
+    }
+}
+
+/// `'token' : message`; the token may be empty.
+fn split_token(message: &str) -> (&str, &str) {
+    let split = message.strip_prefix('\'').and_then(|rest| rest.split_once("' :"));
+    split.map_or(("", message), |(token, said)| (token.trim(), said.trim()))
+}
+
+/// Where the token of a message stands in its line.
+fn locate(line: &Line<'_>, token: &str, said: &str) -> Option<Range<usize>> {
+    match token {
+        "assign" | "=" => assignment(&line.code),
+        // "function does not return a value: f"
+        "" => find_word(&line.code, said.rsplit_once(": ")?.1),
+        token => find_word(&line.code, token),
+    }
+}
+
+/// The first `=` that is not part of a comparison.
+fn assignment(code: &str) -> Option<Range<usize>> {
+    let bytes = code.as_bytes();
+    let compares =
+        |at: usize| bytes.get(at + 1) == Some(&b'=') || (at > 0 && matches!(bytes[at - 1], b'=' | b'!' | b'<' | b'>'));
+    code.match_indices('=').map(|(at, _)| at).find(|at| !compares(*at)).map(|at| at..at + 1)
+}
+
+/// The file name of an `#include` line.
+fn include_name(raw: &str) -> Option<Range<usize>> {
+    let start = raw.find(['"', '<'])? + 1;
+    let length = raw[start..].find(['"', '>'])?;
+    Some(start..start + length)
+}
+
+fn not_ascii(file: String, line: u32, source: Option<&Line<'_>>) -> Diagnostic {
+    let found = source.and_then(|line| line.code.char_indices().find(|(_, c)| !c.is_ascii()));
+    let diagnostic = |message| Diagnostic::error(file, message).on_line(line, source.map(|line| line.raw));
+    match found {
+        Some((at, c)) => diagnostic(format!("'{c}' : GLSL allows only ASCII characters outside comments"))
+            .under(at..at + c.len_utf8()),
+        None => diagnostic("GLSL allows only ASCII characters outside comments".to_owned()),
+    }
+}
+
+/// Errors of the whole stage. Linker messages name functions as `f(f1;`.
+fn without_line(file: String, said: &str, lines: &[Line<'_>]) -> Diagnostic {
+    let said =
+        said.strip_prefix("Linking ").and_then(|rest| rest.split_once(" stage: ")).map_or(said, |(_, said)| said);
+    let diagnostic = Diagnostic::error(file, said.trim_end_matches(':'));
+    if said.starts_with("Missing entry point") {
+        return diagnostic.with_help("a stage needs `void main() { ... }`; files meant to be included end in .glsl");
+    }
+    if said.starts_with("#version") || said.starts_with("version") {
+        let version = lines.iter().find(|line| line.code.trim_start().starts_with("#version"));
+        let diagnostic = diagnostic.with_help("begin the file with `#version 460`");
+        return match version {
+            Some(line) => diagnostic.on_line(line.number, Some(line.raw)),
+            None => diagnostic,
+        };
+    }
+    diagnostic
+}
+
+/// "unexpected X, expecting Y or Z", in the parser's names for the tokens.
+fn syntax_error(file: String, line: u32, rest: &str, lines: &[Line<'_>], index: usize) -> Diagnostic {
+    let (unexpected, expecting) = rest.split_once(", expecting ").unwrap_or((rest, ""));
+    let mut message = format!("syntax error, unexpected {}", spelled(unexpected));
+    if !expecting.is_empty() {
+        let expected: Vec<String> = expecting.split(" or ").map(spelled).collect();
+        message += &format!(", expecting {}", expected.join(" or "));
+    }
+    let source = lines.get(index);
+    let mut diagnostic = Diagnostic::error(file, message).on_line(line, source.map(|line| line.raw));
+    let Some(source) = source else { return diagnostic };
+    let open = unterminated_before(lines, index);
+    let first = tokens(&source.code).first().map(|(bytes, _)| bytes.clone());
+    let bytes = if open.is_some() && first.as_ref().is_some_and(|first| is_a(unexpected, &source.code[first.clone()])) {
+        diagnostic.help = open.map(|line| format!("line {line} does not end with ';'"));
+        first
+    } else {
+        suspect(&source.code, unexpected)
+    };
+    match bytes {
+        Some(bytes) => diagnostic.under(bytes),
+        None => diagnostic,
+    }
+}
+
+/// The line before `index`, blank lines and directives aside, when it looks like a statement without its end.
+fn unterminated_before(lines: &[Line<'_>], index: usize) -> Option<u32> {
+    let is_code = |line: &&Line<'_>| !line.code.trim().is_empty() && !line.code.trim_start().starts_with('#');
+    let before = lines.get(..index)?.iter().rev().find(is_code)?;
+    let tokens = tokens(&before.code);
+    let (first, last) = (tokens.first()?.1, tokens.last()?.1);
+    let opens_block = matches!(first, "if" | "for" | "while" | "else" | "switch" | "do");
+    let ends_value = last.ends_with(is_word) || matches!(last, ")" | "]");
+    (ends_value && !opens_block).then_some(before.number)
+}
+
+/// Whether `word` can be what the parser calls `name`.
+fn is_a(name: &str, word: &str) -> bool {
+    match name {
+        "IDENTIFIER" | "TYPE_NAME" => word.starts_with(|c: char| is_word(c) && !c.is_ascii_digit()),
+        "FLOATCONSTANT" | "INTCONSTANT" | "UINTCONSTANT" | "DOUBLECONSTANT" => {
+            word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+        }
+        name => spelled(name).trim_matches('\'').starts_with(word),
+    }
+}
+
+/// The likely culprit within the line: a value that follows a value, or the named sign where it last stands.
+fn suspect(code: &str, name: &str) -> Option<Range<usize>> {
+    let tokens = tokens(code);
+    let value = |word: &str| word.starts_with(is_word) || matches!(word, ")" | "]");
+    let fits = |at: &usize| is_a(name, tokens[*at].1);
+    let at = if is_a(name, "x") || is_a(name, "1") {
+        let follows = |at: &usize| {
+            // `type name` is no pair of values: the first of the pair must itself be part of an expression.
+            let inside =
+                *at >= 2 && (!tokens[at - 2].1.starts_with(is_word) && !matches!(tokens[at - 2].1, ";" | "{" | "}"));
+            *at >= 1 && value(tokens[at - 1].1) && (inside || is_a("INTCONSTANT", tokens[at - 1].1))
+        };
+        (0..tokens.len()).filter(fits).find(follows).or_else(|| (0..tokens.len().min(1)).find(fits))?
+    } else {
+        (0..tokens.len()).rev().find(fits)?
+    };
+    Some(tokens[at].0.clone())
+}
+
+/// The sign or word behind the parser's name of a token.
+fn spelled(name: &str) -> String {
+    let name = name.trim();
+    if let Some((_, sign)) = SIGNS.iter().find(|(known, _)| *known == name) {
+        return format!("'{sign}'");
+    }
+    match name {
+        "IDENTIFIER" => "a name".to_owned(),
+        "TYPE_NAME" => "a type name".to_owned(),
+        "FLOATCONSTANT" | "INTCONSTANT" | "UINTCONSTANT" | "DOUBLECONSTANT" => "a number".to_owned(),
+        "BOOLCONSTANT" => "true or false".to_owned(),
+        keyword if keyword.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_') => {
+            format!("'{}'", keyword.to_ascii_lowercase())
+        }
+        other => other.to_owned(),
+    }
+}
+
+const SIGNS: &[(&str, &str)] = &[
+    ("COMMA", ","),
+    ("SEMICOLON", ";"),
+    ("LEFT_PAREN", "("),
+    ("RIGHT_PAREN", ")"),
+    ("LEFT_BRACE", "{"),
+    ("RIGHT_BRACE", "}"),
+    ("LEFT_BRACKET", "["),
+    ("RIGHT_BRACKET", "]"),
+    ("LEFT_ANGLE", "<"),
+    ("RIGHT_ANGLE", ">"),
+    ("EQUAL", "="),
+    ("COLON", ":"),
+    ("DOT", "."),
+    ("PLUS", "+"),
+    ("DASH", "-"),
+    ("STAR", "*"),
+    ("SLASH", "/"),
+    ("PERCENT", "%"),
+    ("BANG", "!"),
+    ("TILDE", "~"),
+    ("QUESTION", "?"),
+    ("VERTICAL_BAR", "|"),
+    ("CARET", "^"),
+    ("AMPERSAND", "&"),
+    ("LEFT_OP", "<<"),
+    ("RIGHT_OP", ">>"),
+    ("INC_OP", "++"),
+    ("DEC_OP", "--"),
+    ("LE_OP", "<="),
+    ("GE_OP", ">="),
+    ("EQ_OP", "=="),
+    ("NE_OP", "!="),
+    ("AND_OP", "&&"),
+    ("OR_OP", "||"),
+    ("XOR_OP", "^^"),
+    ("MUL_ASSIGN", "*="),
+    ("DIV_ASSIGN", "/="),
+    ("MOD_ASSIGN", "%="),
+    ("ADD_ASSIGN", "+="),
+    ("SUB_ASSIGN", "-="),
+];
+
+// The tests run the compiler itself, so its words are the real ones; see `log_tests.rs`.
+#[cfg(test)]
+#[path = "log_tests.rs"]
+mod tests;

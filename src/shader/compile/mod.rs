@@ -1,0 +1,174 @@
+//! One stage to SPIR-V, with shaderc.
+
+pub mod include;
+pub mod log;
+
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+use serde::Serialize;
+use shaderc::{CompileOptions, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv};
+
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use include::Includes;
+
+/// The stages that exist here; the file's extension says which.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StageKind {
+    /// `.vert`
+    Vertex,
+    /// `.frag`
+    Fragment,
+    /// `.comp`
+    Compute,
+}
+
+impl StageKind {
+    /// The stage that a file's extension names.
+    pub fn of(path: &TreePath) -> Option<Self> {
+        match path.extension()? {
+            "vert" => Some(Self::Vertex),
+            "frag" => Some(Self::Fragment),
+            "comp" => Some(Self::Compute),
+            _ => None,
+        }
+    }
+
+    fn shaderc(self) -> ShaderKind {
+        match self {
+            Self::Vertex => ShaderKind::Vertex,
+            Self::Fragment => ShaderKind::Fragment,
+            Self::Compute => ShaderKind::Compute,
+        }
+    }
+}
+
+/// What compiling one file gave.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The module, unoptimized and with names, or the errors in the order of the log.
+    pub result: Result<Vec<u32>, Vec<Diagnostic>>,
+    /// Warnings, whether it compiled or not.
+    pub warnings: Vec<Diagnostic>,
+    /// Every path the outcome depends on, those looked for in vain included.
+    pub dependencies: BTreeSet<TreePath>,
+    /// Wall time of the compilation in milliseconds.
+    pub ms: f64,
+}
+
+/// A shaderc compiler; one serves any number of threads.
+pub struct Compiler {
+    shaderc: shaderc::Compiler,
+}
+
+impl std::fmt::Debug for Compiler {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Compiler").finish_non_exhaustive()
+    }
+}
+
+impl Compiler {
+    /// # Errors
+    /// shaderc's own words when it cannot be set up (out of memory).
+    pub fn new() -> Result<Self, String> {
+        Ok(Self { shaderc: shaderc::Compiler::new().map_err(|error| error.to_string())? })
+    }
+
+    /// Compiles something trivial: glslang parses its built-in declarations at the first use, 100 to 200 ms that no
+    /// edit should wait for. The tables are per stage kind.
+    pub fn warm(&self) {
+        let trivial = "#version 460\nvoid main() {}\n";
+        for kind in [ShaderKind::Fragment, ShaderKind::Vertex] {
+            if let Ok(options) = options() {
+                let _ = self.shaderc.compile_into_spirv(trivial, kind, "warm", "main", Some(&options));
+            }
+        }
+    }
+
+    /// Compiles a file with a `main()`; the extension gives the stage.
+    pub fn compile(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Compiled {
+        let file = || snapshot.display_path(stage);
+        let dependencies = BTreeSet::from([stage.clone()]);
+        let failed =
+            |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies, ms: 0.0 };
+        let Some(kind) = StageKind::of(stage) else {
+            let message = "not a shader stage: the extension must be .vert, .frag or .comp";
+            return failed(Diagnostic::error(file(), message));
+        };
+        match snapshot.read(stage) {
+            Ok(text) => self.compile_text(snapshot, stage, &text, kind),
+            Err(error) => failed(Diagnostic::error(file(), format!("{} {error}", file()))),
+        }
+    }
+
+    /// Compiles a library alone, as if a shader of this kind included nothing else: it must include what it uses.
+    pub fn compile_library(&self, snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> Compiled {
+        // It holds no text of the user's; `rename` below keeps its name from the messages.
+        let wrapper = TreePath::from("(library)");
+        let text = format!("#version 460\n#include \"{library}\"\nvoid main() {{}}\n");
+        let mut compiled = self.compile_text(snapshot, &wrapper, &text, kind);
+        compiled.dependencies.remove(&wrapper);
+        // What is wrong with the library as a whole is reported under its own name.
+        let file = snapshot.display_path(&wrapper);
+        let rename = |diagnostic: &mut Diagnostic| {
+            if diagnostic.file == file {
+                diagnostic.file = snapshot.display_path(library);
+                diagnostic.line = None;
+            }
+        };
+        compiled.warnings.iter_mut().for_each(rename);
+        if let Err(errors) = &mut compiled.result {
+            errors.iter_mut().for_each(rename);
+        }
+        compiled
+    }
+
+    fn compile_text(&self, snapshot: &Snapshot<'_>, path: &TreePath, text: &str, kind: StageKind) -> Compiled {
+        let start = Instant::now();
+        let includes = Includes::new(snapshot, path.clone());
+        let outcome = self.run(&includes, path, text, kind);
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        let dependencies = includes.into_dependencies();
+        let (result, text) = match outcome {
+            Ok((spirv, warnings)) => (Ok(spirv), warnings),
+            Err(text) => (Err(()), text),
+        };
+        let (mut errors, warnings) = log::parse(&text, path, snapshot, &dependencies);
+        if result.is_err() && errors.is_empty() {
+            errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
+        }
+        Compiled { result: result.map_err(|()| errors), warnings, dependencies, ms }
+    }
+
+    /// The module and the log of warnings, or the log of errors. Names in the log are tree paths.
+    fn run(
+        &self,
+        includes: &Includes<'_>,
+        path: &TreePath,
+        text: &str,
+        kind: StageKind,
+    ) -> Result<(Vec<u32>, String), String> {
+        let mut options = options()?;
+        options.set_include_callback(|name, _type, _including, depth| {
+            let (path, content) = includes.resolve(name, depth)?;
+            Ok(ResolvedInclude { resolved_name: path.to_string(), content })
+        });
+        match self.shaderc.compile_into_spirv(text, kind.shaderc(), path.as_str(), "main", Some(&options)) {
+            Ok(artifact) => Ok((artifact.as_binary().to_vec(), artifact.get_warning_messages())),
+            Err(shaderc::Error::CompilationError(_, log)) => Err(log),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+}
+
+/// Unoptimized: five times faster to compile, and the names that reflection needs stay in.
+fn options<'a>() -> Result<CompileOptions<'a>, String> {
+    let mut options = CompileOptions::new().map_err(|error| error.to_string())?;
+    options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
+    options.set_target_spirv(SpirvVersion::V1_5);
+    options.set_optimization_level(OptimizationLevel::Zero);
+    Ok(options)
+}

@@ -1,0 +1,322 @@
+//! Holds compiled stages against `interface.rs`, so that a live edit cannot misread memory. Every message names both sides.
+
+mod capability;
+mod layout;
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use crate::interface::{self, BindingKind};
+
+use crate::shader::compile::StageKind;
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::{find_word, lines};
+use crate::shader::spirv::reflect::{Block, Descriptor, Location, Reflection, Scalar};
+use layout::{Layout, layout};
+
+/// The name of the contract's file in every tree.
+pub const INTERFACE_FILE: &str = "interface.glsl";
+
+/// A stage's texts, to find the line that a message is about.
+#[derive(Clone, Copy, Debug)]
+pub struct Texts<'a> {
+    /// The update's snapshot.
+    pub snapshot: &'a Snapshot<'a>,
+    /// The outermost file.
+    pub stage: &'a TreePath,
+    /// All files of the stage.
+    pub dependencies: &'a BTreeSet<TreePath>,
+}
+
+impl Texts<'_> {
+    /// An error at the first line of code that holds all `words`, with the caret under the first word; at the stage's
+    /// file when there is none (a macro made the declaration).
+    fn error(&self, words: &[&str], message: String) -> Diagnostic {
+        let all = |code: &str| {
+            let found: Option<Vec<_>> = words.iter().map(|word| find_word(code, word)).collect();
+            found?.into_iter().next()
+        };
+        // The keywords beside a name may stand on another line than the name.
+        let name = |code: &str| find_word(code, words.first()?);
+        self.error_at(all, &message).or_else(|| self.error_at(name, &message)).unwrap_or_else(|| self.on_file(message))
+    }
+
+    /// An error at the first of `words` in the code; at the stage's file when none is there.
+    fn error_at_any(&self, words: &[&str], message: String) -> Diagnostic {
+        let any = |code: &str| words.iter().find_map(|word| find_word(code, word));
+        self.error_at(any, &message).unwrap_or_else(|| self.on_file(message))
+    }
+
+    fn on_file(&self, message: String) -> Diagnostic {
+        Diagnostic::error(self.snapshot.display_path(self.stage), message)
+    }
+
+    /// An error at the first line of code in which `find` finds something, the stage's own file first.
+    fn error_at(&self, find: impl Fn(&str) -> Option<Range<usize>>, message: &str) -> Option<Diagnostic> {
+        let included = self.dependencies.iter().filter(|path| *path != self.stage);
+        std::iter::once(self.stage).chain(included).find_map(|path| {
+            let text = self.snapshot.read(path).ok()?;
+            let (bytes, line) = lines(&text).into_iter().find_map(|line| Some((find(&line.code)?, line)))?;
+            let error = Diagnostic::error(self.snapshot.display_path(path), message);
+            Some(error.on_line(line.number, Some(line.raw)).under(bytes))
+        })
+    }
+}
+
+/// Checks one stage against the contract.
+pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    for descriptor in &reflection.descriptors {
+        out.extend(check_descriptor(descriptor, texts));
+    }
+    if let Some(block) = &reflection.push_constants {
+        let limit = interface::PUSH_CONSTANT_SIZE;
+        if block.size > limit {
+            let (name, size) = (&block.name, block.size);
+            let message =
+                format!("shader says push constants `{name}` have {size} bytes, Specula says at most {limit}");
+            out.push(texts.error(&[name.as_str(), "push_constant"], message));
+        }
+        out.extend(layout("Draw").and_then(|layout| check_layout(block, layout, texts)));
+    }
+    // Structs behind arrays and buffer references, which no descriptor shows.
+    for layout in ["Light", "Vertex"].into_iter().filter_map(layout) {
+        let block = reflection.structs.get(layout.name);
+        out.extend(block.and_then(|block| check_layout(block, layout, texts)));
+        let arrays = reflection.structs.values().flat_map(|block| &block.members);
+        let element = format!("{}[]", layout.name);
+        for member in arrays.filter(|member| member.type_name == element && member.stride != layout.size) {
+            let message = format!(
+                "shader says `{}` lie {} bytes apart in `{}`, Specula says {}; use scalar layout",
+                layout.name, member.stride, member.name, layout.size
+            );
+            out.push(texts.error(&[member.name.as_str(), layout.name], message));
+        }
+    }
+    out.extend(check_constants(reflection, texts));
+    match StageKind::of(texts.stage) {
+        Some(StageKind::Vertex) => out.extend(check_vertex_inputs(&reflection.inputs, texts)),
+        Some(StageKind::Fragment) => out.extend(check_fragment_outputs(&reflection.outputs, texts)),
+        _ => {}
+    }
+    out.extend(check_capabilities(&reflection.capabilities, texts));
+    out
+}
+
+fn check_vertex_inputs(inputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
+    let refuse = |Location { location, name, type_name }: &Location| {
+        let message = format!(
+            "shader reads `{type_name} {name}` at location {location}, Specula has no vertex buffers: \
+             vertices are read by address"
+        );
+        let help = format!("read `draw.vertices.at[gl_VertexIndex]` of {INTERFACE_FILE}");
+        texts.error(&[last_part(name), "in"], message).with_help(help)
+    };
+    inputs.iter().map(refuse).collect()
+}
+
+/// One color image is drawn to. A component that is not written has no defined value, so `vec3` will not do, and nothing
+/// even less.
+fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
+    const EXPECTED: &str = "`layout(location = 0) out vec4`";
+    if outputs.is_empty() {
+        let message = format!("shader writes no color, Specula draws to {EXPECTED}");
+        return vec![texts.error(&["main", "void"], message)];
+    }
+    let mut is_first = true;
+    let mut refuse = |Location { location, name, type_name }: &Location| {
+        let is_color = *location == 0 && type_name == "vec4" && std::mem::take(&mut is_first);
+        let message =
+            format!("shader writes `{type_name} {name}` at location {location}, Specula has {EXPECTED} alone");
+        (!is_color).then(|| texts.error(&[last_part(name), "out"], message))
+    };
+    outputs.iter().filter_map(&mut refuse).collect()
+}
+
+/// `b` of `Block.b`: what the declaration's line holds.
+fn last_part(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+fn check_capabilities(capabilities: &[u32], texts: Texts<'_>) -> Vec<Diagnostic> {
+    let refuse = |capability::Missing { name, glsl }: capability::Missing| {
+        let message = format!("shader needs the device feature {name} (SPIR-V capability), Specula does not enable it");
+        let error = texts.error_at_any(glsl, message);
+        if glsl.is_empty() { error } else { error.with_note(format!("what needs it in GLSL: {}", glsl.join(", "))) }
+    };
+    capability::missing(capabilities).into_iter().map(refuse).collect()
+}
+
+fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> {
+    let Descriptor { set, binding, glsl, name, .. } = found;
+    let words = [name.as_str(), "layout"];
+    let Some(known) = interface::BINDINGS.iter().find(|known| (known.set, known.binding) == (*set, *binding)) else {
+        let message = format!("shader says set {set}, binding {binding} is {glsl} `{name}`, Specula has nothing there");
+        let names: Vec<String> = interface::BINDINGS
+            .iter()
+            .filter(|known| known.set == *set)
+            .map(|known| format!("{} = {} ({})", known.name, known.binding, known.kind.glsl()))
+            .collect();
+        let help = match names.as_slice() {
+            [] => "the sets are SET_FRAME, SET_MATERIAL, SET_PASS and SET_TASK".to_owned(),
+            names => format!("set {set} has {}", names.join(", ")),
+        };
+        return Some(texts.error(&words, message).with_help(help));
+    };
+    if found.kind != Some(known.kind) {
+        let message = format!(
+            "shader says set {set}, binding {binding} is {glsl} `{name}`, Specula says {} is {}",
+            known.name,
+            known.kind.glsl()
+        );
+        return Some(texts.error(&words, message));
+    }
+    let block = found.block.as_ref()?;
+    let misplaced = match known.name {
+        "BINDING_LIGHTS" => check_lights(block, texts),
+        "BINDING_FRAME" => layout("Frame").and_then(|layout| check_layout(block, layout, texts)),
+        "BINDING_MATERIAL" => layout("Material").and_then(|layout| check_layout(block, layout, texts)),
+        "BINDING_TASK" => layout("Task").and_then(|layout| check_layout(block, layout, texts)),
+        _ => None,
+    };
+    if misplaced.is_none() && block.size > known.size && known.kind == BindingKind::UniformBuffer {
+        let message = format!(
+            "shader says `{name}` has {} bytes, Specula says {} has at most {}",
+            block.size, known.name, known.size
+        );
+        return Some(texts.error(&words, message));
+    }
+    misplaced
+}
+
+fn check_lights(block: &Block, texts: Texts<'_>) -> Option<Diagnostic> {
+    let size = u32::try_from(size_of::<interface::Light>()).ok()?;
+    match block.members.as_slice() {
+        [only] if only.offset == 0 && only.stride == size => None,
+        _ => {
+            let message = format!(
+                "shader says `{}` is not an array of {size}-byte lights, Specula says it is `Light lights[MAX_LIGHTS]` alone",
+                block.name
+            );
+            Some(texts.error(&[block.name.as_str(), "uniform"], message))
+        }
+    }
+}
+
+/// The first member that lies elsewhere than in Rust. A shader may leave out members at the end.
+fn check_layout(block: &Block, layout: &Layout, texts: Texts<'_>) -> Option<Diagnostic> {
+    let name = layout.name;
+    for (index, member) in block.members.iter().enumerate() {
+        let found = format!("shader says `{name}.{}` is at byte {}", member.name, member.offset);
+        let message = match layout.fields.iter().find(|(field, _)| *field == member.name) {
+            Some((_, offset)) if *offset == member.offset => continue,
+            Some((_, offset)) => format!("{found}, Specula says {offset}"),
+            None => match layout.fields.get(index) {
+                Some((field, offset)) => format!("{found}, Specula has `{field}` at {offset} there"),
+                None => format!("{found}, Specula says `{name}` ends at {}", layout.size),
+            },
+        };
+        let error = texts.error(&[member.name.as_str(), short_type(&member.type_name)], message);
+        return Some(error.with_help(format!("restore `{name}` in {INTERFACE_FILE}: Rust writes this memory")));
+    }
+    None
+}
+
+/// `Light` of `Light[]`: what the declaration's line holds.
+fn short_type(type_name: &str) -> &str {
+    type_name.split('[').next().unwrap_or(type_name)
+}
+
+fn check_constants(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    // The first one says it: the same constant may be missing in many places.
+    if let Some(first) = reflection.without_value.first() {
+        let named = reflection.without_value.iter().find(|name| !name.is_empty()).unwrap_or(first);
+        let what = if named.is_empty() { "a global constant".into() } else { format!("`{named}`") };
+        let message = format!("{what} gets no value: the compiler cannot join comparisons of constants by && or ||");
+        let help =
+            "give each comparison a name of its own (`const bool A = ...;`) and join the names, or make it a function";
+        out.push(texts.error(&[named.as_str(), "const"], message).with_help(help));
+    }
+    for constant in reflection.constants.iter().filter(|constant| constant.id < interface::USER_CONSTANTS) {
+        let words = [constant.name.as_str(), "constant_id"];
+        let found = format!("shader says constant_id {} is `{}`", constant.id, constant.name);
+        match interface::SPECIALIZATION.iter().find(|known| known.id == constant.id) {
+            Some(known) if known.name == constant.name && constant.scalar == Scalar::Uint => {}
+            Some(known) => {
+                let message = format!("{found}, Specula says it is `const uint {}`: {}", known.name, known.doc);
+                out.push(texts.error(&words, message));
+            }
+            None => {
+                let message = format!("{found}, Specula keeps the ids below {} for itself", interface::USER_CONSTANTS);
+                out.push(
+                    texts.error(&words, message).with_help("number yours `constant_id = USER_CONSTANTS + 0` and up"),
+                );
+            }
+        }
+    }
+    out
+}
+
+/// Checks that a fragment stage reads what its vertex stage writes.
+pub fn check_pair(vertex: (&Reflection, Texts<'_>), fragment: (&Reflection, Texts<'_>)) -> Vec<Diagnostic> {
+    let (vertex_texts, texts) = (vertex.1, fragment.1);
+    let writer = vertex_texts.snapshot.display_path(vertex_texts.stage);
+    let reader = texts.snapshot.display_path(texts.stage);
+    let written: &[Location] = &vertex.0.outputs;
+    let mut out = Vec::new();
+    for input in &fragment.0.inputs {
+        let Location { location, name, type_name } = input;
+        let read = format!("{reader} reads `{type_name} {name}` at location {location}");
+        let message = match written.iter().find(|output| output.location == *location) {
+            Some(output) if output.type_name == *type_name => continue,
+            Some(output) => format!("{read}, {writer} writes `{} {}` there", output.type_name, output.name),
+            None => format!("{read}, {writer} writes nothing there"),
+        };
+        out.push(texts.error(&[last_part(name), "in"], message));
+    }
+    out
+}
+
+/// Whether a tree's `interface.glsl` is the one this Specula prints: `None` when it is, or when the tree has none.
+/// Another version is an error; other text of the same version is a warning, for the checks above judge its meaning.
+pub fn interface_matches(snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
+    let path = TreePath::from(INTERFACE_FILE);
+    let text = snapshot.read(&path).ok()?;
+    let expected = interface::glsl();
+    let different = text.lines().zip(expected.lines()).zip(1..).find(|((found, expected), _)| found != expected);
+    if different.is_none() && text.lines().count() == expected.lines().count() {
+        return None;
+    }
+    let file = snapshot.display_path(&path);
+    let renew = "`specula new DIR` writes a current tree; move your edits there";
+    let version = lines(&text).into_iter().find(|line| find_word(&line.code, "INTERFACE_VERSION").is_some());
+    let found = version.as_ref().and_then(|line| {
+        line.code.split_once('=')?.1.trim().trim_end_matches(';').trim_end_matches(['u', 'U']).parse::<u32>().ok()
+    });
+    let (Some(line), Some(found)) = (&version, found) else {
+        let message = format!("no INTERFACE_VERSION in this tree, this Specula has version {}", interface::VERSION);
+        return Some(Diagnostic::error(file, message).with_help(renew));
+    };
+    if found != interface::VERSION {
+        let message = format!(
+            "this tree was written for interface version {found}, this Specula has version {}",
+            interface::VERSION
+        );
+        return Some(Diagnostic::error(file, message).on_line(line.number, Some(line.raw)).with_help(renew));
+    }
+    let message = format!("differs from what this Specula prints (interface version {found})");
+    let diagnostic = Diagnostic::warning(file, message).with_help(renew);
+    Some(match different {
+        Some(((found, expected), number)) => {
+            diagnostic.on_line(number, Some(found)).with_note(format!("Specula has `{}`", expected.trim()))
+        }
+        None => diagnostic,
+    })
+}
+
+// Run against the compiler; see `contract_tests.rs`.
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,84 @@
+//! `specula check`: everything that can be wrong with a tree, found without a device.
+
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+
+use super::{Change, Library, Update};
+use crate::shader::compile::StageKind;
+use crate::shader::contract::{self, Texts};
+use crate::shader::diagnostic::{Diagnostic, unique};
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::reflect::Reflection;
+
+/// Updates the library and compiles what its entry points do not reach: stages it does not know and every `.glsl` alone
+/// (a library must include what it uses). Errors first, then warnings. Specialization constants choose no text, so their
+/// values are the pipelines' matter.
+pub fn check(library: &mut Library) -> Vec<Diagnostic> {
+    let mut out = match library.update(&Change::All) {
+        Update::Failed(diagnostics, _) => diagnostics,
+        Update::Ready(..) | Update::Unchanged { .. } => {
+            library.set().map(|set| set.warnings.clone()).unwrap_or_default()
+        }
+    };
+    let snapshot = Snapshot::new(library.source());
+    let known: BTreeSet<&TreePath> = library.stages().collect();
+    let is_ours = |path: &TreePath| path.extension() == Some("glsl") || StageKind::of(path).is_some();
+    let rest: Vec<TreePath> =
+        library.source().list().into_iter().filter(|path| is_ours(path) && !known.contains(path)).collect();
+    let compiler = library.compiler();
+    // What only compute stages include may use what only they have.
+    let users = |path: &TreePath| {
+        library.set().into_iter().flat_map(|set| set.stages.values()).filter({
+            let path = path.clone();
+            move |stage| stage.dependencies.contains(&path)
+        })
+    };
+    let kind_of = |path: &TreePath| {
+        let mut kinds = users(path).map(|stage| stage.kind).peekable();
+        let only_compute = kinds.peek().is_some() && kinds.all(|kind| kind == StageKind::Compute);
+        if only_compute { StageKind::Compute } else { StageKind::Fragment }
+    };
+    let found: Vec<Diagnostic> = rest
+        .par_iter()
+        .flat_map_iter(|path| {
+            let compiled = match StageKind::of(path) {
+                Some(_) => compiler.compile(&snapshot, path),
+                None => compiler.compile_library(&snapshot, path, kind_of(path)),
+            };
+            let texts = Texts { snapshot: &snapshot, stage: path, dependencies: &compiled.dependencies };
+            let judged = match compiled.result {
+                Ok(spirv) => contract::check(&Reflection::of(&spirv), texts),
+                Err(errors) => errors,
+            };
+            judged.into_iter().chain(compiled.warnings)
+        })
+        .collect();
+    out.extend(found);
+    out.sort_by_key(|diagnostic| diagnostic.severity);
+    unique(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::shader::{Compiler, Source};
+
+    #[test]
+    fn libraries_must_stand_alone() {
+        let source = Source::memory([
+            ("a.vert", "#version 460\n#include \"types.glsl\"\n#include \"use.glsl\"\nvoid main() {}\n"),
+            ("types.glsl", "struct S { float x; };\n"),
+            ("use.glsl", "float f(S s) { return s.x; }\n"),
+            ("other.frag", "#version 460\nvoid main() { nope; }\n"),
+        ]);
+        let mut library = Library::new(source, Arc::new(Compiler::new().unwrap()), &["a.vert"]);
+        let lines: Vec<String> = check(&mut library).iter().map(Diagnostic::one_line).collect();
+        assert!(lines.iter().any(|line| line.starts_with("use.glsl:1:")), "{lines:#?}");
+        assert!(lines.iter().any(|line| line.starts_with("other.frag:2:15: error: 'nope'")), "{lines:#?}");
+        assert!(!lines.iter().any(|line| line.contains("types.glsl")), "{lines:#?}");
+    }
+}

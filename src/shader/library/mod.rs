@@ -1,0 +1,310 @@
+//! The shader tree as a transaction: changed paths go in; a whole new set, or diagnostics and the old set, come out.
+
+pub mod check;
+mod slot;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::shader::annotation::{self, Annotations, Constant, Mode, Parameter};
+use crate::shader::compile::{Compiler, StageKind};
+use crate::shader::contract;
+use crate::shader::diagnostic::{Diagnostic, Severity, unique};
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::{find_word, lines};
+use crate::shader::source::{Source, TreePath};
+use crate::shader::spirv::reflect::Reflection;
+use slot::{Outcome, Slot, build};
+
+pub use slot::Stage;
+
+/// What may have changed since the last update.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Anything: the first update, and the reload key. Every stage compiles, whatever is known about its text; one whose
+    /// module comes out the same stays the same object.
+    All,
+    /// These files.
+    Paths(BTreeSet<TreePath>),
+}
+
+impl Change {
+    /// Both changes.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Paths(mut paths), Self::Paths(more)) => {
+                paths.extend(more);
+                Self::Paths(paths)
+            }
+            _ => Self::All,
+        }
+    }
+}
+
+/// Everything that one good state of the tree gives. Never changed: an edit makes a new one.
+#[derive(Clone, Debug)]
+pub struct ShaderSet {
+    /// Counts up with every new set, from 1.
+    pub generation: u64,
+    /// By path. A stage that an edit leaves alone is the same `Arc` in both sets.
+    pub stages: BTreeMap<String, Arc<Stage>>,
+    /// Debug modes, ordered by id.
+    pub modes: Vec<Mode>,
+    /// The author's specialization constants, ordered by id.
+    pub constants: Vec<Constant>,
+    /// The author's parameters, ordered by offset.
+    pub parameters: Vec<Parameter>,
+    /// What the compiler warns of.
+    pub warnings: Vec<Diagnostic>,
+    /// Whether a shader reads the time, so that its picture moves by itself.
+    pub animated: bool,
+}
+
+/// What an update did.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// Changed files that some stage depends on, as printed.
+    pub changed: Vec<String>,
+    /// Compiled stages and how long each took, in milliseconds.
+    pub stages: Vec<(String, f64)>,
+    /// Wall time of the whole update in milliseconds; stages compile in parallel.
+    pub compile_ms: f64,
+}
+
+/// The outcome of an update.
+#[derive(Clone, Debug)]
+pub enum Update {
+    /// The last outcome stands. `cleared`: an edit that had failed was taken back, so its diagnostics are void.
+    Unchanged {
+        /// Whether diagnostics on screen go away.
+        cleared: bool,
+    },
+    /// A new set.
+    Ready(Arc<ShaderSet>, Report),
+    /// The last good set stays.
+    Failed(Vec<Diagnostic>, Report),
+}
+
+/// Holds the stages of one tree, the last good set, and what failed since.
+pub struct Library {
+    source: Arc<Source>,
+    /// The tree's directory without symbolic links, as the watcher names it; still known while the directory is away.
+    root: Option<PathBuf>,
+    compiler: Arc<Compiler>,
+    slots: Vec<Slot>,
+    pairs: Vec<(TreePath, TreePath)>,
+    set: Option<Arc<ShaderSet>>,
+    failed: bool,
+}
+
+impl Library {
+    /// A library of the entry points `stages`. `NAME.vert` feeds `NAME.frag`.
+    pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
+        let paths: Vec<TreePath> = stages.iter().map(|path| TreePath::from(*path)).collect();
+        let root = source.root().map(|root| root.canonicalize().unwrap_or_else(|_| root.to_owned()));
+        let of = |kind| paths.iter().filter(move |path| StageKind::of(path) == Some(kind));
+        let pairs = of(StageKind::Vertex)
+            .flat_map(|vertex| {
+                let fragments = of(StageKind::Fragment).filter(|fragment| fragment.stem() == vertex.stem());
+                fragments.map(|fragment| (vertex.clone(), fragment.clone()))
+            })
+            .collect();
+        let slots = paths.iter().cloned().map(Slot::new).collect();
+        Self { source: Arc::new(source), root, compiler, slots, pairs, set: None, failed: false }
+    }
+
+    /// The tree.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// The compiler.
+    pub fn compiler(&self) -> &Compiler {
+        &self.compiler
+    }
+
+    /// The last good set.
+    pub fn set(&self) -> Option<&Arc<ShaderSet>> {
+        self.set.as_ref()
+    }
+
+    /// The entry points.
+    pub fn stages(&self) -> impl Iterator<Item = &TreePath> {
+        self.slots.iter().map(|slot| &slot.path)
+    }
+
+    /// Every path whose change can change the outcome, those looked for in vain included.
+    pub fn dependencies(&self) -> BTreeSet<TreePath> {
+        let mut out = BTreeSet::from([TreePath::from(contract::INTERFACE_FILE)]);
+        out.extend(self.slots.iter().flat_map(Slot::dependencies).cloned());
+        out
+    }
+
+    /// The watcher's absolute paths as a change of this tree.
+    pub fn change_of<'p>(&self, paths: impl IntoIterator<Item = &'p PathBuf>) -> Change {
+        let tree_path = |path: &Path| {
+            let relative = path.strip_prefix(self.root.as_ref()?).ok()?;
+            TreePath::parse(&relative.to_string_lossy())
+        };
+        Change::Paths(paths.into_iter().filter_map(|path| tree_path(path)).collect())
+    }
+
+    /// Brings the library up to date with the files. All or nothing: on any error the last good set stays.
+    pub fn update(&mut self, change: &Change) -> Update {
+        let start = Instant::now();
+        let source = Arc::clone(&self.source);
+        let snapshot = Snapshot::new(&source);
+        let mut report = Report { changed: self.changed(change), ..Report::default() };
+
+        let stale = self.stale(change, &snapshot);
+        if !stale.moved && self.slots.iter().all(|slot| slot.current.is_some()) && stale.compile.is_empty() {
+            return Update::Unchanged { cleared: false };
+        }
+        let compiler = &self.compiler;
+        let compiled: Vec<(usize, Outcome, f64)> = stale
+            .compile
+            .par_iter()
+            .map(|(index, path)| {
+                let (outcome, ms) = build(compiler, &snapshot, path);
+                (*index, outcome, ms)
+            })
+            .collect();
+        for (index, outcome, ms) in compiled {
+            let slot = &mut self.slots[index];
+            report.stages.push((slot.path.to_string(), ms));
+            slot.accept(outcome);
+        }
+        let linked = self.link(&snapshot);
+        report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
+        match linked {
+            Ok((annotations, warnings)) => {
+                let animated = self.reads_time(&snapshot);
+                self.commit(annotations, warnings, animated, report)
+            }
+            Err(diagnostics) => {
+                self.failed = true;
+                Update::Failed(unique(diagnostics), report)
+            }
+        }
+    }
+
+    fn changed(&self, change: &Change) -> Vec<String> {
+        let Change::Paths(paths) = change else { return Vec::new() };
+        let known = self.dependencies();
+        paths.iter().filter(|path| known.contains(path)).map(|path| self.source.display_path(path)).collect()
+    }
+
+    /// Takes outcomes already known for the text at hand, and lists the stages to compile.
+    fn stale(&mut self, change: &Change, snapshot: &Snapshot<'_>) -> Stale {
+        let paths = match change {
+            Change::All => {
+                let compile = self.slots.iter().map(|slot| slot.path.clone()).enumerate().collect();
+                return Stale { moved: true, compile };
+            }
+            Change::Paths(paths) => paths,
+        };
+        // No stage may include it, and yet its version counts.
+        let mut stale = Stale { moved: paths.contains(&TreePath::from(contract::INTERFACE_FILE)), compile: Vec::new() };
+        for (index, slot) in self.slots.iter_mut().enumerate() {
+            let hit = slot.dependencies().any(|dependency| paths.contains(dependency));
+            // A stage that failed is looked at again whatever changed: its dependencies end where it failed.
+            if matches!(slot.current, Some(Ok(_))) && !hit {
+                continue;
+            }
+            match slot.recall(snapshot) {
+                Some(moved) => stale.moved |= moved,
+                None => stale.compile.push((index, slot.path.clone())),
+            }
+        }
+        stale
+    }
+
+    /// Joins the stages: all must have compiled, agree with each other, and their annotations must parse.
+    fn link(&self, snapshot: &Snapshot<'_>) -> Result<(Annotations, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let mut errors = Vec::new();
+        let mut warnings = Vec::new();
+        let mut files = BTreeSet::new();
+        let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
+        match contract::interface_matches(snapshot) {
+            Some(diagnostic) if diagnostic.severity == Severity::Error => errors.push(diagnostic),
+            diagnostic => warnings.extend(diagnostic),
+        }
+        for slot in &self.slots {
+            match &slot.current {
+                Some(Ok(built)) => {
+                    files.extend(&built.stage.dependencies);
+                    warnings.extend(built.warnings.iter().cloned());
+                    modules.insert(&slot.path, &built.stage);
+                }
+                Some(Err(broken)) => errors.extend(broken.diagnostics.iter().cloned()),
+                None => {}
+            }
+        }
+        for (vertex, fragment) in &self.pairs {
+            let (Some(vertex), Some(fragment)) = (modules.get(vertex), modules.get(fragment)) else { continue };
+            errors.extend(contract::check_pair(
+                (&vertex.reflection, vertex.texts(snapshot)),
+                (&fragment.reflection, fragment.texts(snapshot)),
+            ));
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let reflections: Vec<&Reflection> = modules.values().map(|stage| &stage.reflection).collect();
+        let annotations = annotation::read(snapshot, files, &reflections)?;
+        Ok((annotations, unique(warnings)))
+    }
+
+    /// Whether the code of any file but the contract names the time.
+    fn reads_time(&self, snapshot: &Snapshot<'_>) -> bool {
+        let in_code = |text: &str| lines(text).iter().any(|line| find_word(&line.code, "frame.time_s").is_some());
+        let names_it = |path: &TreePath| snapshot.read(path).is_ok_and(|text| in_code(&text));
+        let contract = TreePath::from(contract::INTERFACE_FILE);
+        self.dependencies().iter().any(|path| *path != contract && names_it(path))
+    }
+
+    fn commit(
+        &mut self,
+        annotations: Annotations,
+        warnings: Vec<Diagnostic>,
+        animated: bool,
+        report: Report,
+    ) -> Update {
+        let cleared = std::mem::replace(&mut self.failed, false);
+        let mut stages = BTreeMap::new();
+        for slot in &mut self.slots {
+            let Some(Ok(built)) = &slot.current else { continue };
+            stages.insert(slot.path.to_string(), Arc::clone(&built.stage));
+            slot.good = Some(built.clone());
+        }
+        let Annotations { modes, constants, parameters } = annotations;
+        if let Some(set) = &self.set {
+            let same_stages = stages.values().zip(set.stages.values()).all(|(new, old)| Arc::ptr_eq(new, old));
+            let same_texts = (&modes, &constants, &parameters, &warnings)
+                == (&set.modes, &set.constants, &set.parameters, &set.warnings);
+            if same_stages && same_texts {
+                return Update::Unchanged { cleared };
+            }
+        }
+        let generation = self.set.as_ref().map_or(0, |set| set.generation) + 1;
+        let set = Arc::new(ShaderSet { generation, stages, modes, constants, parameters, warnings, animated });
+        self.set = Some(Arc::clone(&set));
+        Update::Ready(set, report)
+    }
+}
+
+struct Stale {
+    /// Whether to join the stages again without a compile: an edit was taken back, say.
+    moved: bool,
+    compile: Vec<(usize, TreePath)>,
+}
+
+// Run against the compiler; see `library_tests.rs`.
+#[cfg(test)]
+mod tests;

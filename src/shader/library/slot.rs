@@ -1,0 +1,138 @@
+//! One stage of a library: how it comes to be, and what is known about it from one update to the next.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use crate::shader::compile::{Compiler, StageKind};
+use crate::shader::contract::{self, Texts};
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::reflect::Reflection;
+
+/// A compiled stage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// The file with its `main()`.
+    pub path: TreePath,
+    /// Vertex, fragment or compute.
+    pub kind: StageKind,
+    /// The module, unoptimized.
+    pub spirv: Vec<u32>,
+    /// What it declares.
+    pub reflection: Reflection,
+    /// Its files, and the paths looked for in vain.
+    pub dependencies: BTreeSet<TreePath>,
+}
+
+impl Stage {
+    /// Its texts, for messages.
+    pub(super) fn texts<'a>(&'a self, snapshot: &'a Snapshot<'a>) -> Texts<'a> {
+        Texts { snapshot, stage: &self.path, dependencies: &self.dependencies }
+    }
+}
+
+/// A successful compilation.
+#[derive(Clone)]
+pub(super) struct Built {
+    pub stage: Arc<Stage>,
+    /// Of the texts it was made from.
+    pub hash: u64,
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A failed one.
+#[derive(Clone)]
+pub(super) struct Broken {
+    /// Of the texts it was made from.
+    pub hash: u64,
+    pub dependencies: BTreeSet<TreePath>,
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// What compiling, reflecting and checking a stage gave.
+pub(super) type Outcome = Result<Built, Broken>;
+
+/// What is known about one stage.
+pub(super) struct Slot {
+    pub path: TreePath,
+    /// The outcome for the files as last seen.
+    pub current: Option<Outcome>,
+    /// What the last good set holds.
+    pub good: Option<Built>,
+}
+
+impl Slot {
+    /// A stage about which nothing is known.
+    pub fn new(path: TreePath) -> Self {
+        Self { path, current: None, good: None }
+    }
+
+    /// Every path whose change can change the outcome.
+    pub fn dependencies(&self) -> impl Iterator<Item = &TreePath> {
+        let current = self.current.as_ref().map(dependencies_of);
+        let good = self.good.as_ref().map(|built| &built.stage.dependencies);
+        std::iter::once(&self.path).chain([current, good].into_iter().flatten().flatten())
+    }
+
+    /// Takes the outcome known for exactly the text of the snapshot: `None` when there is none, else whether it differs
+    /// from the current one.
+    pub fn recall(&mut self, snapshot: &Snapshot<'_>) -> Option<bool> {
+        let good = self.good.clone().map(Ok);
+        let known = [self.current.clone(), good].into_iter().flatten().find(|outcome| {
+            let hash = outcome.as_ref().map_or_else(|broken| broken.hash, |built| built.hash);
+            snapshot.closure_hash(dependencies_of(outcome)) == hash
+        })?;
+        let moved = !self.current.as_ref().is_some_and(|current| same(current, &known));
+        self.current = Some(known);
+        Some(moved)
+    }
+
+    /// Takes a new outcome. A comment changes no module, nor does compiling the same text again: then the stage stays
+    /// the same object, and no pipeline need be built.
+    pub fn accept(&mut self, outcome: Outcome) {
+        self.current = Some(match (outcome, &self.good) {
+            (Ok(built), Some(good)) if built.stage == good.stage => {
+                Ok(Built { stage: Arc::clone(&good.stage), ..built })
+            }
+            (outcome, _) => outcome,
+        });
+    }
+}
+
+fn dependencies_of(outcome: &Outcome) -> &BTreeSet<TreePath> {
+    match outcome {
+        Ok(built) => &built.stage.dependencies,
+        Err(broken) => &broken.dependencies,
+    }
+}
+
+fn same(a: &Outcome, b: &Outcome) -> bool {
+    match (a, b) {
+        (Ok(a), Ok(b)) => a.hash == b.hash,
+        (Err(a), Err(b)) => a.hash == b.hash,
+        _ => false,
+    }
+}
+
+/// Compiles, reflects and checks one stage; milliseconds of the compilation beside it.
+pub(super) fn build(compiler: &Compiler, snapshot: &Snapshot<'_>, path: &TreePath) -> (Outcome, f64) {
+    let compiled = compiler.compile(snapshot, path);
+    let (dependencies, ms) = (compiled.dependencies, compiled.ms);
+    let hash = snapshot.closure_hash(&dependencies);
+    let broken = |diagnostics| Err(Broken { hash, dependencies: dependencies.clone(), diagnostics });
+    let spirv = match compiled.result {
+        Ok(spirv) => spirv,
+        Err(errors) => return (broken(errors.into_iter().chain(compiled.warnings).collect()), ms),
+    };
+    let reflection = Reflection::of(&spirv);
+    let errors = contract::check(&reflection, Texts { snapshot, stage: path, dependencies: &dependencies });
+    let outcome = match StageKind::of(path) {
+        Some(kind) if errors.is_empty() => {
+            let stage = Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies });
+            Ok(Built { stage, hash, warnings: compiled.warnings })
+        }
+        _ => broken(errors),
+    };
+    (outcome, ms)
+}

@@ -1,0 +1,275 @@
+//! Where shader text comes from: a directory, the tree inside the binary, or memory (tests).
+
+pub(super) mod directory;
+pub mod embedded;
+pub mod snapshot;
+pub(super) mod text;
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+/// Files beyond this many bytes are refused: no shader is that long, and shaderc would hold several copies.
+pub const MAX_FILE_BYTES: u64 = 4 << 20;
+
+/// A file of a shader tree: relative to the tree's root, normalized, with forward slashes.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct TreePath(String);
+
+impl TreePath {
+    /// Normalizes `.` and `..`. `None` when the path is absolute, leaves the root, or names the root itself.
+    pub fn parse(path: &str) -> Option<Self> {
+        if path.starts_with('/') {
+            return None;
+        }
+        let mut parts: Vec<&str> = Vec::new();
+        for part in path.split('/') {
+            match part {
+                "" | "." => {}
+                ".." => {
+                    parts.pop()?;
+                }
+                part => parts.push(part),
+            }
+        }
+        if parts.is_empty() { None } else { Some(Self(parts.join("/"))) }
+    }
+
+    /// `relative` as seen from the directory that holds this file; `None` when it leaves the root.
+    pub fn sibling(&self, relative: &str) -> Option<Self> {
+        match self.0.rsplit_once('/') {
+            Some((directory, _)) if !relative.starts_with('/') => Self::parse(&format!("{directory}/{relative}")),
+            _ => Self::parse(relative),
+        }
+    }
+
+    /// The path as text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// What follows the last dot of the file name.
+    pub fn extension(&self) -> Option<&str> {
+        let name = self.0.rsplit('/').next()?;
+        name.rsplit_once('.').map(|(_, extension)| extension)
+    }
+
+    /// The path without its extension: `ibl/dfg` of `ibl/dfg.comp`.
+    pub fn stem(&self) -> &str {
+        match self.extension() {
+            Some(extension) => &self.0[..self.0.len() - extension.len() - 1],
+            None => &self.0,
+        }
+    }
+}
+
+impl From<&str> for TreePath {
+    /// For paths written in source code: a `..` that would leave the root stays at the root. Paths from outside go
+    /// through [`TreePath::parse`], which refuses them.
+    fn from(path: &str) -> Self {
+        let mut parts: Vec<&str> = Vec::new();
+        for part in path.split('/') {
+            match part {
+                "" | "." => {}
+                ".." => {
+                    parts.pop();
+                }
+                part => parts.push(part),
+            }
+        }
+        Self(parts.join("/"))
+    }
+}
+
+impl fmt::Display for TreePath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// Why a file of a tree cannot be used. The message completes the sentence "FILE ...".
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SourceError {
+    /// No such file.
+    #[error("does not exist")]
+    Missing,
+    /// A directory stands where a file was expected.
+    #[error("is a directory, expected a GLSL file")]
+    Directory,
+    /// The bytes are not UTF-8 from this line on.
+    #[error("is not UTF-8 text (line {line}); save it as UTF-8")]
+    NotUtf8 {
+        /// 1-based.
+        line: u32,
+    },
+    /// A NUL byte, which the compiler would take for the end of the text.
+    #[error("holds a NUL byte (line {line}); is it a binary file, or still being written?")]
+    Nul {
+        /// 1-based.
+        line: u32,
+    },
+    /// Larger than [`MAX_FILE_BYTES`].
+    #[error("has {bytes} bytes, more than the {MAX_FILE_BYTES} a shader may have")]
+    TooBig {
+        /// Size found.
+        bytes: u64,
+    },
+    /// Anything else the system reports.
+    #[error("cannot be read: {0}")]
+    Io(String),
+}
+
+/// A shader tree.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// A directory; read again at every update.
+    Disk(PathBuf),
+    /// The tree that was compiled into the binary.
+    Embedded,
+    /// Text in memory.
+    Memory(BTreeMap<TreePath, String>),
+}
+
+impl Source {
+    /// The tree that was compiled into the binary.
+    pub fn embedded() -> Self {
+        Self::Embedded
+    }
+
+    /// A tree in memory, from `(path, text)` pairs.
+    pub fn memory<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
+        Self::Memory(files.into_iter().map(|(path, text)| (path.into(), text.to_owned())).collect())
+    }
+
+    /// The text of a file. A UTF-8 byte order mark is dropped: glslang would call it an unexpected token.
+    pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
+        match self {
+            Self::Disk(root) => read_file(&root.join(path.as_str())),
+            Self::Embedded => check_text(embedded::read(path).ok_or(SourceError::Missing)?.to_vec()),
+            Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
+        }
+    }
+
+    /// The path that error lines print: for a directory, what an editor can open from where the user stands.
+    pub fn display_path(&self, path: &TreePath) -> String {
+        match self {
+            Self::Disk(root) if root == Path::new(".") => path.to_string(),
+            Self::Disk(root) => root.join(path.as_str()).display().to_string(),
+            Self::Embedded => format!("embedded:{path}"),
+            Self::Memory(_) => path.to_string(),
+        }
+    }
+
+    /// All files, sorted. Hidden files and directories (editors' and git's) are left out.
+    pub fn list(&self) -> Vec<TreePath> {
+        match self {
+            Self::Disk(root) => {
+                let tree_path = |path: &PathBuf| {
+                    let names: Option<Vec<&str>> = path.strip_prefix(root).ok()?.iter().map(OsStr::to_str).collect();
+                    TreePath::parse(&names?.join("/"))
+                };
+                let found = directory::files(root, |name| !name.starts_with('.'));
+                let mut out: Vec<TreePath> = found.iter().filter_map(tree_path).collect();
+                out.sort();
+                out
+            }
+            Self::Embedded => embedded::list(),
+            Self::Memory(files) => files.keys().cloned().collect(),
+        }
+    }
+
+    /// The directory to watch; none for trees that cannot change on disk.
+    pub fn root(&self) -> Option<&Path> {
+        match self {
+            Self::Disk(root) => Some(root),
+            _ => None,
+        }
+    }
+}
+
+/// Whether a directory looks like a Specula shader tree: it holds an `interface.glsl`.
+pub fn is_specula_tree(directory: &Path) -> bool {
+    directory.join("interface.glsl").is_file()
+}
+
+fn read_file(path: &Path) -> Result<String, SourceError> {
+    let metadata = std::fs::metadata(path).map_err(io_error)?;
+    if metadata.is_dir() {
+        return Err(SourceError::Directory);
+    }
+    if !metadata.is_file() {
+        return Err(SourceError::Io("not a regular file".to_owned()));
+    }
+    if metadata.len() > MAX_FILE_BYTES {
+        return Err(SourceError::TooBig { bytes: metadata.len() });
+    }
+    check_text(std::fs::read(path).map_err(io_error)?)
+}
+
+fn io_error(error: io::Error) -> SourceError {
+    match error.kind() {
+        // A file in the middle of the path is the same to the user: there is no such file.
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => SourceError::Missing,
+        io::ErrorKind::IsADirectory => SourceError::Directory,
+        _ => SourceError::Io(error.to_string()),
+    }
+}
+
+fn check_text(bytes: Vec<u8>) -> Result<String, SourceError> {
+    let line_of = |offset: usize, bytes: &[u8]| {
+        1 + u32::try_from(bytes[..offset].iter().filter(|byte| **byte == b'\n').count()).unwrap_or(u32::MAX - 1)
+    };
+    if let Some(offset) = bytes.iter().position(|byte| *byte == 0) {
+        return Err(SourceError::Nul { line: line_of(offset, &bytes) });
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let line = line_of(error.utf8_error().valid_up_to(), error.as_bytes());
+        SourceError::NotUtf8 { line }
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_normalized_and_stay_inside() {
+        assert_eq!(TreePath::parse("a/./b//../c.glsl").map(|p| p.to_string()), Some("a/c.glsl".to_owned()));
+        assert_eq!(TreePath::parse("../c.glsl"), None);
+        assert_eq!(TreePath::parse("/etc/passwd"), None);
+        assert_eq!(TreePath::parse("a/.."), None);
+        let path = TreePath::from("brdf/ggx.glsl");
+        assert_eq!(path.sibling("../common/math.glsl"), TreePath::parse("common/math.glsl"));
+        assert_eq!(path.sibling("../../x.glsl"), None);
+        assert_eq!(path.sibling("/x.glsl"), None);
+        assert_eq!((path.stem(), path.extension()), ("brdf/ggx", Some("glsl")));
+    }
+
+    #[test]
+    fn every_reason_has_its_own_message() {
+        let directory = tempfile::tempdir().unwrap();
+        let source = Source::Disk(directory.path().to_owned());
+        let write = |name: &str, bytes: &[u8]| std::fs::write(directory.path().join(name), bytes).unwrap();
+        write("nul.glsl", b"a\nb\0");
+        write("latin.glsl", b"a\n\n// \xe4\n");
+        write("bom.glsl", b"\xef\xbb\xbfvoid");
+        write("big.glsl", &vec![b' '; MAX_FILE_BYTES as usize + 1]);
+        std::fs::create_dir(directory.path().join("dir")).unwrap();
+        let read = |name: &str| source.read(&name.into());
+        assert_eq!(read("nul.glsl"), Err(SourceError::Nul { line: 2 }));
+        assert_eq!(read("latin.glsl"), Err(SourceError::NotUtf8 { line: 3 }));
+        assert_eq!(read("bom.glsl"), Ok("void".to_owned()));
+        assert!(matches!(read("big.glsl"), Err(SourceError::TooBig { .. })));
+        assert_eq!(read("dir"), Err(SourceError::Directory));
+        assert_eq!(read("none"), Err(SourceError::Missing));
+        assert_eq!(read("bom.glsl/x"), Err(SourceError::Missing));
+    }
+}

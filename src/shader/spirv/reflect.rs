@@ -1,0 +1,219 @@
+//! Reads from a SPIR-V module what the contract and the annotations need: descriptors, blocks, constants, locations.
+//!
+//! Written for modules as glslang leaves them at -O0, with names and with every declared global, used or not.
+//! Malformed words are skipped, never a panic: what is missing then fails the contract check.
+
+use std::collections::BTreeMap;
+
+use crate::interface::BindingKind;
+
+use super::declared::Module;
+
+/// One member of a block.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// Name in GLSL.
+    pub name: String,
+    /// Bytes from the start of the block.
+    pub offset: u32,
+    /// Type in GLSL's spelling: `vec3`, `mat4x3`, `Light[]`.
+    pub type_name: String,
+    /// For arrays: bytes from element to element, else 0.
+    pub stride: u32,
+}
+
+/// A struct with a memory layout.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Block {
+    /// Name of the struct or block in GLSL.
+    pub name: String,
+    /// Bytes up to the end of the last member; a runtime array counts as empty.
+    pub size: u32,
+    /// In the order of the declaration.
+    pub members: Vec<Member>,
+}
+
+/// A descriptor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Descriptor {
+    /// Descriptor set.
+    pub set: u32,
+    /// Binding within the set.
+    pub binding: u32,
+    /// `None` when it is of a kind that the contract does not know; then `glsl` says which.
+    pub kind: Option<BindingKind>,
+    /// The declaration's type in GLSL's spelling.
+    pub glsl: String,
+    /// The block's name, or the variable's.
+    pub name: String,
+    /// The content of blocks.
+    pub block: Option<Block>,
+}
+
+/// Type of a specialization constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scalar {
+    /// `bool`
+    Bool,
+    /// `int`
+    Int,
+    /// `uint`
+    Uint,
+    /// `float`
+    Float,
+}
+
+/// A specialization constant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SpecConstant {
+    /// `constant_id`
+    pub id: u32,
+    /// Name in GLSL.
+    pub name: String,
+    /// Type.
+    pub scalar: Scalar,
+    /// Bits of the default; 0 or 1 for `bool`.
+    pub default: u32,
+}
+
+/// A user-defined input or output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Location {
+    /// `location`
+    pub location: u32,
+    /// Name in GLSL.
+    pub name: String,
+    /// Type in GLSL's spelling.
+    pub type_name: String,
+}
+
+/// What one module declares.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reflection {
+    /// Ordered by set and binding.
+    pub descriptors: Vec<Descriptor>,
+    /// The push constant block.
+    pub push_constants: Option<Block>,
+    /// Ordered by id.
+    pub constants: Vec<SpecConstant>,
+    /// Inputs that the stage uses, ordered by location.
+    pub inputs: Vec<Location>,
+    /// Outputs that the stage uses, ordered by location.
+    pub outputs: Vec<Location>,
+    /// Every struct with member offsets, by name: also those behind arrays and buffer references.
+    pub structs: BTreeMap<String, Block>,
+    /// Constants that the compiler left without a value: it makes no code for `&&` and `||` of specialization constants.
+    pub without_value: Vec<String>,
+    /// SPIR-V's numbers of the capabilities that it asks for.
+    pub capabilities: Vec<u32>,
+}
+
+impl Reflection {
+    /// Reads a module.
+    pub fn of(spirv: &[u32]) -> Self {
+        Module::parse(spirv).reflect()
+    }
+
+    /// The descriptor at a place.
+    pub fn descriptor(&self, set: u32, binding: u32) -> Option<&Descriptor> {
+        self.descriptors.iter().find(|found| (found.set, found.binding) == (set, binding))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compile::Compiler;
+    use crate::shader::source::Source;
+    use crate::shader::source::snapshot::Snapshot;
+
+    fn reflect(name: &str, text: &str) -> Reflection {
+        let source = Source::memory([(name, text)]);
+        let compiled = Compiler::new().unwrap().compile(&Snapshot::new(&source), &name.into());
+        Reflection::of(&compiled.result.unwrap())
+    }
+
+    #[test]
+    fn blocks_and_samplers() {
+        let reflection = reflect(
+            "m.frag",
+            "#version 460\n#extension GL_EXT_scalar_block_layout : require\n
+             struct S { vec3 a; float b[3]; };
+             layout(set = 0, binding = 2, scalar) uniform Params { float x; vec3 y; mat4x3 m; S s[2]; bool on; };
+             layout(set = 1, binding = 3) uniform sampler2D image;
+             layout(set = 1, binding = 4) uniform samplerCube cube;
+             layout(set = 0, binding = 1, scalar) readonly buffer List { uint count; S all[]; } list;
+             layout(set = 3, binding = 0, rgba8) uniform image2D other;
+             void main() {}",
+        );
+        let kinds: Vec<_> =
+            reflection.descriptors.iter().map(|d| (d.set, d.binding, d.kind, d.name.as_str())).collect();
+        use BindingKind::{Sampler2D, SamplerCube, StorageBuffer, UniformBuffer};
+        let expected = [
+            (0, 1, Some(StorageBuffer), "List"),
+            (0, 2, Some(UniformBuffer), "Params"),
+            (1, 3, Some(Sampler2D), "image"),
+            (1, 4, Some(SamplerCube), "cube"),
+            (3, 0, None, "other"),
+        ];
+        assert_eq!(kinds, expected);
+        assert_eq!(reflection.descriptors[4].glsl, "image2D");
+        let block = reflection.descriptor(0, 2).unwrap().block.as_ref().unwrap();
+        let members: Vec<_> = block.members.iter().map(|m| (m.name.as_str(), m.offset, m.type_name.as_str())).collect();
+        let expected =
+            [("x", 0, "float"), ("y", 4, "vec3"), ("m", 16, "mat4x3"), ("s", 64, "S[2]"), ("on", 112, "uint")];
+        assert_eq!(members, expected);
+        assert_eq!(block.size, 116);
+        assert_eq!(reflection.structs["S"].size, 24);
+        let list = reflection.descriptor(0, 1).unwrap().block.as_ref().unwrap();
+        assert_eq!((list.size, list.members[1].stride), (4, 24));
+    }
+
+    #[test]
+    fn constants_keep_type_and_default_even_unused() {
+        let reflection = reflect(
+            "m.frag",
+            "#version 460
+             layout(constant_id = 33) const bool B = true;
+             layout(constant_id = 32) const uint U = 7u;
+             layout(constant_id = 34) const int I = -2;
+             layout(constant_id = 35) const float F = 0.5;
+             void main() {}",
+        );
+        let constants: Vec<_> =
+            reflection.constants.iter().map(|c| (c.id, c.name.as_str(), c.scalar, c.default)).collect();
+        let expected = [
+            (32, "U", Scalar::Uint, 7),
+            (33, "B", Scalar::Bool, 1),
+            (34, "I", Scalar::Int, (-2_i32).cast_unsigned()),
+            (35, "F", Scalar::Float, 0.5_f32.to_bits()),
+        ];
+        assert_eq!(constants, expected);
+    }
+
+    #[test]
+    fn locations_without_built_ins() {
+        let reflection = reflect(
+            "m.vert",
+            "#version 460
+             layout(location = 1) out vec3 normal; layout(location = 0) out flat uint id; layout(location = 2) in vec2 uv;
+             layout(location = 3) out Pair { vec4 a; vec2 b; } pair;
+             void main() { normal = vec3(uv, 0.0); id = uint(gl_VertexIndex); gl_Position = vec4(0.0); pair.a = vec4(1); }",
+        );
+        let names = |list: &[Location]| {
+            list.iter().map(|l| (l.location, l.name.clone(), l.type_name.clone())).collect::<Vec<_>>()
+        };
+        let row = |location: u32, name: &str, kind: &str| (location, name.to_owned(), kind.to_owned());
+        assert_eq!(names(&reflection.inputs), [row(2, "uv", "vec2")]);
+        let expected =
+            [row(0, "id", "uint"), row(1, "normal", "vec3"), row(3, "Pair.a", "vec4"), row(4, "Pair.b", "vec2")];
+        assert_eq!(names(&reflection.outputs), expected);
+    }
+
+    #[test]
+    fn garbage_is_no_panic() {
+        for words in [vec![], vec![1, 2, 3], vec![0x0723_0203, 0, 0, 9, 0, 0xffff_003b, 1], vec![0; 40]] {
+            assert_eq!(Reflection::of(&words), Reflection::default());
+        }
+    }
+}
