@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::render::BakeReport;
+use crate::render::{BakeReport, Outcome, Reload};
 use crate::shader::Diagnostic;
 
 /// An event. The field `event` names its kind.
@@ -55,9 +55,30 @@ pub struct ReloadEvent {
     pub first_frame_ms: f64,
 }
 
-/// Prints an event when asked to.
-pub fn emit(wanted: bool, event: &Event<'_>) {
-    if !wanted {
+impl ReloadEvent {
+    /// The event of a finished reload.
+    pub fn new(reload: &Reload, generation: u64, detect_ms: f64, first_frame_ms: f64) -> Self {
+        Self {
+            generation,
+            changed: reload.report.changed.clone(),
+            stages: reload.report.stages.iter().map(|(stage, _)| stage.clone()).collect(),
+            ok: !matches!(reload.outcome, Outcome::Failed(_)),
+            detect_ms: to_microseconds(detect_ms),
+            compile_ms: to_microseconds(reload.report.compile_ms),
+            pipeline_ms: to_microseconds(reload.pipeline_ms),
+            first_frame_ms: to_microseconds(first_frame_ms),
+        }
+    }
+}
+
+/// Rounds milliseconds to three decimals, the resolution of the clocks behind them.
+fn to_microseconds(ms: f64) -> f64 {
+    (ms * 1e3).round() / 1e3
+}
+
+/// Prints an event if `enabled`.
+pub fn emit(enabled: bool, event: &Event<'_>) {
+    if !enabled {
         return;
     }
     if let Ok(line) = serde_json::to_string(event) {

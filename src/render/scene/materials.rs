@@ -3,15 +3,12 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::texture_source::Source;
 use crate::gpu::{
-    Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, PrimitiveClass, Sampler, SamplerDesc, SetLayouts, SetWriter,
-    vk,
+    Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, vk,
 };
 use crate::interface::{self, TEXTURE_COUNT, TEXTURE_OCCLUSION};
-use crate::scene::{self as model, AlphaMode, Model, Topology};
-
-use crate::render::scene::texture_source::Source;
-use crate::render::wanted::MaterialVariant;
+use crate::scene::{self as model, Model};
 
 /// The images on the device.
 pub(crate) type Textures = HashMap<Source, Arc<Image>>;
@@ -96,28 +93,6 @@ pub(crate) fn pack(material: &model::Material, id: u32) -> interface::Material {
             [m.matrix2.x_axis.to_array(), m.matrix2.y_axis.to_array(), m.translation.to_array()];
     }
     packed
-}
-
-/// What a material asks of its pipeline on a primitive that is drawn with these `interface::ATTRIBUTE_*`.
-pub(crate) fn variant(
-    model: &Model,
-    primitive: &model::Primitive,
-    material: &model::Material,
-    attributes: u32,
-) -> MaterialVariant {
-    MaterialVariant {
-        alpha: match material.alpha_mode {
-            AlphaMode::Opaque => interface::ALPHA_OPAQUE,
-            AlphaMode::Mask => interface::ALPHA_MASK,
-            AlphaMode::Blend => interface::ALPHA_BLEND,
-        },
-        features: model::features(model, material, attributes),
-        class: match primitive.topology {
-            Topology::Points => PrimitiveClass::Points,
-            Topology::Lines | Topology::LineStrip => PrimitiveClass::Lines,
-            Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => PrimitiveClass::Triangles,
-        },
-    }
 }
 
 fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>, GpuError> {

@@ -1,24 +1,20 @@
 //! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set for each material.
 
-mod appearance;
 mod materials;
 pub(super) mod mips;
 mod texture_source;
 mod upload;
 
-use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use glam::Mat3;
 
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, SetLayouts, vk};
-use crate::interface::{Draw, FEATURE_TRANSMISSION, Vertex};
-use crate::scene::{self as model, Model, Topology};
-
-use crate::render::scene::appearance::Dress;
-use crate::render::scene::materials::{Textures, materials, variant};
-use crate::render::scene::upload::{Geometry, Range, Staging};
-use crate::render::wanted::MaterialVariant;
+use crate::interface::{Draw, Vertex};
+use crate::render::state::{Appearance, MaterialVariant, Scene};
+use crate::scene::{Instance, Model, Topology};
+use materials::{Textures, materials};
+use upload::{Geometry, Range, Staging};
 
 /// Why a model cannot be put on the device.
 #[derive(Debug, thiserror::Error)]
@@ -49,114 +45,109 @@ pub(crate) struct GpuDraw {
     pub(crate) topology: vk::PrimitiveTopology,
     pub(crate) front: vk::FrontFace,
     pub(crate) double_sided: bool,
-    pub(crate) material: usize,
+    pub(crate) material: Arc<DescriptorSet>,
     pub(crate) variant: MaterialVariant,
     pub(crate) center_ws: glam::Vec3,
 }
 
-/// A model that can be drawn.
-pub struct GpuScene {
-    pub(crate) indices: Arc<Buffer>,
-    pub(crate) vertices: Arc<Buffer>,
-    pub(crate) materials: Vec<Arc<DescriptorSet>>,
-    pub(crate) draws: Vec<GpuDraw>,
-    /// The images that stand in for missing textures.
-    pub(crate) stand_ins: Textures,
-    /// The last one that was made of it by [`GpuScene::dressed`].
-    pub(crate) last_dress: Mutex<Option<(Dress, Arc<GpuScene>)>>,
-    variants: BTreeSet<MaterialVariant>,
-    own_lights: usize,
+/// A model on the device: geometry, textures and a descriptor set for each material.
+pub struct GpuModel {
+    model: Arc<Model>,
+    vertices: Arc<Buffer>,
+    indices: Arc<Buffer>,
+    ranges: Vec<Range>,
+    materials: Vec<Arc<DescriptorSet>>,
+    /// The images that are bound where a material has no texture.
+    default_textures: Textures,
 }
 
-impl GpuScene {
+impl GpuModel {
     /// Uploads a model and waits for it. From any thread.
     ///
     /// # Errors
     /// An image beyond the device's limit, or no memory left.
-    pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, model: &Model) -> Result<Arc<Self>, UploadError> {
-        let mut staging = Staging::new(gpu, model)?;
-        let Geometry { vertices, indices, ranges } = staging.geometry(model)?;
-        let textures = staging.textures(model)?;
+    pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, model: Model) -> Result<Arc<Self>, UploadError> {
+        let mut staging = Staging::new(gpu, &model)?;
+        let Geometry { vertices, indices, ranges } = staging.geometry(&model)?;
+        let textures = staging.textures(&model)?;
         staging.submit()?;
-        let materials = materials(gpu, layouts, model, &textures)?;
-        let draws = draws(model, vertices.address(), &ranges);
-        let variants = draws.iter().map(|d| d.variant).collect();
-        let stand_ins = textures.into_iter().filter(|(source, _)| source.image(model).is_none()).collect();
-        let last_dress = Mutex::new(None);
-        let own_lights = model.lights.len();
-        Ok(Arc::new(Self { indices, vertices, materials, draws, stand_ins, last_dress, variants, own_lights }))
+        let materials = materials(gpu, layouts, &model, &textures)?;
+        let default_textures = textures.into_iter().filter(|(source, _)| source.image(&model).is_none()).collect();
+        Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, default_textures }))
     }
 
-    /// The same with only those of the model's instances that are `kept`.
-    pub fn only(&self, kept: &[bool]) -> Arc<Self> {
-        let draws = self.draws.iter().zip(kept).filter(|(_, kept)| **kept).map(|(draw, _)| draw.clone());
-        self.with(self.materials.clone(), draws.collect())
+    /// The model that was uploaded.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
     }
 
-    /// The same geometry, drawn otherwise.
-    pub(crate) fn with(&self, materials: Vec<Arc<DescriptorSet>>, draws: Vec<GpuDraw>) -> Arc<Self> {
-        Arc::new(Self {
-            indices: self.indices.clone(),
-            vertices: self.vertices.clone(),
-            materials,
-            stand_ins: self.stand_ins.clone(),
-            last_dress: Mutex::new(None),
-            variants: draws.iter().map(|draw| draw.variant).collect(),
-            own_lights: self.own_lights,
-            draws,
-        })
-    }
-
-    /// Whether light passes through a surface, so that what lies behind it must be drawn first.
-    pub fn is_transmissive(&self) -> bool {
-        self.variants.iter().any(|v| v.features & FEATURE_TRANSMISSION != 0)
-    }
-
-    /// How many lights the model has.
-    pub fn own_lights(&self) -> usize {
-        self.own_lights
-    }
-
-    /// The kinds of material in the scene.
-    pub fn variants(&self) -> &BTreeSet<MaterialVariant> {
-        &self.variants
+    /// The draws of a scene of this model. Only a material override is uploaded.
+    ///
+    /// # Errors
+    /// No memory left.
+    pub fn scene(&self, gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, scene: &Scene) -> Result<Arc<GpuScene>, GpuError> {
+        let replacement = scene.replacement();
+        let replacement_set = match &replacement {
+            Some(material) => {
+                let alone = Model { materials: vec![material.clone()], ..Model::default() };
+                materials(gpu, layouts, &alone, &self.default_textures)?.pop()
+            }
+            None => None,
+        };
+        let vertices = self.vertices.address();
+        let draw = |instance: &Instance| {
+            let appearance = scene.appearance(instance, replacement.as_ref());
+            let own = appearance.material.and_then(|index| self.materials.get(index));
+            let set = own.or(replacement_set.as_ref())?.clone();
+            Some(draw(&self.model, instance, &self.ranges[instance.primitive], vertices, &appearance, set))
+        };
+        let draws = scene.instances().filter_map(draw).collect();
+        Ok(Arc::new(GpuScene { vertices: self.vertices.clone(), indices: self.indices.clone(), draws }))
     }
 }
 
-fn draws(model: &Model, vertices: u64, ranges: &[Range]) -> Vec<GpuDraw> {
-    let draw = |instance: &model::Instance| {
-        let primitive = &model.primitives[instance.primitive];
-        let range = &ranges[instance.primitive];
-        let material = &model.materials[primitive.material];
-        let world = instance.world_from_object;
-        let linear = Mat3::from_mat4(world);
-        let determinant = linear.determinant();
-        // The cofactors are the inverse transpose times the determinant, and exist for flattened objects too, which have no
-        // inverse. The shader normalizes, so only the determinant's sign is missing.
-        let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
-        let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
-        let normals = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
-        let push = Draw {
+/// A [`Scene`] that can be drawn.
+pub struct GpuScene {
+    pub(crate) vertices: Arc<Buffer>,
+    pub(crate) indices: Arc<Buffer>,
+    pub(crate) draws: Vec<GpuDraw>,
+}
+
+fn draw(
+    model: &Model,
+    instance: &Instance,
+    range: &Range,
+    vertices: u64,
+    appearance: &Appearance,
+    material: Arc<DescriptorSet>,
+) -> GpuDraw {
+    let primitive = &model.primitives[instance.primitive];
+    let world = instance.world_from_object;
+    let linear = Mat3::from_mat4(world);
+    let determinant = linear.determinant();
+    // The cofactors are the inverse transpose times the determinant. Unlike the inverse they exist for a flattened object,
+    // too. The shader normalizes, so only the sign of the determinant has to be applied.
+    let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
+    let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
+    let normals = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
+    GpuDraw {
+        push: Draw {
             vertices: vertices + range.first_vertex * size_of::<Vertex>() as u64,
             world_from_object: world.to_cols_array_2d().map(|c| [c[0], c[1], c[2]]),
             normal_ws_from_object: normals.to_cols_array_2d(),
-            attributes: primitive.attributes,
+            attributes: appearance.attributes,
             primitive_id: instance.primitive as u32,
             node_id: instance.node as u32,
-        };
-        GpuDraw {
-            push,
-            first_index: range.first_index,
-            index_count: primitive.indices.len() as u32,
-            topology: topology(primitive.topology),
-            front: if determinant < 0.0 { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE },
-            double_sided: material.double_sided,
-            material: primitive.material,
-            variant: variant(model, primitive, material, primitive.attributes),
-            center_ws: world.transform_point3(primitive.bounds.center()),
-        }
-    };
-    model.instances.iter().map(draw).collect()
+        },
+        first_index: range.first_index,
+        index_count: primitive.indices.len() as u32,
+        topology: topology(primitive.topology),
+        front: if determinant < 0.0 { vk::FrontFace::CLOCKWISE } else { vk::FrontFace::COUNTER_CLOCKWISE },
+        double_sided: appearance.double_sided,
+        material,
+        variant: appearance.variant,
+        center_ws: world.transform_point3(primitive.bounds.center()),
+    }
 }
 
 fn topology(topology: Topology) -> vk::PrimitiveTopology {

@@ -3,12 +3,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::events::ReloadEvent;
 use crate::gpu::{Gpu, SetLayouts};
 use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, Update};
 
-use crate::render::pipelines::{PipelineSet, stages};
-use crate::render::wanted::Wanted;
+use super::set::{PipelineSet, stages};
+use crate::render::state::PipelineRequest;
 
 /// Compiles a shader tree and builds its pipelines. `app` holds it on a thread of its own; headless calls it directly.
 pub struct Reloader {
@@ -59,14 +58,14 @@ impl Reloader {
         &self.library
     }
 
-    /// Compiles what `change` made dirty and builds the pipelines that `wanted` names for the new shaders.
+    /// Compiles what `change` made dirty and builds the pipelines that `request` names for the new shaders.
     ///
     /// `superseded` is asked between the steps; when it says that a newer edit waits, the work is dropped as unchanged and its
     /// stages are built with that edit.
     pub fn update(
         &mut self,
         change: Change,
-        wanted: impl FnOnce(&ShaderSet) -> Wanted,
+        request: impl FnOnce(&Arc<ShaderSet>) -> PipelineRequest,
         superseded: impl Fn() -> bool,
     ) -> Reload {
         let (shaders, report) = match self.library.update(&change) {
@@ -90,8 +89,8 @@ impl Reloader {
         }
         let start = Instant::now();
         let before = self.current.as_deref();
-        let wanted = wanted(&shaders);
-        let built = PipelineSet::new(&self.gpu, &self.layouts, shaders, &wanted, before);
+        let request = request(&shaders);
+        let built = PipelineSet::new(&self.gpu, &self.layouts, shaders, &request, before);
         let pipeline_ms = start.elapsed().as_secs_f64() * 1e3;
         let outcome = match built {
             Ok(set) => {
@@ -103,27 +102,6 @@ impl Reloader {
         };
         Reload { report, pipeline_ms, outcome }
     }
-}
-
-impl Reload {
-    /// The event that tells of it.
-    pub fn event(&self, generation: u64, detect_ms: f64, first_frame_ms: f64) -> ReloadEvent {
-        ReloadEvent {
-            generation,
-            changed: self.report.changed.clone(),
-            stages: self.report.stages.iter().map(|(stage, _)| stage.clone()).collect(),
-            ok: !matches!(self.outcome, Outcome::Failed(_)),
-            detect_ms: microseconds(detect_ms),
-            compile_ms: microseconds(self.report.compile_ms),
-            pipeline_ms: microseconds(self.pipeline_ms),
-            first_frame_ms: microseconds(first_frame_ms),
-        }
-    }
-}
-
-/// Milliseconds to three digits behind the point: no clock here knows more.
-fn microseconds(ms: f64) -> f64 {
-    (ms * 1e3).round() / 1e3
 }
 
 /// What a tree is called in messages.

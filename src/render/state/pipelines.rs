@@ -1,8 +1,9 @@
-//! Which pipelines a picture needs: the debug mode, the author's constants, and the kinds of material in the scene.
+//! Which pipelines a picture is drawn with: by debug mode, the author's constants, and the kinds of material in the scene.
 
 use std::collections::BTreeSet;
 
-use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
+use super::{Scene, parameters};
+use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
     self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
     UNROLLED_LIGHTS,
@@ -11,9 +12,7 @@ use crate::scene::light_count;
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::{DrawAs, Encode, Mode, ShaderSet};
 
-use crate::render::values;
-
-/// What a material asks of its pipeline.
+/// What distinguishes the pipelines of two materials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialVariant {
     /// `interface::ALPHA_*`.
@@ -24,9 +23,35 @@ pub struct MaterialVariant {
     pub class: PrimitiveClass,
 }
 
+/// What the model is drawn to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetFormat {
+    /// Format of the HDR color target.
+    pub color: vk::Format,
+    /// Samples per pixel.
+    pub samples: u32,
+}
+
+impl TargetFormat {
+    /// Half floats: all that a picture needs, at half the cost.
+    pub fn half(samples: u32) -> Self {
+        Self { color: vk::Format::R16G16B16A16_SFLOAT, samples }
+    }
+
+    /// Full floats: what is read back is what the shader wrote.
+    pub fn full(samples: u32) -> Self {
+        Self { color: vk::Format::R32G32B32A32_SFLOAT, samples }
+    }
+
+    /// Whether values beyond 65504 overflow.
+    pub fn is_half(self) -> bool {
+        self.color == vk::Format::R16G16B16A16_SFLOAT
+    }
+}
+
 /// Everything that selects the pipelines of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Wanted {
+pub struct PipelineRequest {
     /// Id of the debug mode.
     pub mode: u32,
     /// How the mode draws the model.
@@ -37,38 +62,34 @@ pub struct Wanted {
     pub tonemap: u32,
     /// `interface::ENCODE_*`.
     pub encode: u32,
-    /// Samples a pixel.
-    pub samples: u32,
-    /// Format of the HDR target.
-    pub scene_format: vk::Format,
-    /// Format of the picture.
-    pub output_format: vk::Format,
+    /// What the model is drawn to.
+    pub target: TargetFormat,
     /// Kinds of material in the scene.
     pub materials: BTreeSet<MaterialVariant>,
     /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_RECT_LIGHTS`.
     pub shared_features: u32,
-    /// How many lights shine, if they are few enough to unroll the loop over them; else 0.
+    /// Number of lights, if they are few enough to unroll the loop over them; else 0.
     pub light_count: u32,
-    /// Whether the environment is seen behind the model.
+    /// Whether the environment is visible behind the model.
     pub sky: bool,
-    /// Whether frames add up to a mean while nothing changes.
+    /// Whether the picture is the mean of all frames since it last changed.
     pub accumulates: bool,
-    /// Whether what is seen through glass is the picture, not this mode of it.
+    /// Whether transmissive surfaces show the final picture behind them, not this mode of it.
     pub through: bool,
 }
 
-/// One pipeline of a [`Wanted`].
+/// One pipeline of a [`PipelineRequest`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(super) struct PipelineKey {
-    pub(super) pass: Pass,
-    pub(super) format: vk::Format,
-    pub(super) samples: u32,
-    pub(super) specialization: Specialization,
+pub(crate) struct PipelineKey {
+    pub(crate) pass: Pass,
+    pub(crate) format: vk::Format,
+    pub(crate) samples: u32,
+    pub(crate) specialization: Specialization,
 }
 
-/// What a pipeline draws.
+/// What a pipeline draws, and with which stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Pass {
+pub(crate) enum Pass {
     /// The model: `pbr.vert`, `pbr.frag`.
     Model { raster: Raster, class: PrimitiveClass },
     /// The environment behind it: `sky.vert`, `sky.frag`.
@@ -79,30 +100,19 @@ pub(super) enum Pass {
     Tonemap,
 }
 
-impl Wanted {
-    /// What `settings` ask of `shaders` for a scene with these materials and so many lights of its own. A mode that the tree lost
-    /// falls back to its first.
-    pub fn new(
-        settings: &Settings,
-        shaders: &ShaderSet,
-        materials: &BTreeSet<MaterialVariant>,
-        own_lights: usize,
-        samples: u32,
-        scene_format: vk::Format,
-        output_format: vk::Format,
-    ) -> Self {
-        let mode = mode(shaders, &settings.mode);
-        let lights = light_count(&settings.lights, own_lights);
+impl PipelineRequest {
+    /// The pipelines that `settings` ask for. A mode that the tree lost falls back to its first.
+    pub fn new(settings: &Settings, shaders: &ShaderSet, scene: Option<&Scene>, target: TargetFormat) -> Self {
+        let mode = find_mode(shaders, &settings.mode);
+        let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
         Self {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
-            constants: values::constants(&settings.shader, &shaders.constants),
+            constants: parameters::constants(&settings.shader, &shaders.constants),
             tonemap: if mode.is_some_and(|m| m.tonemap) { settings.view.tonemap as u32 } else { TONEMAP_OFF },
             encode: mode.map_or(Encode::Color, |m| m.encode).id(),
-            samples,
-            scene_format,
-            output_format,
-            materials: materials.clone(),
+            target,
+            materials: scene.map(|scene| scene.materials().clone()).unwrap_or_default(),
             shared_features: shared_features(settings),
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
             sky: settings.environment.is_shown(&settings.view) && mode.is_some_and(|m| m.tonemap),
@@ -111,7 +121,7 @@ impl Wanted {
         }
     }
 
-    /// The same picture in another mode, with this tone map where it applies.
+    /// The same request for another mode, tone mapped by `tonemap` if that mode shows light.
     pub fn with_mode(&self, mode: &Mode, tonemap: Tonemap) -> Self {
         Self {
             mode: mode.id,
@@ -125,7 +135,7 @@ impl Wanted {
         }
     }
 
-    pub(super) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
+    pub(crate) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
         let mut specialization = vec![
             (SPEC_MODE, self.mode),
             (SPEC_ALPHA_MODE, material.alpha),
@@ -141,45 +151,46 @@ impl Wanted {
         };
         PipelineKey {
             pass: Pass::Model { raster, class: material.class },
-            format: self.scene_format,
-            samples: self.samples,
+            format: self.target.color,
+            samples: self.target.samples,
             specialization,
         }
     }
 
-    /// Whether opaque surfaces look otherwise through those that light passes through.
-    pub(super) fn has_own_behind(&self) -> bool {
-        let passes = self.materials.iter().any(|material| passes_light(*material));
-        passes && self.through && self.mode != interface::MODE_FINAL
+    /// Whether opaque surfaces are drawn twice: as in the final picture, to be seen through transmissive surfaces, and as this
+    /// mode shows them.
+    pub(crate) fn draws_opaque_twice(&self) -> bool {
+        let transmissive = self.materials.iter().any(|material| is_transmissive(*material));
+        transmissive && self.through && self.mode != interface::MODE_FINAL
     }
 
-    /// The pipeline that draws a material for those to see: that of the picture, if it is opaque.
-    pub(super) fn behind_key(&self, material: MaterialVariant) -> PipelineKey {
-        let is_opaque = material.alpha != interface::ALPHA_BLEND && !passes_light(material);
-        if !is_opaque || !self.has_own_behind() {
+    /// The pipeline that draws a material where transmissive surfaces show it.
+    pub(crate) fn behind_key(&self, material: MaterialVariant) -> PipelineKey {
+        let is_opaque = material.alpha != interface::ALPHA_BLEND && !is_transmissive(material);
+        if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
         Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, ..self.clone() }.model_key(material)
     }
 
-    pub(super) fn tonemap_key(&self) -> PipelineKey {
+    pub(crate) fn tonemap_key(&self) -> PipelineKey {
         let mut specialization = vec![(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, self.encode)];
         specialization.extend_from_slice(&self.constants);
-        PipelineKey { pass: Pass::Tonemap, format: self.output_format, samples: 1, specialization }
+        PipelineKey { pass: Pass::Tonemap, format: Swapchain::FORMAT, samples: 1, specialization }
     }
 
-    /// The sky's pipeline, when it is seen.
-    pub(super) fn sky_key(&self) -> Option<PipelineKey> {
+    /// The pipeline of the environment behind the model, when it is visible.
+    pub(crate) fn sky_key(&self) -> Option<PipelineKey> {
         self.sky.then(|| PipelineKey {
             pass: Pass::Sky,
-            format: self.scene_format,
-            samples: self.samples,
+            format: self.target.color,
+            samples: self.target.samples,
             specialization: self.constants.clone(),
         })
     }
 
-    /// The pipeline that adds a frame to the mean, when frames add up.
-    pub(super) fn average_key(&self) -> Option<PipelineKey> {
+    /// The pipeline that adds a frame to the mean, in an accumulating mode.
+    pub(crate) fn average_key(&self) -> Option<PipelineKey> {
         self.accumulates.then(|| PipelineKey {
             pass: Pass::Average,
             format: vk::Format::R32G32B32A32_SFLOAT,
@@ -188,7 +199,7 @@ impl Wanted {
         })
     }
 
-    pub(super) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
+    pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         self.materials
             .iter()
             .flat_map(|m| [self.model_key(*m), self.behind_key(*m)])
@@ -198,11 +209,11 @@ impl Wanted {
     }
 }
 
-fn passes_light(material: MaterialVariant) -> bool {
+fn is_transmissive(material: MaterialVariant) -> bool {
     material.features & interface::FEATURE_TRANSMISSION != 0
 }
 
-/// What a frame's materials have in common.
+/// The feature bits that all materials of a frame share.
 fn shared_features(settings: &Settings) -> u32 {
     let mut features = 0;
     if settings.environment.is_lit() {
@@ -215,6 +226,6 @@ fn shared_features(settings: &Settings) -> u32 {
 }
 
 /// The mode of this slug, or the tree's first mode.
-pub(super) fn mode<'a>(shaders: &'a ShaderSet, slug: &str) -> Option<&'a Mode> {
+fn find_mode<'a>(shaders: &'a ShaderSet, slug: &str) -> Option<&'a Mode> {
     shaders.modes.iter().find(|m| m.slug == slug).or_else(|| shaders.modes.first())
 }

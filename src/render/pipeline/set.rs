@@ -1,0 +1,274 @@
+//! The pipelines of one shader generation. A frame is drawn with exactly one set, so it never mixes two generations.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::gpu::{
+    ComputePipeline, Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule,
+    Specialization,
+};
+use crate::render::brdf::tables::{self, Tables};
+use crate::render::environment::bake::BAKE_STAGES;
+use crate::render::state::{Pass, PipelineKey, PipelineRequest};
+use crate::shader::{ShaderSet, specialize};
+
+/// The stages that a picture is drawn with.
+const GRAPHICS: [&str; 7] =
+    ["pbr.vert", "pbr.frag", "sky.vert", "sky.frag", "tonemap.vert", "tonemap.frag", "average.frag"];
+/// The stages that measure the BRDF, for `specula brdf`.
+pub const MEASURE_STAGES: [&str; 4] =
+    ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
+
+/// A set keeps the pipelines of this many requests, the newest: enough to go back to any recent mode at once, and no more
+/// memory after a day of dragging sliders.
+const REQUESTS_KEPT: u64 = 64;
+
+/// The stages that a shader tree must have to be shown, as paths from its root.
+pub fn stages() -> Vec<&'static str> {
+    GRAPHICS.into_iter().chain([tables::DFG, tables::SHEEN_ALBEDO]).chain(BAKE_STAGES).collect()
+}
+
+/// [`stages`] and those that measure the BRDF: everything in a tree with a `main()`.
+pub fn all_stages() -> Vec<&'static str> {
+    stages().into_iter().chain(MEASURE_STAGES).collect()
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Pass {
+    /// Vertex and fragment stage.
+    fn stages(self) -> [&'static str; 2] {
+        match self {
+            Self::Model { .. } => [GRAPHICS[0], GRAPHICS[1]],
+            Self::Sky => [GRAPHICS[2], GRAPHICS[3]],
+            Self::Tonemap => [GRAPHICS[4], GRAPHICS[5]],
+            Self::Average => [GRAPHICS[4], GRAPHICS[6]],
+        }
+    }
+}
+
+/// The pipelines of one [`PipelineRequest`], and the tables that go with its constants.
+#[derive(Clone)]
+pub(crate) struct BoundPipelines {
+    pipelines: HashMap<PipelineKey, Arc<Pipeline>>,
+    pub(crate) tables: Arc<Tables>,
+}
+
+impl BoundPipelines {
+    pub(crate) fn get(&self, key: &PipelineKey) -> Option<&Arc<Pipeline>> {
+        self.pipelines.get(key)
+    }
+
+    /// Whether both hold the same objects.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let same = |(key, pipeline): (&PipelineKey, &Arc<Pipeline>)| {
+            other.pipelines.get(key).is_some_and(|o| Arc::ptr_eq(o, pipeline))
+        };
+        Arc::ptr_eq(&self.tables, &other.tables)
+            && self.pipelines.len() == other.pipelines.len()
+            && self.pipelines.iter().all(same)
+    }
+}
+
+/// Objects by key, each with the number of the request that used it last.
+struct Recent<K, T> {
+    entries: HashMap<K, (Arc<T>, u64)>,
+}
+
+impl<K: std::hash::Hash + Eq, T> Recent<K, T> {
+    fn get(&self, key: &K) -> Option<&Arc<T>> {
+        self.entries.get(key).map(|(object, _)| object)
+    }
+
+    /// Marks an entry as used by a request; returns whether it exists.
+    fn touch(&mut self, key: &K, request: u64) -> bool {
+        self.entries.get_mut(key).map(|entry| entry.1 = request).is_some()
+    }
+
+    fn insert(&mut self, key: K, object: Arc<T>, request: u64) {
+        self.entries.insert(key, (object, request));
+    }
+
+    /// Drops what none of the newest requests used.
+    fn trim(&mut self, request: u64) {
+        self.entries.retain(|_, (_, used)| *used + REQUESTS_KEPT > request);
+    }
+}
+
+impl<K, T> Default for Recent<K, T> {
+    fn default() -> Self {
+        Self { entries: HashMap::new() }
+    }
+}
+
+/// Compiled shaders, and the pipelines that the newest requests needed.
+pub struct PipelineSet {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    /// The shaders of this generation, with their modes and parameters.
+    pub shaders: Arc<ShaderSet>,
+    graphics: Mutex<Recent<PipelineKey, Pipeline>>,
+    computes: Mutex<Recent<(String, Specialization), ComputePipeline>>,
+    tables: Mutex<Recent<Specialization, Tables>>,
+    requests: Mutex<u64>,
+}
+
+impl PipelineSet {
+    /// Makes the set and the pipelines of `request`, all or nothing. Pipelines whose stages are the same objects in `before`
+    /// are taken over from it.
+    ///
+    /// # Errors
+    /// The driver refuses a stage or a pipeline.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        shaders: Arc<ShaderSet>,
+        request: &PipelineRequest,
+        before: Option<&Self>,
+    ) -> Result<Arc<Self>, GpuError> {
+        let set = Self {
+            gpu: gpu.clone(),
+            layouts: layouts.clone(),
+            shaders,
+            graphics: Mutex::default(),
+            computes: Mutex::default(),
+            tables: Mutex::default(),
+            requests: Mutex::default(),
+        };
+        if let Some(before) = before {
+            set.take_over(before);
+        }
+        set.build(request)?;
+        Ok(Arc::new(set))
+    }
+
+    /// Takes over what an edit left alone. Frames are drawn with `before` meanwhile, so its locks are held briefly.
+    fn take_over(&self, before: &Self) {
+        let is_same = |path: &str| match (before.shaders.stages.get(path), self.shaders.stages.get(path)) {
+            (Some(before), Some(now)) => Arc::ptr_eq(before, now),
+            _ => false,
+        };
+        *lock(&self.requests) = *lock(&before.requests);
+        for (key, entry) in &lock(&before.graphics).entries {
+            if key.pass.stages().iter().all(|path| is_same(path)) {
+                lock(&self.graphics).entries.insert(key.clone(), entry.clone());
+            }
+        }
+        for (key, entry) in &lock(&before.computes).entries {
+            if is_same(&key.0) {
+                lock(&self.computes).entries.insert(key.clone(), entry.clone());
+            }
+        }
+        if [tables::DFG, tables::SHEEN_ALBEDO].into_iter().all(is_same) {
+            lock(&self.tables).entries.clone_from(&lock(&before.tables).entries);
+        }
+    }
+
+    /// Makes what `request` still lacks. From any thread; frames may be drawn meanwhile.
+    ///
+    /// # Errors
+    /// The driver refuses a pipeline; those made before it stay.
+    pub fn build(&self, request: &PipelineRequest) -> Result<(), GpuError> {
+        let number = {
+            let mut requests = lock(&self.requests);
+            *requests += 1;
+            *requests
+        };
+        for key in request.keys() {
+            if !lock(&self.graphics).touch(&key, number) {
+                let pipeline = self.make(&key)?;
+                lock(&self.graphics).insert(key, pipeline, number);
+            }
+        }
+        let constants = self.table_constants(&request.constants);
+        if !lock(&self.tables).touch(&constants, number) {
+            let tables = Tables::new(self, &constants)?;
+            lock(&self.tables).insert(constants, tables, number);
+        }
+        lock(&self.graphics).trim(number);
+        lock(&self.tables).trim(number);
+        lock(&self.computes).trim(number);
+        Ok(())
+    }
+
+    /// The pipelines of `request`; `None` while one is missing.
+    pub(crate) fn bind(&self, request: &PipelineRequest) -> Option<BoundPipelines> {
+        let graphics = lock(&self.graphics);
+        let pipelines = request.keys().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
+        let pipelines = pipelines.collect::<Option<_>>()?;
+        let tables = lock(&self.tables).get(&self.table_constants(&request.constants)).cloned()?;
+        Some(BoundPipelines { pipelines, tables })
+    }
+
+    /// Number of graphics pipelines that are kept.
+    pub fn len(&self) -> usize {
+        lock(&self.graphics).entries.len()
+    }
+
+    /// Whether no graphics pipeline is kept.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    pub(crate) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    pub(crate) fn layouts(&self) -> &Arc<SetLayouts> {
+        &self.layouts
+    }
+
+    /// Those of the author's constants that the tables depend on.
+    fn table_constants(&self, constants: &Specialization) -> Specialization {
+        let stages = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().filter_map(|path| self.shaders.stages.get(path));
+        let declared: Vec<u32> = stages.flat_map(|s| s.reflection.constants.iter().map(|c| c.id)).collect();
+        constants.iter().filter(|(id, _)| declared.contains(id)).copied().collect()
+    }
+
+    /// The module of a stage.
+    pub(crate) fn spirv(&self, path: &str) -> Result<&Vec<u32>, GpuError> {
+        self.shaders.stages.get(path).map(|stage| &stage.spirv).ok_or_else(|| GpuError::NoStage(path.to_owned()))
+    }
+
+    /// A stage with these values for its constants.
+    fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
+        ShaderModule::new(&self.gpu, &specialize(self.spirv(path)?, constants))
+    }
+
+    /// A compute pipeline, made at its first use.
+    pub(crate) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
+        let key = (path.to_owned(), constants.clone());
+        let number = *lock(&self.requests);
+        lock(&self.computes).touch(&key, number);
+        if let Some(pipeline) = lock(&self.computes).get(&key) {
+            return Ok(pipeline.clone());
+        }
+        let module = self.module(path, constants)?;
+        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module)?;
+        lock(&self.computes).insert(key, pipeline.clone(), number);
+        Ok(pipeline)
+    }
+
+    fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
+        let module = |path: &str| self.module(path, &key.specialization);
+        let [vertex, fragment] = key.pass.stages();
+        let (depth, raster, class) = match key.pass {
+            Pass::Model { raster, class } => (true, raster, class),
+            Pass::Sky => (true, Raster::Solid, PrimitiveClass::Triangles),
+            Pass::Average => (false, Raster::Averaged, PrimitiveClass::Triangles),
+            Pass::Tonemap => (false, Raster::Solid, PrimitiveClass::Triangles),
+        };
+        let desc = PipelineDesc {
+            vertex: &*module(vertex)?,
+            fragment: &*module(fragment)?,
+            color: key.format,
+            depth,
+            raster,
+            samples: key.samples,
+            class,
+        };
+        Pipeline::new(&self.gpu, &self.layouts, &desc)
+    }
+}

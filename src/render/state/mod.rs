@@ -1,0 +1,198 @@
+//! One picture as a value: what it shows, and the keys of the pipelines and resources that draw it.
+//!
+//! [`FrameState::new`] is a pure function. A frame is drawn from one state as a whole, so no picture ever mixes the settings,
+//! shaders or resources of two.
+
+pub mod parameters;
+mod pipelines;
+mod scene;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+pub use pipelines::{MaterialVariant, PipelineRequest, TargetFormat};
+pub(super) use pipelines::{Pass, PipelineKey};
+pub(super) use scene::Appearance;
+pub use scene::Scene;
+
+use crate::gpu::Rect;
+use crate::interface::{Frame, Light, MAX_LIGHTS};
+use crate::render::environment::bake::{BAKE_STAGES, LARGEST_HALF};
+use crate::scene::{self, CameraView, Model};
+use crate::settings::Settings;
+use crate::shader::{Mode, ShaderSet, Stage};
+
+/// Paths traced for each pixel in each frame of an accumulating mode.
+const PATHS_PER_FRAME: u32 = 8;
+
+/// Everything that a picture depends on.
+#[derive(Clone, Copy)]
+pub struct FrameInputs<'a> {
+    /// What the user set. A mode that the tree lacks falls back to the tree's first; a value that does not fit its shader
+    /// parameter falls back to the parameter's default.
+    pub settings: &'a Settings,
+    /// One generation of shaders.
+    pub shaders: &'a Arc<ShaderSet>,
+    /// The model as the settings show it; `None` draws the background alone.
+    pub scene: Option<&'a Scene>,
+    /// How often the files behind `settings.environment.name` and `settings.measured` have changed.
+    pub revisions: Revisions,
+    /// Seconds since the start, for shaders that move.
+    pub time_s: f32,
+    /// Width and height of the picture, pixels.
+    pub size: (u32, u32),
+    /// What the model is drawn to.
+    pub target: TargetFormat,
+}
+
+/// Counts how often watched files have changed on disk, so that the same name is loaded again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Revisions {
+    /// Of the environment map.
+    pub environment: u64,
+    /// Of the measured BRDF.
+    pub measured: u64,
+}
+
+/// An environment baked with certain shaders.
+#[derive(Clone, Debug)]
+pub struct EnvironmentKey {
+    /// Built-in name or file.
+    pub name: String,
+    revision: u64,
+    stages: Vec<Arc<Stage>>,
+}
+
+impl PartialEq for EnvironmentKey {
+    fn eq(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Arc<Stage>, &Arc<Stage>)| Arc::ptr_eq(a, b) || a.spirv == b.spirv;
+        self.name == other.name
+            && self.revision == other.revision
+            && self.stages.len() == other.stages.len()
+            && self.stages.iter().zip(&other.stages).all(same)
+    }
+}
+
+/// A measured BRDF.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeasuredKey {
+    /// MERL or UTIA file.
+    pub path: PathBuf,
+    revision: u64,
+}
+
+/// One picture. Immutable.
+#[derive(Clone, Debug)]
+pub struct FrameState {
+    /// The shaders that draw it.
+    pub shaders: Arc<ShaderSet>,
+    /// The pipelines that draw it.
+    pub pipelines: PipelineRequest,
+    /// The model and its materials.
+    pub scene: Option<Scene>,
+    /// Image-based light; `None` is the flat ambient light of the settings.
+    pub environment: Option<EnvironmentKey>,
+    /// Measured BRDF, for the modes that show one.
+    pub measured: Option<MeasuredKey>,
+    /// Camera.
+    pub camera: CameraView,
+    /// Lights in world space, at most [`MAX_LIGHTS`].
+    pub lights: Vec<Light>,
+    /// Width and height, pixels, at least 1.
+    pub size: (u32, u32),
+    params: Vec<u8>,
+    constants: Frame,
+}
+
+impl FrameState {
+    /// The state of a picture. Pure: equal inputs give equal states.
+    pub fn new(inputs: &FrameInputs<'_>) -> Self {
+        let FrameInputs { settings, shaders, scene, revisions, time_s, size, target } = *inputs;
+        let size = (size.0.max(1), size.1.max(1));
+        let nothing = Model::default();
+        let model = scene.map_or(&nothing, |scene| scene.model());
+        let bounds = &model.bounds;
+        let camera = scene::frame(bounds, &model.outline, &settings.camera, size.0 as f32 / size.1 as f32);
+        let mut lights = scene::lights(&settings.lights, model, 0.0);
+        lights.truncate(MAX_LIGHTS);
+        let pipelines = PipelineRequest::new(settings, shaders, scene, target);
+        let lit = settings.environment.is_lit();
+        let clip_from_world = camera.clip_from_world();
+        let turn = settings.environment.rotation.to_radians();
+        let constants = Frame {
+            clip_from_world: clip_from_world.to_cols_array_2d(),
+            world_from_clip: clip_from_world.inverse().to_cols_array_2d(),
+            view_from_world: camera.view_from_world().to_cols_array_2d(),
+            eye_ws: camera.eye.to_array(),
+            exposure: 1.0 / (1.2 * settings.view.ev.exp2()),
+            ambient: settings.lights.ambient_color.map(|c| c * settings.lights.ambient_strength),
+            time_s,
+            background: settings.view.background_linear().unwrap_or_default(),
+            scene_center_ws: bounds.center().to_array(),
+            scene_radius: bounds.radius(),
+            viewport_px: [size.0 as f32, size.1 as f32],
+            near: camera.near,
+            far: camera.far,
+            light_count: lights.len() as u32,
+            chosen_light: settings.lights.chosen,
+            mode: pipelines.mode,
+            largest_value: if target.is_half() { LARGEST_HALF } else { f32::MAX },
+            environment_rotation: [turn.cos(), turn.sin()],
+            environment_intensity: if lit { settings.environment.intensity } else { 0.0 },
+            environment_blur: settings.environment.blur,
+            sample_count: PATHS_PER_FRAME,
+            ..Default::default()
+        };
+        Self {
+            params: parameters::params(&settings.shader, &shaders.parameters),
+            environment: lit.then(|| environment_key(&settings.environment.name, revisions.environment, shaders)),
+            measured: (!settings.measured.is_empty())
+                .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
+            shaders: shaders.clone(),
+            scene: scene.cloned(),
+            pipelines,
+            camera,
+            lights,
+            size,
+            constants,
+        }
+    }
+
+    /// The debug mode that it shows; `None` only for a tree without modes.
+    pub fn mode(&self) -> Option<&Mode> {
+        self.shaders.modes.iter().find(|mode| mode.id == self.pipelines.mode)
+    }
+
+    /// Whether both states give the same picture, bit for bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.shaders, &other.shaders)
+            && bytemuck::bytes_of(&self.constants) == bytemuck::bytes_of(&other.constants)
+            && bytemuck::cast_slice::<Light, u8>(&self.lights) == bytemuck::cast_slice::<Light, u8>(&other.lights)
+            && self.params == other.params
+            && self.pipelines == other.pipelines
+            && self.scene == other.scene
+            && self.environment == other.environment
+            && self.measured == other.measured
+    }
+
+    /// The author's parameter block, `PARAMS_SIZE` bytes.
+    pub(super) fn params(&self) -> &[u8] {
+        &self.params
+    }
+
+    /// The frame's uniforms for a picture at `rect` in the output, under an environment whose images hold radiance times
+    /// `scale`. `sample_index` counts the frames of one accumulated picture.
+    pub(super) fn constants(&self, rect: Rect, scale: f32, sample_index: u32) -> Frame {
+        Frame {
+            environment_intensity: self.constants.environment_intensity / scale,
+            sample_index,
+            viewport_origin_px: [rect.x as f32, rect.y as f32],
+            ..self.constants
+        }
+    }
+}
+
+fn environment_key(name: &str, revision: u64, shaders: &ShaderSet) -> EnvironmentKey {
+    let stages = BAKE_STAGES.iter().filter_map(|path| shaders.stages.get(*path).cloned()).collect();
+    EnvironmentKey { name: name.to_owned(), revision, stages }
+}
