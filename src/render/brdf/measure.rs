@@ -248,5 +248,5 @@ impl Bench {
 
 fn wanted(settings: &Settings, shaders: &ShaderSet) -> Wanted {
     let half = vk::Format::R16G16B16A16_SFLOAT;
-    Wanted::new(settings, shaders, &BTreeSet::new(), 0, 1, half, super::Renderer::OUTPUT_FORMAT)
+    Wanted::new(settings, shaders, &BTreeSet::new(), 0, 1, half, crate::render::Renderer::OUTPUT_FORMAT)
 }
