@@ -1,18 +1,17 @@
 //! Rendering without a window: the same reload and the same frame as on screen, called one after the other.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rayon::prelude::*;
-
-use crate::gpu::{Buffer, Gpu, GpuError, Rect, SetLayouts, vk};
+use crate::gpu::{Frames, Gpu, GpuError, Image, SetLayouts, Use};
 use crate::render::{
-    BakeControl, BakeError, BakeReport, Baked, Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload,
-    Reloader, Renderer, Shot, Target, UploadError, Wanted, measured_buffer, misfits, unknown_names,
+    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
 };
-use crate::scene::{self, Measured, Model};
+use crate::scene::{self, Model};
+use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, Diagnostic, Mode, Source};
+use crate::shader::{Change, Compiler, Diagnostic, Mode, ShaderSet, Source};
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -20,7 +19,7 @@ pub enum HeadlessError {
     /// The shaders do not compile, and there are no earlier ones.
     #[error("the shaders do not compile")]
     Shaders(Vec<Diagnostic>),
-    /// A setting does not fit.
+    /// A setting does not fit the shaders, the model or the device.
     #[error("{0}")]
     Settings(String),
     /// The environment cannot be read or baked.
@@ -34,28 +33,34 @@ pub enum HeadlessError {
     Gpu(#[from] GpuError),
 }
 
-/// A renderer with a shader tree, a model and settings.
+impl From<ProvideError> for HeadlessError {
+    fn from(error: ProvideError) -> Self {
+        match error {
+            ProvideError::Bake(error) => error.into(),
+            ProvideError::Gpu(error) => error.into(),
+            ProvideError::Measured(_) | ProvideError::Stale => Self::Settings(error.to_string()),
+        }
+    }
+}
+
+/// A session, a device and one view.
 pub struct Headless {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
-    renderer: Renderer,
+    session: Session,
     reloader: Reloader,
-    pipelines: Arc<PipelineSet>,
-    model: Model,
-    /// The model in its own materials; `scene` is in those of the settings.
-    uploaded: Arc<GpuScene>,
-    scene: Arc<GpuScene>,
-    baked: Baked,
-    measured: (String, Arc<Buffer>),
-    settings: Settings,
-    samples: u32,
+    resources: Resources,
+    frames: Frames,
+    view: View,
+    /// What [`Headless::render`] reads back; made anew only for another size.
+    output: Option<Arc<Image>>,
     size: (u32, u32),
     upload_ms: f64,
 }
 
 impl Headless {
-    /// Compiles the tree, uploads the model and builds the pipelines. The HDR target has full floats, so that what is read back
-    /// is what the shader wrote.
+    /// Compiles the tree, uploads the model and makes everything that the first frame needs. The HDR target has full floats, so
+    /// that what is read back is what the shader wrote.
     ///
     /// # Errors
     /// Shaders that do not compile, settings or a model that do not fit, a device that fails.
@@ -67,96 +72,103 @@ impl Headless {
         settings: Settings,
         size: (u32, u32),
     ) -> Result<(Self, Reload), HeadlessError> {
-        let layouts = SetLayouts::new(gpu)?;
-        let renderer = Renderer::new(gpu, &layouts, vk::Format::R32G32B32A32_SFLOAT)?;
+        let mut this = Self::open(gpu, compiler, source, model, settings, size)?;
+        let reload = this.update(Change::All);
+        match &reload.outcome {
+            Outcome::Ready(_) => {}
+            Outcome::Failed(diagnostics) => return Err(HeadlessError::Shaders(diagnostics.clone())),
+            Outcome::Unchanged { .. } => return Err(HeadlessError::Shaders(Vec::new())),
+        }
+        this.check_settings()?;
+        this.provide()?;
+        Ok((this, reload))
+    }
+
+    /// The same without compiling anything: [`Headless::update`] does, and may fail any number of times before a first picture.
+    ///
+    /// # Errors
+    /// Settings or a model that do not fit, a device that fails.
+    pub fn open(
+        gpu: &Arc<Gpu>,
+        compiler: &Arc<Compiler>,
+        source: Source,
+        model: Model,
+        settings: Settings,
+        size: (u32, u32),
+    ) -> Result<Self, HeadlessError> {
         let most = gpu.max_image_size();
         if size.0 > most || size.1 > most {
             let message = format!("{}x{} is too large; this device draws at most {most} pixels a side", size.0, size.1);
             return Err(HeadlessError::Settings(message));
         }
-        let upload = Instant::now();
         model.variant(&settings.variant).map_err(HeadlessError::Settings)?;
-        let uploaded = GpuScene::upload(gpu, &layouts, &model)?;
-        let scene = uploaded.dressed(gpu, &layouts, &model, &settings)?;
-        let upload_ms = upload.elapsed().as_secs_f64() * 1e3;
-        let samples = samples(gpu, &settings).map_err(HeadlessError::Settings)?;
-        let mut reloader = Reloader::new(gpu, &layouts, compiler, source);
-        let mut reload = reloader.update(Change::All, |shaders| wanted(&settings, samples, shaders, &scene), || false);
-        let pipelines = match std::mem::replace(&mut reload.outcome, Outcome::Unchanged { cleared: false }) {
-            Outcome::Ready(pipelines) => pipelines,
-            Outcome::Failed(diagnostics) => return Err(HeadlessError::Shaders(diagnostics)),
-            Outcome::Unchanged { .. } => return Err(HeadlessError::Shaders(Vec::new())),
-        };
-        reload.outcome = Outcome::Ready(pipelines.clone());
-        let misfit = misfits(&settings.shader, &pipelines.shaders).into_iter().next();
-        if let Some(message) = unknown_names(&settings.shader, &pipelines.shaders).or(misfit) {
-            return Err(HeadlessError::Settings(message));
-        }
+        let layouts = SetLayouts::new(gpu)?;
         let mut this = Self {
             gpu: gpu.clone(),
+            session: Session::new(settings),
+            reloader: Reloader::new(gpu, &layouts, compiler, source),
+            resources: Resources::new(gpu, &layouts, [0.0; 3])?,
+            frames: Frames::new(gpu, 1)?,
+            view: View::new(gpu, &layouts, 1)?,
+            output: None,
             layouts,
-            renderer,
-            reloader,
-            pipelines,
-            model,
-            uploaded,
-            scene,
-            baked: Baked::uniform(gpu, [0.0; 3])?,
-            measured: (String::new(), measured_buffer(gpu, None)?),
-            settings,
-            samples,
             size,
-            upload_ms,
+            upload_ms: 0.0,
         };
-        this.open_files()?;
-        Ok((this, reload))
+        this.target()?;
+        this.set_model(model)?;
+        Ok(this)
     }
 
-    /// Bakes the environment and reads the measured BRDF that the settings name, if those in use are others. On failure these
-    /// stay.
+    /// Bakes the environment and reads the measured BRDF that the settings name, if those in use are others, and makes the
+    /// pipelines of the next frame. On failure those in use stay.
     ///
     /// # Errors
     /// A file that is bad, a device that fails.
-    pub fn open_files(&mut self) -> Result<(), HeadlessError> {
-        let environment = &self.settings.environment;
-        if environment.is_lit() && !self.baked.is_for(&environment.name, &self.pipelines) {
-            self.bake(true)?;
-        }
-        if self.measured.0 != self.settings.measured {
-            let name = self.settings.measured.clone();
-            let measured = match name.as_str() {
-                "" => None,
-                path => Some(Measured::open(path.as_ref()).map_err(|e| HeadlessError::Settings(e.to_string()))?),
-            };
-            self.measured = (name, measured_buffer(&self.gpu, measured.as_ref())?);
-        }
-        Ok(())
+    pub fn provide(&mut self) -> Result<(), HeadlessError> {
+        self.bind().map(|_| ())
     }
 
-    /// Bakes the environment again, whatever is known of it: its file may have changed. `from_disk`: a result that was kept on
-    /// disk will do.
+    /// Bakes the environment of the settings again. `from_disk`: a cached result will do.
     ///
     /// # Errors
-    /// As [`Headless::open_files`].
+    /// As [`Headless::provide`].
     pub fn bake(&mut self, from_disk: bool) -> Result<(), HeadlessError> {
-        let control = BakeControl { progress: &|_, _| {}, superseded: &|| false, from_disk };
-        self.baked = Baked::bake(&self.pipelines, &self.settings.environment.name, &control)?;
-        Ok(())
+        match self.frame_state()?.environment {
+            Some(key) => Ok(self.resources.bake(key, from_disk)?),
+            None => Ok(()),
+        }
+    }
+
+    /// Notes that the environment's file has changed: the next frame bakes it again.
+    pub fn environment_changed(&mut self) {
+        self.session.revisions.environment += 1;
+    }
+
+    /// Notes that the file of the measured BRDF has changed: the next frame reads it again.
+    pub fn measured_changed(&mut self) {
+        self.session.revisions.measured += 1;
     }
 
     /// What the last bake took.
     pub fn bake_report(&self) -> &BakeReport {
-        &self.baked.environment.report
+        &self.resources.environment().report
     }
 
     /// The files of the environment.
-    pub fn environment_files(&self) -> &[std::path::PathBuf] {
-        &self.baked.files
+    pub fn environment_files(&self) -> Vec<PathBuf> {
+        environment_files(&self.session.settings.environment.name)
     }
 
-    /// The pipelines on screen, with their shaders.
-    pub fn pipelines(&self) -> &Arc<PipelineSet> {
-        &self.pipelines
+    /// The file of the measured BRDF, if there is one.
+    pub fn measured_files(&self) -> Vec<PathBuf> {
+        let path = &self.session.settings.measured;
+        std::path::absolute(path).ok().filter(|_| !path.is_empty()).into_iter().collect()
+    }
+
+    /// The shaders in use; empty before the first good ones.
+    pub fn shaders(&self) -> Arc<ShaderSet> {
+        self.session.shaders.clone().unwrap_or_default()
     }
 
     /// The tree.
@@ -164,32 +176,40 @@ impl Headless {
         &self.reloader
     }
 
-    /// The model.
-    pub fn model(&self) -> &Model {
-        &self.model
+    /// The model, without the pixels of its images.
+    pub fn model(&self) -> Arc<Model> {
+        self.session.model().cloned().unwrap_or_default()
     }
 
     /// The settings of the next [`Headless::render`].
     pub fn settings_mut(&mut self) -> &mut Settings {
-        &mut self.settings
+        &mut self.session.settings
     }
 
-    /// What the upload of the first model took, milliseconds.
+    /// Duration of the last model upload, milliseconds.
     pub fn upload_ms(&self) -> f64 {
         self.upload_ms
     }
 
     /// Device time of the last frame in milliseconds, where the device can tell.
     pub fn device_ms(&self) -> Option<f64> {
-        self.renderer.device_ms()
+        self.frames.last_device_ms()
     }
 
-    /// Takes changed shaders in, and bakes the environment anew when they say how. On failure the last good ones stay.
+    /// Takes changed shaders in. On failure the last good ones stay.
     pub fn update(&mut self, change: Change) -> Reload {
-        let (settings, samples, scene) = (&self.settings, self.samples, &self.scene);
-        let reload = self.reloader.update(change, |shaders| wanted(settings, samples, shaders, scene), || false);
-        if let Outcome::Ready(pipelines) = &reload.outcome {
-            self.pipelines = pipelines.clone();
+        // `open` has checked that there is one.
+        let target = self.target().unwrap_or(TargetFormat::full(1));
+        let session = &mut self.session;
+        let reload = self.reloader.update(change, |shaders| session.pipelines(shaders, target), || false);
+        match &reload.outcome {
+            Outcome::Ready(set) => {
+                self.resources.set_pipelines(set);
+                self.session.shaders = Some(set.shaders.clone());
+                self.session.diagnostics.clone_from(&set.shaders.warnings);
+            }
+            Outcome::Failed(diagnostics) => self.session.diagnostics.clone_from(diagnostics),
+            Outcome::Unchanged { .. } => {}
         }
         reload
     }
@@ -199,129 +219,134 @@ impl Headless {
     /// # Errors
     /// A model that does not fit the device.
     pub fn set_model(&mut self, model: Model) -> Result<(), HeadlessError> {
-        self.uploaded = GpuScene::upload(&self.gpu, &self.layouts, &model)?;
-        self.model = model;
+        let start = Instant::now();
+        let uploaded = GpuModel::upload(&self.gpu, &self.layouts, model)?;
+        self.session.set_model(uploaded.model());
+        self.resources.set_model(&uploaded);
+        self.upload_ms = start.elapsed().as_secs_f64() * 1e3;
         Ok(())
     }
 
-    /// Renders one frame, building the pipelines that a changed mode or constant needs, and reads it back.
+    /// Renders one frame, making what it needs, and reads it back. An accumulating mode is the mean of `view.frames` frames.
     ///
     /// # Errors
     /// Settings that do not fit, a device that fails.
     pub fn render(&mut self) -> Result<Capture, HeadlessError> {
-        self.open_files()?;
-        if self.wanted().accumulates {
-            for _ in 1..self.settings.view.frames {
-                self.frame(Target::Nowhere)?;
+        let frame = self.bind()?;
+        if frame.state.pipelines.accumulates {
+            for _ in 1..self.session.settings.view.frames {
+                self.draw_frame(&frame, Redraw::Always)?;
             }
         }
-        match self.frame(Target::Memory)? {
-            Drawn::Captured(capture) => Ok(capture),
-            Drawn::Finished | Drawn::Shown { .. } | Drawn::NoImage => unreachable!("a frame to memory is captured"),
-        }
+        self.view.prepare(&frame)?;
+        let output = self.output_image()?;
+        let mut encoder = self.frames.begin()?;
+        let slot = self.frames.current();
+        self.view.draw(&mut encoder, slot, &frame, &to(&output), Redraw::Always)?;
+        let readback = self.view.read_back(&mut encoder, &output)?;
+        self.frames.submit(encoder, Default::default())?;
+        self.frames.wait()?;
+        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
-    /// Renders one frame and waits for it, without reading it back: what a window would take.
+    /// Renders one frame and waits for it, without reading it back: what a frame in a window takes.
     ///
     /// # Errors
     /// As [`Headless::render`].
     pub fn draw(&mut self) -> Result<(), HeadlessError> {
-        self.open_files()?;
-        self.frame(Target::Nowhere).map(|_| ())
+        let frame = self.bind()?;
+        self.draw_frame(&frame, Redraw::Always)
     }
 
-    /// The raw values of one pixel, counted from the upper left corner, in some modes; premultiplied, as in [`Capture::raw`],
-    /// and zero where nothing is. The last mode is the one of the settings then.
+    /// The raw values of one pixel, counted from the upper left corner, in some modes: RGB premultiplied by alpha, which is
+    /// coverage, as in [`Capture::raw`]; zero where nothing is.
     ///
-    /// Only what is near to the pixel is drawn, so that only its pipelines are made; all, where light passes through a surface
-    /// and what lies behind it is seen from around the pixel.
+    /// Only the instances near the pixel are drawn, and only their pipelines are made; all of them if one of those near is
+    /// transmissive, since that one shows what lies behind it from around the pixel.
     ///
     /// # Errors
     /// As [`Headless::render`].
-    pub fn pixel(&mut self, (x, y): (u32, u32), modes: &[Mode]) -> Result<Vec<[f32; 4]>, HeadlessError> {
-        self.open_files()?;
-        self.dress()?;
-        let near = scene::near_pixel(&self.model, self.shot().view.clip_from_world(), self.size, (x, y));
-        let part = self.scene.only(&near);
-        let part = if part.is_transmissive() { self.scene.clone() } else { part };
-        let (settings, samples, pipelines) = (&self.settings, self.samples, &self.pipelines);
-        let wanted = |mode: &Mode| {
-            let settings = Settings { mode: mode.slug.clone(), ..settings.clone() };
-            wanted(&settings, samples, &pipelines.shaders, &part)
+    pub fn pixel(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<[f32; 4]>, HeadlessError> {
+        self.provide()?;
+        let whole = self.frame_state()?;
+        let Some(scene) = whole.scene.clone() else { return Ok(Vec::new()) };
+        let near = scene::near_pixel(scene.model(), whole.camera.clip_from_world(), self.size, at);
+        let part = scene.only(near);
+        let part = if part.is_transmissive() { scene } else { part };
+        let state_of = |mode: &Mode| {
+            let settings = Settings { mode: mode.slug.clone(), ..self.session.settings.clone() };
+            let scene = Some(&part);
+            let (shaders, revisions, target) = (&whole.shaders, self.session.revisions, whole.pipelines.target);
+            FrameState::new(&FrameInputs {
+                settings: &settings, shaders, scene, revisions, time_s: 0.0, size: self.size, target
+            })
         };
-        let wanted: Vec<Wanted> = modes.iter().map(wanted).collect();
-        // Drivers make a pipeline on the thread that asks for it.
-        wanted.par_iter().try_for_each(|wanted| pipelines.build(wanted))?;
+        let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
+        self.resources.build_all(&states.iter().map(|state| &state.pipelines).collect::<Vec<_>>())?;
+        self.view.probe = Some(at);
         let mut values = Vec::new();
-        for (mode, wanted) in modes.iter().zip(wanted) {
-            self.settings.mode.clone_from(&mode.slug);
-            for _ in 0..if wanted.accumulates { self.settings.view.frames } else { 1 } {
-                self.frame_of(&part, Target::Pixel(x, y))?;
+        for state in &states {
+            let frame = self.resources.provide(state)?;
+            let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
+            for _ in 0..frames {
+                self.draw_frame(&frame, Redraw::Pixel(at.0, at.1))?;
             }
-            values.push(self.renderer.raw_at(x, y)?.unwrap_or_default());
+            values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
         }
+        self.view.probe = None;
         Ok(values)
     }
 
-    /// Camera, lights and values of the next frame.
-    pub fn shot(&self) -> Shot {
-        let (width, height) = self.size;
-        let aspect = width as f32 / height as f32;
-        let view = scene::frame(&self.model.bounds, &self.model.outline, &self.settings.camera, aspect);
-        Shot::new(&self.settings, Some(&self.pipelines.shaders), &self.model, view, 0.0)
+    /// The picture that the settings ask for.
+    ///
+    /// # Errors
+    /// Settings that do not fit, or no shaders yet.
+    pub fn frame_state(&mut self) -> Result<FrameState, HeadlessError> {
+        let target = self.target()?;
+        let state = self.session.frame_state(0.0, self.size, target);
+        state.ok_or_else(|| HeadlessError::Shaders(self.session.diagnostics.clone()))
     }
 
-    fn wanted(&self) -> Wanted {
-        wanted(&self.settings, self.samples, &self.pipelines.shaders, &self.scene)
+    fn target(&self) -> Result<TargetFormat, HeadlessError> {
+        View::target_format(&self.gpu, self.session.settings.view.msaa, true).map_err(HeadlessError::Settings)
     }
 
-    /// Puts on what the settings say.
-    fn dress(&mut self) -> Result<(), HeadlessError> {
-        self.model.variant(&self.settings.variant).map_err(HeadlessError::Settings)?;
-        self.scene = self.uploaded.dressed(&self.gpu, &self.layouts, &self.model, &self.settings)?;
-        Ok(())
+    /// Fails on the first setting that does not fit the shaders or the model, or that neither knows.
+    ///
+    /// # Errors
+    /// That setting, in words.
+    pub fn check_settings(&self) -> Result<(), HeadlessError> {
+        self.session.problems(true).into_iter().next().map_or(Ok(()), |problem| Err(HeadlessError::Settings(problem)))
     }
 
-    fn frame(&mut self, target: Target<'_>) -> Result<Drawn, HeadlessError> {
-        self.dress()?;
-        self.frame_of(&self.scene.clone(), target)
-    }
-
-    /// A frame of the scene or of a part of it.
-    fn frame_of(&mut self, scene: &Arc<GpuScene>, target: Target<'_>) -> Result<Drawn, HeadlessError> {
-        if let Some(misfit) = misfits(&self.settings.shader, &self.pipelines.shaders).into_iter().next() {
-            return Err(HeadlessError::Settings(misfit));
+    fn bind(&mut self) -> Result<BoundFrame, HeadlessError> {
+        if let Some(problem) = self.session.problems(false).into_iter().next() {
+            return Err(HeadlessError::Settings(problem));
         }
-        let wanted = wanted(&self.settings, self.samples, &self.pipelines.shaders, scene);
-        self.pipelines.build(&wanted)?;
-        let (width, height) = self.size;
-        let shot = self.shot();
-        let input = FrameInput {
-            shot: &shot,
-            pipelines: Some((&self.pipelines, &wanted)),
-            scene: Some(scene),
-            environment: &self.baked.environment,
-            measured: &self.measured.1,
-            rect: Rect { x: 0, y: 0, width, height },
-        };
-        Ok(self.renderer.frame(input, target)?)
+        let state = Arc::new(self.frame_state()?);
+        Ok(self.resources.provide(&state)?)
+    }
+
+    fn draw_frame(&mut self, frame: &BoundFrame, redraw: Redraw) -> Result<(), HeadlessError> {
+        self.view.prepare(frame)?;
+        let output = self.output_image()?;
+        let mut encoder = self.frames.begin()?;
+        let slot = self.frames.current();
+        self.view.draw(&mut encoder, slot, frame, &to(&output), redraw)?;
+        self.frames.submit(encoder, Default::default())?;
+        Ok(self.frames.wait()?)
+    }
+
+    fn output_image(&mut self) -> Result<Arc<Image>, HeadlessError> {
+        if let Some(output) = &self.output {
+            return Ok(output.clone());
+        }
+        let output = self.view.output_image(self.size)?;
+        self.output = Some(output.clone());
+        Ok(output)
     }
 }
 
-/// What the settings ask of these shaders for this scene, when the HDR target has full floats.
-fn wanted(settings: &Settings, samples: u32, shaders: &crate::shader::ShaderSet, scene: &GpuScene) -> Wanted {
-    let format = vk::Format::R32G32B32A32_SFLOAT;
-    Wanted::new(settings, shaders, scene.variants(), scene.own_lights(), samples, format, Renderer::OUTPUT_FORMAT)
-}
-
-/// Samples a pixel as the settings ask, checked against the device.
-///
-/// # Errors
-/// A count that is neither 1 nor 4, or that the device lacks, in words.
-pub fn samples(gpu: &Gpu, settings: &Settings) -> Result<u32, String> {
-    match settings.view.msaa {
-        samples @ (1 | 4) if gpu.supports_samples(samples) => Ok(samples),
-        4 => Err("this device has no 4x multisampling; use --set view.msaa=1".into()),
-        other => Err(format!("view.msaa is {other}; it can be 1 or 4")),
-    }
+fn to(image: &Arc<Image>) -> Output<'_> {
+    Output { image, before: Use::Undefined, at: (0, 0) }
 }

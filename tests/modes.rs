@@ -51,7 +51,7 @@ fn sharp(model: Model, more: &[&str]) -> Headless {
 }
 
 fn slugs(headless: &Headless) -> Vec<String> {
-    headless.pipelines().shaders.modes.iter().map(|mode| mode.slug.clone()).collect()
+    headless.shaders().modes.iter().map(|mode| mode.slug.clone()).collect()
 }
 
 /// The raw values on the model.
@@ -72,10 +72,10 @@ fn the_fixed_slugs_exist() {
     let slugs = slugs(&headless);
     let missing: Vec<&str> = FIXED.split_whitespace().filter(|slug| !slugs.iter().any(|s| s == slug)).collect();
     assert!(missing.is_empty(), "no mode {missing:?} among {slugs:?}");
-    let mut ids: Vec<u32> = headless.pipelines().shaders.modes.iter().map(|mode| mode.id).collect();
+    let mut ids: Vec<u32> = headless.shaders().modes.iter().map(|mode| mode.id).collect();
     ids.dedup();
     assert_eq!(ids.len(), slugs.len(), "ids are not unique");
-    for mode in &headless.pipelines().shaders.modes {
+    for mode in &headless.shaders().modes {
         assert!(!mode.doc.is_empty() && !mode.name.is_empty() && !mode.group.is_empty(), "{mode:?}");
     }
 }
@@ -240,7 +240,7 @@ fn the_built_in_models_have_no_nan_anywhere() {
 #[test]
 fn a_png_stores_colors_in_srgb_data_as_they_are_and_vectors_shifted() {
     let mut headless = sharp(model("shader-ball"), &[]);
-    let modes = headless.pipelines().shaders.modes.clone();
+    let modes = headless.shaders().modes.clone();
     for (slug, encode) in [
         ("base-color", Encode::Color),
         ("metallic", Encode::Data),

@@ -34,10 +34,10 @@ fn the_slider_of_the_readme() {
     let text = text.replacen(hook, &format!("{hook}\n{}", snippet("snow * smoothstep")), 1);
     ready(&session.save("user.glsl", &text));
     assert_same(&before, &session.render(), "at its default the slider changes nothing");
-    let generation = session.headless.pipelines().shaders.generation;
+    let generation = session.headless.shaders().generation;
     session.set("snow=1.0");
     assert_differ(&before, &session.render(), "snow");
-    assert_eq!(session.headless.pipelines().shaders.generation, generation, "moving a slider compiles nothing");
+    assert_eq!(session.headless.shaders().generation, generation, "moving a slider compiles nothing");
     passes_check(&session);
 }
 

@@ -237,7 +237,7 @@ fn interface_glsl_is_held_against_this_program() {
     session.tree.write("interface.glsl", &original);
     let reload = session.edit("interface.glsl", "// Printed by", "// Once printed by");
     assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(&reload)));
-    let warnings = lines(&session.headless.pipelines().shaders.warnings);
+    let warnings = lines(&session.headless.shaders().warnings);
     assert!(warnings.iter().any(|line| line.starts_with(&file) && line.contains("differs")), "{warnings:#?}");
 }
 
@@ -282,7 +282,7 @@ fn a_mode_added_to_modes_glsl_works_at_the_next_save() {
                 const uint MODE_FACING = 1000u;\nbool your_mode(";
     ready(&session.save("debug/modes.glsl", &modes.replacen("bool your_mode(", mode, 1)));
 
-    let mode = session.headless.pipelines().shaders.modes.iter().find(|mode| mode.slug == "facing").cloned();
+    let mode = session.headless.shaders().modes.iter().find(|mode| mode.slug == "facing").cloned();
     let mode = mode.expect("the new mode is listed");
     assert_eq!((mode.id, mode.name.as_str(), mode.group.as_str()), (1000, "Facing", "Mine"));
     let n_dot_v = session.mode("n-dot-v");
@@ -307,29 +307,29 @@ fn a_parameter_added_appears_and_values_survive_by_name() {
     let first = "    float roughness_scale;";
     ready(&session.edit(USER, first, &format!("    float glow;                //@ui \"Glow\" 0..1 = 0.0\n{first}")));
     let names: Vec<String> =
-        session.headless.pipelines().shaders.parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        session.headless.shaders().parameters.iter().map(|parameter| parameter.name.clone()).collect();
     assert_eq!(names[0], "glow", "{names:?}");
     assert_same(&rim, &session.render(), "values go by name");
 
     ready(&session.edit(USER, "    return radiance;", "    return radiance + glow;"));
     assert_same(&rim, &session.render(), "the default of the new parameter");
-    let generation = session.headless.pipelines().shaders.generation;
+    let generation = session.headless.shaders().generation;
     session.set("glow=0.5");
     assert_differ(&rim, &session.render(), "the new parameter");
-    assert_eq!(session.headless.pipelines().shaders.generation, generation, "a parameter compiles nothing");
+    assert_eq!(session.headless.shaders().generation, generation, "a parameter compiles nothing");
 }
 
 #[test]
 fn a_specialization_constant_changes_the_picture_without_a_compile() {
     let mut session = sphere();
     let smooth = session.render();
-    let generation = session.headless.pipelines().shaders.generation;
+    let generation = session.headless.shaders().generation;
     session.set("TOON_BANDS=Three");
     let toon = session.render();
     assert_differ(&smooth, &toon, "bands");
     session.headless.settings_mut().shader.insert("TOON_BANDS".into(), ShaderValue::Int(0));
     assert_same(&smooth, &session.render(), "bands off");
-    assert_eq!(session.headless.pipelines().shaders.generation, generation);
+    assert_eq!(session.headless.shaders().generation, generation);
     session.set("TOON_BANDS=Seven");
     let error = session.headless.render().unwrap_err().to_string();
     assert!(["TOON_BANDS", "Seven", "Three"].iter().all(|part| error.contains(part)), "{error}");

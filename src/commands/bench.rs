@@ -131,7 +131,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
     // A mode that was asked for is all that is of interest.
     let slugs: Vec<String> = match args.common.mode.is_empty() {
         false => Vec::new(),
-        true => headless.pipelines().shaders.modes.iter().map(|m| m.slug.clone()).collect(),
+        true => headless.shaders().modes.iter().map(|m| m.slug.clone()).collect(),
     };
     let (mut first, mut again, mut modes) = (Vec::new(), Vec::new(), Vec::new());
     for slug in slugs {

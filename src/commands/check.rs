@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use specula::events::{Event, emit};
-use specula::gpu::{PrimitiveClass, SetLayouts, vk};
+use specula::gpu::{PrimitiveClass, SetLayouts};
 use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
-use specula::render::{MaterialVariant, PipelineSet, Renderer, Wanted, tree_name};
+use specula::render::{MaterialVariant, PipelineRequest, PipelineSet, TargetFormat, tree_name};
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
@@ -85,10 +85,11 @@ fn build_choices(
                     .map(|class| MaterialVariant { alpha, features, class })
             })
             .collect();
-    let format = vk::Format::R16G16B16A16_SFLOAT;
-    let wanted =
-        |settings: &Settings| Wanted::new(settings, shaders, &materials, 0, 1, format, Renderer::OUTPUT_FORMAT);
-    let plain = wanted(&settings);
+    let request = |settings: &Settings| {
+        let request = PipelineRequest::new(settings, shaders, None, TargetFormat::half(1));
+        PipelineRequest { materials: materials.clone(), ..request }
+    };
+    let plain = request(&settings);
     let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None) {
         Ok(set) => set,
         Err(error) => {
@@ -97,15 +98,20 @@ fn build_choices(
         }
     };
     let mut count = 1;
-    let mut build = |wanted: &Wanted, file: &str, line: u32, what: String| {
-        count += wanted.materials.len();
-        if let Err(error) = set.build(wanted) {
+    let mut build = |request: &PipelineRequest, file: &str, line: u32, what: String| {
+        count += request.materials.len();
+        if let Err(error) = set.build(request) {
             diagnostics
                 .push(Diagnostic::error(file, format!("{what} builds no pipeline: {error}")).on_line(line, None));
         }
     };
     // With lights that the frame counts; those of a known number are in all others.
-    let every_material = Wanted { materials: all_materials, samples: 4, light_count: 0, ..plain.clone() };
+    let every_material = PipelineRequest {
+        materials: all_materials,
+        target: TargetFormat::half(4),
+        light_count: 0,
+        ..plain.clone()
+    };
     build(&every_material, &tree_name(&args.common.source()?), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
         build(&plain.with_mode(mode, settings.view.tonemap), &mode.file, mode.line, format!("mode {}", mode.slug));
@@ -117,7 +123,7 @@ fn build_choices(
         for (name, value) in named.chain(bools) {
             let mut chosen = settings.clone();
             chosen.shader.insert(constant.name.clone(), value);
-            build(&wanted(&chosen), &constant.file, constant.line, format!("{} = {name}", constant.name));
+            build(&request(&chosen), &constant.file, constant.line, format!("{} = {name}", constant.name));
         }
     }
     drop(set);

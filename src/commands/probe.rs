@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 use specula::headless::Headless;
 use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
-use specula::render::{Shot, is_absent};
+use specula::render::{FrameState, is_absent};
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::Failure;
@@ -52,19 +52,19 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let gpu = args.common.gpu()?;
     let model = args.common.model(args.model.as_deref())?;
     let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size)?;
-    let modes = chosen(&headless.pipelines().shaders, &slugs)?;
-    let shot = headless.shot();
+    let modes = chosen(&headless.shaders(), &slugs)?;
+    let state = headless.frame_state()?;
     let hit = is_hit(&mut headless, args.at)?;
     let shown = if hit { modes.as_slice() } else { &[] };
     let values: Vec<_> = shown.iter().zip(headless.pixel(args.at, shown)?).collect();
     if args.json {
         let known = |value: &[f32; 4]| if is_absent(*value) { Value::Null } else { json!(value) };
         let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), known(value))).collect();
-        let lights: Vec<Value> = shot.lights.iter().map(light).collect();
-        let value = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&shot), "lights": lights });
+        let lights: Vec<Value> = state.lights.iter().map(light).collect();
+        let value = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state), "lights": lights });
         out!("{value:#}");
     } else {
-        print_table(args.at, &values, &shot);
+        print_table(args.at, &values, &state);
     }
     // What the layers find at the end counts too.
     drop(headless);
@@ -80,7 +80,7 @@ fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
 
 /// Whether anything of the model is at the pixel: a mode that shows surfaces, but no light and so no sky, covers it.
 fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
-    let modes = &headless.pipelines().shaders.modes;
+    let modes = &headless.shaders().modes;
     let plain = |mode: &&Mode| !mode.tonemap && !mode.accumulate && mode.draw == DrawAs::Surfaces;
     let mode: Vec<Mode> = modes.iter().find(plain).or(modes.first()).cloned().into_iter().collect();
     let before = std::mem::replace(&mut headless.settings_mut().view.background, "none".into());
@@ -89,9 +89,9 @@ fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
     Ok(values.iter().any(|value| value[3] > 0.0))
 }
 
-fn camera(shot: &Shot) -> Value {
-    let view = &shot.view;
-    json!({ "eye": view.eye.to_array(), "target": view.target.to_array(), "fovy": view.fovy_rad.to_degrees() })
+fn camera(state: &FrameState) -> Value {
+    let camera = &state.camera;
+    json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fovy": camera.fovy_rad.to_degrees() })
 }
 
 fn kind(light: &Light) -> &'static str {
@@ -128,16 +128,16 @@ fn light(light: &Light) -> Value {
     value
 }
 
-fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], shot: &Shot) {
-    let view = &shot.view;
+fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], state: &FrameState) {
+    let camera = &state.camera;
     out!("pixel      {x} {y}");
     out!(
         "camera     eye {}  target {}  fovy {:.2}",
-        row(&view.eye.to_array()),
-        row(&view.target.to_array()),
-        view.fovy_rad.to_degrees()
+        row(&camera.eye.to_array()),
+        row(&camera.target.to_array()),
+        camera.fovy_rad.to_degrees()
     );
-    for light in &shot.lights {
+    for light in &state.lights {
         let place = match light.kind {
             LIGHT_DIRECTIONAL => format!("direction {}", row(&light.direction_ws)),
             LIGHT_POINT => format!("position {}", row(&position(light))),

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use specula::events::{Event, emit};
-use specula::headless::{Headless, HeadlessError};
+use specula::events::{Event, ReloadEvent, emit};
+use specula::headless::Headless;
 use specula::picture;
 use specula::render::{Outcome, Reload};
-use specula::shader::Diagnostic;
+use specula::shader::{Change, Diagnostic};
 
 use super::common::{Common, check_mode, check_validation, compiler};
 use super::watch::{Changes, Watch};
@@ -40,29 +40,14 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     // Watching starts before anything is read, so that no save falls between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
     let gpu = args.common.gpu()?;
-    let mut model = args.common.model(args.model.as_deref())?;
+    let model = args.common.model(args.model.as_deref())?;
+    let size = args.common.size;
+    let mut headless = Headless::open(&gpu, &compiler()?, source, model, settings.clone(), size)?;
     if let Some(watch) = &mut watch {
-        watch.follow(&model, &[]);
+        watch.follow(&headless);
     }
-    let opened = loop {
-        let opened =
-            Headless::new(&gpu, &compiler()?, source.clone(), model.clone(), settings.clone(), args.common.size);
-        match (opened, &mut watch) {
-            (Err(HeadlessError::Shaders(diagnostics)), Some(watch)) => {
-                tell(&args, &diagnostics);
-                eprintln!("specula: no picture yet; waiting for the next save");
-                match watch.next() {
-                    Some(changes) if changes.model => model = args.common.model(args.model.as_deref())?,
-                    Some(_) => {}
-                    None => return Ok(()),
-                }
-            }
-            (opened, _) => break opened?,
-        }
-    };
-    let (mut headless, _) = opened;
-    if let Some(watch) = &mut watch {
-        watch.follow(headless.model(), headless.environment_files());
+    if !first_picture(&mut headless, &args, watch.as_mut())? {
+        return Ok(());
     }
     if settings.environment.is_lit() {
         emit(args.common.emits(), &Event::Bake(headless.bake_report()));
@@ -81,19 +66,40 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     check_validation(&gpu)
 }
 
+/// Compiles until the shaders are good, waiting for saves if they are watched, and makes what the first frame needs. `false`:
+/// watching ended before.
+fn first_picture(headless: &mut Headless, args: &Args, watch: Option<&mut Watch>) -> Result<bool, Failure> {
+    let mut reload = headless.update(Change::All);
+    if let Some(watch) = watch {
+        while let Outcome::Failed(diagnostics) = &reload.outcome {
+            tell(args, diagnostics);
+            eprintln!("specula: no picture yet; waiting for the next save");
+            let Some(changes) = watch.next() else { return Ok(false) };
+            take_files(headless, args, watch, &changes)?;
+            reload = headless.update(headless.reloader().library().change_of(&changes.paths));
+        }
+    }
+    match reload.outcome {
+        Outcome::Failed(diagnostics) => Err(Failure::Shaders(diagnostics)),
+        Outcome::Ready(_) | Outcome::Unchanged { .. } => {
+            headless.check_settings()?;
+            headless.provide()?;
+            Ok(true)
+        }
+    }
+}
+
 /// Takes a batch of changes in and writes the picture again when anything in it has changed.
 fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, changes: &Changes) -> Result<(), Failure> {
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
-    let new_model = changes.model && take_model(headless, args, watch)?;
-    let new_environment = changes.environment && take_environment(headless, args);
-    let change = headless.reloader().library().change_of(&changes.paths);
-    let reload = headless.update(change);
+    let new_files = take_files(headless, args, watch, changes)?;
+    let reload = headless.update(headless.reloader().library().change_of(&changes.paths));
     let mut first_frame_ms = 0.0;
-    if new_model || new_environment || matches!(reload.outcome, Outcome::Ready(_)) {
+    if new_files || matches!(reload.outcome, Outcome::Ready(_)) {
         let begin = Instant::now();
         let drawn = headless.draw().map_err(Failure::from);
         first_frame_ms = begin.elapsed().as_secs_f64() * 1e3;
-        // A value, a mode or a place that this edit made wrong may be right after the next.
+        // A value, a mode or a folder that this edit made wrong may be right after the next.
         match drawn.and_then(|()| write(headless, args, all)) {
             Err(Failure::Input(message)) => eprintln!("specula: {message}"),
             result => result?,
@@ -103,14 +109,27 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
     Ok(())
 }
 
+/// Takes changed files of model, environment and measured BRDF in; returns whether the picture may have changed. The last good
+/// one of each stays on failure.
+fn take_files(headless: &mut Headless, args: &Args, watch: &mut Watch, changes: &Changes) -> Result<bool, Failure> {
+    let new_model = changes.model && take_model(headless, args, watch)?;
+    if changes.measured {
+        headless.measured_changed();
+    }
+    if changes.environment {
+        headless.environment_changed();
+    }
+    let baked = changes.environment && take_environment(headless, args);
+    Ok(new_model || baked || changes.measured)
+}
+
 /// Loads the model again; on failure the last good one stays.
 fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result<bool, Failure> {
-    let loaded = args.common.model(args.model.as_deref()).and_then(|model| {
-        watch.follow(&model, headless.environment_files());
-        headless.set_model(model).map_err(Failure::from)
-    });
+    let loaded =
+        args.common.model(args.model.as_deref()).and_then(|model| headless.set_model(model).map_err(Failure::from));
     match loaded {
         Ok(()) => {
+            watch.follow(headless);
             eprintln!("specula: the model was loaded again");
             Ok(true)
         }
@@ -159,8 +178,8 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
             );
         }
     }
-    let generation = headless.pipelines().shaders.generation;
-    emit(args.common.emits(), &Event::Reload(reload.event(generation, detect_ms, first_frame_ms)));
+    let generation = headless.shaders().generation;
+    emit(args.common.emits(), &Event::Reload(ReloadEvent::new(reload, generation, detect_ms, first_frame_ms)));
 }
 
 /// Writes the picture, or one of each mode.
@@ -168,11 +187,11 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
     let out = args.out.as_path();
     if !all {
         let slug = headless.settings_mut().mode.clone();
-        check_mode(&headless.pipelines().shaders, &slug)?;
+        check_mode(&headless.shaders(), &slug)?;
         let capture = headless.render()?;
         return picture::write(&capture, out).map_err(Failure::Input);
     }
-    let slugs: Vec<String> = headless.pipelines().shaders.modes.iter().map(|m| m.slug.clone()).collect();
+    let slugs: Vec<String> = headless.shaders().modes.iter().map(|m| m.slug.clone()).collect();
     for slug in slugs {
         let path = picture::path_of_mode(out, &slug);
         headless.settings_mut().mode = slug;

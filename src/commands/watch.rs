@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use crossbeam_channel::{Receiver, unbounded};
-use specula::scene::Model;
+use specula::headless::Headless;
 use specula::shader::{Batch, Source, Watcher};
 
 use super::Failure;
@@ -16,6 +16,7 @@ pub struct Watch {
     batches: Receiver<Batch>,
     model_files: BTreeSet<PathBuf>,
     environment_files: BTreeSet<PathBuf>,
+    measured_files: BTreeSet<PathBuf>,
 }
 
 /// What changed together.
@@ -26,6 +27,8 @@ pub struct Changes {
     pub model: bool,
     /// Whether one of them is the environment's.
     pub environment: bool,
+    /// Whether one of them is the measured BRDF's.
+    pub measured: bool,
     /// When the first event came.
     pub first_event: Instant,
 }
@@ -38,15 +41,19 @@ impl Watch {
             let _ = sender.send(batch);
         };
         let watcher = Watcher::new(source.root(), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
-        Ok(Self { watcher, batches, model_files: BTreeSet::new(), environment_files: BTreeSet::new() })
+        let (model_files, environment_files, measured_files) = Default::default();
+        Ok(Self { watcher, batches, model_files, environment_files, measured_files })
     }
 
-    /// Watches these files of a model and of an environment too, in place of those before.
-    pub fn follow(&mut self, model: &Model, environment: &[PathBuf]) {
-        let files: Vec<PathBuf> = model.files.iter().chain(environment).cloned().collect();
+    /// Watches the files of the model, the environment and the measured BRDF too, in place of those before.
+    pub fn follow(&mut self, headless: &Headless) {
+        let model = headless.model();
+        let (environment, measured) = (headless.environment_files(), headless.measured_files());
+        let files: Vec<PathBuf> = model.files.iter().chain(&environment).chain(&measured).cloned().collect();
         self.watcher.set_files(&files);
         self.model_files = both_names(&model.files);
-        self.environment_files = both_names(environment);
+        self.environment_files = both_names(&environment);
+        self.measured_files = both_names(&measured);
     }
 
     /// Waits for the next changes; `None` when watching has ended.
@@ -54,7 +61,8 @@ impl Watch {
         let batch = self.batches.recv().ok()?;
         let model = batch.paths.iter().any(|path| self.model_files.contains(path));
         let environment = batch.paths.iter().any(|path| self.environment_files.contains(path));
-        Some(Changes { paths: batch.paths, model, environment, first_event: batch.first_event })
+        let measured = batch.paths.iter().any(|path| self.measured_files.contains(path));
+        Some(Changes { paths: batch.paths, model, environment, measured, first_event: batch.first_event })
     }
 }
 

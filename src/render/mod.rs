@@ -1,32 +1,26 @@
 //! The only place where shaders, the device and the scene meet.
 //!
-//! [`Reloader`] turns a set of changed files into a [`PipelineSet`], all or nothing, on any thread. [`GpuScene`] is a model on the
-//! device. [`Renderer::frame`] draws one with the other.
+//! [`FrameState`] says what a picture shows, as a pure function of the settings, the shaders and the model. [`Resources`] holds
+//! what is on the device and binds a state to it once everything is there. A [`View`] draws the [`BoundFrame`].
+//! [`Reloader`] turns changed files into a new [`PipelineSet`], all or nothing, on any thread.
 
 pub mod brdf;
-mod capture;
 mod compute;
 mod disk_cache;
-mod draw;
 mod environment;
-mod frame;
-mod pipelines;
-mod reload;
+mod pipeline;
+mod resources;
 mod scene;
-mod shot;
-mod targets;
-mod uniforms;
-mod values;
-mod wanted;
+mod state;
+mod view;
 
-pub use brdf::measured::measured_buffer;
-pub use capture::Capture;
-pub use environment::Baked;
 pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
-pub use frame::{Drawn, FrameInput, Renderer, Target, UiFrame};
-pub use pipelines::{MEASURE_STAGES, PipelineSet, all_stages, stages};
-pub use reload::{Outcome, Reload, Reloader, tree_name};
-pub use scene::{GpuScene, UploadError};
-pub use shot::Shot;
-pub use values::{is_absent, misfits, number, unknown_names};
-pub use wanted::{MaterialVariant, Wanted};
+pub use environment::bake_named;
+pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages, tree_name};
+pub use resources::{BoundFrame, Missing, ProvideError, Resources, environment_files, read_measured};
+pub use scene::{GpuModel, UploadError};
+pub use state::parameters::{is_absent, misfits, number, unknown_names};
+pub use state::{
+    EnvironmentKey, FrameInputs, FrameState, MaterialVariant, MeasuredKey, PipelineRequest, Revisions, Scene, TargetFormat,
+};
+pub use view::{Capture, Output, PixelAt, Redraw, View};

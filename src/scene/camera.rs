@@ -12,10 +12,10 @@ const FARTHEST: f32 = 1e18;
 /// Field of view when the setting is not a number, degrees.
 const DEFAULT_FOVY_DEG: f32 = 35.0;
 
-/// A perspective view in world space: right-handed, +Y up, meters. Made by [`View::new`] or [`frame`], it is never
+/// A perspective view in world space: right-handed, +Y up, meters. Made by [`CameraView::new`] or [`frame`], it is never
 /// degenerate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct CameraView {
     /// Position.
     pub eye: Vec3,
     /// Looked-at point, apart from `eye`.
@@ -32,7 +32,7 @@ pub struct View {
     pub far: f32,
 }
 
-impl View {
+impl CameraView {
     /// A view of a model of these bounds. What is not finite or has no direction is replaced by what shows the model;
     /// the near plane is as far out as the bounds allow.
     pub fn new(eye: Vec3, target: Vec3, fovy_rad: f32, aspect: f32, bounds: &Bounds) -> Self {
@@ -87,7 +87,7 @@ impl View {
 
 /// The view that the settings ask for. Without an eye, the model's outline (or the corners of its box) is fitted into the
 /// picture, with some space around it, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
-pub fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspect: f32) -> View {
+pub fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspect: f32) -> CameraView {
     let corners = bounds.corners();
     let outline = if outline.is_empty() { &corners } else { outline };
     let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
@@ -101,7 +101,7 @@ pub fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspec
         (Some(eye), None) => (eye, bounds.center()),
         (Some(eye), Some(target)) => (eye, target),
     };
-    let mut view = View::new(eye, target, fovy_rad, aspect, bounds);
+    let mut view = CameraView::new(eye, target, fovy_rad, aspect, bounds);
     if settings.eye.is_none() {
         // Seen from right above, the azimuth still says where up is.
         let (_, _, up) = basis(number(settings.azimuth), number(settings.elevation));
@@ -179,7 +179,7 @@ mod tests {
         Bounds { min: Vec3::new(-1.0, 0.0, -0.5), max: Vec3::new(3.0, 2.0, 0.5) }
     }
 
-    fn extent(view: &View, bounds: &Bounds) -> (f32, f32) {
+    fn extent(view: &CameraView, bounds: &Bounds) -> (f32, f32) {
         let corners = bounds.corners().map(|corner| view.clip_from_world().project_point3(corner));
         assert!(corners.iter().all(|c| c.is_finite() && c.z > 0.0 && c.z <= 1.0), "{corners:?}");
         let most = |pick: fn(&Vec3) -> f32| corners.iter().map(pick).fold(0.0, f32::max);
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn clip_space_is_vulkan_reversed() {
-        let view = View::new(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, 1.0, 2.0, &cube());
+        let view = CameraView::new(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, 1.0, 2.0, &cube());
         let clip = view.clip_from_world();
         let at = |x: f32, y: f32, depth: f32| clip.project_point3(Vec3::new(x, y, 5.0 - depth));
         assert!((at(0.0, 0.0, view.near).z - 1.0).abs() < 1e-5);
@@ -238,11 +238,11 @@ mod tests {
     #[test]
     fn a_camera_of_the_model_looks_as_it_did_and_orbits_the_model() {
         let camera = |eye, forward| Camera { name: String::new(), eye, forward, up: Vec3::X, fovy: 0.7 };
-        let view = View::of_camera(&camera(Vec3::new(1.0, 1.0, 9.0), Vec3::NEG_Z), 1.5, &cube());
+        let view = CameraView::of_camera(&camera(Vec3::new(1.0, 1.0, 9.0), Vec3::NEG_Z), 1.5, &cube());
         assert_eq!((view.eye, view.target), (Vec3::new(1.0, 1.0, 9.0), Vec3::new(1.0, 1.0, 0.0)));
         assert_eq!((view.up, view.fovy_rad, view.aspect), (Vec3::X, 0.7, 1.5));
         for (eye, forward) in [(Vec3::new(1.0, 1.0, 9.0), Vec3::Z), (cube().center(), Vec3::Y)] {
-            let view = View::of_camera(&camera(eye, forward), 1.0, &cube());
+            let view = CameraView::of_camera(&camera(eye, forward), 1.0, &cube());
             assert_eq!(view.eye, eye);
             assert!(view.target.distance(eye + forward * cube().radius()) < 1e-5);
         }

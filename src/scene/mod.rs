@@ -21,7 +21,7 @@ mod pick;
 use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
-pub use camera::{View, frame};
+pub use camera::{CameraView, frame};
 pub use control::{FlyCamera, OrbitCamera};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};

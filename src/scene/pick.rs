@@ -54,7 +54,7 @@ fn reaches(places: impl Iterator<Item = Option<Vec2>>) -> bool {
 mod tests {
     use glam::Vec3;
 
-    use super::super::{BUILT_IN, Bounds, View, built_in};
+    use super::super::{BUILT_IN, Bounds, CameraView, built_in};
     use super::*;
 
     #[test]
@@ -62,7 +62,7 @@ mod tests {
         let mut model = built_in(BUILT_IN[0]).unwrap().unwrap();
         let Bounds { min, max } = model.bounds;
         let (center, radius) = ((min + max) * 0.5, model.bounds.radius());
-        let view = View::new(center + Vec3::Z * radius * 4.0, center, 0.6, 1.0, &model.bounds);
+        let view = CameraView::new(center + Vec3::Z * radius * 4.0, center, 0.6, 1.0, &model.bounds);
         let near = |model: &Model, at| near_pixel(model, view.clip_from_world(), (200, 200), at);
         assert!(near(&model, (100, 100)).contains(&true));
         assert!(!near(&model, (0, 0)).contains(&true));

@@ -71,7 +71,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let tree = source(args.options.shaders.as_deref())?;
     let (mut headless, _) = Headless::new(&gpu, &compiler()?, tree, model, settings, (SIDE, SIDE))?;
     for mode in ["n-dot-v", "final", "monte-carlo"] {
-        check_mode(&headless.pipelines().shaders, mode)?;
+        check_mode(&headless.shaders(), mode)?;
     }
     let n_dot_v = capture(&mut headless, "n-dot-v")?;
     let mut rows = Vec::new();

@@ -1,6 +1,5 @@
 //! The BRDF as it stands in the user's shaders, measured on the device: albedo, reciprocity, integral of D, lobes.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
@@ -13,11 +12,11 @@ use crate::shader::{Constant, ShaderSet};
 use crate::render::brdf::ltc;
 use crate::render::brdf::measured::measured_buffer;
 use crate::render::compute;
-use crate::render::environment::Baked;
-use crate::render::pipelines::{MEASURE_STAGES, PipelineSet};
-use crate::render::uniforms::{Constants, Sources, Uniforms};
-use crate::render::values;
-use crate::render::wanted::Wanted;
+use crate::render::environment::bake::GpuEnvironment;
+use crate::render::pipeline::{MEASURE_STAGES, PipelineSet};
+use crate::render::view::{SharedImages, Sources, Uniforms};
+use crate::render::state::parameters;
+use crate::render::state::{PipelineRequest, TargetFormat};
 
 /// What is measured. All else has glTF's defaults.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +107,7 @@ impl Claim {
 /// The author's constants in the order of their ids, each with what `settings` choose of it: a choice's name, or a
 /// number.
 pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
-    let chosen = values::constants(&settings.shader, &shaders.constants);
+    let chosen = parameters::constants(&settings.shader, &shaders.constants);
     let name = |constant: &Constant, bits: u32| {
         // Choices are whole numbers: of an int they may be negative.
         let is = |value: i64| value == i64::from(bits) || value == i64::from(bits.cast_signed());
@@ -125,43 +124,41 @@ pub fn unclaimed<'a>(claim: Claim, settings: &Settings, shaders: &'a ShaderSet) 
     choices(settings, shaders).into_iter().filter(lacks).collect()
 }
 
-/// What measurements of one shader set share, whatever is chosen.
-struct Stand {
+/// What measurements of one shader set share, whatever models are chosen.
+struct Shared {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
-    shaders: Arc<ShaderSet>,
     set: Arc<PipelineSet>,
-    environment: Baked,
+    environment: Arc<GpuEnvironment>,
     measured: Arc<Buffer>,
-    constants: Constants,
+    images: SharedImages,
 }
 
 /// Measures with the stages of one shader set and one choice of models.
 pub struct Bench {
-    stand: Arc<Stand>,
+    shared: Arc<Shared>,
     constants: Specialization,
     frame: Arc<DescriptorSet>,
 }
 
 impl Bench {
-    /// For shaders that hold [`super::all_stages`], with the author's constants and parameters as `settings` have them.
+    /// For shaders that hold [`crate::render::all_stages`], with the author's constants and parameters as `settings` have them.
     ///
     /// # Errors
     /// The device refuses a stage.
     pub fn new(gpu: &Arc<Gpu>, shaders: &Arc<ShaderSet>, settings: &Settings) -> Result<Self, GpuError> {
         let layouts = SetLayouts::new(gpu)?;
-        let set = PipelineSet::new(gpu, &layouts, shaders.clone(), &wanted(settings, shaders), None)?;
+        let set = PipelineSet::new(gpu, &layouts, shaders.clone(), &request(settings, shaders), None)?;
         let linear = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
-        let stand = Stand {
+        let shared = Shared {
             gpu: gpu.clone(),
             layouts,
-            shaders: shaders.clone(),
             set,
-            environment: Baked::uniform(gpu, [1.0; 3])?,
+            environment: GpuEnvironment::uniform(gpu, [1.0; 3])?,
             measured: measured_buffer(gpu, None)?,
-            constants: Constants { ltc: ltc::table(gpu)?, linear },
+            images: SharedImages { ltc: ltc::table(gpu)?, linear },
         };
-        Self::on(Arc::new(stand), settings)
+        Self::on(Arc::new(shared), settings)
     }
 
     /// The same shaders with other choices.
@@ -169,20 +166,20 @@ impl Bench {
     /// # Errors
     /// As [`Bench::new`].
     pub fn with(&self, settings: &Settings) -> Result<Self, GpuError> {
-        Self::on(self.stand.clone(), settings)
+        Self::on(self.shared.clone(), settings)
     }
 
-    fn on(stand: Arc<Stand>, settings: &Settings) -> Result<Self, GpuError> {
-        let wanted = wanted(settings, &stand.shaders);
-        stand.set.build(&wanted)?;
-        let tables = stand.set.tables(&wanted).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
-        let environment = stand.environment.environment.clone();
-        let sources = Sources { environment, tables, measured: stand.measured.clone() };
-        let mut uniforms = Uniforms::new(&stand.gpu)?;
-        let params = values::params(&settings.shader, &stand.shaders.parameters);
+    fn on(shared: Arc<Shared>, settings: &Settings) -> Result<Self, GpuError> {
+        let request = request(settings, &shared.set.shaders);
+        shared.set.build(&request)?;
+        let bound = shared.set.bind(&request).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
+        let environment = shared.environment.clone();
+        let sources = Sources { environment, tables: bound.tables, measured: shared.measured.clone() };
+        let mut uniforms = Uniforms::new(&shared.gpu)?;
+        let params = parameters::params(&settings.shader, &shared.set.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);
-        let frame = uniforms.set(&stand.layouts, &sources, &stand.constants)?;
-        Ok(Self { stand, constants: wanted.constants, frame })
+        let frame = uniforms.set(&shared.layouts, &sources, &shared.images)?;
+        Ok(Self { shared, constants: request.constants, frame })
     }
 
     /// Albedo (linear RGB) of each cell, row by row.
@@ -219,7 +216,7 @@ impl Bench {
     }
 
     fn run<T: Pod>(&self, stage: &str, surface: Surface, grid: Grid) -> Result<Vec<T>, GpuError> {
-        let Stand { gpu, layouts, set, .. } = &*self.stand;
+        let Shared { gpu, layouts, set, .. } = &*self.shared;
         let task = Task {
             size: [grid.columns, grid.rows],
             samples: grid.samples,
@@ -246,7 +243,6 @@ impl Bench {
     }
 }
 
-fn wanted(settings: &Settings, shaders: &ShaderSet) -> Wanted {
-    let half = vk::Format::R16G16B16A16_SFLOAT;
-    Wanted::new(settings, shaders, &BTreeSet::new(), 0, 1, half, crate::render::Renderer::OUTPUT_FORMAT)
+fn request(settings: &Settings, shaders: &ShaderSet) -> PipelineRequest {
+    PipelineRequest::new(settings, shaders, None, TargetFormat::half(1))
 }

@@ -7,7 +7,7 @@ use crate::interface::Task;
 
 use crate::render::compute;
 use crate::render::disk_cache;
-use crate::render::pipelines::PipelineSet;
+use crate::render::pipeline::PipelineSet;
 
 /// Stage that makes the DFG table.
 pub(crate) const DFG: &str = "ibl/dfg.comp";

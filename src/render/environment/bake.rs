@@ -10,7 +10,7 @@ use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
 use crate::render::compute;
 use crate::render::disk_cache;
 use crate::render::environment::passes::{IRRADIANCE_LEVEL, Passes, no_results};
-use crate::render::pipelines::PipelineSet;
+use crate::render::pipeline::PipelineSet;
 
 pub(crate) const CUBE: &str = "ibl/cube.comp";
 pub(crate) const DOWNSAMPLE: &str = "ibl/downsample.comp";
@@ -31,7 +31,7 @@ const SHEEN_SAMPLES: u32 = 256;
 const IRRADIANCE_SIDE: u32 = 32;
 const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 /// Largest half float.
-const LARGEST_HALF: f32 = 65504.0;
+pub(crate) const LARGEST_HALF: f32 = 65504.0;
 /// A peak this many times brighter than a half float holds is clipped: scaled down further, the dark parts would be lost.
 const LARGEST_RANGE: f32 = 4096.0;
 

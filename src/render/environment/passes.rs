@@ -8,7 +8,7 @@ use crate::interface::{BINDING_RESULTS, SET_TASK, Task};
 
 use crate::render::compute;
 use crate::render::environment::bake::{BAKE_STAGES, CUBE, DOWNSAMPLE, IRRADIANCE};
-use crate::render::pipelines::PipelineSet;
+use crate::render::pipeline::PipelineSet;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
 pub(crate) const IRRADIANCE_LEVEL: u32 = 5;

@@ -18,7 +18,7 @@ pub use scene::Scene;
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHTS};
 use crate::render::environment::bake::{BAKE_STAGES, LARGEST_HALF};
-use crate::scene::{self, CameraView, Model};
+use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet, Stage};
 
@@ -112,8 +112,8 @@ impl FrameState {
         let nothing = Model::default();
         let model = scene.map_or(&nothing, |scene| scene.model());
         let bounds = &model.bounds;
-        let camera = scene::frame(bounds, &model.outline, &settings.camera, size.0 as f32 / size.1 as f32);
-        let mut lights = scene::lights(&settings.lights, model, 0.0);
+        let camera = frame(bounds, &model.outline, &settings.camera, size.0 as f32 / size.1 as f32);
+        let mut lights = lights(&settings.lights, model, 0.0);
         lights.truncate(MAX_LIGHTS);
         let pipelines = PipelineRequest::new(settings, shaders, scene, target);
         let lit = settings.environment.is_lit();

@@ -13,7 +13,7 @@ type Values = BTreeMap<String, ShaderValue>;
 
 /// Specialization constants: all of them, in the order of their ids, so that equal values give equal pipelines. A value that
 /// does not fit leaves the default.
-pub(super) fn constants(values: &Values, constants: &[Constant]) -> Specialization {
+pub(crate) fn constants(values: &Values, constants: &[Constant]) -> Specialization {
     let set = |c: &Constant| values.get(&c.name).and_then(|value| constant_bits(c, value).ok());
     constants.iter().map(|c| (c.id, set(c).unwrap_or(c.default))).collect()
 }
@@ -50,7 +50,7 @@ fn constant_bits(constant: &Constant, value: &ShaderValue) -> Result<u32, String
 }
 
 /// The author's parameter block, `PARAMS_SIZE` bytes. A value that does not fit leaves the default.
-pub(super) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
+pub(crate) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
     let mut block = vec![0; PARAMS_SIZE as usize];
     for parameter in parameters {
         let numbers = parameter_numbers(parameter, values.get(&parameter.name));

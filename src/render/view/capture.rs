@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, one_shot, vk};
+use super::PixelAt;
+use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, vk};
 
 /// A frame in memory.
 #[derive(Clone, Debug)]
@@ -24,8 +25,8 @@ impl Capture {
     }
 }
 
-/// Copies that were recorded; finished after the submission's fence.
-pub(super) struct Readback {
+/// Recorded copies of a frame.
+pub struct Readback {
     picture: Arc<Buffer>,
     raw: Arc<Buffer>,
     width: u32,
@@ -58,8 +59,8 @@ impl Readback {
         Ok(this)
     }
 
-    /// Reads the buffers. SYNC: after the submission's fence.
-    pub(super) fn finish(self) -> Capture {
+    /// The captured frame. SYNC: after the fence of the submission.
+    pub fn finish(self) -> Capture {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
         let raw = floats(&self.raw.read(), self.half);
@@ -67,22 +68,36 @@ impl Readback {
     }
 }
 
-/// One pixel of an HDR image in `Use::Sampled`.
-pub(super) fn raw_at(gpu: &Arc<Gpu>, hdr: &Arc<Image>, x: u32, y: u32) -> Result<Option<[f32; 4]>, GpuError> {
-    let desc = hdr.desc();
-    if x >= desc.width || y >= desc.height {
-        return Ok(None);
+/// One pixel of each frame of a slot, copied within the frame.
+pub(super) struct PixelReadback {
+    buffer: Arc<Buffer>,
+    copied: Option<((u32, u32), bool)>,
+}
+
+impl PixelReadback {
+    pub(super) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+        let buffer = Buffer::new(gpu, "pixel readback", 16, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
+        Ok(Self { buffer, copied: None })
     }
-    let buffer = Buffer::new(gpu, "pixel", 16, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
-    one_shot(gpu, |encoder| {
-        encoder.transition(hdr, Use::Sampled, Use::CopyFrom);
-        encoder.copy_pixel(hdr, (x, y), &buffer);
-        encoder.transition(hdr, Use::CopyFrom, Use::Sampled);
-        encoder.copies_done();
-        Ok(())
-    })?;
-    let half = desc.format == vk::Format::R16G16B16A16_SFLOAT;
-    Ok(floats(&buffer.read(), half).first().copied())
+
+    /// Records the copy of a pixel of an HDR image, which is in [`Use::Sampled`] before and after.
+    pub(super) fn record(&mut self, encoder: &mut Encoder, hdr: &Arc<Image>, at: Option<(u32, u32)>) {
+        let desc = hdr.desc();
+        let at = at.filter(|(x, y)| *x < desc.width && *y < desc.height);
+        self.copied = at.map(|at| (at, desc.format == vk::Format::R16G16B16A16_SFLOAT));
+        if let Some(at) = at {
+            encoder.transition(hdr, Use::Sampled, Use::CopyFrom);
+            encoder.copy_pixel(hdr, at, &self.buffer);
+            encoder.transition(hdr, Use::CopyFrom, Use::Sampled);
+            encoder.copies_done();
+        }
+    }
+
+    /// The pixel of the last frame that recorded one. SYNC: after that frame's fence.
+    pub(super) fn read(&self) -> Option<PixelAt> {
+        let (at, half) = self.copied?;
+        floats(&self.buffer.read(), half).first().map(|value| PixelAt { at, value: *value })
+    }
 }
 
 /// RGBA pixels of half or full floats.

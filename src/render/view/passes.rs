@@ -1,200 +1,229 @@
-//! The model on its way to HDR: opaque surfaces, what light passes through, the sky, and what is blended.
+//! The passes of a frame, in the order in which they run.
+//!
+//! | pass | reads | draws to |
+//! |---|---|---|
+//! | behind | | HDR color; then copied and blurred level by level |
+//! | model | behind | HDR color: opaque, transmissive, sky, blended |
+//! | accumulate | HDR color | mean |
+//! | tone map | HDR color, or mean | the output |
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::gpu::{Attachments, Encoder, Image, Rect, SetLayouts, Use, vk};
+use super::targets::Targets;
+use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
-
-use crate::render::frame::FrameInput;
+use crate::render::resources::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
-use crate::render::targets::Targets;
-use crate::render::wanted::{MaterialVariant, PipelineKey, Wanted};
+use crate::render::state::{MaterialVariant, PipelineKey, PipelineRequest};
 
-/// Draws the scene, or `only` a part of it, to the HDR target and resolves it, which leaves color in [`Use::Color`].
-pub(super) fn draw_model(
-    encoder: &mut Encoder,
-    layouts: &Arc<SetLayouts>,
-    targets: &Targets,
-    input: &FrameInput<'_>,
-    only: Option<Rect>,
-) {
-    encoder.transition(&targets.color, Use::Undefined, Use::Color);
-    encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
-    let (color, resolve) = match &targets.multisampled {
-        Some(multisampled) => {
+/// What all passes of a frame share.
+pub(super) struct Passes<'a> {
+    pub(super) layouts: &'a Arc<SetLayouts>,
+    pub(super) targets: &'a Targets,
+    pub(super) frame: &'a BoundFrame,
+    /// The part of the picture that is shaded; all of it without.
+    pub(super) only: Option<Rect>,
+}
+
+/// Draws by the order that they need.
+#[derive(Default)]
+struct Sorted<'a> {
+    /// Opaque and masked, front to back, which saves shading.
+    opaque: Vec<&'a GpuDraw>,
+    /// Surfaces that light passes through, back to front.
+    transmissive: Vec<&'a GpuDraw>,
+    /// Alpha-blended, back to front.
+    blended: Vec<&'a GpuDraw>,
+}
+
+impl Passes<'_> {
+    /// Draws the scene to the HDR target and resolves it, which leaves color in [`Use::Color`].
+    pub(super) fn model(&self, encoder: &mut Encoder) {
+        let targets = self.targets;
+        encoder.transition(&targets.color, Use::Undefined, Use::Color);
+        encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
+        if let Some(multisampled) = &targets.multisampled {
             encoder.transition(multisampled, Use::Undefined, Use::Color);
-            (multisampled, Some(&targets.color))
         }
-        None => (&targets.color, None),
-    };
-    let (width, height) = targets.purpose.size;
-    let attachments = Attachments {
-        color,
-        clear: Some([0.0; 4]),
-        resolve,
-        depth: Some(&targets.depth),
-        goes_on: targets.behind.is_some(),
-        area: Rect { x: 0, y: 0, width, height },
-    };
-    let (opaque, passed, blended) = input.scene.map(|scene| sorted(scene, input.shot.view.eye)).unwrap_or_default();
-    if let Some(behind) = &targets.behind {
-        draw_behind(encoder, layouts, targets, input, &opaque, &attachments, behind);
-    }
-    let last = Attachments { goes_on: false, ..attachments };
-    // The mode may show opaque surfaces otherwise than they are seen through others.
-    let is_drawn = targets.behind.is_some() && !input.pipelines.is_some_and(|(_, wanted)| wanted.has_own_behind());
-    encoder.begin_rendering(&Attachments { clear: last.clear.filter(|_| !is_drawn), ..last });
-    if let Some(only) = only {
-        encoder.set_scissor(only);
-    }
-    encoder.bind_set(layouts, &targets.model_set);
-    if !is_drawn {
-        draw_primitives(encoder, layouts, input, &opaque, Wanted::model_key);
-    }
-    draw_primitives(encoder, layouts, input, &passed, Wanted::model_key);
-    if let Some((pipelines, wanted)) = input.pipelines
-        && let Some(pipeline) = wanted.sky_key().and_then(|key| pipelines.get(&key))
-    {
-        encoder.bind_pipeline(&pipeline);
-        encoder.set_raster(
-            vk::PrimitiveTopology::TRIANGLE_LIST,
-            vk::CullModeFlags::NONE,
-            vk::FrontFace::COUNTER_CLOCKWISE,
-        );
-        encoder.draw(3);
-    }
-    draw_primitives(encoder, layouts, input, &blended, Wanted::model_key);
-    encoder.end_rendering();
-}
-
-/// Draws what is opaque. Its picture, blurred level by level, is what surfaces that light passes through show of what lies
-/// behind them.
-fn draw_behind(
-    encoder: &mut Encoder,
-    layouts: &Arc<SetLayouts>,
-    targets: &Targets,
-    input: &FrameInput<'_>,
-    opaque: &[&GpuDraw],
-    attachments: &Attachments<'_>,
-    behind: &Arc<Image>,
-) {
-    encoder.transition(behind, Use::Undefined, Use::Sampled);
-    encoder.begin_rendering(attachments);
-    encoder.bind_set(layouts, &targets.model_set);
-    draw_primitives(encoder, layouts, input, opaque, Wanted::behind_key);
-    encoder.end_rendering();
-    encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
-    encoder.transition(behind, Use::Sampled, Use::CopyTo);
-    encoder.fill_levels(&targets.color, behind);
-    encoder.transition(behind, Use::CopyFrom, Use::Sampled);
-    encoder.transition(&targets.color, Use::CopyFrom, Use::Color);
-    encoder.transition(&targets.depth, Use::Depth, Use::Depth);
-    if let Some(multisampled) = &targets.multisampled {
-        encoder.transition(multisampled, Use::Color, Use::Color);
-    }
-}
-
-/// Adds the newest frame to the mean of those before it, and leaves the mean in [`Use::Sampled`].
-pub(super) fn average(
-    encoder: &mut Encoder,
-    layouts: &Arc<SetLayouts>,
-    targets: &Targets,
-    input: &FrameInput<'_>,
-    only: Option<Rect>,
-    index: u32,
-) {
-    let (Some(mean), Some((pipelines, wanted))) = (&targets.mean, input.pipelines) else { return };
-    let Some(pipeline) = wanted.average_key().and_then(|key| pipelines.get(&key)) else { return };
-    encoder.transition(mean, if index == 0 { Use::Undefined } else { Use::Sampled }, Use::Color);
-    let (width, height) = targets.purpose.size;
-    encoder.begin_rendering(&Attachments {
-        color: mean,
-        clear: (index == 0).then_some([0.0; 4]),
-        resolve: None,
-        depth: None,
-        goes_on: false,
-        area: Rect { x: 0, y: 0, width, height },
-    });
-    if let Some(only) = only {
-        encoder.set_scissor(only);
-    }
-    encoder.bind_pipeline(&pipeline);
-    encoder.set_weight(1.0 / (index as f32 + 1.0));
-    encoder.bind_set(layouts, &targets.color_set);
-    encoder.draw(3);
-    encoder.end_rendering();
-    encoder.transition(mean, Use::Color, Use::Sampled);
-}
-
-/// HDR to the picture, which the rest of the output surrounds: exposure, tone map, sRGB.
-pub(super) fn tone_map(
-    encoder: &mut Encoder,
-    layouts: &Arc<SetLayouts>,
-    targets: &Targets,
-    input: &FrameInput<'_>,
-    only: Option<Rect>,
-    output: &Attachments<'_>,
-) {
-    encoder.begin_rendering(output);
-    if let Some(pipeline) = input.pipelines.and_then(|(set, wanted)| set.get(&wanted.tonemap_key())) {
-        encoder.set_viewport(input.rect);
-        if let Some(only) = only {
+        let sorted = self.frame.scene.as_ref().map(|scene| sort(scene, self.frame.state.camera.eye)).unwrap_or_default();
+        if let Some(behind) = &targets.behind {
+            self.behind(encoder, &sorted.opaque, behind);
+        }
+        // After `behind` the opaque surfaces are there, unless this mode shows them otherwise than they are seen through
+        // transmissive ones.
+        let has_opaque = targets.behind.is_some() && !self.request().draws_opaque_twice();
+        let clear = (!has_opaque).then_some([0.0; 4]);
+        encoder.begin_rendering(&Attachments { clear, ..self.hdr() });
+        if let Some(only) = self.only {
             encoder.set_scissor(only);
         }
-        encoder.bind_pipeline(&pipeline);
-        encoder.bind_set(layouts, &targets.picture_set);
+        encoder.bind_set(self.layouts, &targets.model_set);
+        if !has_opaque {
+            self.draw(encoder, &sorted.opaque, PipelineRequest::model_key);
+        }
+        self.draw(encoder, &sorted.transmissive, PipelineRequest::model_key);
+        self.sky(encoder);
+        self.draw(encoder, &sorted.blended, PipelineRequest::model_key);
+        encoder.end_rendering();
+    }
+
+    /// Draws the opaque surfaces and copies them, blurred level by level: what transmissive surfaces show behind them.
+    fn behind(&self, encoder: &mut Encoder, opaque: &[&GpuDraw], behind: &Arc<Image>) {
+        let targets = self.targets;
+        encoder.transition(behind, Use::Undefined, Use::Sampled);
+        encoder.begin_rendering(&Attachments { goes_on: true, ..self.hdr() });
+        encoder.bind_set(self.layouts, &targets.model_set);
+        self.draw(encoder, opaque, PipelineRequest::behind_key);
+        encoder.end_rendering();
+        encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
+        encoder.transition(behind, Use::Sampled, Use::CopyTo);
+        encoder.fill_levels(&targets.color, behind);
+        encoder.transition(behind, Use::CopyFrom, Use::Sampled);
+        encoder.transition(&targets.color, Use::CopyFrom, Use::Color);
+        encoder.transition(&targets.depth, Use::Depth, Use::Depth);
+        if let Some(multisampled) = &targets.multisampled {
+            encoder.transition(multisampled, Use::Color, Use::Color);
+        }
+    }
+
+    /// Draws the environment where nothing covers it, if it is visible.
+    fn sky(&self, encoder: &mut Encoder) {
+        let Some(pipeline) = self.request().sky_key().and_then(|key| self.pipeline(&key)) else { return };
+        encoder.bind_pipeline(pipeline);
+        let (list, both, front) =
+            (vk::PrimitiveTopology::TRIANGLE_LIST, vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE);
+        encoder.set_raster(list, both, front);
         encoder.draw(3);
     }
+
+    /// Adds the newest frame to the mean of those before it, and leaves the mean in [`Use::Sampled`].
+    pub(super) fn accumulate(&self, encoder: &mut Encoder, index: u32) {
+        let Some(mean) = &self.targets.mean else { return };
+        let Some(pipeline) = self.request().average_key().and_then(|key| self.pipeline(&key)) else { return };
+        encoder.transition(mean, if index == 0 { Use::Undefined } else { Use::Sampled }, Use::Color);
+        encoder.begin_rendering(&Attachments {
+            color: mean,
+            clear: (index == 0).then_some([0.0; 4]),
+            resolve: None,
+            depth: None,
+            goes_on: false,
+            area: whole(mean),
+        });
+        if let Some(only) = self.only {
+            encoder.set_scissor(only);
+        }
+        encoder.bind_pipeline(pipeline);
+        encoder.set_weight(1.0 / (index as f32 + 1.0));
+        encoder.bind_set(self.layouts, &self.targets.color_set);
+        encoder.draw(3);
+        encoder.end_rendering();
+        encoder.transition(mean, Use::Color, Use::Sampled);
+    }
+
+    /// HDR to the picture at `rect` in `output`, which is black elsewhere.
+    pub(super) fn tone_map(&self, encoder: &mut Encoder, output: &Arc<Image>, rect: Rect) {
+        encoder.begin_rendering(&cleared(output));
+        if let Some(pipeline) = self.pipeline(&self.request().tonemap_key()) {
+            encoder.set_viewport(rect);
+            // A picture larger than its output, drawn while a smaller one is being made, is cut off.
+            encoder.set_scissor(self.only.unwrap_or(within(rect, whole(output))));
+            encoder.bind_pipeline(pipeline);
+            encoder.bind_set(self.layouts, &self.targets.picture_set);
+            encoder.draw(3);
+        }
+        encoder.end_rendering();
+    }
+
+    fn request(&self) -> &PipelineRequest {
+        &self.frame.state.pipelines
+    }
+
+    fn pipeline(&self, key: &PipelineKey) -> Option<&Arc<Pipeline>> {
+        self.frame.pipelines.get(key)
+    }
+
+    /// The HDR target, cleared.
+    fn hdr(&self) -> Attachments<'_> {
+        let targets = self.targets;
+        let (color, resolve) = match &targets.multisampled {
+            Some(multisampled) => (multisampled, Some(&targets.color)),
+            None => (&targets.color, None),
+        };
+        let area = whole(&targets.color);
+        Attachments { color, clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), goes_on: false, area }
+    }
+
+    fn draw(
+        &self,
+        encoder: &mut Encoder,
+        draws: &[&GpuDraw],
+        key: fn(&PipelineRequest, MaterialVariant) -> PipelineKey,
+    ) {
+        let Some(scene) = &self.frame.scene else { return };
+        encoder.keep(&scene.vertices);
+        encoder.bind_indices(&scene.indices);
+        for draw in draws {
+            if let Some(pipeline) = self.pipeline(&key(self.request(), draw.variant)) {
+                encoder.bind_pipeline(pipeline);
+                self.draw_one(encoder, draw);
+            }
+        }
+    }
+
+    fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
+        encoder.bind_set(self.layouts, &draw.material);
+        encoder.push(self.layouts, &draw.push);
+        // Both faces of a transparent surface are blended in order: the far one, seen from inside, first.
+        let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {
+            (true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
+            (true, _) => &[vk::CullModeFlags::NONE],
+            (false, _) => &[vk::CullModeFlags::BACK],
+        };
+        for cull in passes {
+            encoder.set_raster(draw.topology, *cull, draw.front);
+            encoder.draw_indexed(draw.index_count, draw.first_index);
+        }
+    }
+}
+
+/// Fills an image with black.
+pub(super) fn clear(encoder: &mut Encoder, output: &Arc<Image>) {
+    encoder.begin_rendering(&cleared(output));
     encoder.end_rendering();
 }
 
-fn draw_primitives(
-    encoder: &mut Encoder,
-    layouts: &Arc<SetLayouts>,
-    input: &FrameInput<'_>,
-    draws: &[&GpuDraw],
-    key: fn(&Wanted, MaterialVariant) -> PipelineKey,
-) {
-    let (Some(scene), Some((pipelines, wanted))) = (input.scene, input.pipelines) else { return };
-    encoder.keep(&scene.vertices);
-    encoder.bind_indices(&scene.indices);
-    for draw in draws {
-        if let Some(pipeline) = pipelines.get(&key(wanted, draw.variant)) {
-            encoder.bind_pipeline(&pipeline);
-            draw_primitive(encoder, layouts, scene, draw);
-        }
+fn cleared(output: &Arc<Image>) -> Attachments<'_> {
+    let clear = Some([0.0, 0.0, 0.0, 1.0]);
+    Attachments { color: output, clear, resolve: None, depth: None, goes_on: false, area: whole(output) }
+}
+
+fn whole(image: &Image) -> Rect {
+    Rect { x: 0, y: 0, width: image.desc().width, height: image.desc().height }
+}
+
+/// The part of `rect` inside `area`, which begins at 0, 0.
+fn within(rect: Rect, area: Rect) -> Rect {
+    Rect {
+        width: rect.width.min(area.width.saturating_sub(rect.x)),
+        height: rect.height.min(area.height.saturating_sub(rect.y)),
+        ..rect
     }
 }
 
-fn draw_primitive(encoder: &mut Encoder, layouts: &Arc<SetLayouts>, scene: &GpuScene, draw: &GpuDraw) {
-    encoder.bind_set(layouts, &scene.materials[draw.material]);
-    encoder.push(layouts, &draw.push);
-    // Both faces of a transparent surface are blended in order: the far one, seen from inside, first.
-    let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {
-        (true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
-        (true, _) => &[vk::CullModeFlags::NONE],
-        (false, _) => &[vk::CullModeFlags::BACK],
-    };
-    for cull in passes {
-        encoder.set_raster(draw.topology, *cull, draw.front);
-        encoder.draw_indexed(draw.index_count, draw.first_index);
-    }
-}
-
-/// Opaque and masked primitives front to back, which saves shading; those that light passes through, and blended ones, back to
-/// front, which they need.
-fn sorted(scene: &GpuScene, eye: Vec3) -> (Vec<&GpuDraw>, Vec<&GpuDraw>, Vec<&GpuDraw>) {
-    let mut sorted: Vec<_> = scene.draws.iter().collect();
-    sorted.sort_by(|a, b| a.center_ws.distance_squared(eye).total_cmp(&b.center_ws.distance_squared(eye)));
-    let (mut opaque, mut passed, mut blended) = (Vec::new(), Vec::new(), Vec::new());
-    for draw in sorted {
+fn sort(scene: &GpuScene, eye: Vec3) -> Sorted<'_> {
+    let mut by_distance: Vec<_> = scene.draws.iter().collect();
+    by_distance.sort_by(|a, b| a.center_ws.distance_squared(eye).total_cmp(&b.center_ws.distance_squared(eye)));
+    let mut sorted = Sorted::default();
+    for draw in by_distance {
         match draw.variant {
-            v if v.alpha == ALPHA_BLEND => blended.insert(0, draw),
-            v if v.features & FEATURE_TRANSMISSION != 0 => passed.insert(0, draw),
-            _ => opaque.push(draw),
+            v if v.alpha == ALPHA_BLEND => sorted.blended.push(draw),
+            v if v.features & FEATURE_TRANSMISSION != 0 => sorted.transmissive.push(draw),
+            _ => sorted.opaque.push(draw),
         }
     }
-    (opaque, passed, blended)
+    sorted.blended.reverse();
+    sorted.transmissive.reverse();
+    sorted
 }

@@ -4,40 +4,39 @@ use std::sync::Arc;
 
 use crate::gpu::{DescriptorSet, Gpu, GpuError, Image, ImageDesc, Sampler, SetLayouts, SetWriter, vk};
 use crate::interface::SET_PASS;
-
 use crate::render::scene::mips;
+use crate::render::state::TargetFormat;
 
-/// What the targets must be able to do.
+
+/// What the targets are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Purpose {
-    /// Pixels across and down.
+pub(super) struct TargetDesc {
+    /// Width and height, pixels.
     pub(super) size: (u32, u32),
-    /// Samples a pixel.
-    pub(super) samples: u32,
-    /// Format of HDR color.
-    pub(super) format: vk::Format,
-    /// Whether surfaces show what lies behind them.
+    /// HDR color and samples.
+    pub(super) format: TargetFormat,
+    /// Whether transmissive surfaces show what lies behind them.
     pub(super) transmission: bool,
-    /// Whether frames add up.
+    /// Whether the picture is the mean of frames.
     pub(super) accumulates: bool,
 }
 
-/// Targets of one purpose. Replaced as a whole; frames in flight keep the old ones.
+/// The images of one [`TargetDesc`]. Replaced as a whole; frames in flight keep the old ones.
 pub(super) struct Targets {
-    pub(super) purpose: Purpose,
+    pub(super) desc: TargetDesc,
     /// Resolved HDR color.
     pub(super) color: Arc<Image>,
     /// Multisampled color, when there is more than one sample.
     pub(super) multisampled: Option<Arc<Image>>,
     /// Depth.
     pub(super) depth: Arc<Image>,
-    /// The opaque surfaces with mip levels, for those that light passes through.
+    /// The opaque surfaces with mip levels, which transmissive surfaces read.
     pub(super) behind: Option<Arc<Image>>,
     /// Mean of the frames so far.
     pub(super) mean: Option<Arc<Image>>,
-    /// What the model's pass reads.
+    /// What the model pass reads.
     pub(super) model_set: Arc<DescriptorSet>,
-    /// What the pass that adds to the mean reads: the newest frame.
+    /// What the accumulation pass reads: the newest frame.
     pub(super) color_set: Arc<DescriptorSet>,
     /// What the tone map reads.
     pub(super) picture_set: Arc<DescriptorSet>,
@@ -47,11 +46,11 @@ impl Targets {
     pub(super) fn new(
         gpu: &Arc<Gpu>,
         layouts: &Arc<SetLayouts>,
-        purpose: Purpose,
+        desc: TargetDesc,
         (nearest, linear): (&Arc<Sampler>, &Arc<Sampler>),
     ) -> Result<Self, GpuError> {
         use vk::ImageUsageFlags as Usage;
-        let Purpose { size: (width, height), samples, format, .. } = purpose;
+        let TargetDesc { size: (width, height), format: TargetFormat { color: format, samples }, .. } = desc;
         let image = |name: &str, desc: ImageDesc| Image::new(gpu, name, desc);
         let drawn = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC;
         let multi = |format, usage| ImageDesc { samples, ..ImageDesc::new(width, height, format, usage) };
@@ -63,11 +62,11 @@ impl Targets {
         let depth = image("depth", multi(vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT))?;
         let copied = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let levels = mips::count(width, height);
-        let behind = match purpose.transmission {
+        let behind = match desc.transmission {
             true => Some(image("behind", ImageDesc { mips: levels, ..ImageDesc::new(width, height, format, copied) })?),
             false => None,
         };
-        let mean = match purpose.accumulates {
+        let mean = match desc.accumulates {
             true => Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?),
             false => None,
         };
@@ -75,7 +74,7 @@ impl Targets {
             |image: &Arc<Image>| DescriptorSet::new(layouts, SET_PASS, SetWriter::default().texture(0, image, nearest));
         let seen = behind.iter().fold(SetWriter::default(), |writer, behind| writer.texture(1, behind, linear));
         Ok(Self {
-            purpose,
+            desc,
             model_set: DescriptorSet::new(layouts, SET_PASS, seen)?,
             color_set: scene(&color)?,
             picture_set: scene(mean.as_ref().unwrap_or(&color))?,

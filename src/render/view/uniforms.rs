@@ -8,12 +8,12 @@ use crate::interface::{self, Frame, Light};
 use crate::render::brdf::tables::Tables;
 use crate::render::environment::bake::GpuEnvironment;
 
-/// What set 0 points to that outlives a frame.
+/// The resources in set 0 that change now and then.
 #[derive(Clone)]
-pub(super) struct Sources {
-    pub(super) environment: Arc<GpuEnvironment>,
-    pub(super) tables: Arc<Tables>,
-    pub(super) measured: Arc<Buffer>,
+pub(crate) struct Sources {
+    pub(crate) environment: Arc<GpuEnvironment>,
+    pub(crate) tables: Arc<Tables>,
+    pub(crate) measured: Arc<Buffer>,
 }
 
 impl Sources {
@@ -24,16 +24,16 @@ impl Sources {
     }
 }
 
-/// What set 0 points to that never changes.
-pub(super) struct Constants {
+/// The resources in set 0 that never change.
+pub(crate) struct SharedImages {
     /// Table of the rectangular lights.
-    pub(super) ltc: Arc<Image>,
+    pub(crate) ltc: Arc<Image>,
     /// Linear, clamped.
-    pub(super) linear: Arc<Sampler>,
+    pub(crate) linear: Arc<Sampler>,
 }
 
 /// Buffers and set 0 of one frame slot.
-pub(super) struct Uniforms {
+pub(crate) struct Uniforms {
     frame: Arc<Buffer>,
     lights: Arc<Buffer>,
     params: Arc<Buffer>,
@@ -41,7 +41,7 @@ pub(super) struct Uniforms {
 }
 
 impl Uniforms {
-    pub(super) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let light_bytes = (interface::MAX_LIGHTS * size_of::<Light>()) as u64;
         let frame = Buffer::new(gpu, "frame", size_of::<Frame>() as u64, uniform, Memory::Upload)?;
@@ -51,18 +51,18 @@ impl Uniforms {
     }
 
     /// Writes everything. The slot's fence has signaled.
-    pub(super) fn write(&self, frame: &Frame, lights: &[Light], params: &[u8]) {
+    pub(crate) fn write(&self, frame: &Frame, lights: &[Light], params: &[u8]) {
         self.frame.write(0, bytemuck::bytes_of(frame));
         self.lights.write(0, bytemuck::cast_slice(lights));
         self.params.write(0, params);
     }
 
     /// The set over these sources; made anew when one of them is another.
-    pub(super) fn set(
+    pub(crate) fn set(
         &mut self,
         layouts: &Arc<SetLayouts>,
         sources: &Sources,
-        constants: &Constants,
+        shared: &SharedImages,
     ) -> Result<Arc<DescriptorSet>, GpuError> {
         if let Some((_, set)) = self.set.as_ref().filter(|(made_of, _)| made_of.is_same(sources)) {
             return Ok(set.clone());
@@ -75,11 +75,11 @@ impl Uniforms {
             .texture(3, &environment.cube, &environment.sampler)
             .texture(4, &environment.prefiltered, &environment.sampler)
             .texture(5, &environment.sheen, &environment.sampler)
-            .texture(6, &environment.irradiance, &constants.linear)
-            .texture(7, &tables.dfg, &constants.linear)
-            .texture(8, &constants.ltc, &constants.linear)
+            .texture(6, &environment.irradiance, &shared.linear)
+            .texture(7, &tables.dfg, &shared.linear)
+            .texture(8, &shared.ltc, &shared.linear)
             .buffer(9, measured)
-            .texture(10, &tables.sheen_albedo, &constants.linear);
+            .texture(10, &tables.sheen_albedo, &shared.linear);
         let set = DescriptorSet::new(layouts, interface::SET_FRAME, writer)?;
         self.set = Some((sources.clone(), set.clone()));
         Ok(set)

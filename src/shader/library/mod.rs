@@ -48,7 +48,7 @@ impl Change {
 }
 
 /// Everything that one good state of the tree gives. Never changed: an edit makes a new one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ShaderSet {
     /// Counts up with every new set, from 1.
     pub generation: u64,

@@ -1,0 +1,87 @@
+//! What the user works on: settings, model, the last good shaders, diagnostics. Knows no device, so that it survives the loss of
+//! one.
+
+use std::sync::Arc;
+
+use crate::render::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat, misfits, unknown_names};
+use crate::scene::Model;
+use crate::settings::Settings;
+use crate::shader::{Diagnostic, Mode, ShaderSet};
+
+/// Settings, model and shaders, from which every [`FrameState`] is made.
+#[derive(Clone, Default)]
+pub struct Session {
+    /// What the user set.
+    pub settings: Settings,
+    /// The last good shaders; `None` before the first.
+    pub shaders: Option<Arc<ShaderSet>>,
+    /// What is wrong with the shader tree: errors of the newest edit, or warnings of the shaders in use.
+    pub diagnostics: Vec<Diagnostic>,
+    /// How often the files behind the settings have changed.
+    pub revisions: Revisions,
+    model: Option<Arc<Model>>,
+    scene: Option<Scene>,
+}
+
+impl Session {
+    /// A session without model and shaders.
+    pub fn new(settings: Settings) -> Self {
+        Self { settings, ..Self::default() }
+    }
+
+    /// The model, once there is one.
+    pub fn model(&self) -> Option<&Arc<Model>> {
+        self.model.as_ref()
+    }
+
+    /// Replaces the model.
+    pub fn set_model(&mut self, model: &Arc<Model>) {
+        self.model = Some(model.clone());
+    }
+
+    /// The debug mode of the settings as the shaders describe it; `None` if they lack it.
+    pub fn mode(&self) -> Option<&Mode> {
+        self.shaders.as_ref()?.modes.iter().find(|mode| mode.slug == self.settings.mode)
+    }
+
+    /// The model as the settings show it.
+    pub fn scene(&mut self) -> Option<&Scene> {
+        let model = self.model.as_ref()?;
+        self.scene = Some(Scene::update(self.scene.as_ref(), model, &self.settings));
+        self.scene.as_ref()
+    }
+
+    /// The pipelines that the settings need from `shaders`.
+    pub fn pipelines(&mut self, shaders: &ShaderSet, target: TargetFormat) -> PipelineRequest {
+        self.scene();
+        PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), target)
+    }
+
+    /// The picture that the settings ask for; `None` without shaders.
+    pub fn frame_state(&mut self, time_s: f32, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
+        self.scene();
+        let shaders = self.shaders.as_ref()?;
+        Some(FrameState::new(&FrameInputs {
+            settings: &self.settings,
+            shaders,
+            scene: self.scene.as_ref(),
+            revisions: self.revisions,
+            time_s,
+            size,
+            target,
+        }))
+    }
+
+    /// What in the settings does not fit the shaders or the model, one sentence each. `names`: unknown names count, too;
+    /// without, they are kept silently, because the next edit may declare them.
+    pub fn problems(&self, names: bool) -> Vec<String> {
+        let Some(shaders) = &self.shaders else { return Vec::new() };
+        let mut problems = misfits(&self.settings.shader, shaders);
+        if names {
+            problems.extend(unknown_names(&self.settings.shader, shaders));
+        }
+        let variant = self.model.as_ref().and_then(|model| model.variant(&self.settings.variant).err());
+        problems.extend(variant);
+        problems
+    }
+}
