@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use crate::gpu::{Frames, Gpu, GpuError, Image, SetLayouts, Use};
 use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
+    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError,
+    Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
 };
 use crate::scene::{self, Model};
 use crate::session::Session;
@@ -200,7 +201,7 @@ impl Headless {
     pub fn update(&mut self, change: Change) -> Reload {
         // `open` has checked that there is one.
         let target = self.target().unwrap_or(TargetFormat::full(1));
-        let session = &mut self.session;
+        let session = &self.session;
         let reload = self.reloader.update(change, |shaders| session.pipelines(shaders, target), || false);
         match &reload.outcome {
             Outcome::Ready(set) => {
@@ -278,7 +279,13 @@ impl Headless {
             let scene = Some(&part);
             let (shaders, revisions, target) = (&whole.shaders, self.session.revisions, whole.pipelines.target);
             FrameState::new(&FrameInputs {
-                settings: &settings, shaders, scene, revisions, time_s: 0.0, size: self.size, target
+                settings: &settings,
+                shaders,
+                scene,
+                revisions,
+                time_s: 0.0,
+                size: self.size,
+                target,
             })
         };
         let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
@@ -301,7 +308,7 @@ impl Headless {
     ///
     /// # Errors
     /// Settings that do not fit, or no shaders yet.
-    pub fn frame_state(&mut self) -> Result<FrameState, HeadlessError> {
+    pub fn frame_state(&self) -> Result<FrameState, HeadlessError> {
         let target = self.target()?;
         let state = self.session.frame_state(0.0, self.size, target);
         state.ok_or_else(|| HeadlessError::Shaders(self.session.diagnostics.clone()))

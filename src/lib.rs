@@ -18,7 +18,7 @@
 //! a new pipeline set ([`render::Reloader`]), which the next frame uses as a whole. An error anywhere before that yields
 //! diagnostics and changes nothing else.
 
-//pub mod app;
+pub mod app;
 pub mod comparison;
 pub mod events;
 pub mod gpu;

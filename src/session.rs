@@ -1,6 +1,7 @@
 //! What the user works on: settings, model, the last good shaders, diagnostics. Knows no device, so that it survives the loss of
 //! one.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use crate::render::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat, misfits, unknown_names};
@@ -20,7 +21,8 @@ pub struct Session {
     /// How often the files behind the settings have changed.
     pub revisions: Revisions,
     model: Option<Arc<Model>>,
-    scene: Option<Scene>,
+    /// The last scene: making one of a large model takes a while.
+    scene: RefCell<Option<Scene>>,
 }
 
 impl Session {
@@ -45,26 +47,25 @@ impl Session {
     }
 
     /// The model as the settings show it.
-    pub fn scene(&mut self) -> Option<&Scene> {
+    pub fn scene(&self) -> Option<Scene> {
         let model = self.model.as_ref()?;
-        self.scene = Some(Scene::update(self.scene.as_ref(), model, &self.settings));
-        self.scene.as_ref()
+        let mut last = self.scene.borrow_mut();
+        let scene = Scene::update(last.as_ref(), model, &self.settings);
+        *last = Some(scene.clone());
+        Some(scene)
     }
 
     /// The pipelines that the settings need from `shaders`.
-    pub fn pipelines(&mut self, shaders: &ShaderSet, target: TargetFormat) -> PipelineRequest {
-        self.scene();
-        PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), target)
+    pub fn pipelines(&self, shaders: &ShaderSet, target: TargetFormat) -> PipelineRequest {
+        PipelineRequest::new(&self.settings, shaders, self.scene().as_ref(), target)
     }
 
     /// The picture that the settings ask for; `None` without shaders.
-    pub fn frame_state(&mut self, time_s: f32, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
-        self.scene();
-        let shaders = self.shaders.as_ref()?;
+    pub fn frame_state(&self, time_s: f32, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
         Some(FrameState::new(&FrameInputs {
             settings: &self.settings,
-            shaders,
-            scene: self.scene.as_ref(),
+            shaders: self.shaders.as_ref()?,
+            scene: self.scene().as_ref(),
             revisions: self.revisions,
             time_s,
             size,

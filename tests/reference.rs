@@ -85,16 +85,16 @@ fn shown(headless: &mut Headless, slug: &str) -> Vec<DVec3> {
 
 /// The sampled pixels with what they should show.
 fn points(headless: &Headless, inputs: &Inputs, masking: Masking) -> Vec<Point> {
-    let shot = headless.shot();
-    assert!(shot.lights.len() == 3 && shot.lights.iter().all(|light| light.kind == LIGHT_POINT));
+    let state = headless.frame_state().unwrap();
+    assert!(state.lights.len() == 3 && state.lights.iter().all(|light| light.kind == LIGHT_POINT));
     let at = |pixel: usize| {
         let position = inputs.shown(pixel, "position");
-        let (surface, v) = (inputs.surface(pixel), (shot.view.eye.as_dvec3() - position).normalize());
+        let (surface, v) = (inputs.surface(pixel), (state.camera.eye.as_dvec3() - position).normalize());
         // Where a normal texture turns the surface away from the eye there is no BRDF.
         if surface.n.dot(v).min(surface.coat.n.dot(v)) < 0.02 {
             return None;
         }
-        let lobes = shot.lights.iter().fold(Lobes::default(), |sum, light| {
+        let lobes = state.lights.iter().fold(Lobes::default(), |sum, light| {
             let [x, y, z, _] = light.position_ws;
             let to_light = vector([x, y, z]) - position;
             let irradiance = vector(light.intensity) / to_light.length_squared();
@@ -140,15 +140,17 @@ fn compare(headless: &mut Headless, inputs: &Inputs, parts: &[Part], masking: Ma
 /// A built-in model.
 #[track_caller]
 fn check(name: &str, extensions: &[&'static str], parts: &[Part]) {
-    let mut headless = open(model(name));
-    let inputs = Inputs::render(&mut headless, extensions);
+    let model = model(name);
+    let mut headless = open(model.clone());
+    let inputs = Inputs::render(&mut headless, &model, extensions);
     compare(&mut headless, &inputs, parts, Masking::Separable);
 }
 
 #[test]
 fn metallic_roughness() {
-    let mut headless = open(model("sphere-grid"));
-    let inputs = Inputs::render(&mut headless, &[]);
+    let model = model("sphere-grid");
+    let mut headless = open(model.clone());
+    let inputs = Inputs::render(&mut headless, &model, &[]);
     compare(&mut headless, &inputs, &[ALL], Masking::Separable);
     compare(&mut headless, &inputs, &[ALL], Masking::HeightCorrelated);
 }
@@ -160,8 +162,9 @@ fn clearcoat() {
 
 #[test]
 fn anisotropy() {
-    let mut headless = open(model("anisotropy"));
-    let inputs = Inputs::render(&mut headless, &["anisotropy", "anisotropy-direction", "tangent", "bitangent"]);
+    let model = model("anisotropy");
+    let mut headless = open(model.clone());
+    let inputs = Inputs::render(&mut headless, &model, &["anisotropy", "anisotropy-direction", "tangent", "bitangent"]);
     compare(&mut headless, &inputs, &[ALL], Masking::Separable);
     compare(&mut headless, &inputs, &[ALL], Masking::HeightCorrelated);
     // Counterclockwise from the tangent, by up to 135 degrees.
@@ -250,8 +253,9 @@ fn every_layer_over_every_other() {
         "thickness",
         "attenuation-color",
     ];
-    let mut headless = open(load(&glb::model(&glb::sphere(48, 96), &material)));
-    let inputs = Inputs::render(&mut headless, &modes);
+    let model = load(&glb::model(&glb::sphere(48, 96), &material));
+    let mut headless = open(model.clone());
+    let inputs = Inputs::render(&mut headless, &model, &modes);
     let parts = [DIFFUSE, SPECULAR, TRANSMITTED, SHEEN, COAT, EMITTED];
     compare(&mut headless, &inputs, &parts, Masking::Separable);
 }
@@ -297,7 +301,7 @@ fn compare_glass(headless: &mut Headless, what: &str, expected: impl Fn(DVec3, D
     let mut shown = |slug: &str| render(headless, slug).raw;
     let (positions, normals, found) = (shown("position"), shown("shading-normal"), shown("transmitted-light"));
     let is_glass = shown("transmission");
-    let eye = headless.shot().view.eye.as_dvec3();
+    let eye = headless.frame_state().unwrap().camera.eye.as_dvec3();
     const HALF: f64 = 5e-4;
     let (mut least, mut most, mut count) = (f64::INFINITY, 0.0_f64, 0);
     for pixel in (0..positions.len()).filter(|i| is_glass[*i][0] == 1.0 && is_glass[*i][3] == 1.0) {
@@ -403,7 +407,7 @@ fn glass_shifts_what_is_behind_it() {
         "camera.target=[0.0, 0.0, 0.0]",
     ]);
     let mut headless = renderer(load(&glb::container(&json, &bin)), settings, SIZE);
-    let eye = headless.shot().view.eye.as_dvec3();
+    let eye = headless.frame_state().unwrap().camera.eye.as_dvec3();
     compare_glass(&mut headless, "slab", |position, n, v| {
         let seen = glass.iors().map(|ior| {
             let exit = position + glass.refracted(n, v, ior) * glass.thickness;

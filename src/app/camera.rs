@@ -1,8 +1,8 @@
-//! What the mouse and the keys do to the camera: orbit, pan and dolly around the model, or fly with the right button held.
+//! The camera controller: mouse and keys orbit, pan and dolly around the model, or fly while the right button is held.
 
 use glam::{Vec2, Vec3};
 
-use crate::scene::{self, Bounds, FlyCamera, Model, OrbitCamera, View};
+use crate::scene::{Bounds, CameraView, FlyCamera, OrbitCamera};
 use crate::settings::CameraSettings;
 
 /// Radians that the camera turns when the mouse crosses the picture's height.
@@ -10,47 +10,42 @@ const TURN_PER_HEIGHT: f32 = 3.0;
 
 /// Moves the camera that the settings describe.
 #[derive(Default)]
-pub(super) struct CameraHand {
+pub(super) struct CameraController {
     /// Keys held while flying: right, up, forward, each -1, 0 or 1.
     pub(super) fly: Vec3,
 }
 
-impl CameraHand {
-    /// The camera on screen.
-    pub(super) fn view(settings: &CameraSettings, model: &Model, aspect: f32) -> View {
-        scene::frame(&model.bounds, &model.outline, settings, aspect)
-    }
-
+impl CameraController {
     /// Drags with the left button: around the target.
-    pub(super) fn orbit(settings: &mut CameraSettings, view: &View, delta: Vec2) {
+    pub(super) fn orbit(settings: &mut CameraSettings, view: &CameraView, delta: Vec2) {
         let mut orbit = OrbitCamera::new(view.eye, view.target);
         orbit.orbit(Vec2::new(-delta.x, delta.y) * TURN_PER_HEIGHT);
         put(settings, orbit.eye(), orbit.target);
     }
 
     /// Drags with the middle button or Shift: eye and target across the view.
-    pub(super) fn pan(settings: &mut CameraSettings, view: &View, delta: Vec2) {
+    pub(super) fn pan(settings: &mut CameraSettings, view: &CameraView, delta: Vec2) {
         let mut orbit = OrbitCamera::new(view.eye, view.target);
         orbit.pan(Vec2::new(-delta.x, delta.y), view.fovy_rad);
         put(settings, orbit.eye(), orbit.target);
     }
 
     /// Turns the wheel: nearer and farther.
-    pub(super) fn dolly(settings: &mut CameraSettings, view: &View, steps: f32) {
+    pub(super) fn dolly(settings: &mut CameraSettings, view: &CameraView, steps: f32) {
         let mut orbit = OrbitCamera::new(view.eye, view.target);
         orbit.dolly(steps);
         put(settings, orbit.eye(), orbit.target);
     }
 
     /// Drags with the right button: looks around.
-    pub(super) fn look(settings: &mut CameraSettings, view: &View, delta: Vec2) {
+    pub(super) fn look(settings: &mut CameraSettings, view: &CameraView, delta: Vec2) {
         let mut fly = FlyCamera::new(view.eye, view.target);
         fly.look(Vec2::new(delta.x, -delta.y) * TURN_PER_HEIGHT * 0.5);
         put(settings, fly.eye, fly.target());
     }
 
     /// Flies for `seconds`; returns whether anything moved.
-    pub(super) fn step(&self, settings: &mut CameraSettings, view: &View, bounds: &Bounds, seconds: f32) -> bool {
+    pub(super) fn step(&self, settings: &mut CameraSettings, view: &CameraView, bounds: &Bounds, seconds: f32) -> bool {
         if self.fly == Vec3::ZERO {
             return false;
         }

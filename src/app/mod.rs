@@ -1,20 +1,17 @@
 //! The window: an editor on one half of the screen, this on the other.
 //!
-//! Four threads beside the window's own: the watcher (events only), the worker (compiles and builds pipelines), a loader for
-//! models and one that bakes environments. They send messages; only the window's thread touches what is on screen.
+//! [`viewer`] holds the session and the last complete picture, [`screen`] draws it, [`threads`] make what is missing. Panels, keys
+//! and dropped files change settings or send a [`command`].
 
 mod camera;
-mod document;
-mod environment;
+mod command;
 mod input;
-mod loader;
-mod models;
 mod panels;
-mod reloads;
 mod screen;
-mod worker;
+mod status;
+mod threads;
+mod viewer;
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -22,7 +19,7 @@ use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::{StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
@@ -31,11 +28,10 @@ use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
 
-use document::Document;
-use environment::BakeMessage;
-use loader::{Loaded, Reading};
 use screen::Screen;
-use worker::WorkerMessage;
+use threads::loader::{self, Reading};
+use threads::{Message, Outbox, watch_files};
+use viewer::Viewer;
 
 /// How to open the window.
 pub struct AppOptions {
@@ -77,23 +73,15 @@ pub enum AppError {
     Validation(usize),
 }
 
-/// What the other threads send.
-enum Message {
-    Worker(WorkerMessage),
-    Loaded(Box<Loaded>),
-    Bake(BakeMessage),
-    FilesChanged(BTreeSet<PathBuf>),
-}
-
 /// Opens the window and runs until it is closed.
 ///
 /// # Errors
 /// No display, no device, or a device that fails.
 pub fn run(options: AppOptions) -> Result<(), AppError> {
     let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
-    let proxy = event_loop.create_proxy();
-    let early = Early::begin(&options, &proxy);
-    let mut app = App { proxy, options: Some((options, early)), open: None, result: Ok(()) };
+    let outbox = Outbox::new(event_loop.create_proxy());
+    let early = Early::begin(&options, &outbox);
+    let mut app = App { outbox, options: Some((options, early)), open: None, result: Ok(()) };
     event_loop.run_app(&mut app).map_err(no_display)?;
     app.result
 }
@@ -113,10 +101,10 @@ struct Early {
 }
 
 impl Early {
-    fn begin(options: &AppOptions, proxy: &EventLoopProxy<Message>) -> Self {
+    fn begin(options: &AppOptions, outbox: &Outbox) -> Self {
         // Watched before it is read, so that no save falls between.
         let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
-        let watcher = models::watch(&files, proxy).unwrap_or_else(|message| {
+        let watcher = watch_files(&files, outbox).unwrap_or_else(|message| {
             eprintln!("specula: {message}");
             None
         });
@@ -128,7 +116,7 @@ impl Early {
 }
 
 struct App {
-    proxy: EventLoopProxy<Message>,
+    outbox: Outbox,
     options: Option<(AppOptions, Early)>,
     open: Option<Open>,
     result: Result<(), AppError>,
@@ -136,7 +124,7 @@ struct App {
 
 /// Everything behind an open window. The screen goes before the device, the window last.
 struct Open {
-    document: Document,
+    viewer: Viewer,
     screen: Screen,
     gpu: Arc<Gpu>,
     window: Arc<Window>,
@@ -157,8 +145,8 @@ impl App {
             display: Some(display.as_raw()),
         })?;
         let screen = Screen::new(&gpu, &window)?;
-        let document = Document::new(&gpu, screen.layouts(), options, early, &self.proxy)?;
-        Ok(Open { document, screen, gpu, window })
+        let viewer = Viewer::new(&gpu, screen.layouts(), options, early, &self.outbox)?;
+        Ok(Open { viewer, screen, gpu, window })
     }
 
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
@@ -169,9 +157,9 @@ impl App {
                 self.result = result;
                 return event_loop.exit();
             }
-            let Open { document, screen, gpu, window } = open;
+            let Open { viewer, screen, gpu, window } = open;
             drop(screen);
-            drop(document);
+            drop(viewer);
             drop(window);
             let messages = gpu.validation_messages().len();
             self.result = match result {
@@ -205,12 +193,7 @@ impl ApplicationHandler<Message> for App {
 
     fn user_event(&mut self, _: &ActiveEventLoop, message: Message) {
         let Some(open) = &mut self.open else { return };
-        match message {
-            Message::Worker(message) => open.document.on_worker(message),
-            Message::Bake(message) => open.document.on_bake(message),
-            Message::Loaded(loaded) => open.document.on_loaded(*loaded),
-            Message::FilesChanged(paths) => open.document.files_changed(&paths),
-        }
+        open.viewer.on_message(message);
         open.window.request_redraw();
     }
 
@@ -227,9 +210,9 @@ impl ApplicationHandler<Message> for App {
                 open.screen.resized();
                 open.window.request_redraw();
             }
-            WindowEvent::DroppedFile(path) => open.document.open_path(path),
+            WindowEvent::DroppedFile(path) => open.viewer.open_path(&path),
             WindowEvent::RedrawRequested => {
-                let drawn = open.screen.draw(&open.window, &mut open.document);
+                let drawn = open.screen.draw(&open.window, &mut open.viewer);
                 match drawn {
                     Ok(again) => event_loop.set_control_flow(match again {
                         Some(wait) if wait.is_zero() => {
@@ -243,12 +226,12 @@ impl ApplicationHandler<Message> for App {
                 }
             }
             event => {
-                if input::on_window_event(&mut open.document, &event, &open.screen, response.consumed) {
+                if input::on_window_event(&mut open.viewer, &event, &mut open.screen, response.consumed) {
                     open.window.request_redraw();
                 }
             }
         }
-        if open.document.quit {
+        if open.viewer.quit {
             self.end(event_loop, Ok(()));
         }
     }

@@ -1,5 +1,6 @@
-//! The window's surface: swapchain, renderer, egui. One call of [`Screen::draw`] is one frame on the screen.
+//! The window's surface: swapchain, egui and the view. One call of [`Screen::draw`] is one frame on the screen.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -7,35 +8,53 @@ use winit::event::WindowEvent;
 use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
+use super::camera::CameraController;
+use super::input::Mouse;
+use super::panels::{self, Readings};
+use super::viewer::Viewer;
 use crate::events::{Event, emit};
-use crate::gpu::{Buffer, Gpu, GpuError, Rect, SetLayouts, Surface, Swapchain, UiRenderer};
+use crate::gpu::{
+    Attachments, Encoder, Frames, Gpu, GpuError, Image, Rect, SetLayouts, Surface, Swapchain, UiRenderer, Use,
+};
 use crate::picture;
-use crate::render::{Drawn, FrameInput, GpuEnvironment, Renderer, Shot, Target, UiFrame};
-use crate::scene::View;
+use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
+use crate::scene::CameraView;
 
-use super::camera::CameraHand;
-use super::document::{Document, Hover, SCENE_FORMAT, Shown};
-use super::panels;
-
-/// Frames that a picture is the mean of at most: more change nothing that can be seen.
+/// While the device draws one frame, the CPU prepares the next.
+const FRAMES_IN_FLIGHT: usize = 2;
+/// Frames that an accumulating mode adds up: more change nothing that can be seen.
 const MOST_ACCUMULATED: u32 = 4096;
+/// A repaint that egui asks for later than this is none.
+const NEVER: Duration = Duration::from_secs(3600);
+
+/// The part of the window that shows the picture, pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PictureRect {
+    pub(super) at: (u32, u32),
+    pub(super) size: (u32, u32),
+}
 
 /// The screen. Fields drop in order: what draws, then what it draws to.
 pub(super) struct Screen {
     ui: UiRenderer,
-    renderer: Renderer,
+    view: View,
+    frames: Frames,
     swapchain: Option<Swapchain>,
     surface: Arc<Surface>,
     layouts: Arc<SetLayouts>,
     egui: egui::Context,
     input: egui_winit::State,
-    to_free: egui::TexturesDelta,
+    textures_to_free: egui::TexturesDelta,
+    /// Whether the swapchain no longer fits the window.
     stale: bool,
     first: bool,
-    /// Where the picture is, in pixels of the window.
-    pub(super) rect: Rect,
-    /// The camera of the last frame.
-    pub(super) view: Option<View>,
+    /// The last frame whose images could be made: it is drawn on while there is no memory for another.
+    last: Option<BoundFrame>,
+    /// The newest value under the mouse.
+    pixel: Option<PixelAt>,
+    pub(super) mouse: Mouse,
+    pub(super) camera: CameraController,
+    pub(super) rect: PictureRect,
     last_frame: Instant,
 }
 
@@ -56,18 +75,22 @@ impl Screen {
             Some(gpu.max_image_size() as usize),
         );
         Ok(Self {
-            ui: UiRenderer::new(gpu, Swapchain::FORMAT, Renderer::IN_FLIGHT)?,
-            renderer: Renderer::new(gpu, &layouts, SCENE_FORMAT)?,
+            ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
+            view: View::new(gpu, &layouts, FRAMES_IN_FLIGHT)?,
+            frames: Frames::new(gpu, FRAMES_IN_FLIGHT)?,
             swapchain: None,
             surface,
             layouts,
             egui,
             input,
-            to_free: egui::TexturesDelta::default(),
+            textures_to_free: egui::TexturesDelta::default(),
             stale: true,
             first: true,
-            rect: Rect::default(),
-            view: None,
+            last: None,
+            pixel: None,
+            mouse: Mouse::default(),
+            camera: CameraController::default(),
+            rect: PictureRect::default(),
             last_frame: Instant::now(),
         })
     }
@@ -84,120 +107,221 @@ impl Screen {
         self.stale = true;
     }
 
-    /// Draws a frame; returns when the next one is due: `None` is not before something happens.
-    pub(super) fn draw(&mut self, window: &Window, document: &mut Document) -> Result<Option<Duration>, GpuError> {
-        let size = window.inner_size();
-        if self.stale || self.swapchain.is_none() {
-            let old = self.swapchain.take();
-            let vsync = document.gpu_is_fast();
-            self.swapchain = Swapchain::new(&self.surface, (size.width, size.height), Renderer::IN_FLIGHT, vsync, old)?;
-            self.stale = false;
-        }
-        let Some(extent) = self.swapchain.as_ref().map(Swapchain::extent) else { return Ok(None) };
-
-        document.hover = self.hover(document)?;
-        document.accumulated = self.renderer.accumulated();
-
-        // The user interface, which also tells where the picture goes.
-        let input = self.input.take_egui_input(window);
-        let mut picture = egui::Rect::NOTHING;
-        let device_ms = self.renderer.device_ms();
-        let output = self.egui.run_ui(input, |ui| picture = panels::show(ui, document, device_ms));
-        self.input.handle_platform_output(window, output.platform_output);
-        self.rect = pixels(picture, output.pixels_per_point, extent);
-        self.take_textures(output.textures_delta)?;
-        let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);
-
-        // The picture behind it.
-        let aspect = self.rect.width as f32 / self.rect.height.max(1) as f32;
-        let moving = self.move_on(document, aspect);
-        let shown = document.shown();
-        let shot = shot(document, shown.as_ref(), aspect);
-        self.view = Some(shot.view);
-        let (environment, measured) = surroundings(document, shown.as_ref());
-        let frame = frame_input(&shot, shown.as_ref(), (&environment, &measured), self.rect);
-        let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
-        let ui = UiFrame { renderer: &mut self.ui, primitives: &primitives, pixels_per_point: output.pixels_per_point };
-        let begin = Instant::now();
-        match self.renderer.frame(frame, Target::Window(swapchain, ui))? {
-            Drawn::Shown { fits } => self.stale |= !fits,
-            Drawn::NoImage => self.stale = true,
-            Drawn::Captured(_) | Drawn::Finished => {}
-        }
-        if std::mem::take(&mut self.first) {
-            // SYNC: once, so that the time is that of a finished frame.
-            self.renderer.wait_for_frames()?;
-            emit(document.events, &Event::Window { ms: document.start.elapsed().as_secs_f64() * 1e3 });
-        }
-        if document.screenshot {
-            document.screenshot = false;
-            self.screenshot(document, &shot, shown.as_ref())?;
-        }
-        if document.times_next_frame() {
-            // SYNC: once a reload, so that its first frame's time is that of the finished frame.
-            self.renderer.wait_for_frames()?;
-            document.frame_done(shown.as_ref(), begin.elapsed().as_secs_f64() * 1e3);
-        }
-        // The value under the mouse belongs to the picture before this one: once more, when this one differs.
-        let hover_is_old = document.mouse.over && self.renderer.redrawn();
-        let gets_better = document.accumulates() && self.renderer.accumulated() < MOST_ACCUMULATED;
-        if self.stale || moving || hover_is_old || document.moves() || gets_better {
-            return Ok(Some(Duration::ZERO));
-        }
-        let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|v| v.repaint_delay);
-        Ok(delay.filter(|delay| *delay < Duration::from_secs(3600)))
+    /// The camera of the last frame.
+    pub(super) fn camera_view(&self) -> Option<CameraView> {
+        self.last.as_ref().map(|frame| frame.state.camera)
     }
 
-    /// The raw value under the mouse in the picture on screen.
-    fn hover(&self, document: &Document) -> Result<Option<Hover>, GpuError> {
-        let at = document.mouse.at;
-        let (x, y) = (at.x - self.rect.x as f32, at.y - self.rect.y as f32);
-        if x < 0.0 || y < 0.0 || !document.mouse.over {
+    /// Draws a frame; returns when the next one is due: `None` is not before something happens.
+    ///
+    /// # Errors
+    /// A device that is lost. Without memory the picture before stays, and the user is told.
+    pub(super) fn draw(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
+        if !self.resize(window, viewer)? {
             return Ok(None);
         }
-        let value = self.renderer.raw_at(x as u32, y as u32)?;
-        Ok(value.filter(|value| value[3] > 0.0).map(|value| Hover { x: x as u32, y: y as u32, value }))
+
+        // The user interface, which also tells where the picture goes.
+        let begin = Instant::now();
+        let (primitives, pixels_per_point, delay) = self.run_ui(window, viewer)?;
+
+        // The picture that goes there.
+        let moving = self.advance(viewer);
+        viewer.watch_files();
+        let frame = self.next_frame(viewer)?;
+        self.view.probe = self.mouse.over.then(|| self.mouse_pixel()).flatten();
+        if std::mem::take(&mut viewer.screenshot) {
+            self.screenshot(viewer, frame.as_ref())?;
+        }
+
+        // Both, to an image of the window. The first wait is for a frame slot.
+        let mut encoder = self.frames.begin()?;
+        let slot = self.frames.current();
+        let acquired = match &mut self.swapchain {
+            Some(swapchain) => swapchain.acquire()?,
+            None => None,
+        };
+        let Some(acquired) = acquired else {
+            self.frames.submit(encoder, Default::default())?;
+            self.stale = true;
+            return Ok(Some(Duration::ZERO));
+        };
+        let output = Output { image: &acquired.image, before: Use::Acquired, at: self.rect.at };
+        match &frame {
+            Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?,
+            None => View::clear(&mut encoder, &output),
+        }
+        self.draw_ui(&mut encoder, &acquired.image, pixels_per_point, &primitives)?;
+        encoder.transition(&acquired.image, Use::Color, Use::Present);
+        self.frames.submit(encoder, acquired.submission)?;
+        if let Some(swapchain) = &mut self.swapchain {
+            self.stale |= !swapchain.present(&acquired)?;
+        }
+
+        let reported = self.finished(viewer, frame.as_ref(), begin)?;
+        let gets_better = viewer.accumulates() && self.view.accumulated() < MOST_ACCUMULATED;
+        let again = self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better;
+        Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
+    }
+
+    /// Makes the swapchain anew if it does not fit the window; returns whether there is one.
+    fn resize(&mut self, window: &Window, viewer: &mut Viewer) -> Result<bool, GpuError> {
+        if self.stale || self.swapchain.is_none() {
+            let size = window.inner_size();
+            let old = self.swapchain.take();
+            let vsync = viewer.gpu_is_fast();
+            match Swapchain::new(&self.surface, (size.width, size.height), FRAMES_IN_FLIGHT, vsync, old) {
+                Ok(swapchain) => self.swapchain = swapchain,
+                // The next event tries again.
+                Err(error @ GpuError::OutOfMemory(_)) => viewer.say(error.to_string()),
+                Err(error) => return Err(error),
+            }
+            self.stale = false;
+        }
+        Ok(self.swapchain.is_some())
+    }
+
+    /// Runs the panels; returns what they draw, and when they want to be drawn again.
+    fn run_ui(
+        &mut self,
+        window: &Window,
+        viewer: &mut Viewer,
+    ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
+        self.read_pixel();
+        let readings = Readings {
+            device_ms: self.frames.last_device_ms(),
+            passes: self.frames.pass_times().to_vec(),
+            pixel: self.pixel.filter(|_| self.mouse.over),
+            title: viewer.title(self.view.accumulated()),
+        };
+        let input = self.input.take_egui_input(window);
+        let (mut picture, mut commands) = (egui::Rect::NOTHING, Vec::new());
+        let output = self.egui.run_ui(input, |ui| picture = panels::show(ui, viewer, &readings, &mut commands));
+        commands.into_iter().for_each(|command| viewer.execute(command));
+        self.input.handle_platform_output(window, output.platform_output);
+        if let Some(swapchain) = &self.swapchain {
+            self.rect = pixels(picture, output.pixels_per_point, swapchain.extent());
+        }
+        self.take_textures(output.textures_delta)?;
+        let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);
+        let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
+        Ok((primitives, output.pixels_per_point, delay))
+    }
+
+    /// Draws the user interface over an image in [`Use::Color`].
+    fn draw_ui(
+        &mut self,
+        encoder: &mut Encoder,
+        image: &Arc<Image>,
+        pixels_per_point: f32,
+        primitives: &[egui::ClippedPrimitive],
+    ) -> Result<(), GpuError> {
+        let (width, height) = (image.desc().width, image.desc().height);
+        encoder.transition(image, Use::Color, Use::Color);
+        let area = Rect { x: 0, y: 0, width, height };
+        let over = Attachments { color: image, clear: None, resolve: None, depth: None, goes_on: false, area };
+        encoder.begin_rendering(&over);
+        self.ui.draw(encoder, (width, height), pixels_per_point, primitives)?;
+        encoder.end_rendering();
+        Ok(())
     }
 
     /// Moves a flying camera and orbiting lights on; returns whether the camera moved.
-    fn move_on(&mut self, document: &mut Document, aspect: f32) -> bool {
+    fn advance(&mut self, viewer: &mut Viewer) -> bool {
         let seconds = self.last_frame.elapsed().as_secs_f32();
         self.last_frame = Instant::now();
         // A pause is no movement: the first frame after one continues where the last one was.
-        document.turn_lights(seconds.min(0.5));
-        let view = CameraHand::view(&document.settings.camera, &document.model, aspect);
-        let bounds = document.model.bounds;
-        document.hand.step(&mut document.settings.camera, &view, &bounds, seconds)
+        viewer.turn_lights(seconds.min(0.5));
+        let Some((view, model)) = self.camera_view().zip(viewer.session.model().cloned()) else { return false };
+        self.camera.step(&mut viewer.session.settings.camera, &view, &model.bounds, seconds)
     }
 
-    /// Hands egui's textures to the device. They change when a glyph or an image is new, so waiting costs nothing that shows.
+    /// The frame to draw, with images to draw it to. Without memory for these it is the frame before.
+    fn next_frame(&mut self, viewer: &mut Viewer) -> Result<Option<BoundFrame>, GpuError> {
+        let prepared = viewer.next_frame(self.rect.size).and_then(|frame| {
+            frame.iter().try_for_each(|frame| self.view.prepare(frame))?;
+            Ok(frame)
+        });
+        match prepared {
+            Ok(frame) => self.last = frame,
+            Err(error @ GpuError::OutOfMemory(_)) => viewer.notices.keep(format!("{error}. The picture before stays.")),
+            Err(error) => return Err(error),
+        }
+        Ok(self.last.clone())
+    }
+
+    /// The pixel of the picture under the mouse.
+    fn mouse_pixel(&self) -> Option<(u32, u32)> {
+        let (x, y) = (self.mouse.at.x - self.rect.at.0 as f32, self.mouse.at.y - self.rect.at.1 as f32);
+        (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32))
+    }
+
+    /// Takes the newest pixel that a finished frame has copied.
+    fn read_pixel(&mut self) {
+        let newest_first =
+            (0..FRAMES_IN_FLIGHT).map(|age| (self.frames.current() + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT);
+        let finished = newest_first.into_iter().find(|slot| self.frames.is_finished(*slot));
+        if let Some(slot) = finished {
+            self.pixel = self.view.pixel(slot);
+        }
+    }
+
+    /// Whether the value under the mouse on screen is not that of the picture on screen.
+    fn awaits_pixel(&self) -> bool {
+        self.view.probe.is_some() && (self.view.redrawn() || self.pixel.map(|pixel| pixel.at) != self.view.probe)
+    }
+
+    /// Measures and reports the first frames; returns whether there was something to report, which the panels show.
+    fn finished(&mut self, viewer: &mut Viewer, frame: Option<&BoundFrame>, begin: Instant) -> Result<bool, GpuError> {
+        if std::mem::take(&mut self.first) {
+            // SYNC: once, so that the time is that of a finished frame.
+            self.frames.wait_all()?;
+            emit(viewer.events, &Event::Window { ms: viewer.start.elapsed().as_secs_f64() * 1e3 });
+        }
+        if !viewer.times_next_frame() {
+            return Ok(false);
+        }
+        // SYNC: once for each reload, so that the time is that of a finished frame.
+        self.frames.wait_all()?;
+        viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3);
+        Ok(!viewer.times_next_frame())
+    }
+
+    /// Hands egui's textures to the device. SYNC: they change only with a new glyph or image, so waiting for the frames in flight
+    /// does not show.
     fn take_textures(&mut self, mut delta: egui::TexturesDelta) -> Result<(), GpuError> {
-        if !delta.is_empty() || !self.to_free.is_empty() {
-            self.renderer.wait_for_frames()?;
-            self.ui.free_textures(&self.to_free)?;
-            self.to_free.clear();
+        if !delta.is_empty() || !self.textures_to_free.is_empty() {
+            self.frames.wait_all()?;
+            self.ui.free_textures(&self.textures_to_free)?;
+            self.textures_to_free.clear();
             self.ui.set_textures(&delta)?;
             delta.set.clear();
-            std::mem::swap(&mut self.to_free, &mut delta);
+            std::mem::swap(&mut self.textures_to_free, &mut delta);
         }
         delta.clear();
         Ok(())
     }
 
     /// Writes the picture, without panels, to `specula-N.png` in the working directory.
-    fn screenshot(&mut self, document: &mut Document, shot: &Shot, shown: Option<&Shown>) -> Result<(), GpuError> {
-        let (environment, measured) = surroundings(document, shown);
-        let frame = frame_input(shot, shown, (&environment, &measured), Rect { x: 0, y: 0, ..self.rect });
-        if let Drawn::Captured(capture) = self.renderer.frame(frame, Target::Memory)? {
-            let free = (1..).map(|n| std::path::PathBuf::from(format!("specula-{n}.png"))).find(|p| !p.exists());
-            let path = free.unwrap_or_else(|| "specula.png".into());
-            match picture::write(&capture, &path) {
-                Ok(()) => {
-                    document.say(format!("wrote {}", path.display()));
-                    emit(document.events, &Event::Screenshot { file: &path.display().to_string() });
-                }
-                Err(message) => document.say(message),
+    fn screenshot(&mut self, viewer: &mut Viewer, frame: Option<&BoundFrame>) -> Result<(), GpuError> {
+        let Some(frame) = frame else { return Ok(()) };
+        let image = self.view.output_image(frame.state.size)?;
+        let mut encoder = self.frames.begin()?;
+        let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
+        self.view.draw(&mut encoder, self.frames.current(), frame, &output, Redraw::Always)?;
+        let readback = self.view.read_back(&mut encoder, &image)?;
+        self.frames.submit(encoder, Default::default())?;
+        // SYNC: the picture is read.
+        self.frames.wait()?;
+        let Some(capture) = readback.map(|readback| readback.finish()) else { return Ok(()) };
+        let free = (1..).map(|n| PathBuf::from(format!("specula-{n}.png"))).find(|path| !path.exists());
+        let path = free.unwrap_or_else(|| "specula.png".into());
+        match picture::write(&capture, &path) {
+            Ok(()) => {
+                viewer.say(format!("wrote {}", path.display()));
+                emit(viewer.events, &Event::Screenshot { file: &path.display().to_string() });
             }
+            Err(message) => viewer.say(message),
         }
         Ok(())
     }
@@ -205,50 +329,14 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        self.to_free.clear();
+        self.textures_to_free.clear();
     }
-}
-
-/// Camera, lights and values of a frame. The mode is the one whose pipelines are shown, and so are the kinds of light.
-fn shot(document: &Document, shown: Option<&Shown>, aspect: f32) -> Shot {
-    // A picture that does not move by itself is kept, so its time stands still.
-    let time_s = if document.moves() { document.start.elapsed().as_secs_f32() } else { 0.0 };
-    let mut settings = document.settings.clone();
-    if let Some(shown) = shown {
-        settings.mode.clone_from(&shown.mode);
-        settings.lights.source = shown.lights;
-        settings.lights.rect.enabled = shown.rect;
-    }
-    let view = CameraHand::view(&settings.camera, &document.model, aspect);
-    Shot::new(&settings, shown.map(|s| &*s.pipelines.shaders), &document.model, view, time_s)
-}
-
-/// The environment and the measured BRDF of a frame.
-fn surroundings(document: &Document, shown: Option<&Shown>) -> (Arc<GpuEnvironment>, Arc<Buffer>) {
-    match shown {
-        Some(shown) => (shown.environment.clone(), shown.measured.clone()),
-        None => (document.surroundings.baked.environment.clone(), document.surroundings.measured.clone()),
-    }
-}
-
-fn frame_input<'a>(
-    shot: &'a Shot,
-    shown: Option<&'a Shown>,
-    (environment, measured): (&'a Arc<GpuEnvironment>, &'a Arc<Buffer>),
-    rect: Rect,
-) -> FrameInput<'a> {
-    let pipelines = shown.map(|s| (&s.pipelines, &s.wanted));
-    FrameInput { shot, pipelines, scene: shown.and_then(|s| s.scene.as_ref()), environment, measured, rect }
 }
 
 /// A rectangle of egui's points as whole pixels inside the window, at least one pixel large.
-fn pixels(rect: egui::Rect, pixels_per_point: f32, (width, height): (u32, u32)) -> Rect {
+fn pixels(rect: egui::Rect, pixels_per_point: f32, (width, height): (u32, u32)) -> PictureRect {
     let pixel = |points: f32, most: u32| ((points * pixels_per_point).round().max(0.0) as u32).min(most);
     let (x, y) = (pixel(rect.min.x, width - 1), pixel(rect.min.y, height - 1));
-    Rect {
-        x,
-        y,
-        width: pixel(rect.max.x, width).saturating_sub(x).max(1),
-        height: pixel(rect.max.y, height).saturating_sub(y).max(1),
-    }
+    let right = pixel(rect.max.x, width).saturating_sub(x).max(1);
+    PictureRect { at: (x, y), size: (right, pixel(rect.max.y, height).saturating_sub(y).max(1)) }
 }

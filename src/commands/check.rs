@@ -106,12 +106,8 @@ fn build_choices(
         }
     };
     // With lights that the frame counts; those of a known number are in all others.
-    let every_material = PipelineRequest {
-        materials: all_materials,
-        target: TargetFormat::half(4),
-        light_count: 0,
-        ..plain.clone()
-    };
+    let every_material =
+        PipelineRequest { materials: all_materials, target: TargetFormat::half(4), light_count: 0, ..plain.clone() };
     build(&every_material, &tree_name(&args.common.source()?), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
         build(&plain.with_mode(mode, settings.view.tonemap), &mode.file, mode.line, format!("mode {}", mode.slug));

@@ -21,6 +21,7 @@ pub use resources::{BoundFrame, Missing, ProvideError, Resources, environment_fi
 pub use scene::{GpuModel, UploadError};
 pub use state::parameters::{is_absent, misfits, number, unknown_names};
 pub use state::{
-    EnvironmentKey, FrameInputs, FrameState, MaterialVariant, MeasuredKey, PipelineRequest, Revisions, Scene, TargetFormat,
+    EnvironmentKey, FrameInputs, FrameState, MaterialVariant, MeasuredKey, PipelineRequest, Revisions, Scene,
+    TargetFormat,
 };
 pub use view::{Capture, Output, PixelAt, Redraw, View};

@@ -33,15 +33,14 @@ fn numbered(model: &Model) -> Model {
 }
 
 impl Inputs {
-    /// Renders them. `extensions`: the modes that this model's extensions have.
-    pub fn render(headless: &mut Headless, extensions: &[&'static str]) -> Self {
-        let model = headless.model().clone();
+    /// Renders them. `model`: the one that is shown, with its pixels; `extensions`: the modes that its extensions have.
+    pub fn render(headless: &mut Headless, model: &Model, extensions: &[&'static str]) -> Self {
         let mut shown = |slug: &'static str| (slug, render(headless, slug).raw);
         let modes = COMMON.iter().chain(extensions).map(|slug| shown(slug)).collect();
-        headless.set_model(numbered(&model)).unwrap();
+        headless.set_model(numbered(model)).unwrap();
         let numbers = render(headless, "base-color").raw.iter().map(|value| value[0].round() as usize).collect();
         let materials = model.materials.clone();
-        headless.set_model(model).unwrap();
+        headless.set_model(model.clone()).unwrap();
         Self { modes, materials, numbers }
     }
 

@@ -3,31 +3,30 @@
 use egui::{RichText, Slider, Ui};
 
 use super::{QUIET, row, section};
-use crate::app::document::Document;
-use crate::scene::View;
+use crate::app::command::Command;
+use crate::scene::{CameraView, Model};
+use crate::settings::CameraSettings;
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+pub(super) fn show(ui: &mut Ui, settings: &mut CameraSettings, model: &Model, commands: &mut Vec<Command>) {
     section(ui, "Camera", false, |ui| {
         row(ui, "Field of view", "Vertical (--fovy)", |ui| {
-            ui.add(Slider::new(&mut document.settings.camera.fovy, 5.0..=120.0).suffix("°").max_decimals(0));
+            ui.add(Slider::new(&mut settings.fovy, 5.0..=120.0).suffix("°").max_decimals(0));
         });
         ui.horizontal(|ui| {
             if ui.button("Frame the model").on_hover_text("R or Home").clicked() {
-                document.frame_model();
+                commands.push(Command::FrameModel);
             }
         });
-        for camera in document.model.cameras.clone() {
+        for camera in &model.cameras {
             let name = if camera.name.is_empty() { "Camera of the model" } else { &camera.name };
             if ui.button(name).clicked() {
-                let view = View::of_camera(&camera, 1.0, &document.model.bounds);
-                let settings = &mut document.settings.camera;
+                let view = CameraView::of_camera(camera, 1.0, &model.bounds);
                 settings.eye = Some(view.eye.to_array());
                 settings.target = Some(view.target.to_array());
                 settings.fovy = view.fovy_rad.to_degrees();
             }
         }
-        let camera = &document.settings.camera;
-        if let (Some(eye), Some(target)) = (camera.eye, camera.target) {
+        if let (Some(eye), Some(target)) = (settings.eye, settings.target) {
             let list = |v: [f32; 3]| v.map(|c| format!("{c:.3}")).join(",");
             let text = format!("--eye {} --target {}", list(eye), list(target));
             let label = ui.label(RichText::new(&text).monospace().small().color(QUIET));

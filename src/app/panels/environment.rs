@@ -1,15 +1,14 @@
-//! Light from all around: which, how it is turned, and whether it is seen.
+//! The environment: which map, its rotation and intensity, and whether it is visible.
 
 use egui::{RichText, Slider, Ui};
 
 use super::{QUIET, row, section};
-use crate::app::document::Document;
+use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
+use crate::settings::Settings;
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document) {
-    let progress = document.surroundings.progress().cloned();
-    let report = document.surroundings.baked.environment.report.clone();
-    let settings = &mut document.settings;
+/// Shows the panel. `progress`: the part of a bake under way that is done, and what comes next.
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings, progress: Option<&(f32, String)>, report: &BakeReport) {
     section(ui, "Environment", true, |ui| {
         let environment = &mut settings.environment;
         row(ui, "Map", "--env; drop an .hdr or .exr file on the window", |ui| {
@@ -24,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
             );
         });
         if let Some((done, next)) = progress {
-            ui.add(egui::ProgressBar::new(done).desired_height(14.0).text(RichText::new(next).small()));
+            ui.add(egui::ProgressBar::new(*done).desired_height(14.0).text(RichText::new(next).small()));
         } else if environment.is_lit() && report.total_ms > 0.0 {
             let from = if report.cached { "from the disk" } else { "baked" };
             ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));

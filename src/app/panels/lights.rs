@@ -3,12 +3,10 @@
 use egui::{DragValue, Slider, Ui};
 
 use super::{color, row, section};
-use crate::app::document::Document;
-use crate::settings::{LightSource, RectLight};
+use crate::settings::{LightSettings, LightSource, RectLight};
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document) {
-    let in_model = document.model.lights.len();
-    let lights = &mut document.settings.lights;
+/// Shows the panel of a model with `in_model` lights of its own.
+pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
     section(ui, "Lights", true, |ui| {
         row(ui, "Source", "Which lights shine (--lights)", |ui| {
             ui.selectable_value(&mut lights.source, LightSource::Orbit, "Orbit");
@@ -32,10 +30,15 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
             for (i, light) in lights.orbit.iter_mut().enumerate() {
                 ui.push_id(i, |ui| {
                     ui.separator();
-                    row(ui, &format!("Light {}", i + 1), "Color, and irradiance at one model radius", |ui| {
-                        color(ui, &mut light.color);
-                        ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
-                    });
+                    row(
+                        ui,
+                        &format!("Light {}", i + 1),
+                        "Color, and illuminance (lux) at a distance of one model radius",
+                        |ui| {
+                            color(ui, &mut light.color);
+                            ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
+                        },
+                    );
                     row(ui, "Distance", "In radii of the model", |ui| {
                         ui.add(Slider::new(&mut light.distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
                     });

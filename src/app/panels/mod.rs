@@ -1,4 +1,5 @@
-//! The panels: modes on the left, everything that can be set on the right, messages over the picture. One file per panel.
+//! The panels: modes on the left, everything that can be set on the right, messages over the picture. One file per panel, and
+//! each gets only what it shows and sets.
 
 mod camera;
 mod environment;
@@ -9,10 +10,14 @@ mod output;
 mod overlay;
 mod parameters;
 mod shaders;
+mod timing;
 
 use egui::{Color32, FontId, Margin, TextStyle, Ui};
 
-use super::document::Document;
+use super::command::Command;
+use super::viewer::Viewer;
+use crate::gpu::PassTime;
+use crate::render::PixelAt;
 
 /// Behind the panels.
 const PANEL: Color32 = Color32::from_rgb(24, 25, 28);
@@ -42,32 +47,72 @@ pub(super) fn style(egui: &egui::Context) {
     });
 }
 
+/// What the panels remember from frame to frame.
+pub(super) struct PanelState {
+    /// Whether the panels are shown (H).
+    pub(super) visible: bool,
+    /// Whether the warnings of the model are shown over the picture.
+    pub(super) show_model_warnings: bool,
+    /// The mode that the list was last scrolled to.
+    scrolled_to: String,
+    timing: timing::Timing,
+}
+
+impl Default for PanelState {
+    fn default() -> Self {
+        Self { visible: true, show_model_warnings: true, scrolled_to: String::new(), timing: timing::Timing::default() }
+    }
+}
+
+/// What was measured about the last frames.
+pub(super) struct Readings {
+    /// Device time of the newest finished frame, milliseconds.
+    pub(super) device_ms: Option<f64>,
+    /// The same for each of its passes.
+    pub(super) passes: Vec<PassTime>,
+    /// The value under the mouse.
+    pub(super) pixel: Option<PixelAt>,
+    /// What stands over the picture.
+    pub(super) title: Option<String>,
+}
+
 /// Shows everything; returns the rectangle that is left for the picture.
-pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>) -> egui::Rect {
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> egui::Rect {
     let whole = ui.max_rect();
     let frame = egui::Frame::new().fill(PANEL).inner_margin(Margin::symmetric(8, 6));
     // On a window too narrow for both, the picture goes first.
-    if document.show_ui && whole.width() > 460.0 {
+    if viewer.panels.visible && whole.width() > 460.0 {
         if whole.width() > 760.0 {
             let panel = egui::Panel::left("modes").frame(frame).default_size(170.0).min_size(120.0).max_size(320.0);
-            panel.show(ui, |ui| modes::show(ui, document));
+            let (session, state) = (&mut viewer.session, &mut viewer.panels);
+            let mode = &mut session.settings.mode;
+            panel.show(ui, |ui| modes::show(ui, session.shaders.as_deref(), mode, &mut state.scrolled_to));
         }
         let panel = egui::Panel::right("settings").frame(frame).default_size(304.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
-            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                shaders::show(ui, document, device_ms);
-                parameters::show(ui, document);
-                environment::show(ui, document);
-                lights::show(ui, document);
-                output::show(ui, document);
-                camera::show(ui, document);
-                model::show(ui, document);
-            });
+            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| settings(ui, viewer, readings, commands));
         });
     }
     let picture = ui.available_rect_before_wrap();
-    overlay::show(ui.ctx(), document, picture);
+    overlay::show(ui.ctx(), viewer, readings, picture);
     picture
+}
+
+/// The panels on the right.
+fn settings(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) {
+    let shaders = viewer.session.shaders.clone().unwrap_or_default();
+    let model = viewer.session.model().cloned().unwrap_or_default();
+    let (session, info) = (&mut viewer.session, viewer.gpu.info());
+    let device = format!("{} · Vulkan {}", info.name, info.api);
+    shaders::show(ui, &viewer.shader, shaders.generation, &session.diagnostics, commands);
+    timing::show(ui, &mut viewer.panels.timing, readings, &device);
+    let settings = &mut session.settings;
+    parameters::show(ui, &shaders, &mut settings.shader);
+    environment::show(ui, settings, viewer.threads.baker.progress(), &viewer.resources.environment().report);
+    lights::show(ui, &mut settings.lights, model.lights.len());
+    output::show(ui, settings, commands);
+    camera::show(ui, &mut settings.camera, &model, commands);
+    model::show(ui, settings, &model, &viewer.model);
 }
 
 /// A heading that folds what is below it.

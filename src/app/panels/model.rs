@@ -3,31 +3,31 @@
 use egui::{RichText, Slider, Ui};
 
 use super::{QUIET, WARNING, color, plural, row, section};
-use crate::app::document::Document;
-use crate::settings::MaterialOverride;
+use crate::app::viewer::ModelStatus;
+use crate::scene::Model;
+use crate::settings::{MaterialOverride, Settings};
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, status: &ModelStatus) {
     section(ui, "Model", false, |ui| {
         ui.horizontal(|ui| {
-            ui.label(if document.model.name.is_empty() { "none" } else { &document.model.name });
-            if document.loading {
+            ui.label(if model.name.is_empty() { "none" } else { &model.name });
+            if status.loading {
                 ui.label("loading…");
             }
         });
-        if !document.model.variants.is_empty() {
-            let variant = &mut document.settings.variant;
+        if !model.variants.is_empty() {
+            let variant = &mut settings.variant;
             row(ui, "Variant", "The file's sets of materials", |ui| {
                 let shown = if variant.is_empty() { "as it comes" } else { variant.as_str() }.to_owned();
                 egui::ComboBox::from_id_salt("variant").selected_text(shown).show_ui(ui, |ui| {
                     ui.selectable_value(variant, String::new(), "as it comes");
-                    for name in &document.model.variants {
+                    for name in &model.variants {
                         ui.selectable_value(variant, name.clone(), name);
                     }
                 });
             });
         }
-        override_material(ui, &mut document.settings.material);
-        let model = &document.model;
+        override_material(ui, &mut settings.material);
         let triangles: usize = model.instances.iter().map(|i| model.primitives[i.primitive].indices.len() / 3).sum();
         let size = if model.bounds.is_empty() { glam::Vec3::ZERO } else { model.bounds.max - model.bounds.min };
         let timing = model.timing;
@@ -41,11 +41,11 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
             format!("{:.3} × {:.3} × {:.3} m", size.x, size.y, size.z),
             format!(
                 "loaded in {:.0} ms: parse {:.0}, decode {:.0}, tangents {:.0}",
-                document.load_ms, timing.parse_ms, timing.decode_ms, timing.tangents_ms
+                status.load_ms, timing.parse_ms, timing.decode_ms, timing.tangents_ms
             ),
         ];
         ui.label(RichText::new(lines.join("\n")).small().color(QUIET));
-        for warning in &document.model.warnings {
+        for warning in &model.warnings {
             ui.label(RichText::new(warning).small().color(WARNING));
         }
         let hint = "Drop a model (.gltf, .glb), an environment (.hdr, .exr) or a shader folder on the window.";

@@ -3,10 +3,11 @@
 use egui::{RichText, Ui};
 
 use super::QUIET;
-use crate::app::document::Document;
+use crate::shader::ShaderSet;
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document) {
-    let Some(shaders) = document.pipelines.as_ref().map(|p| p.shaders.clone()) else {
+/// Shows the list; `current` is the slug of the mode, `scrolled_to` that of the mode the list was last scrolled to.
+pub(super) fn show(ui: &mut Ui, shaders: Option<&ShaderSet>, current: &mut String, scrolled_to: &mut String) {
+    let Some(shaders) = shaders else {
         ui.label(RichText::new("Compiling shaders…").color(QUIET));
         return;
     };
@@ -18,7 +19,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
                 ui.add_space(6.0);
                 ui.label(RichText::new(group).small().color(QUIET));
             }
-            let on = document.settings.mode == mode.slug;
+            let on = *current == mode.slug;
             let digit = (index < 10).then(|| char::from_digit((index as u32 + 1) % 10, 10)).flatten();
             let hint = mode.key.into_iter().chain(digit).map(String::from).collect::<Vec<_>>().join(" ");
             let response = ui
@@ -31,12 +32,12 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
                 })
                 .inner
                 .on_hover_text(format!("{}\n\n--mode {}", mode.doc, mode.slug));
-            if on && document.shown_in_list != mode.slug {
-                document.shown_in_list.clone_from(&mode.slug);
+            if on && *scrolled_to != mode.slug {
+                scrolled_to.clone_from(&mode.slug);
                 response.scroll_to_me(None);
             }
             if response.clicked() {
-                document.settings.mode.clone_from(&mode.slug);
+                current.clone_from(&mode.slug);
             }
         }
     });

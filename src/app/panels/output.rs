@@ -4,14 +4,12 @@ use clap::ValueEnum as _;
 use egui::{Slider, Ui};
 
 use super::{row, section};
-use crate::app::document::Document;
-use crate::settings::Tonemap;
+use crate::app::command::Command;
+use crate::settings::{Settings, Tonemap};
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document) {
-    let look = document.settings.to_toml();
-    let mut copied = false;
-    let view = &mut document.settings.view;
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
     section(ui, "Output", true, |ui| {
+        let view = &mut settings.view;
         row(ui, "Exposure", "EV100: exposure is 1 / (1.2 * 2^EV) (--ev)", |ui| {
             ui.add(Slider::new(&mut view.ev, -10.0..=10.0).suffix(" EV").max_decimals(1));
         });
@@ -32,16 +30,13 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
                 view.background = format!("#{:02x}{:02x}{:02x}", srgb[0], srgb[1], srgb[2]);
             }
         });
-        if ui.button("Copy as look file").on_hover_text("All settings as TOML, for --look").clicked() {
-            ui.ctx().copy_text(look);
-            copied = true;
-        }
         row(ui, "Samples", "Multisampling", |ui| {
             ui.selectable_value(&mut view.msaa, 1, "1x");
             ui.selectable_value(&mut view.msaa, 4, "4x");
         });
+        if ui.button("Copy as look file").on_hover_text("All settings as TOML, for --look").clicked() {
+            ui.ctx().copy_text(settings.to_toml());
+            commands.push(Command::Say("copied: all settings as TOML".into()));
+        }
     });
-    if copied {
-        document.say("copied: all settings as TOML");
-    }
 }

@@ -1,57 +1,93 @@
 //! What lies over the picture: diagnostics with their source line, a message for a while, and what is being loaded.
 
-use std::time::Duration;
+use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichText, Stroke, Ui};
 
-use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichText, Stroke};
-
-use super::{ERROR, QUIET, WARNING, plural};
-use crate::app::document::Document;
+use super::{ERROR, QUIET, Readings, WARNING, plural};
+use crate::app::viewer::Viewer;
 use crate::render::is_absent;
 use crate::shader::{Diagnostic, Severity};
 
-const NOTICE: Duration = Duration::from_secs(6);
+/// More warnings of a model than these are counted only.
+const MODEL_WARNINGS: usize = 4;
 
-pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui::Rect) {
-    if !document.diagnostics.is_empty() && diagnostics(egui, &document.diagnostics, picture) {
-        document.diagnostics.clear();
+pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: egui::Rect) {
+    if !viewer.session.diagnostics.is_empty() && diagnostics(egui, &viewer.session.diagnostics, picture) {
+        viewer.session.diagnostics.clear();
     }
-    let loading = document.loading.then(|| "Loading the model…".to_owned());
-    // Without a model the reason stays; anything else is said for a while.
-    let stays = document.model.instances.is_empty() && !document.loading;
-    let notice = document.notice.as_ref().filter(|(_, since)| stays || since.elapsed() < NOTICE);
-    if let Some((_, since)) = notice.filter(|_| !stays) {
-        egui.request_repaint_after(NOTICE.saturating_sub(since.elapsed()));
+    warnings(egui, viewer, picture);
+    notice(egui, viewer, picture);
+    if viewer.panels.visible {
+        label(egui, readings, picture);
     }
-    let text = notice.map(|(text, _)| text.clone()).or(loading);
-    if let Some(text) = text {
-        area(Id::new("notice"), Align2::CENTER_BOTTOM, picture).show(egui, |ui| {
-            card(Color32::from_gray(90)).show(ui, |ui| {
-                ui.set_max_width((picture.width() - 60.0).clamp(200.0, 560.0));
-                ui.add(egui::Label::new(text).wrap_mode(if picture.width() > 500.0 {
-                    egui::TextWrapMode::Wrap
-                } else {
-                    egui::TextWrapMode::Truncate
-                }));
-            });
+}
+
+/// What went wrong for good, and what the model's loader tolerated, until it is dismissed.
+fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: egui::Rect) {
+    let model = viewer.session.model().filter(|_| viewer.panels.show_model_warnings);
+    let of_model: &[String] = model.map_or(&[], |model| &model.warnings);
+    let mut lines: Vec<String> = viewer.notices.kept().to_vec();
+    lines.extend(of_model.iter().take(MODEL_WARNINGS).cloned());
+    if of_model.len() > MODEL_WARNINGS {
+        lines.push(format!("and {} more in the panel Model", of_model.len() - MODEL_WARNINGS));
+    }
+    if lines.is_empty() {
+        return;
+    }
+    let mut hide = false;
+    // An area keeps its first size, so other messages or another picture are another area.
+    let id = Id::new(("warnings", &lines, picture.width() as u32));
+    area(id, Align2::RIGHT_TOP, picture).fade_in(false).show(egui, |ui| {
+        card(WARNING).show(ui, |ui| {
+            ui.set_max_width((picture.width() * 0.5).clamp(200.0, 420.0));
+            for line in &lines {
+                ui.label(RichText::new(line).small());
+            }
+            hide = ui.small_button("Hide").clicked();
         });
+    });
+    if hide {
+        viewer.notices.dismiss();
+        viewer.panels.show_model_warnings = false;
     }
-    if document.show_ui {
-        let title = document.title();
-        let value = document.hover.map(|hover| {
-            let [r, g, b, _] = hover.value.map(number);
-            let numbers = if is_absent(hover.value) { "none".into() } else { format!("{r} {g} {b}") };
-            format!("{numbers}   at {}, {}", hover.x, hover.y)
+}
+
+/// A message for a few seconds, or what is being loaded.
+fn notice(egui: &egui::Context, viewer: &Viewer, picture: egui::Rect) {
+    let has_model = viewer.session.model().is_some_and(|model| !model.instances.is_empty());
+    // Without a model the reason stays.
+    let stays = !has_model && !viewer.model.loading;
+    let notice = viewer.notices.passing(stays);
+    if let Some((_, left)) = notice.filter(|_| !stays) {
+        egui.request_repaint_after(left);
+    }
+    let loading = viewer.model.loading.then_some("Loading the model…");
+    let Some(text) = notice.map(|(text, _)| text).or(loading) else { return };
+    area(Id::new("notice"), Align2::CENTER_BOTTOM, picture).show(egui, |ui| {
+        card(Color32::from_gray(90)).show(ui, |ui| {
+            ui.set_max_width((picture.width() - 60.0).clamp(200.0, 560.0));
+            let wrap = if picture.width() > 500.0 { egui::TextWrapMode::Wrap } else { egui::TextWrapMode::Truncate };
+            ui.add(egui::Label::new(text).wrap_mode(wrap));
         });
-        if title.is_some() || value.is_some() {
-            area(Id::new("mode"), Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
-                card(Color32::from_gray(60)).show(ui, |ui| {
-                    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-                    title.map(|title| ui.label(RichText::new(title).strong()));
-                    value.map(|value| ui.label(RichText::new(value).monospace()));
-                });
-            });
-        }
+    });
+}
+
+/// The mode of the picture, and the value under the mouse.
+fn label(egui: &egui::Context, readings: &Readings, picture: egui::Rect) {
+    let value = readings.pixel.filter(|pixel| pixel.value[3] > 0.0).map(|pixel| {
+        let [r, g, b, _] = pixel.value.map(number);
+        let numbers = if is_absent(pixel.value) { "none".into() } else { format!("{r} {g} {b}") };
+        format!("{numbers}   at {}, {}", pixel.at.0, pixel.at.1)
+    });
+    if readings.title.is_none() && value.is_none() {
+        return;
     }
+    area(Id::new("mode"), Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
+        card(Color32::from_gray(60)).show(ui, |ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            readings.title.iter().for_each(|title| drop(ui.label(RichText::new(title).strong())));
+            value.iter().for_each(|value| drop(ui.label(RichText::new(value).monospace())));
+        });
+    });
 }
 
 /// Shows them; returns whether the user wants them away, which only warnings offer.
@@ -91,7 +127,7 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-fn one(ui: &mut egui::Ui, diagnostic: &Diagnostic) {
+fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
     let color = if diagnostic.severity == Severity::Error { ERROR } else { WARNING };
     let place = match diagnostic.line {
         Some(line) => format!("{}:{line}", diagnostic.file),

@@ -1,37 +1,38 @@
 //! The author's own constants and parameters: a control for each `//@ui`. Values are kept by name across reloads.
 
+use std::collections::BTreeMap;
+
 use egui::{Slider, Ui};
 
 use super::{color, row, section};
-use crate::app::document::Document;
 use crate::render::number;
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
-use crate::shader::{Constant, Parameter};
+use crate::shader::{Constant, Parameter, ShaderSet};
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document) {
-    let Some(shaders) = document.pipelines.as_ref().map(|p| p.shaders.clone()) else { return };
+/// Shows the panel; `values` are those that are set, by name.
+pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<String, ShaderValue>) {
     if shaders.constants.is_empty() && shaders.parameters.is_empty() {
         return;
     }
     section(ui, "Parameters", true, |ui| {
         for parameter in &shaders.parameters {
-            let value = document.settings.shader.get(&parameter.name);
+            let value = values.get(&parameter.name);
             if let Some(new) = row(ui, &parameter.label, &parameter.name, |ui| edit_parameter(ui, parameter, value)) {
-                document.settings.shader.insert(parameter.name.clone(), new);
+                values.insert(parameter.name.clone(), new);
             }
         }
         for constant in &shaders.constants {
-            let value = document.settings.shader.get(&constant.name);
+            let value = values.get(&constant.name);
             if let Some(new) = row(ui, &constant.label, &constant.name, |ui| edit_constant(ui, constant, value)) {
-                document.settings.shader.insert(constant.name.clone(), new);
+                values.insert(constant.name.clone(), new);
             }
         }
-        let set = !document.settings.shader.is_empty();
+        let set = !values.is_empty();
         let button = ui.add_enabled(set, egui::Button::new("Defaults"));
         if button.on_hover_text("All parameters above as the shader files say; no other setting changes").clicked() {
-            document.settings.shader.clear();
+            values.clear();
         }
     });
 }

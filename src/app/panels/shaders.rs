@@ -1,47 +1,69 @@
-//! The state of the shader tree: what was rebuilt last, and how long each step took.
+//! The state of the shader tree: what was rebuilt last, and how long each step took. Always as high, so that what is below it
+//! stays where it is when an error comes or goes.
 
-use egui::{RichText, Ui};
+use egui::{Label, RichText, Ui};
 
-use super::{ERROR, QUIET, section};
-use crate::app::document::Document;
+use super::{ERROR, QUIET, plural, section};
+use crate::app::command::Command;
+use crate::app::status::ShaderStatus;
+use crate::events::ReloadEvent;
+use crate::shader::{Diagnostic, Severity};
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document, device_ms: Option<f64>) {
+/// Shows the panel of shaders of this generation (0: none yet).
+pub(super) fn show(
+    ui: &mut Ui,
+    status: &ShaderStatus,
+    generation: u64,
+    diagnostics: &[Diagnostic],
+    commands: &mut Vec<Command>,
+) {
     section(ui, "Shaders", true, |ui| {
         ui.horizontal(|ui| {
-            let errors = document.diagnostics.iter().filter(|d| d.severity == crate::shader::Severity::Error).count();
-            match (document.shader.compiling, errors, document.shaders()) {
+            let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
+            match (status.compiling, errors) {
                 // No spinner: on a software device its frames would slow down what they wait for.
-                (true, ..) => ui.label("Compiling…"),
-                (_, 0, Some(shaders)) => ui.label(format!("Generation {}", shaders.generation)),
-                (_, 0, None) => ui.label("No shaders yet"),
-                (_, 1, _) => ui.colored_label(ERROR, "1 error; showing the last good"),
-                (_, n, _) => ui.colored_label(ERROR, format!("{n} errors; showing the last good")),
+                (true, _) => ui.label("Compiling…"),
+                (_, 0) if generation == 0 => ui.label("No shaders yet"),
+                (_, 0) => ui.label(format!("Generation {generation}")),
+                (_, errors) => ui.colored_label(ERROR, format!("{}; showing the last good", plural(errors, "error"))),
             };
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("Reload").on_hover_text("Compile everything again (F5)").clicked() {
-                    document.reload();
+                    commands.push(Command::Reload);
                 }
             });
         });
-        ui.label(RichText::new(&document.shader.tree).small().color(QUIET));
-        if let Some(last) = &document.shader.last {
-            let changed = if last.changed.is_empty() { "start".into() } else { last.changed.join(" ") };
-            let names: Vec<&str> = changed.split(' ').map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
-            let stages = if last.stages.is_empty() { "nothing to do".into() } else { last.stages.join(" ") };
-            let times = match last.ok {
-                true => format!(
-                    "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
-                    last.compile_ms, last.pipeline_ms, last.first_frame_ms
-                ),
-                false => format!("failed after {:.0} ms", last.compile_ms),
-            };
-            let text = format!("{} -> {stages}\n{times}", names.join(" "));
-            ui.label(RichText::new(text).monospace().small()).on_hover_text(format!(
-                "{changed}\nSeen {:.1} ms after the first file event. The frame is the first with the new shaders.",
-                last.detect_ms
-            ));
+        ui.add(Label::new(RichText::new(&status.tree).small().color(QUIET)).truncate()).on_hover_text(&status.tree);
+        let (edit, times, hover) = status.last.as_ref().map(lines).unwrap_or_default();
+        for line in [edit, times] {
+            // A line without text is as high as one with.
+            let text = if line.is_empty() { " ".to_owned() } else { line };
+            let response = ui.add(Label::new(RichText::new(text).monospace().small()).truncate());
+            if !hover.is_empty() {
+                response.on_hover_text(&hover);
+            }
         }
-        let frame = device_ms.map(|ms| format!("Last frame {ms:.1} ms, ")).unwrap_or_default();
-        ui.label(RichText::new(format!("{frame}{}", document.device())).small().color(QUIET));
     });
+}
+
+/// What changed and was compiled, what each step took, and all of it at length.
+fn lines(last: &ReloadEvent) -> (String, String, String) {
+    let name = |path: &String| path.rsplit('/').next().unwrap_or(path).to_owned();
+    let changed =
+        if last.changed.is_empty() { vec!["start".to_owned()] } else { last.changed.iter().map(name).collect() };
+    let stages = if last.stages.is_empty() { "nothing to do".to_owned() } else { last.stages.join(" ") };
+    let edit = format!("{} -> {stages}", changed.join(" "));
+    let times = match last.ok {
+        true => format!(
+            "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
+            last.compile_ms, last.pipeline_ms, last.first_frame_ms
+        ),
+        false => format!("failed after {:.0} ms", last.compile_ms),
+    };
+    let hover = format!(
+        "{}\n-> {stages}\n{times}\nSeen {:.1} ms after the first file event. The frame is the first with the new shaders.",
+        if last.changed.is_empty() { "start".to_owned() } else { last.changed.join("\n") },
+        last.detect_ms
+    );
+    (edit, times, hover)
 }

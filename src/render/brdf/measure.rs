@@ -14,9 +14,9 @@ use crate::render::brdf::measured::measured_buffer;
 use crate::render::compute;
 use crate::render::environment::bake::GpuEnvironment;
 use crate::render::pipeline::{MEASURE_STAGES, PipelineSet};
-use crate::render::view::{SharedImages, Sources, Uniforms};
 use crate::render::state::parameters;
 use crate::render::state::{PipelineRequest, TargetFormat};
+use crate::render::view::{SharedImages, Sources, Uniforms};
 
 /// What is measured. All else has glTF's defaults.
 #[derive(Clone, Copy, Debug)]

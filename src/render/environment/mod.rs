@@ -13,10 +13,6 @@ use bake::{BakeControl, BakeError, GpuEnvironment};
 ///
 /// # Errors
 /// As [`GpuEnvironment::bake`].
-pub fn bake_named(
-    set: &PipelineSet,
-    name: &str,
-    control: &BakeControl<'_>,
-) -> Result<Arc<GpuEnvironment>, BakeError> {
+pub fn bake_named(set: &PipelineSet, name: &str, control: &BakeControl<'_>) -> Result<Arc<GpuEnvironment>, BakeError> {
     GpuEnvironment::bake(set, &EnvironmentFile::open(name)?, control)
 }

@@ -67,8 +67,7 @@ impl Scene {
         material_override: Option<MaterialOverride>,
         visible: Option<Arc<[bool]>>,
     ) -> Self {
-        let mut scene =
-            Self { model: model.clone(), variant, material_override, visible, materials: Arc::default() };
+        let mut scene = Self { model: model.clone(), variant, material_override, visible, materials: Arc::default() };
         let replacement = scene.replacement();
         let drawn = scene.instances().map(|instance| scene.appearance(instance, replacement.as_ref()).variant);
         scene.materials = Arc::new(drawn.collect());

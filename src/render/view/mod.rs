@@ -17,7 +17,9 @@ use super::brdf::ltc;
 use super::compute;
 use super::resources::BoundFrame;
 use super::state::TargetFormat;
-use crate::gpu::{Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk};
+use crate::gpu::{
+    Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
+};
 
 /// Where a view puts its picture.
 pub struct Output<'a> {

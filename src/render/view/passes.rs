@@ -47,7 +47,8 @@ impl Passes<'_> {
         if let Some(multisampled) = &targets.multisampled {
             encoder.transition(multisampled, Use::Undefined, Use::Color);
         }
-        let sorted = self.frame.scene.as_ref().map(|scene| sort(scene, self.frame.state.camera.eye)).unwrap_or_default();
+        let sorted =
+            self.frame.scene.as_ref().map(|scene| sort(scene, self.frame.state.camera.eye)).unwrap_or_default();
         if let Some(behind) = &targets.behind {
             self.behind(encoder, &sorted.opaque, behind);
         }

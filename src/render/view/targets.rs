@@ -7,7 +7,6 @@ use crate::interface::SET_PASS;
 use crate::render::scene::mips;
 use crate::render::state::TargetFormat;
 
-
 /// What the targets are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TargetDesc {

@@ -1,0 +1,36 @@
+//! Device time of the last frame, pass by pass.
+
+use egui::{RichText, Ui};
+
+use super::{QUIET, Readings, section};
+
+/// The newest time of every pass that was ever drawn, so that rows do not come and go.
+#[derive(Default)]
+pub(super) struct Timing {
+    passes: Vec<(String, f64)>,
+}
+
+pub(super) fn show(ui: &mut Ui, timing: &mut Timing, readings: &Readings, device: &str) {
+    for pass in &readings.passes {
+        match timing.passes.iter_mut().find(|(name, _)| *name == pass.name) {
+            Some((_, ms)) => *ms = pass.ms,
+            None => timing.passes.push((pass.name.to_string(), pass.ms)),
+        }
+    }
+    section(ui, "GPU time", false, |ui| {
+        ui.label(RichText::new(device).small().color(QUIET));
+        egui::Grid::new("passes").num_columns(2).show(ui, |ui| {
+            for (name, ms) in &timing.passes {
+                ui.label(name);
+                ui.label(RichText::new(format!("{ms:>8.2} ms")).monospace());
+                ui.end_row();
+            }
+            if let Some(ms) = readings.device_ms {
+                ui.label("last frame")
+                    .on_hover_text("A frame in which only the panels change keeps the model's picture");
+                ui.label(RichText::new(format!("{ms:>8.2} ms")).monospace());
+                ui.end_row();
+            }
+        });
+    });
+}

@@ -1,0 +1,71 @@
+//! What the panels show and nobody sets.
+
+use std::time::{Duration, Instant};
+
+use crate::events::ReloadEvent;
+use crate::shader::Mode;
+
+/// How long a message is shown.
+const NOTICE: Duration = Duration::from_secs(6);
+
+/// The state of the shader tree.
+#[derive(Default)]
+pub(super) struct ShaderStatus {
+    /// Folder, or the built-in tree.
+    pub(super) tree: String,
+    /// Whether a compile is under way.
+    pub(super) compiling: bool,
+    /// The last finished reload.
+    pub(super) last: Option<ReloadEvent>,
+}
+
+/// Messages over the picture.
+#[derive(Default)]
+pub(super) struct Notices {
+    /// Shown for a few seconds, with its time.
+    passing: Option<(String, Instant)>,
+    /// Shown until it is dismissed.
+    kept: Vec<String>,
+}
+
+impl Notices {
+    /// Shows a message for a few seconds.
+    pub(super) fn say(&mut self, text: String) {
+        self.passing = Some((text, Instant::now()));
+    }
+
+    /// Shows a message until it is dismissed.
+    pub(super) fn keep(&mut self, text: String) {
+        if !self.kept.contains(&text) {
+            self.kept.push(text);
+        }
+    }
+
+    /// The last message, and how long it is still shown; without end if it `stays`.
+    pub(super) fn passing(&self, stays: bool) -> Option<(&str, Duration)> {
+        let (text, since) = self.passing.as_ref()?;
+        let left = if stays { Duration::MAX } else { NOTICE.saturating_sub(since.elapsed()) };
+        (!left.is_zero()).then_some((text, left))
+    }
+
+    /// The messages that stay.
+    pub(super) fn kept(&self) -> &[String] {
+        &self.kept
+    }
+
+    /// Takes the messages that stay away.
+    pub(super) fn dismiss(&mut self) {
+        self.kept.clear();
+    }
+}
+
+/// The title over the picture: its mode, and the one that is being built. The plain final picture needs no title. `frames` is
+/// how many frames an accumulating mode has added up.
+pub(super) fn title(shown: &Mode, set: Option<&Mode>, frames: Option<u32>) -> Option<String> {
+    match (set.filter(|set| set.slug != shown.slug), frames) {
+        (Some(next), _) => Some(format!("{}  ➡  {} …", shown.name, next.name)),
+        (None, Some(1)) => Some(format!("{}   1 frame", shown.name)),
+        (None, Some(frames)) => Some(format!("{}   mean of {frames} frames", shown.name)),
+        (None, None) => Some(shown.name.clone()).filter(|_| shown.slug != "final"),
+    }
+}

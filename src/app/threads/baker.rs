@@ -1,0 +1,122 @@
+//! The baker makes what files behind the settings hold: environments, pass by pass, and measured BRDFs. One thread for each; the
+//! window draws with the one before meanwhile, and the newest wins.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread::JoinHandle;
+
+use super::{Message, Outbox};
+use crate::gpu::{Buffer, Gpu};
+use crate::render::{
+    BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, bake_named, read_measured,
+};
+
+/// What the baker sends.
+pub(in crate::app) enum BakeMessage {
+    /// Number of the bake, the part that is done, 0..1, and what comes next.
+    Progress(u64, f32, String),
+    /// The result of a bake.
+    Environment(u64, EnvironmentKey, Result<Arc<GpuEnvironment>, BakeError>),
+    /// A measured BRDF.
+    Measured(MeasuredKey, Result<Arc<Buffer>, String>),
+}
+
+/// A bake under way.
+struct Bake {
+    key: EnvironmentKey,
+    progress: (f32, String),
+}
+
+/// Starts bakes, and calls off those that are no longer wanted.
+pub(in crate::app) struct Baker {
+    gpu: Arc<Gpu>,
+    outbox: Outbox,
+    bake: Option<Bake>,
+    reading: Option<MeasuredKey>,
+    /// Number of the newest bake; an older one gives up between two passes.
+    newest: Arc<AtomicU64>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Baker {
+    pub(super) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
+        let (newest, threads) = Default::default();
+        Self { gpu: gpu.clone(), outbox: outbox.clone(), bake: None, reading: None, newest, threads }
+    }
+
+    /// The part of the bake under way that is done, and what comes next.
+    pub(in crate::app) fn progress(&self) -> Option<&(f32, String)> {
+        self.bake.as_ref().map(|bake| &bake.progress)
+    }
+
+    /// Bakes `key` with `set`, and nothing else; `None` calls off what is under way.
+    pub(in crate::app) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>) {
+        if self.bake.as_ref().map(|bake| &bake.key) == key.as_ref() {
+            return;
+        }
+        let number = self.newest.fetch_add(1, Ordering::SeqCst) + 1;
+        self.bake = None;
+        let Some(key) = key else { return };
+        self.bake = Some(Bake { key: key.clone(), progress: (0.0, String::new()) });
+        let (set, newest) = (set.clone(), self.newest.clone());
+        self.spawn(move |outbox| {
+            let progress = |done: f32, next: &str| {
+                outbox.send(Message::Bake(BakeMessage::Progress(number, done, next.to_owned())));
+            };
+            let superseded = || newest.load(Ordering::SeqCst) != number;
+            let control = BakeControl { progress: &progress, superseded: &superseded, from_disk: true };
+            let result = bake_named(&set, &key.name, &control);
+            // The window may hold the last pipelines that need this set.
+            drop(set);
+            outbox.send(Message::Bake(BakeMessage::Environment(number, key, result)));
+        });
+    }
+
+    /// Reads a measured BRDF, unless that is under way.
+    pub(in crate::app) fn read(&mut self, key: Option<MeasuredKey>) {
+        let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
+        self.reading = Some(key.clone());
+        let gpu = self.gpu.clone();
+        self.spawn(move |outbox| {
+            let result = read_measured(&gpu, &key).map_err(|error| error.to_string());
+            drop(gpu);
+            outbox.send(Message::Bake(BakeMessage::Measured(key, result)));
+        });
+    }
+
+    /// Notes how far a bake is; returns whether it is the newest.
+    pub(in crate::app) fn set_progress(&mut self, number: u64, done: f32, next: String) -> bool {
+        let is_newest = self.newest.load(Ordering::SeqCst) == number;
+        if let Some(bake) = self.bake.as_mut().filter(|_| is_newest) {
+            bake.progress = (done, next);
+        }
+        is_newest
+    }
+
+    /// Notes that a bake has ended; returns whether it is the newest.
+    pub(in crate::app) fn ended(&mut self, number: u64) -> bool {
+        let is_newest = self.newest.load(Ordering::SeqCst) == number;
+        self.bake = self.bake.take().filter(|_| !is_newest);
+        is_newest
+    }
+
+    /// Gives up the bake under way after a panic; returns its key.
+    pub(in crate::app) fn abandon(&mut self) -> Option<EnvironmentKey> {
+        self.newest.fetch_add(1, Ordering::SeqCst);
+        self.bake.take().map(|bake| bake.key)
+    }
+
+    fn spawn(&mut self, body: impl FnOnce(&Outbox) + Send + 'static) {
+        self.threads.retain(|thread| !thread.is_finished());
+        self.threads.push(self.outbox.spawn("baker", body));
+    }
+}
+
+impl Drop for Baker {
+    fn drop(&mut self) {
+        self.newest.fetch_add(1, Ordering::SeqCst);
+        for thread in self.threads.drain(..) {
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The loader parses and decodes a model, then uploads it, on one thread for each model. The old model stays on screen meanwhile;
+//! the newest wins.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Weak};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use super::{DeviceGate, Message, Outbox, panic_text};
+use crate::gpu::{Gpu, SetLayouts};
+use crate::render::GpuModel;
+use crate::scene::{self, LoadError, LoadOptions, Model};
+
+/// A finished load.
+pub(in crate::app) struct Loaded {
+    /// Number of the load, as [`Loader::newest`] counts them.
+    pub(in crate::app) number: u64,
+    /// The file; `None` is the built-in model.
+    pub(in crate::app) path: Option<PathBuf>,
+    /// The model on the device, or why not and the files that were tried.
+    pub(in crate::app) result: Result<Arc<GpuModel>, (String, Vec<PathBuf>)>,
+    /// Duration in milliseconds.
+    pub(in crate::app) ms: f64,
+}
+
+/// A model that is being read. Needs no device, so the first one is begun before there is a window.
+pub(in crate::app) struct Reading {
+    path: Option<PathBuf>,
+    start: Instant,
+    model: JoinHandle<Result<Model, LoadError>>,
+}
+
+/// Begins to read a model: parse, decode, tangents.
+pub(in crate::app) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
+    let file = path.clone();
+    let model = std::thread::spawn(move || scene::open(file.as_deref(), &options));
+    Reading { path, start: Instant::now(), model }
+}
+
+/// Starts loads and counts them.
+pub(in crate::app) struct Loader {
+    // Weak: a load that outlives the window must not keep the device alive.
+    gpu: Weak<Gpu>,
+    layouts: Weak<SetLayouts>,
+    gate: Arc<DeviceGate>,
+    outbox: Outbox,
+    /// Number of the newest load.
+    pub(in crate::app) newest: u64,
+}
+
+impl Loader {
+    pub(super) fn new((gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>), outbox: &Outbox) -> Self {
+        let (gpu, layouts) = (Arc::downgrade(gpu), Arc::downgrade(layouts));
+        Self { gpu, layouts, gate: Arc::default(), outbox: outbox.clone(), newest: 0 }
+    }
+
+    /// Uploads what was read; the result comes as a message.
+    pub(in crate::app) fn upload(&mut self, reading: Reading) {
+        self.newest += 1;
+        let (gpu, layouts, gate, number) = (self.gpu.clone(), self.layouts.clone(), self.gate.clone(), self.newest);
+        self.outbox.spawn("loader", move |outbox| {
+            let Reading { path, start, model } = reading;
+            let result = match model.join() {
+                Ok(model) => model.map_err(|error| (error.to_string(), error.files)),
+                Err(panic) => {
+                    let text = format!("the loader failed ({}); please report the model", panic_text(&*panic));
+                    Err((text, path.iter().cloned().collect()))
+                }
+            };
+            let upload = |model: Model| {
+                let files = model.files.clone();
+                let (gpu, layouts) = (gpu.upgrade()?, layouts.upgrade()?);
+                Some(GpuModel::upload(&gpu, &layouts, model).map_err(|error| (error.to_string(), files)))
+            };
+            let result = match result {
+                Ok(model) => gate.pass(|| upload(model)).flatten(),
+                Err(error) => Some(Err(error)),
+            };
+            if let Some(result) = result {
+                let ms = start.elapsed().as_secs_f64() * 1e3;
+                outbox.send(Message::Loaded(Box::new(Loaded { number, path, result, ms })));
+            }
+        });
+    }
+}
+
+impl Drop for Loader {
+    fn drop(&mut self) {
+        self.gate.close();
+    }
+}

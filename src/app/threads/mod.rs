@@ -1,0 +1,168 @@
+//! The threads beside the window's own. Each works for itself and sends what it made; only the window's thread touches what is
+//! on screen. ARCHITECTURE.md draws who sends what to whom.
+
+pub(super) mod baker;
+pub(super) mod loader;
+pub(super) mod worker;
+
+use std::any::Any;
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use winit::event_loop::EventLoopProxy;
+
+use crate::gpu::{Gpu, SetLayouts};
+use crate::shader::{Batch, Change, Compiler, Source, TreePath, Watcher};
+use baker::{BakeMessage, Baker};
+use loader::{Loaded, Loader, Reading};
+use worker::{Snapshot, Worker, WorkerMessage};
+
+/// What the threads send to the window.
+pub(super) enum Message {
+    Worker(WorkerMessage),
+    Loaded(Box<Loaded>),
+    Bake(BakeMessage),
+    /// Watched files beside the shader tree have changed.
+    FilesChanged(BTreeSet<PathBuf>),
+    /// A thread ended by a panic: its name, and what the panic said.
+    Panicked(&'static str, String),
+}
+
+/// Sends messages to the window, which wakes up for them. The window may be gone; then nobody listens.
+#[derive(Clone)]
+pub(super) struct Outbox(EventLoopProxy<Message>);
+
+impl Outbox {
+    pub(super) fn new(proxy: EventLoopProxy<Message>) -> Self {
+        Self(proxy)
+    }
+
+    pub(super) fn send(&self, message: Message) {
+        let _ = self.0.send_event(message);
+    }
+
+    /// Runs `body` on a thread of its own. A panic there is sent as a message.
+    fn spawn(&self, name: &'static str, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
+        let outbox = self.clone();
+        std::thread::spawn(move || {
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(&outbox))) {
+                outbox.send(Message::Panicked(name, panic_text(&*panic)));
+            }
+        })
+    }
+}
+
+fn panic_text(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".to_owned())
+}
+
+/// Lets threads use the device until the window closes. A process must not end while a thread is inside its driver.
+#[derive(Default)]
+pub(super) struct DeviceGate(Mutex<bool>);
+
+impl DeviceGate {
+    /// Runs `work` unless the window is closing; closing waits for it.
+    fn pass<T>(&self, work: impl FnOnce() -> T) -> Option<T> {
+        let closed = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        (!*closed).then(work)
+    }
+
+    fn close(&self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
+    }
+}
+
+/// All threads. Dropping it ends those that use the device and waits for them; a model that is still being parsed is left
+/// behind.
+pub(super) struct Threads {
+    // The watchers send to the worker, so they go first.
+    tree_watcher: Option<Watcher>,
+    file_watcher: Option<Watcher>,
+    watched: Vec<PathBuf>,
+    pub(super) worker: Worker,
+    pub(super) loader: Loader,
+    pub(super) baker: Baker,
+    outbox: Outbox,
+}
+
+impl Threads {
+    /// Starts the worker, which compiles the tree at once. `file_watcher` watches the files of the model that is being read.
+    pub(super) fn start(
+        device: (&Arc<Gpu>, &Arc<SetLayouts>),
+        compiler: &Arc<Compiler>,
+        source: Source,
+        snapshot: Snapshot,
+        file_watcher: Option<Watcher>,
+        outbox: &Outbox,
+    ) -> Self {
+        Self {
+            tree_watcher: None,
+            file_watcher,
+            watched: Vec::new(),
+            worker: Worker::start(device, compiler, source, snapshot, outbox),
+            loader: Loader::new(device, outbox),
+            baker: Baker::new(device.0, outbox),
+            outbox: outbox.clone(),
+        }
+    }
+
+    /// Watches a shader tree in place of the one before; changes go to the worker.
+    pub(super) fn watch_tree(&mut self, source: &Source) -> Result<(), String> {
+        self.tree_watcher = None;
+        let Some(root) = source.root().map(Path::to_owned) else { return Ok(()) };
+        let changes = self.worker.changes();
+        let base = root.canonicalize().unwrap_or_else(|_| root.clone());
+        let on_batch = move |batch: Batch| {
+            let relative = batch.paths.iter().filter_map(|path| path.strip_prefix(&base).ok());
+            let paths = relative.filter_map(|path| TreePath::parse(&path.to_string_lossy())).collect();
+            changes(Change::Paths(paths), batch.first_event);
+        };
+        self.tree_watcher = Some(Watcher::new(Some(&root), &[], on_batch).map_err(|error| error.to_string())?);
+        Ok(())
+    }
+
+    /// Watches these files in place of those before, if they are others.
+    pub(super) fn watch_files(&mut self, files: Vec<PathBuf>) -> Result<(), String> {
+        if files == self.watched {
+            return Ok(());
+        }
+        match &self.file_watcher {
+            Some(watcher) => watcher.set_files(&files),
+            None => self.file_watcher = watch_files(&files, &self.outbox)?,
+        }
+        self.watched = files;
+        Ok(())
+    }
+
+    /// Replaces a worker that panicked.
+    pub(super) fn restart_worker(
+        &mut self,
+        device: (&Arc<Gpu>, &Arc<SetLayouts>),
+        compiler: &Arc<Compiler>,
+        source: Source,
+        snapshot: Snapshot,
+    ) {
+        // The watcher sends to the old one.
+        self.tree_watcher = None;
+        self.worker = Worker::start(device, compiler, source, snapshot, &self.outbox);
+    }
+
+    /// Takes up a model that was read before there was a device.
+    pub(super) fn upload(&mut self, reading: Reading) {
+        self.loader.upload(reading);
+    }
+}
+
+/// Watches files, if there are any.
+pub(super) fn watch_files(files: &[PathBuf], outbox: &Outbox) -> Result<Option<Watcher>, String> {
+    if files.is_empty() {
+        return Ok(None);
+    }
+    let outbox = outbox.clone();
+    let on_batch = move |batch: Batch| outbox.send(Message::FilesChanged(batch.paths));
+    Watcher::new(None, files, on_batch).map(Some).map_err(|error| error.to_string())
+}

@@ -1,0 +1,290 @@
+//! The worker compiles shaders and builds pipelines, so that the window never waits for either.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use crossbeam_channel::{Receiver, Sender, unbounded};
+
+use super::{Message, Outbox};
+use crate::gpu::{Gpu, SetLayouts};
+use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
+use crate::render::{
+    MaterialVariant, Outcome, PipelineRequest, PipelineSet, Reload, Reloader, Scene, TargetFormat, tree_name,
+};
+use crate::settings::Settings;
+use crate::shader::{Change, Compiler, ShaderSet, Source};
+
+/// What the window would draw right now; a reload builds its pipelines.
+#[derive(Clone)]
+pub(in crate::app) struct Snapshot {
+    pub(in crate::app) settings: Settings,
+    pub(in crate::app) scene: Option<Scene>,
+    pub(in crate::app) target: TargetFormat,
+}
+
+impl Snapshot {
+    fn request(&self, shaders: &ShaderSet) -> PipelineRequest {
+        let mut request = PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), self.target);
+        if self.scene.is_none() {
+            // While the model loads, build what most models need.
+            let features = FEATURE_NORMAL_TEXTURE | FEATURE_PACKED_OCCLUSION;
+            request.materials = BTreeSet::from([MaterialVariant { features, ..Default::default() }]);
+        }
+        request
+    }
+}
+
+/// What the worker sends.
+pub(in crate::app) enum WorkerMessage {
+    /// A reload is finished.
+    Reloaded {
+        reload: Box<Reload>,
+        /// Milliseconds from the first file event to the settled set of changes.
+        detect_ms: f64,
+        /// Name of the tree.
+        tree: String,
+    },
+    /// The pipelines that [`Worker::build`] asked for last are there, or why not.
+    Built(Result<(), String>),
+}
+
+/// Files that have changed, and when.
+struct Edit {
+    change: Change,
+    since: Instant,
+    settled: Instant,
+}
+
+type Build = (Arc<PipelineSet>, PipelineRequest);
+
+enum Job {
+    Edit(Edit),
+    OpenTree(Source),
+    Build(Build),
+}
+
+/// Sends jobs, and counts those that make a reload under way stale.
+#[derive(Clone)]
+struct Jobs {
+    sender: Sender<Job>,
+    edits: Arc<AtomicU64>,
+}
+
+impl Jobs {
+    fn send(&self, job: Job) {
+        if !matches!(job, Job::Build(_)) {
+            self.edits.fetch_add(1, Ordering::SeqCst);
+        }
+        // The thread is gone only when the window is.
+        let _ = self.sender.send(job);
+    }
+
+    fn edit(&self, change: Change, since: Instant) {
+        self.send(Job::Edit(Edit { change, since, settled: Instant::now() }));
+    }
+}
+
+/// The window's end of the worker. Dropping it ends the thread and waits for it.
+pub(in crate::app) struct Worker {
+    jobs: Option<Jobs>,
+    snapshot: Arc<Mutex<Snapshot>>,
+    /// The newest build that was asked for and has not succeeded yet.
+    asked: Option<Build>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts the thread, which compiles the whole tree at once.
+    pub(super) fn start(
+        (gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>),
+        compiler: &Arc<Compiler>,
+        source: Source,
+        snapshot: Snapshot,
+        outbox: &Outbox,
+    ) -> Self {
+        let (sender, inbox) = unbounded();
+        let edits = Arc::new(AtomicU64::new(0));
+        let snapshot = Arc::new(Mutex::new(snapshot));
+        let mut state = Thread {
+            gpu: gpu.clone(),
+            layouts: layouts.clone(),
+            compiler: compiler.clone(),
+            reloader: Reloader::new(gpu, layouts, compiler, source),
+            snapshot: snapshot.clone(),
+            inbox,
+            edits: edits.clone(),
+            edits_taken: 0,
+            outbox: outbox.clone(),
+        };
+        let thread = outbox.spawn("worker", move |_| state.run());
+        let worker = Self { jobs: Some(Jobs { sender, edits }), snapshot, asked: None, thread: Some(thread) };
+        worker.change(Change::All, Instant::now());
+        worker
+    }
+
+    /// Tells what the window would draw now.
+    pub(in crate::app) fn set_snapshot(&self, snapshot: Snapshot) {
+        *self.snapshot.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
+    }
+
+    /// Compiles what a change, first seen at `since`, makes dirty.
+    pub(in crate::app) fn change(&self, change: Change, since: Instant) {
+        self.jobs.iter().for_each(|jobs| jobs.edit(change.clone(), since));
+    }
+
+    /// [`Worker::change`] for the watcher's thread, which must end before the worker does.
+    pub(super) fn changes(&self) -> impl Fn(Change, Instant) + Send + 'static {
+        let jobs = self.jobs.clone();
+        move |change, since| jobs.iter().for_each(|jobs| jobs.edit(change.clone(), since))
+    }
+
+    /// Builds pipelines. The newest request wins; one that is under way, or that failed, is not sent again.
+    pub(in crate::app) fn build(&mut self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
+        let is_asked = |(asked, for_this): &Build| Arc::ptr_eq(asked, set) && for_this == request;
+        if !self.asked.as_ref().is_some_and(is_asked) {
+            self.asked = Some((set.clone(), request.clone()));
+            self.send(Job::Build((set.clone(), request.clone())));
+        }
+    }
+
+    /// Notes that the newest build succeeded.
+    pub(in crate::app) fn built(&mut self) {
+        self.asked = None;
+    }
+
+    /// Takes another shader tree.
+    pub(in crate::app) fn open_tree(&self, source: Source) {
+        self.send(Job::OpenTree(source));
+    }
+
+    fn send(&self, job: Job) {
+        if let Some(jobs) = &self.jobs {
+            jobs.send(job);
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        if let Some(jobs) = self.jobs.take() {
+            // Whatever is under way is stale now.
+            jobs.edits.fetch_add(1, Ordering::SeqCst);
+        }
+        if let Some(thread) = self.thread.take() {
+            // A panic there was sent as a message.
+            let _ = thread.join();
+        }
+    }
+}
+
+struct Thread {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    compiler: Arc<Compiler>,
+    reloader: Reloader,
+    snapshot: Arc<Mutex<Snapshot>>,
+    inbox: Receiver<Job>,
+    edits: Arc<AtomicU64>,
+    /// How many of `edits` were taken out of the inbox.
+    edits_taken: u64,
+    outbox: Outbox,
+}
+
+impl Thread {
+    /// Works until the window drops its end. Edits go first: of everything that waits, the edits are joined and compiled, then
+    /// the newest build request is carried out, whatever became of the edits.
+    fn run(&mut self) {
+        let mut build: Option<Build> = None;
+        while let Ok(first) = self.inbox.recv() {
+            let mut waiting = vec![first];
+            while !waiting.is_empty() || build.is_some() {
+                waiting.extend(self.inbox.try_iter());
+                let mut edit = None::<Edit>;
+                for job in waiting.drain(..) {
+                    match job {
+                        Job::Edit(new) => edit = Some(self.join(edit, new)),
+                        Job::OpenTree(source) => edit = Some(self.open_tree(source)),
+                        Job::Build(newest) => build = Some(newest),
+                    }
+                }
+                if let Some(set) = edit.and_then(|edit| self.reload(edit)) {
+                    // A build for the set before is void: the window asks again for the new one.
+                    build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
+                } else if self.is_stale() {
+                    // A newer edit was announced and is about to arrive; at the end, nothing is.
+                    match self.inbox.recv() {
+                        Ok(job) => waiting.push(job),
+                        Err(_) => return,
+                    }
+                } else if let Some((set, request)) = build.take() {
+                    let built = set.build(&request).map_err(|error| error.to_string());
+                    self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
+                    self.build_ahead(&set);
+                }
+            }
+        }
+    }
+
+    /// Joins an edit with an older one that has not been compiled yet.
+    fn join(&mut self, old: Option<Edit>, new: Edit) -> Edit {
+        self.edits_taken += 1;
+        match old {
+            Some(old) => Edit { change: old.change.and(new.change), since: old.since, ..new },
+            None => new,
+        }
+    }
+
+    fn open_tree(&mut self, source: Source) -> Edit {
+        self.edits_taken += 1;
+        self.reloader = Reloader::new(&self.gpu, &self.layouts, &self.compiler, source);
+        let now = Instant::now();
+        Edit { change: Change::All, since: now, settled: now }
+    }
+
+    /// Whether a newer edit waits, or the window is closing.
+    fn is_stale(&self) -> bool {
+        self.edits.load(Ordering::SeqCst) > self.edits_taken
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        self.snapshot.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Compiles and builds; returns the new set, if there is one.
+    fn reload(&mut self, edit: Edit) -> Option<Arc<PipelineSet>> {
+        let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
+        let request =
+            |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
+        let reload = self.reloader.update(edit.change, request, || edits.load(Ordering::SeqCst) > taken);
+        let set = match &reload.outcome {
+            Outcome::Ready(set) => Some(set.clone()),
+            Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
+        };
+        let tree = tree_name(self.reloader.library().source());
+        let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
+        let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, tree };
+        self.outbox.send(Message::Worker(message));
+        // At the start the model needs both cores; the window asks for more once it is there.
+        if let Some(set) = set.as_ref().filter(|set| set.shaders.generation > 1) {
+            self.build_ahead(set);
+        }
+        set
+    }
+
+    /// Builds the modes before and after the one on screen, which `[` and `]` ask for next, unless there is other work.
+    fn build_ahead(&self, set: &Arc<PipelineSet>) {
+        let (snapshot, modes) = (self.snapshot(), &set.shaders.modes);
+        let request = snapshot.request(&set.shaders);
+        let Some(at) = modes.iter().position(|mode| mode.id == request.mode) else { return };
+        for neighbor in [(at + 1) % modes.len(), (at + modes.len() - 1) % modes.len()] {
+            if !self.inbox.is_empty() || self.is_stale() {
+                return;
+            }
+            // A neighbor that the driver refuses is reported when it is asked for.
+            let _ = set.build(&request.with_mode(&modes[neighbor], snapshot.settings.view.tonemap));
+        }
+    }
+}
