@@ -163,16 +163,6 @@ impl Frames {
         self.current
     }
 
-    /// STUB
-    pub fn is_finished(&self, slot: usize) -> bool {
-        slot > 100
-    }
-
-    /// STUB
-    pub fn pass_times(&self) -> &[PassTime] {
-        &[]
-    }
-
     /// Device time of the newest frame that is known to be finished, in milliseconds.
     pub fn last_device_ms(&self) -> Option<f64> {
         self.last_device_ms
@@ -230,13 +220,4 @@ pub fn one_shot<T>(gpu: &Arc<Gpu>, commands: impl FnOnce(&mut Encoder) -> Result
     // SYNC: the caller may use what was written, from any queue submission that follows.
     slot.wait()?;
     Ok(result)
-}
-
-/// STUB
-#[derive(Clone)]
-pub struct PassTime {
-    /// STUB
-    pub name: String,
-    /// STUB
-    pub ms: f64,
 }

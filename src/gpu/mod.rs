@@ -23,7 +23,7 @@ pub use descriptor::{DescriptorSet, SetLayouts, SetWriter};
 pub use device::{AdapterInfo, Gpu, GpuOptions, adapters};
 pub use encoder::{Attachments, Encoder, Rect, Use};
 pub use error::GpuError;
-pub use frames::{Frames, PassTime, Submission, one_shot};
+pub use frames::{Frames, Submission, one_shot};
 pub use image::{Image, ImageDesc, Sampler, SamplerDesc};
 pub use pipeline::{ComputePipeline, Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization};
 pub use surface::{Acquired, Surface, Swapchain};
