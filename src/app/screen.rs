@@ -151,7 +151,7 @@ impl Screen {
             Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?,
             None => View::clear(&mut encoder, &output),
         }
-        self.draw_ui(&mut encoder, &acquired.image, pixels_per_point, &primitives)?;
+        encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
         self.frames.submit(encoder, acquired.submission)?;
         if let Some(swapchain) = &mut self.swapchain {

@@ -1,4 +1,4 @@
-//! What stands in for descriptors that nobody wrote.
+//! Placeholders for descriptors that a set leaves unwritten.
 
 use std::sync::Arc;
 
@@ -9,10 +9,11 @@ use super::device::Gpu;
 use super::encoder::Use;
 use super::error::GpuError;
 use super::frames::one_shot;
-use super::image::{Image, ImageDesc, Sampler, SamplerDesc};
+use super::image::{Image, ImageDesc};
+use super::sampler::{Sampler, SamplerDesc};
 
-/// One of each kind. lavapipe reads every descriptor of a set that is bound, used or not, and ends the process at one that was
-/// never written.
+/// One placeholder of each kind of descriptor. lavapipe reads every descriptor of a bound set, used or not, and crashes on
+/// one that was never written.
 pub(super) struct Blank {
     pub(super) image: Arc<Image>,
     pub(super) cube: Arc<Image>,

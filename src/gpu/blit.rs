@@ -1,4 +1,4 @@
-//! Copies between images that scale and convert.
+//! Copies between images of different size or format.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use super::encoder::{Encoder, Use};
 use super::image::Image;
 
 impl Encoder {
-    /// Fills every level of `to`, in [`Use::CopyTo`], from `from`, in [`Use::CopyFrom`] and of the same size: level 0 is a copy,
-    /// each other level half the one above. `to` ends up in [`Use::CopyFrom`].
+    /// Fills every level of `to`: copies `from`, an image of the same size, to level 0, and halves each level into the next.
+    /// `from` must be in [`Use::CopyFrom`] and `to` in [`Use::CopyTo`]. Leaves `to` in [`Use::CopyFrom`].
     pub fn fill_levels(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
         self.keep(from);
         self.keep(to);
@@ -38,7 +38,7 @@ impl Encoder {
             .dst_subresource(layers(to_level))
             .dst_offsets([vk::Offset3D::default(), corner(to, to_level)])];
         let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
-        // SAFETY: recording into our own buffer; the caller keeps both images, and the regions lie within them.
+        // SAFETY: this encoder records the command buffer; the caller keeps both images, and the regions lie within them.
         unsafe {
             let device = &self.gpu.device;
             device.cmd_blit_image(self.raw, from.raw, source, to.raw, target, &region, vk::Filter::LINEAR);

@@ -4,19 +4,20 @@ use std::sync::Arc;
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::Allocation;
 
 use super::device::Gpu;
 use super::error::{Context, GpuError};
+use super::memory::{Resource, allocate};
 
-/// Where a buffer's memory lives.
+/// Which side reads and writes a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// Device only.
+    /// The device alone reads and writes it.
     Device,
-    /// Written by the CPU, read by the device.
+    /// The CPU writes it, the device reads it.
     Upload,
-    /// Written by the device, read by the CPU.
+    /// The device writes it, the CPU reads it.
     Readback,
 }
 
@@ -29,10 +30,10 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    /// Makes a buffer of `size` bytes (at least 1).
+    /// Creates a buffer of `size` bytes (at least 1). GPU debuggers and validation messages show `name`.
     ///
     /// # Errors
-    /// Out of memory.
+    /// The device is out of memory ([`GpuError::OutOfMemory`]).
     pub fn new(
         gpu: &Arc<Gpu>,
         name: &str,
@@ -42,45 +43,47 @@ impl Buffer {
     ) -> Result<Arc<Self>, GpuError> {
         let size = size.max(1);
         let info = vk::BufferCreateInfo::default().size(size).usage(usage);
+        let what = format!("`{name}`");
         // SAFETY: the device is live.
-        let raw = unsafe { gpu.device.create_buffer(&info, None) }.context("creating a buffer")?;
+        let raw = unsafe { gpu.device.create_buffer(&info, None) }.context_of("creating the buffer", &what)?;
+        // From here on, `Drop` frees what is already there when a later step fails.
         let mut buffer = Self { gpu: gpu.clone(), raw, allocation: None, size };
-        // SAFETY: `raw` belongs to this device.
-        let requirements = unsafe { gpu.device.get_buffer_memory_requirements(raw) };
-        let allocation = gpu
-            .lock_allocator()
-            .allocate(&AllocationCreateDesc {
+        gpu.name(raw, name);
+        let allocation = buffer.allocation.insert(allocate(
+            gpu,
+            &Resource {
                 name,
-                requirements,
+                action: &format!("creating the buffer {what}"),
+                // SAFETY: `raw` belongs to this device.
+                requirements: unsafe { gpu.device.get_buffer_memory_requirements(raw) },
                 location: match memory {
                     Memory::Device => MemoryLocation::GpuOnly,
                     Memory::Upload => MemoryLocation::CpuToGpu,
                     Memory::Readback => MemoryLocation::GpuToCpu,
                 },
                 linear: true,
-                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-            })
-            .map_err(|e| GpuError::Allocation { what: name.into(), message: e.to_string() })?;
-        // SAFETY: the memory was allocated for these requirements and is bound once.
-        let bound = unsafe { gpu.device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
-        buffer.allocation = Some(allocation);
-        bound.context("binding buffer memory")?;
+                limit: "buffer-bytes",
+            },
+        )?);
+        // SAFETY: the memory was allocated for this buffer and is bound once.
+        unsafe { gpu.device.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }
+            .context_of("binding memory to the buffer", &what)?;
         Ok(Arc::new(buffer))
     }
 
-    /// Bytes.
+    /// Size in bytes.
     pub fn size(&self) -> u64 {
         self.size
     }
 
-    /// Address for `buffer_reference`; the usage must include `SHADER_DEVICE_ADDRESS`.
+    /// Device address for `buffer_reference`; the usage must include `SHADER_DEVICE_ADDRESS`.
     pub fn address(&self) -> u64 {
         // SAFETY: the buffer is live and bound.
         unsafe { self.gpu.device.get_buffer_device_address(&vk::BufferDeviceAddressInfo::default().buffer(self.raw)) }
     }
 
-    /// Copies `bytes` to `offset`, clipped to the buffer's end. For `Memory::Upload`; the caller's frame slot has seen its fence,
-    /// so the device does not read meanwhile.
+    /// Copies `bytes` to `offset`, clipped to the buffer's end. For [`Memory::Upload`]. The caller must have waited for the
+    /// fence of the last submission that reads the buffer.
     pub fn write(&self, offset: u64, bytes: &[u8]) {
         let Some(mapped) = self.allocation.as_ref().and_then(Allocation::mapped_ptr) else { return };
         let length = bytes.len().min(self.size.saturating_sub(offset) as usize);
@@ -91,7 +94,7 @@ impl Buffer {
         }
     }
 
-    /// Copies the content out. For `Memory::Readback`, after the writing submission's fence.
+    /// Copies the contents out. For [`Memory::Readback`], after the fence of the submission that wrote them.
     pub fn read(&self) -> Vec<u8> {
         let mapped = self.allocation.as_ref().and_then(Allocation::mapped_slice);
         mapped.map(|m| m[..self.size as usize].to_vec()).unwrap_or_default()

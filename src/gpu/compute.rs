@@ -1,4 +1,4 @@
-//! Recording compute work.
+//! Dispatches of compute shaders.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::encoder::Encoder;
 use super::pipeline::ComputePipeline;
 
 impl Encoder {
-    /// Runs `groups` workgroups of a pipeline over these sets, each bound at its own number.
+    /// Binds each set at its own number, then runs `groups` workgroups of a pipeline.
     pub fn dispatch(
         &mut self,
         layouts: &Arc<SetLayouts>,
@@ -21,19 +21,19 @@ impl Encoder {
         self.keep(pipeline);
         for set in sets {
             self.keep(*set);
-            // SAFETY: recording into our own buffer; the set is kept, and the layout is the one of every pipeline.
+            // SAFETY: this encoder records the command buffer; the set is kept, and all pipelines share the layout.
             unsafe {
                 self.gpu.device.cmd_bind_descriptor_sets(self.raw, point, layouts.pipeline, set.index, &[set.raw], &[]);
             }
         }
-        // SAFETY: recording into our own buffer; the pipeline is kept.
+        // SAFETY: this encoder records the command buffer; the pipeline is kept.
         unsafe {
             self.gpu.device.cmd_bind_pipeline(self.raw, point, pipeline.raw);
             self.gpu.device.cmd_dispatch(self.raw, groups[0], groups[1], groups[2]);
         }
     }
 
-    /// SYNC: buffers that compute shaders wrote before this are visible to all that comes after, and to the CPU after the fence.
+    /// SYNC: makes what compute shaders wrote to buffers visible to all later commands, and to the CPU after the fence.
     pub fn computed(&mut self) {
         self.writes_done(vk::PipelineStageFlags2::COMPUTE_SHADER, vk::AccessFlags2::SHADER_STORAGE_WRITE);
     }

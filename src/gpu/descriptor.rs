@@ -1,4 +1,4 @@
-//! Descriptor sets and the one pipeline layout, both fixed by `interface`.
+//! Descriptor sets and the pipeline layout, both fixed by [`crate::interface`].
 
 use std::any::Any;
 use std::sync::Arc;
@@ -9,7 +9,8 @@ use super::blank::Blank;
 use super::buffer::Buffer;
 use super::device::Gpu;
 use super::error::{Context, GpuError};
-use super::image::{Image, Sampler};
+use super::image::Image;
+use super::sampler::Sampler;
 use crate::interface::{self, BindingKind};
 
 const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -18,8 +19,8 @@ const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::COMPUTE.as_raw(),
 );
 
-/// The descriptor set layouts of the contract and the pipeline layout over them. Every pipeline uses it, so a reload replaces
-/// pipelines and nothing else.
+/// The descriptor set layouts of the contract, and the pipeline layout over them. All pipelines share it, so a reload
+/// replaces pipelines and nothing else.
 pub struct SetLayouts {
     gpu: Arc<Gpu>,
     sets: Vec<vk::DescriptorSetLayout>,
@@ -28,10 +29,10 @@ pub struct SetLayouts {
 }
 
 impl SetLayouts {
-    /// Makes the layouts of [`interface::BINDINGS`].
+    /// Creates the layouts of [`interface::BINDINGS`].
     ///
     /// # Errors
-    /// Out of memory.
+    /// The device is out of memory.
     pub fn new(gpu: &Arc<Gpu>) -> Result<Arc<Self>, GpuError> {
         let count = interface::BINDINGS.iter().map(|b| b.set + 1).max().unwrap_or(0);
         let (blank, pipeline) = (Blank::new(gpu)?, vk::PipelineLayout::null());
@@ -51,13 +52,16 @@ impl SetLayouts {
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
             // SAFETY: the device is live.
             let layout = unsafe { gpu.device.create_descriptor_set_layout(&info, None) };
-            layouts.sets.push(layout.context("creating a descriptor set layout")?);
+            let layout = layout.context("creating a descriptor set layout")?;
+            gpu.name(layout, set_name(set));
+            layouts.sets.push(layout);
         }
         let ranges = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts.sets).push_constant_ranges(&ranges);
         // SAFETY: the set layouts are live.
         layouts.pipeline =
             unsafe { gpu.device.create_pipeline_layout(&info, None) }.context("creating the pipeline layout")?;
+        gpu.name(layouts.pipeline, "pipeline layout");
         Ok(Arc::new(layouts))
     }
 
@@ -68,13 +72,24 @@ impl SetLayouts {
 
 impl Drop for SetLayouts {
     fn drop(&mut self) {
-        // SAFETY: pipelines and sets hold this by `Arc`, so none is left.
+        // SAFETY: pipelines and descriptor sets hold an `Arc` of this, so none is left. Vulkan ignores a null layout.
         unsafe {
             self.gpu.device.destroy_pipeline_layout(self.pipeline, None);
             for layout in &self.sets {
                 self.gpu.device.destroy_descriptor_set_layout(*layout, None);
             }
         }
+    }
+}
+
+/// The debug name of a descriptor set that was given none.
+fn set_name(set: u32) -> &'static str {
+    match set {
+        interface::SET_FRAME => "frame set",
+        interface::SET_MATERIAL => "material set",
+        interface::SET_PASS => "pass set",
+        interface::SET_TASK => "task set",
+        _ => "descriptor set",
     }
 }
 
@@ -87,7 +102,7 @@ fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     }
 }
 
-/// A descriptor set with a pool of its own and everything that it points to.
+/// A descriptor set with a pool of its own. It keeps every resource alive that it points to.
 pub struct DescriptorSet {
     layouts: Arc<SetLayouts>,
     pool: vk::DescriptorPool,
@@ -96,16 +111,23 @@ pub struct DescriptorSet {
     _kept: Vec<Arc<dyn Any + Send + Sync>>,
 }
 
-/// Collects what a new set points to.
+/// Collects the descriptors of a new set.
 #[derive(Default)]
 pub struct SetWriter {
     buffers: Vec<(u32, vk::DescriptorBufferInfo)>,
     images: Vec<(u32, vk::DescriptorImageInfo)>,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
+    name: Option<String>,
 }
 
 impl SetWriter {
-    /// Fills what was not written.
+    /// Sets the name that GPU debuggers and validation messages show. Without one, a set is named after its number.
+    pub fn named(mut self, name: &str) -> Self {
+        self.name = Some(name.to_owned());
+        self
+    }
+
+    /// Points every descriptor that was not written to a placeholder.
     fn completed(mut self, set: u32, blank: &Blank) -> Self {
         for binding in interface::BINDINGS.iter().filter(|b| b.set == set) {
             let at = binding.binding;
@@ -122,8 +144,8 @@ impl SetWriter {
         self
     }
 
-    /// Points `binding` to one level, with all its layers, of an image that is in [`super::Use::Storage`] whenever the set is
-    /// used; the image's usage must include `STORAGE`.
+    /// Points `binding` to one level of an image, with all its layers. The image's usage must include `STORAGE`, and the image
+    /// must be in [`super::Use::Storage`] whenever the set is used.
     pub fn storage_level(mut self, binding: u32, image: &Arc<Image>, level: u32) -> Self {
         let image_view = image.level_views.get(level as usize).copied().unwrap_or_default();
         let image_layout = vk::ImageLayout::GENERAL;
@@ -140,7 +162,7 @@ impl SetWriter {
         self
     }
 
-    /// Points `binding` to an image that is in [`super::Use::Sampled`] whenever the set is used.
+    /// Points `binding` to an image, which must be in [`super::Use::Sampled`] whenever the set is used.
     pub fn texture(mut self, binding: u32, image: &Arc<Image>, sampler: &Arc<Sampler>) -> Self {
         let info = vk::DescriptorImageInfo {
             sampler: sampler.raw,
@@ -155,10 +177,10 @@ impl SetWriter {
 }
 
 impl DescriptorSet {
-    /// Makes set number `set` of the contract. What `writer` left out must not be read by a shader.
+    /// Creates set number `set` of the contract. Shaders must not read a descriptor that `writer` left unwritten.
     ///
     /// # Errors
-    /// Out of memory.
+    /// The device is out of memory.
     pub fn new(layouts: &Arc<SetLayouts>, set: u32, writer: SetWriter) -> Result<Arc<Self>, GpuError> {
         let device = &layouts.gpu.device;
         let writer = writer.completed(set, &layouts.blank);
@@ -170,12 +192,15 @@ impl DescriptorSet {
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
         // SAFETY: the device is live.
         let pool = unsafe { device.create_descriptor_pool(&info, None) }.context("creating a descriptor pool")?;
+        let name = writer.name.as_deref().unwrap_or(set_name(set));
+        layouts.gpu.name(pool, name);
         let mut this =
             Self { layouts: layouts.clone(), pool, raw: vk::DescriptorSet::null(), index: set, _kept: writer.kept };
-        let wanted = [layouts.sets[set as usize]];
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&wanted);
+        let layout = [layouts.sets[set as usize]];
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layout);
         // SAFETY: the pool is new, unshared and large enough.
         this.raw = unsafe { device.allocate_descriptor_sets(&info) }.context("allocating a descriptor set")?[0];
+        layouts.gpu.name(this.raw, name);
         let kind = |binding: u32| {
             let found = interface::BINDINGS.iter().find(|b| b.set == set && b.binding == binding);
             found.map_or(vk::DescriptorType::UNIFORM_BUFFER, |b| descriptor_type(b.kind))
@@ -191,7 +216,7 @@ impl DescriptorSet {
         for (binding, info) in &writer.images {
             writes.push(write(*binding).image_info(std::slice::from_ref(info)));
         }
-        // SAFETY: the set is new, so nothing in flight uses it; what it points to is kept alive by `_kept`.
+        // SAFETY: the set is new, so no command uses it; `_kept` keeps alive what it points to.
         unsafe { device.update_descriptor_sets(&writes, &[]) };
         Ok(Arc::new(this))
     }
@@ -199,7 +224,7 @@ impl DescriptorSet {
 
 impl Drop for DescriptorSet {
     fn drop(&mut self) {
-        // SAFETY: the last `Arc` is gone, so no command in flight uses the set; it goes with its pool.
+        // SAFETY: the last `Arc` is gone, so no command in flight uses the set. Its pool frees it.
         unsafe { self.layouts.gpu.device.destroy_descriptor_pool(self.pool, None) };
     }
 }

@@ -1,4 +1,4 @@
-//! Recording commands. The encoder keeps alive, until the fence of its submission, whatever its commands use.
+//! Recording commands. Every resource that the commands use stays alive until the fence of their submission signals.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -9,6 +9,7 @@ use super::buffer::Buffer;
 use super::descriptor::{DescriptorSet, SetLayouts};
 use super::device::Gpu;
 use super::image::Image;
+use super::pass::PassTimer;
 use super::pipeline::Pipeline;
 
 /// A rectangle in pixels.
@@ -33,26 +34,26 @@ impl Rect {
     }
 }
 
-/// What an image is used for; a transition between two uses is a barrier.
+/// How commands use an image: its layout, and the stages and accesses that a transition waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// Content does not matter.
+    /// The contents are undefined.
     Undefined,
-    /// Acquired from the swapchain: content does not matter, and the acquire semaphore was waited for at color output.
+    /// Just acquired from the swapchain. The contents are undefined, and color output waits for the acquire semaphore.
     Acquired,
     /// Color attachment.
     Color,
     /// Depth attachment.
     Depth,
-    /// Read in shaders.
+    /// Shaders sample it.
     Sampled,
-    /// Written and read level by level in compute shaders.
+    /// Compute shaders write and read single levels.
     Storage,
     /// Source of a copy or blit.
     CopyFrom,
-    /// Target of a copy or blit.
+    /// Destination of a copy or blit.
     CopyTo,
-    /// Shown.
+    /// The presentation engine shows it.
     Present,
 }
 
@@ -83,19 +84,19 @@ impl Use {
     }
 }
 
-/// The targets of a rendering pass.
+/// The targets of drawing commands.
 pub struct Attachments<'a> {
     /// Color target, in [`Use::Color`].
     pub color: &'a Arc<Image>,
-    /// Clear value; `None` keeps the content.
+    /// Clear color; `None` keeps the contents.
     pub clear: Option<[f32; 4]>,
-    /// Where multisampled color is averaged to, in [`Use::Color`].
+    /// Image in [`Use::Color`] that receives the average of the color samples.
     pub resolve: Option<&'a Arc<Image>>,
-    /// Depth target, in [`Use::Depth`]; cleared to 0, which is far, when color is.
+    /// Depth target, in [`Use::Depth`]. If color is cleared, depth is cleared to 0, which is far.
     pub depth: Option<&'a Arc<Image>>,
-    /// Whether drawing goes on later: then depth and multisampled color are kept too.
+    /// Whether later commands continue to draw to these targets. If so, depth and multisampled color are stored too.
     pub goes_on: bool,
-    /// The part of the target that is drawn.
+    /// The part of the targets that is drawn.
     pub area: Rect,
 }
 
@@ -104,24 +105,25 @@ pub struct Encoder {
     pub(super) gpu: Arc<Gpu>,
     pub(super) raw: vk::CommandBuffer,
     pub(super) kept: Vec<Arc<dyn Any + Send + Sync>>,
+    pub(super) timer: Option<PassTimer>,
 }
 
 impl Encoder {
-    pub(super) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer) -> Self {
-        Self { gpu: gpu.clone(), raw, kept: Vec::new() }
+    pub(super) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer, timer: Option<PassTimer>) -> Self {
+        Self { gpu: gpu.clone(), raw, kept: Vec::new(), timer }
     }
 
-    /// Keeps `object` alive until the commands have run.
+    /// Keeps `object` alive until the device has run the commands.
     pub fn keep<T: Any + Send + Sync>(&mut self, object: &Arc<T>) {
         self.kept.push(object.clone());
     }
 
-    /// SYNC: everything before that used `image` as `from` comes before everything after that uses it as `to`.
+    /// SYNC: orders all earlier commands that use `image` as `from` before all later commands that use it as `to`.
     pub fn transition(&mut self, image: &Arc<Image>, from: Use, to: Use) {
         self.transition_levels(image, 0..image.desc().mips, from, to);
     }
 
-    /// SYNC: the same for one mip level.
+    /// SYNC: as [`Encoder::transition`], for one mip level.
     pub(super) fn transition_level(&mut self, image: &Arc<Image>, level: u32, from: Use, to: Use) {
         self.transition_levels(image, level..level + 1, from, to);
     }
@@ -147,11 +149,11 @@ impl Encoder {
         let barriers = [barrier];
         self.keep(image);
         let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
-        // SAFETY: recording into our own buffer; the image is kept.
+        // SAFETY: this encoder records the command buffer; the image is kept.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };
     }
 
-    /// Begins drawing to `to`; viewport and scissor are set to its area.
+    /// Begins drawing to `to`, and sets viewport and scissor to its area.
     pub fn begin_rendering(&mut self, to: &Attachments<'_>) {
         let load = if to.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
         let store = if to.goes_on { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::DONT_CARE };
@@ -186,18 +188,18 @@ impl Encoder {
         if let Some(depth) = &depth {
             info = info.depth_attachment(depth);
         }
-        // SAFETY: recording into our own buffer; the images are kept.
+        // SAFETY: this encoder records the command buffer; the images are kept.
         unsafe { self.gpu.device.cmd_begin_rendering(self.raw, &info) };
         self.set_viewport(to.area);
     }
 
-    /// Leaves all but a rectangle of what follows undrawn, in the same place.
+    /// Clips later draws to a rectangle. The viewport stays.
     pub fn set_scissor(&mut self, to: Rect) {
-        // SAFETY: recording into our own buffer.
+        // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_set_scissor(self.raw, 0, &[to.vulkan()]) };
     }
 
-    /// Confines what follows to a rectangle.
+    /// Maps later draws to a rectangle, and clips them to it.
     pub fn set_viewport(&mut self, to: Rect) {
         let viewport = vk::Viewport {
             x: to.x as f32,
@@ -207,35 +209,35 @@ impl Encoder {
             min_depth: 0.0,
             max_depth: 1.0,
         };
-        // SAFETY: recording into our own buffer.
+        // SAFETY: this encoder records the command buffer.
         unsafe {
             self.gpu.device.cmd_set_viewport(self.raw, 0, &[viewport]);
             self.gpu.device.cmd_set_scissor(self.raw, 0, &[to.vulkan()]);
         }
     }
 
-    /// Sets the weight of what [`super::Raster::Averaged`] adds.
+    /// Sets the interpolation weight of [`super::Raster::Averaged`]: 0 keeps the target, 1 replaces it.
     pub fn set_weight(&mut self, weight: f32) {
-        // SAFETY: recording into our own buffer.
+        // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_set_blend_constants(self.raw, &[weight; 4]) };
     }
 
-    /// Ends drawing.
+    /// Ends drawing to the targets of [`Encoder::begin_rendering`].
     pub fn end_rendering(&mut self) {
-        // SAFETY: recording into our own buffer.
+        // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_end_rendering(self.raw) };
     }
 
-    /// Binds a pipeline.
+    /// Binds a graphics pipeline.
     pub fn bind_pipeline(&mut self, pipeline: &Arc<Pipeline>) {
         self.keep(pipeline);
-        // SAFETY: recording into our own buffer; the pipeline is kept.
+        // SAFETY: this encoder records the command buffer; the pipeline is kept.
         unsafe { self.gpu.device.cmd_bind_pipeline(self.raw, vk::PipelineBindPoint::GRAPHICS, pipeline.raw) };
     }
 
-    /// Sets what a scene pipeline leaves open.
+    /// Sets the dynamic state of a pipeline with a depth target.
     pub fn set_raster(&mut self, topology: vk::PrimitiveTopology, cull: vk::CullModeFlags, front: vk::FrontFace) {
-        // SAFETY: recording into our own buffer.
+        // SAFETY: this encoder records the command buffer.
         unsafe {
             self.gpu.device.cmd_set_primitive_topology(self.raw, topology);
             self.gpu.device.cmd_set_cull_mode(self.raw, cull);
@@ -243,10 +245,10 @@ impl Encoder {
         }
     }
 
-    /// Binds a descriptor set at its own number.
+    /// Binds a descriptor set for drawing, at its own number.
     pub fn bind_set(&mut self, layouts: &Arc<SetLayouts>, set: &Arc<DescriptorSet>) {
         self.keep(set);
-        // SAFETY: recording into our own buffer; the set is kept, and the layout is the one of every pipeline.
+        // SAFETY: this encoder records the command buffer; the set is kept, and all pipelines share the layout.
         unsafe {
             self.gpu.device.cmd_bind_descriptor_sets(
                 self.raw,
@@ -262,44 +264,35 @@ impl Encoder {
     /// Sets the push constants.
     pub fn push<T: bytemuck::Pod>(&mut self, layouts: &SetLayouts, value: &T) {
         let (stages, bytes) = (layouts.push_stages(), bytemuck::bytes_of(value));
-        // SAFETY: recording into our own buffer; `interface` asserts that the structs fit.
+        // SAFETY: this encoder records the command buffer; `interface` asserts that the structs fit.
         unsafe { self.gpu.device.cmd_push_constants(self.raw, layouts.pipeline, stages, 0, bytes) };
     }
 
     /// Binds 32-bit indices.
     pub fn bind_indices(&mut self, buffer: &Arc<Buffer>) {
         self.keep(buffer);
-        // SAFETY: recording into our own buffer; the index buffer is kept.
+        // SAFETY: this encoder records the command buffer; the index buffer is kept.
         unsafe { self.gpu.device.cmd_bind_index_buffer(self.raw, buffer.raw, 0, vk::IndexType::UINT32) };
     }
 
-    /// Draws without buffers.
+    /// Draws `vertices` vertices without an index buffer.
     pub fn draw(&mut self, vertices: u32) {
-        // SAFETY: recording into our own buffer.
+        // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_draw(self.raw, vertices, 1, 0, 0) };
     }
 
-    /// Draws `count` indices from `first`.
+    /// Draws `count` indices, beginning with index number `first`.
     pub fn draw_indexed(&mut self, count: u32, first: u32) {
-        // SAFETY: recording into our own buffer; `scene` promises indices in range.
+        // SAFETY: this encoder records the command buffer; the loader has checked that the indices are in range.
         unsafe { self.gpu.device.cmd_draw_indexed(self.raw, count, 1, first, 0, 0) };
     }
 
-    /// Copies part of a buffer.
-    pub fn copy_buffer(&mut self, from: &Arc<Buffer>, from_offset: u64, to: &Arc<Buffer>, size: u64) {
-        self.keep(from);
-        self.keep(to);
-        let region = [vk::BufferCopy { src_offset: from_offset, dst_offset: 0, size }];
-        // SAFETY: recording into our own buffer; both buffers are kept.
-        unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
-    }
-
-    /// SYNC: copies before this are visible to every shader and index read after it, and to the CPU after the fence.
+    /// SYNC: makes the writes of earlier copies visible to all later commands, and to the CPU after the fence.
     pub fn copies_done(&mut self) {
         self.writes_done(vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
     }
 
-    /// SYNC: what these stages wrote before is visible to all that comes after, and to the CPU after the fence.
+    /// SYNC: makes earlier writes of a stage visible to all later commands, and to the CPU after the fence.
     pub(super) fn writes_done(&mut self, stage: vk::PipelineStageFlags2, access: vk::AccessFlags2) {
         let barrier = [vk::MemoryBarrier2::default()
             .src_stage_mask(stage)
@@ -309,78 +302,7 @@ impl Encoder {
                 vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE | vk::AccessFlags2::HOST_READ,
             )];
         let info = vk::DependencyInfo::default().memory_barriers(&barrier);
-        // SAFETY: recording into our own buffer.
+        // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };
-    }
-
-    /// Fills every mip level, in [`Use::CopyTo`], from tightly packed levels that follow each other, each with all its layers.
-    pub fn copy_to_image(&mut self, from: &Arc<Buffer>, offset: u64, to: &Arc<Image>) {
-        self.keep(from);
-        self.keep(to);
-        let mut regions = Vec::new();
-        let mut at = offset;
-        for level in 0..to.desc().mips {
-            let region = whole_level(to, level, at);
-            at += to.desc().level_bytes(level);
-            regions.push(region);
-        }
-        // SAFETY: recording into our own buffer; buffer and image are kept.
-        unsafe {
-            let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-            self.gpu.device.cmd_copy_buffer_to_image(self.raw, from.raw, to.raw, layout, &regions);
-        }
-    }
-
-    /// Reads every mip level, in [`Use::CopyFrom`], in the order that [`Encoder::copy_to_image`] takes.
-    pub fn copy_levels_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>, offset: u64) {
-        let mut at = offset;
-        for level in 0..from.desc().mips {
-            self.copy_region(from, whole_level(from, level, at), to);
-            at += from.desc().level_bytes(level);
-        }
-    }
-
-    /// Reads mip level 0, in [`Use::CopyFrom`], into tightly packed rows.
-    pub fn copy_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>) {
-        self.copy_region(from, whole_level(from, 0, 0), to);
-    }
-
-    /// Reads one pixel of an image in [`Use::CopyFrom`].
-    pub fn copy_pixel(&mut self, from: &Arc<Image>, at: (u32, u32), to: &Arc<Buffer>) {
-        self.copy_region(from, one_pixel(from, at), to);
-    }
-
-    fn copy_region(&mut self, from: &Arc<Image>, region: vk::BufferImageCopy, to: &Arc<Buffer>) {
-        self.keep(from);
-        self.keep(to);
-        // SAFETY: recording into our own buffer; buffer and image are kept, and the buffer holds the region.
-        unsafe {
-            let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-            self.gpu.device.cmd_copy_image_to_buffer(self.raw, from.raw, layout, to.raw, &[region]);
-        }
-    }
-}
-
-/// One pixel of mip level 0.
-fn one_pixel(image: &Image, (x, y): (u32, u32)) -> vk::BufferImageCopy {
-    vk::BufferImageCopy {
-        image_offset: vk::Offset3D { x: x as i32, y: y as i32, z: 0 },
-        image_extent: vk::Extent3D { width: 1, height: 1, depth: 1 },
-        ..whole_level(image, 0, 0)
-    }
-}
-
-fn whole_level(image: &Image, level: u32, offset: u64) -> vk::BufferImageCopy {
-    let side = |pixels: u32| (pixels >> level).max(1);
-    vk::BufferImageCopy {
-        buffer_offset: offset,
-        image_subresource: vk::ImageSubresourceLayers {
-            aspect_mask: image.aspect(),
-            mip_level: level,
-            base_array_layer: 0,
-            layer_count: image.desc().layers,
-        },
-        image_extent: vk::Extent3D { width: side(image.desc().width), height: side(image.desc().height), depth: 1 },
-        ..Default::default()
     }
 }

@@ -1,67 +1,131 @@
-//! What can go wrong on the device, in words for the person at the screen.
+//! Errors of the device layer, worded for the person at the screen.
 
 use ash::vk;
+use gpu_allocator::AllocationError;
 
-/// A failure of the Vulkan device or of what was asked of it.
+/// A failure of the Vulkan device or of a request to it.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    /// No Vulkan loader library.
+    /// There is no Vulkan loader library.
     #[error(
-        "no Vulkan loader found ({0}); install one, on Debian and Ubuntu: apt-get install libvulkan1 mesa-vulkan-drivers"
+        "no Vulkan loader found ({0}). Install one; on Debian and Ubuntu: apt-get install libvulkan1 mesa-vulkan-drivers"
     )]
     NoLoader(String),
-    /// The loader is there, but no device fits.
+    /// The loader is there, but Specula can use none of its devices.
     #[error("no usable Vulkan device: {0}")]
     NoDevice(String),
-    /// The validation layers were asked for and are missing.
+    /// Validation was requested, but its layer is missing.
     #[error(
         "the Vulkan validation layers are not installed; on Debian and Ubuntu: apt-get install vulkan-validationlayers"
     )]
     NoValidation,
-    /// The driver gave up on the device.
+    /// The driver gave up on the device, with what Specula was doing.
     #[error(
-        "the graphics device was lost while {0}. An endless loop or a very long shader is the usual cause: the driver stops \
-         it after a few seconds. Undo the last edit and start again"
+        "the graphics device was lost while {0}. Usually an endless loop or a very long shader is the cause: the driver \
+         stops it after a few seconds. Undo the last edit and start again"
     )]
     DeviceLost(&'static str),
-    /// Out of device memory, with what was being made.
-    #[error("out of graphics memory while {0}; a smaller window, `--set view.msaa=1` or a smaller model needs less")]
+    /// Out of memory on the device or the host, with what Specula was doing.
+    #[error(
+        "out of graphics memory while {0}. A smaller window, fewer samples (`--set view.msaa=1`) or a smaller model \
+         needs less"
+    )]
     OutOfMemory(String),
-    /// Any other Vulkan result.
+    /// Any other Vulkan error.
     #[error("Vulkan failed while {action}: {result}")]
     Vulkan {
-        /// What was being done, as "creating the swapchain".
+        /// What Specula was doing, as "creating the swapchain".
         action: String,
         /// The result code.
         result: vk::Result,
     },
-    /// The allocator refused.
-    #[error("allocating memory for {what} failed: {message}")]
+    /// The allocator failed for another reason than a lack of memory.
+    #[error("the memory allocator failed while {action}: {message}")]
     Allocation {
-        /// The object's name.
-        what: String,
+        /// What Specula was doing, as "creating the image `depth`".
+        action: String,
         /// The allocator's own message.
         message: String,
     },
     /// A pipeline needs a stage that the shader tree does not have.
     #[error("the shader tree has no {0}")]
     NoStage(String),
-    /// The user-interface renderer failed.
+    /// The user interface renderer failed.
     #[error("drawing the user interface failed: {0}")]
     Ui(String),
 }
 
-/// Adds what was being done to a Vulkan result.
+impl GpuError {
+    /// The error of a Vulkan call. `action` says what Specula was doing; `object` names the object, or is empty.
+    pub(super) fn vulkan(result: vk::Result, action: &'static str, object: &str) -> Self {
+        let full = || if object.is_empty() { action.to_owned() } else { format!("{action} {object}") };
+        match result {
+            vk::Result::ERROR_DEVICE_LOST => Self::DeviceLost(action),
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | vk::Result::ERROR_OUT_OF_HOST_MEMORY => Self::OutOfMemory(full()),
+            result => Self::Vulkan { action: full(), result },
+        }
+    }
+
+    /// The error of the allocator.
+    pub(super) fn allocation(error: &AllocationError, action: &str) -> Self {
+        match error {
+            // Mapping fails only when the host lacks memory or address space.
+            AllocationError::OutOfMemory | AllocationError::FailedToMap(_) => Self::OutOfMemory(action.to_owned()),
+            // gpu-allocator passes this result on as text only.
+            AllocationError::Internal(text) if text.contains("ERROR_OUT_OF_HOST_MEMORY") => {
+                Self::OutOfMemory(action.to_owned())
+            }
+            other => Self::Allocation { action: action.to_owned(), message: other.to_string() },
+        }
+    }
+}
+
+/// Turns Vulkan results into errors that say what Specula was doing.
 pub(super) trait Context<T> {
+    /// `action` continues "failed while", as "creating a fence".
     fn context(self, action: &'static str) -> Result<T, GpuError>;
+
+    /// The same for an object with a name, as "the image `depth`".
+    fn context_of(self, action: &'static str, object: &str) -> Result<T, GpuError>;
 }
 
 impl<T> Context<T> for Result<T, vk::Result> {
     fn context(self, action: &'static str) -> Result<T, GpuError> {
-        self.map_err(|result| match result {
-            vk::Result::ERROR_DEVICE_LOST => GpuError::DeviceLost(action),
-            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => GpuError::OutOfMemory(action.into()),
-            result => GpuError::Vulkan { action: action.into(), result },
-        })
+        self.context_of(action, "")
+    }
+
+    fn context_of(self, action: &'static str, object: &str) -> Result<T, GpuError> {
+        self.map_err(|result| GpuError::vulkan(result, action, object))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_lack_of_memory_is_out_of_memory() {
+        for result in [vk::Result::ERROR_OUT_OF_DEVICE_MEMORY, vk::Result::ERROR_OUT_OF_HOST_MEMORY] {
+            let error = Err::<(), _>(result).context_of("creating the image", "`depth`").unwrap_err();
+            assert!(matches!(&error, GpuError::OutOfMemory(what) if what == "creating the image `depth`"), "{error:?}");
+            // The text that gpu-allocator 0.28 makes of a result that it does not know.
+            let text = format!("Unexpected error in vkAllocateMemory: {result:?}");
+            if result == vk::Result::ERROR_OUT_OF_HOST_MEMORY {
+                let error = GpuError::allocation(&AllocationError::Internal(text), "creating the image `depth`");
+                assert!(matches!(error, GpuError::OutOfMemory(_)), "{error:?}");
+            }
+        }
+        for error in [AllocationError::OutOfMemory, AllocationError::FailedToMap("no address space".into())] {
+            let error = GpuError::allocation(&error, "creating the image `depth`");
+            assert!(matches!(error, GpuError::OutOfMemory(_)), "{error:?}");
+        }
+    }
+
+    #[test]
+    fn other_failures_are_not_out_of_memory() {
+        let error = Err::<(), _>(vk::Result::ERROR_DEVICE_LOST).context("submitting a frame").unwrap_err();
+        assert!(matches!(error, GpuError::DeviceLost("submitting a frame")), "{error:?}");
+        let error = GpuError::allocation(&AllocationError::NoCompatibleMemoryTypeFound, "creating the buffer `task`");
+        assert!(matches!(error, GpuError::Allocation { .. }), "{error:?}");
     }
 }

@@ -1,15 +1,16 @@
-//! Images with their view, and samplers.
+//! Images with their views.
 
 use std::sync::Arc;
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::Allocation;
 
 use super::device::Gpu;
 use super::error::{Context, GpuError};
+use super::memory::{Resource, allocate};
 
-/// What an image is.
+/// Size, format and usage of an image.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageDesc {
     /// Pixels across.
@@ -20,11 +21,11 @@ pub struct ImageDesc {
     pub mips: u32,
     /// Layers: 1, or the six faces of a cube.
     pub layers: u32,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// Format.
+    /// Format of a texel.
     pub format: vk::Format,
-    /// Usage.
+    /// Every way in which commands may use the image.
     pub usage: vk::ImageUsageFlags,
 }
 
@@ -62,7 +63,8 @@ fn texel_bytes(format: vk::Format) -> u64 {
     }
 }
 
-/// An image, its memory and a view of all of it; one view of each level, too, when shaders write it. A swapchain's image has no memory of its own.
+/// An image with its memory and a view of all levels. An image with `STORAGE` usage also has a view of each level. The memory
+/// of a swapchain's image belongs to the swapchain.
 pub struct Image {
     gpu: Arc<Gpu>,
     pub(super) raw: vk::Image,
@@ -74,10 +76,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// Makes an image: 2D, or a cube of six layers.
+    /// Creates an image: 2D, or a cube if it has six layers. GPU debuggers and validation messages show `name`.
     ///
     /// # Errors
-    /// Out of memory, or a format that the device lacks.
+    /// The device is out of memory ([`GpuError::OutOfMemory`]) or lacks the format.
     pub fn new(gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
         let is_cube = desc.layers == CUBE_FACES;
         let flags = if is_cube { vk::ImageCreateFlags::CUBE_COMPATIBLE } else { vk::ImageCreateFlags::empty() };
@@ -90,39 +92,57 @@ impl Image {
             .array_layers(desc.layers)
             .samples(vk::SampleCountFlags::from_raw(desc.samples))
             .usage(desc.usage);
+        let what = format!("`{name}` ({} x {}, {} samples)", desc.width, desc.height, desc.samples);
         // SAFETY: the device is live.
-        let raw = unsafe { gpu.device.create_image(&info, None) }.context("creating an image")?;
-        let view = vk::ImageView::null();
-        let mut image =
-            Self { gpu: gpu.clone(), raw, view, level_views: Vec::new(), allocation: None, owned: true, desc };
-        // SAFETY: `raw` belongs to this device.
-        let requirements = unsafe { gpu.device.get_image_memory_requirements(raw) };
-        let allocation = gpu
-            .lock_allocator()
-            .allocate(&AllocationCreateDesc {
+        let raw = unsafe { gpu.device.create_image(&info, None) }.context_of("creating the image", &what)?;
+        // From here on, `Drop` frees what is already there when a later step fails.
+        let mut image = Self {
+            gpu: gpu.clone(),
+            raw,
+            view: vk::ImageView::null(),
+            level_views: Vec::new(),
+            allocation: None,
+            owned: true,
+            desc,
+        };
+        gpu.name(raw, name);
+        let allocation = image.allocation.insert(allocate(
+            gpu,
+            &Resource {
                 name,
-                requirements,
+                action: &format!("creating the image {what}"),
+                // SAFETY: `raw` belongs to this device.
+                requirements: unsafe { gpu.device.get_image_memory_requirements(raw) },
                 location: MemoryLocation::GpuOnly,
                 linear: false,
-                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-            })
-            .map_err(|e| GpuError::Allocation { what: name.into(), message: e.to_string() })?;
-        // SAFETY: the memory was allocated for these requirements and is bound once.
-        let bound = unsafe { gpu.device.bind_image_memory(raw, allocation.memory(), allocation.offset()) };
-        image.allocation = Some(allocation);
-        bound.context("binding image memory")?;
+                limit: "image-bytes",
+            },
+        )?);
+        // SAFETY: the memory was allocated for this image and is bound once.
+        unsafe { gpu.device.bind_image_memory(raw, allocation.memory(), allocation.offset()) }
+            .context_of("binding memory to the image", &what)?;
         image.view = create_view(gpu, raw, &desc)?;
+        gpu.name(image.view, name);
         if desc.usage.contains(vk::ImageUsageFlags::STORAGE) {
             for level in 0..desc.mips {
-                image.level_views.push(create_level_view(gpu, raw, &desc, level)?);
+                let view = create_level_view(gpu, raw, &desc, level)?;
+                gpu.name(view, &format!("{name} level {level}"));
+                image.level_views.push(view);
             }
         }
         Ok(Arc::new(image))
     }
 
-    /// Wraps an image of the swapchain, which the swapchain frees.
-    pub(super) fn from_swapchain(gpu: &Arc<Gpu>, raw: vk::Image, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
+    /// Wraps an image that a swapchain owns.
+    pub(super) fn from_swapchain(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        raw: vk::Image,
+        desc: ImageDesc,
+    ) -> Result<Arc<Self>, GpuError> {
         let view = create_view(gpu, raw, &desc)?;
+        gpu.name(raw, name);
+        gpu.name(view, name);
         Ok(Arc::new(Self {
             gpu: gpu.clone(),
             raw,
@@ -134,7 +154,7 @@ impl Image {
         }))
     }
 
-    /// Its description.
+    /// Size, format and usage.
     pub fn desc(&self) -> &ImageDesc {
         &self.desc
     }
@@ -153,7 +173,7 @@ fn create_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc) -> Result<vk::ImageV
     view_of_levels(gpu, raw, desc, kind, 0..desc.mips)
 }
 
-/// What a shader's `image2DArray` writes.
+/// A view of one level with all its layers, for a shader's `image2DArray`.
 fn create_level_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc, level: u32) -> Result<vk::ImageView, GpuError> {
     view_of_levels(gpu, raw, desc, vk::ImageViewType::TYPE_2D_ARRAY, level..level + 1)
 }
@@ -180,7 +200,7 @@ fn view_of_levels(
 
 impl Drop for Image {
     fn drop(&mut self) {
-        // SAFETY: the last `Arc` is gone, so no command in flight uses the image; a null view may be destroyed.
+        // SAFETY: the last `Arc` is gone, so no command in flight uses the image. Vulkan ignores a null view.
         unsafe {
             for view in std::iter::once(&self.view).chain(&self.level_views) {
                 self.gpu.device.destroy_image_view(*view, None);
@@ -192,74 +212,5 @@ impl Drop for Image {
         if let Some(allocation) = self.allocation.take() {
             let _ = self.gpu.lock_allocator().free(allocation);
         }
-    }
-}
-
-/// How a texture is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct SamplerDesc {
-    /// Magnification.
-    pub mag: vk::Filter,
-    /// Minification.
-    pub min: vk::Filter,
-    /// Between mip levels.
-    pub mip: vk::SamplerMipmapMode,
-    /// Whether levels beyond 0 are read.
-    pub mips: bool,
-    /// Horizontal wrap.
-    pub wrap_u: vk::SamplerAddressMode,
-    /// Vertical wrap.
-    pub wrap_v: vk::SamplerAddressMode,
-    /// Samples along the axis of anisotropy; 1 is off.
-    pub anisotropy: u32,
-}
-
-impl SamplerDesc {
-    /// The nearest texel of level 0, clamped.
-    pub const NEAREST: Self = Self {
-        mag: vk::Filter::NEAREST,
-        min: vk::Filter::NEAREST,
-        mip: vk::SamplerMipmapMode::NEAREST,
-        mips: false,
-        wrap_u: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-        wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-        anisotropy: 1,
-    };
-}
-
-/// A sampler.
-pub struct Sampler {
-    gpu: Arc<Gpu>,
-    pub(super) raw: vk::Sampler,
-}
-
-impl Sampler {
-    /// Makes a sampler.
-    ///
-    /// # Errors
-    /// Too many samplers.
-    pub fn new(gpu: &Arc<Gpu>, desc: &SamplerDesc) -> Result<Arc<Self>, GpuError> {
-        let anisotropy = (desc.anisotropy as f32).min(gpu.properties.limits.max_sampler_anisotropy);
-        let info = vk::SamplerCreateInfo::default()
-            .mag_filter(desc.mag)
-            .min_filter(desc.min)
-            .mipmap_mode(desc.mip)
-            .address_mode_u(desc.wrap_u)
-            .address_mode_v(desc.wrap_v)
-            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .anisotropy_enable(gpu.anisotropy && anisotropy > 1.0)
-            .max_anisotropy(anisotropy.max(1.0))
-            // 0.25 keeps minification apart from magnification at level 0, as the Vulkan specification advises for GL's filters.
-            .max_lod(if desc.mips { vk::LOD_CLAMP_NONE } else { 0.25 });
-        // SAFETY: the device is live.
-        let raw = unsafe { gpu.device.create_sampler(&info, None) }.context("creating a sampler")?;
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw }))
-    }
-}
-
-impl Drop for Sampler {
-    fn drop(&mut self) {
-        // SAFETY: the last `Arc` is gone, so no descriptor in flight uses the sampler.
-        unsafe { self.gpu.device.destroy_sampler(self.raw, None) };
     }
 }

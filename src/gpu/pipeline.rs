@@ -1,4 +1,4 @@
-//! Shader modules and graphics pipelines.
+//! Shader modules and pipelines.
 
 use std::ffi::CStr;
 use std::sync::Arc;
@@ -15,32 +15,35 @@ const MAIN: &CStr = c"main";
 pub struct ShaderModule {
     gpu: Arc<Gpu>,
     raw: vk::ShaderModule,
+    name: String,
 }
 
 impl ShaderModule {
-    /// Hands SPIR-V to the driver.
+    /// Creates a module from SPIR-V. `name` is the stage's path, as `pbr.frag`; pipelines are named after their modules.
     ///
     /// # Errors
-    /// The driver refuses the module.
-    pub fn new(gpu: &Arc<Gpu>, spirv: &[u32]) -> Result<Arc<Self>, GpuError> {
+    /// The driver rejects the module or is out of memory.
+    pub fn new(gpu: &Arc<Gpu>, name: &str, spirv: &[u32]) -> Result<Arc<Self>, GpuError> {
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
-        // SAFETY: the words come from shaderc and `shader::specialize`, which make valid SPIR-V of what they compile.
-        let raw = unsafe { gpu.device.create_shader_module(&info, None) }.context("creating a shader module")?;
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw }))
+        // SAFETY: the words come from shaderc and `shader::specialize`, whose output is valid SPIR-V.
+        let raw = unsafe { gpu.device.create_shader_module(&info, None) };
+        let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
+        gpu.name(raw, name);
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned() }))
     }
 }
 
 impl Drop for ShaderModule {
     fn drop(&mut self) {
-        // SAFETY: modules are used only while pipelines are created, by callers that hold the `Arc`.
+        // SAFETY: only pipeline creation uses a module, and its caller holds an `Arc` of it.
         unsafe { self.gpu.device.destroy_shader_module(self.raw, None) };
     }
 }
 
-/// Values for specialization constants: `constant_id` and the four bytes of the value.
+/// Values of specialization constants: pairs of `constant_id` and the four bytes of the value.
 pub type Specialization = Vec<(u32, u32)>;
 
-/// What a pipeline's topology may be changed to while recording.
+/// The class of topologies that a pipeline's dynamic topology must stay in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PrimitiveClass {
     /// Point lists.
@@ -52,38 +55,46 @@ pub enum PrimitiveClass {
     Triangles,
 }
 
-/// What becomes of a pipeline's fragments.
+/// How a pipeline writes its fragments to the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Raster {
-    /// They replace what is there.
+    /// Fragments replace the target.
     #[default]
     Solid,
     /// Premultiplied alpha blending, without depth writes.
     Blended,
-    /// The edges of triangles alone, where the device can; else as [`Raster::Solid`].
+    /// As [`Raster::Solid`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
     Lines,
-    /// They add up, without depth test; alpha is the largest.
+    /// Additive blending without depth test; alpha becomes the maximum.
     Added,
-    /// They are mixed with what is there, by a weight that is set while recording.
+    /// Linear interpolation from the target to the fragment, by the weight of [`super::Encoder::set_weight`].
     Averaged,
 }
 
-/// What a graphics pipeline is made of.
+/// Stages and fixed state of a graphics pipeline.
 pub struct PipelineDesc<'a> {
     /// Vertex stage.
     pub vertex: &'a ShaderModule,
     /// Fragment stage.
     pub fragment: &'a ShaderModule,
-    /// Color target.
+    /// Format of the color target.
     pub color: vk::Format,
-    /// Whether there is a D32 depth target, tested reversed (greater is nearer).
+    /// Whether there is a D32 depth target, with reversed depth (greater is nearer).
     pub depth: bool,
-    /// What becomes of the fragments.
+    /// How fragments are written.
     pub raster: Raster,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// Kind of primitive.
+    /// Class of primitives.
     pub class: PrimitiveClass,
+}
+
+impl PipelineDesc<'_> {
+    fn name(&self) -> String {
+        let samples = if self.samples > 1 { format!(", {} samples", self.samples) } else { String::new() };
+        let Self { vertex, fragment, raster, class, .. } = self;
+        format!("{} + {} ({raster:?} {class:?}{samples})", vertex.name, fragment.name)
+    }
 }
 
 /// A graphics pipeline. Viewport, scissor, cull mode, front face and topology are dynamic.
@@ -94,10 +105,10 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Makes a pipeline.
+    /// Creates a pipeline. Its debug name is made of the names of its modules and its raster state.
     ///
     /// # Errors
-    /// The driver refuses it or is out of memory.
+    /// The driver rejects the pipeline or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, desc: &PipelineDesc<'_>) -> Result<Arc<Self>, GpuError> {
         let stage = |stage, module: &ShaderModule| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module.raw).name(MAIN)
@@ -159,7 +170,9 @@ impl Pipeline {
         // SAFETY: every pointer in `info` lives until the call returns; modules and layout are live. The cache is internally
         // synchronized.
         let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None) };
-        let raw = made.map_err(|(_, result)| result).context("creating a pipeline")?[0];
+        let name = desc.name();
+        let raw = made.map_err(|(_, result)| result).context_of("creating the pipeline", &format!("`{name}`"))?[0];
+        gpu.name(raw, &name);
         Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw }))
     }
 }
@@ -172,10 +185,10 @@ pub struct ComputePipeline {
 }
 
 impl ComputePipeline {
-    /// Makes a pipeline of one stage.
+    /// Creates a pipeline of one stage, named after its module.
     ///
     /// # Errors
-    /// The driver refuses it or is out of memory.
+    /// The driver rejects the pipeline or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, module: &ShaderModule) -> Result<Arc<Self>, GpuError> {
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
@@ -185,14 +198,16 @@ impl ComputePipeline {
         // SAFETY: every pointer in `info` lives until the call returns; module and layout are live. The cache is internally
         // synchronized.
         let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipeline_cache, &[info], None) };
-        let raw = made.map_err(|(_, result)| result).context("creating a compute pipeline")?[0];
+        let name = format!("`{}`", module.name);
+        let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
+        gpu.name(raw, &module.name);
         Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw }))
     }
 }
 
 impl Drop for ComputePipeline {
     fn drop(&mut self) {
-        // SAFETY: the last `Arc` is gone; a submission in flight would hold one.
+        // SAFETY: the last `Arc` is gone, and a submission in flight would hold one.
         unsafe { self.gpu.device.destroy_pipeline(self.raw, None) };
     }
 }
@@ -225,7 +240,7 @@ fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
 
 impl Drop for Pipeline {
     fn drop(&mut self) {
-        // SAFETY: the last `Arc` is gone; a frame in flight would hold one.
+        // SAFETY: the last `Arc` is gone, and a submission in flight would hold one.
         unsafe { self.gpu.device.destroy_pipeline(self.raw, None) };
     }
 }

@@ -1,10 +1,10 @@
-//! Draws egui's output. The renderer is egui-ash-renderer's; this gives it our device, and its textures a life of their own.
+//! Draws egui's output with egui-ash-renderer on our device, queue and allocator.
 
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
 use ash::vk;
-use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer};
+use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, RendererError};
 
 use super::device::Gpu;
 use super::encoder::Encoder;
@@ -18,10 +18,10 @@ pub struct UiRenderer {
 }
 
 impl UiRenderer {
-    /// Makes the renderer for targets of `format`, with `in_flight` frame slots.
+    /// Creates the renderer for targets of `format`, with `in_flight` frame slots.
     ///
     /// # Errors
-    /// Out of memory.
+    /// The device is out of memory.
     pub fn new(gpu: &Arc<Gpu>, format: vk::Format, in_flight: usize) -> Result<Self, GpuError> {
         let mode = RenderMode::DynamicRendering(DynamicRendering {
             color_attachment_format: format,
@@ -34,14 +34,17 @@ impl UiRenderer {
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
         // SAFETY: the device is live.
         let pool = unsafe { gpu.device.create_command_pool(&info, None) }.context("creating a command pool")?;
+        gpu.name(pool, "user interface uploads");
         Ok(Self { gpu: gpu.clone(), inner: ManuallyDrop::new(inner), pool })
     }
 
-    /// Uploads new and changed textures. A changed one may be in use by a frame in flight, so the caller has waited for all.
+    /// Uploads new and changed textures. A frame in flight may use a changed texture, so the caller must have waited for all
+    /// frames ([`super::Frames::wait_all`]).
     ///
     /// # Errors
-    /// Out of memory.
+    /// The device is out of memory.
     pub fn set_textures(&mut self, delta: &egui::TexturesDelta) -> Result<(), GpuError> {
+        // SYNC: the renderer submits each upload, and waits for the queue, which must stay locked meanwhile.
         let queue = self.gpu.lock_queue();
         for (id, images) in &delta.set {
             for image in images {
@@ -51,18 +54,19 @@ impl UiRenderer {
         Ok(())
     }
 
-    /// Frees textures that no frame in flight uses.
+    /// Frees textures. The caller must have waited for every frame that uses them.
     ///
     /// # Errors
-    /// An unknown texture.
+    /// A texture is unknown.
     pub fn free_textures(&mut self, delta: &egui::TexturesDelta) -> Result<(), GpuError> {
         delta.free.iter().try_for_each(|id| self.inner.free_texture(*id).map_err(ui))
     }
 
-    /// Draws inside a rendering pass over a target of `extent` pixels.
+    /// Draws `primitives` to a target of `extent` pixels, between [`Encoder::begin_rendering`] and
+    /// [`Encoder::end_rendering`].
     ///
     /// # Errors
-    /// Out of memory.
+    /// The device is out of memory.
     pub fn draw(
         &mut self,
         encoder: &mut Encoder,
@@ -75,14 +79,20 @@ impl UiRenderer {
     }
 }
 
-fn ui(error: egui_ash_renderer::RendererError) -> GpuError {
-    GpuError::Ui(error.to_string())
+fn ui(error: RendererError) -> GpuError {
+    let action = "drawing the user interface";
+    match error {
+        RendererError::Vulkan(result) => GpuError::vulkan(result, action, ""),
+        RendererError::GpuAllocator(error) => GpuError::allocation(&error, action),
+        other => GpuError::Ui(other.to_string()),
+    }
 }
 
 impl Drop for UiRenderer {
     fn drop(&mut self) {
+        // SYNC: at exit only; the renderer frees its own objects, which the last frames may still use.
         self.gpu.wait_idle();
-        // SAFETY: the device is idle, and the renderer goes before the device that `gpu` keeps alive.
+        // SAFETY: the device is idle, `gpu` keeps it alive, and nothing uses the renderer after this.
         unsafe {
             ManuallyDrop::drop(&mut self.inner);
             self.gpu.device.destroy_command_pool(self.pool, None);

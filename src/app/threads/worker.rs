@@ -9,7 +9,7 @@ use std::time::Instant;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::{Message, Outbox};
-use crate::gpu::{Gpu, SetLayouts};
+use crate::gpu::{Gpu, SetLayouts, fault};
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
 use crate::render::{
     MaterialVariant, Outcome, PipelineRequest, PipelineSet, Reload, Reloader, Scene, TargetFormat, tree_name,
@@ -117,6 +117,7 @@ impl Worker {
             inbox,
             edits: edits.clone(),
             edits_taken: 0,
+            reloads: 0,
             outbox: outbox.clone(),
         };
         let thread = outbox.spawn("worker", move |_| state.run());
@@ -190,6 +191,7 @@ struct Thread {
     edits: Arc<AtomicU64>,
     /// How many of `edits` were taken out of the inbox.
     edits_taken: u64,
+    reloads: u64,
     outbox: Outbox,
 }
 
@@ -255,6 +257,8 @@ impl Thread {
 
     /// Compiles and builds; returns the new set, if there is one.
     fn reload(&mut self, edit: Edit) -> Option<Arc<PipelineSet>> {
+        self.reloads += 1;
+        assert!(fault::value("worker-panic") != Some(self.reloads), "the injected fault worker-panic");
         let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
         let request =
             |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);

@@ -234,7 +234,7 @@ impl PipelineSet {
 
     /// A stage with these values for its constants.
     fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
-        ShaderModule::new(&self.gpu, &specialize(self.spirv(path)?, constants))
+        ShaderModule::new(&self.gpu, path, &specialize(self.spirv(path)?, constants))
     }
 
     /// A compute pipeline, made at its first use.

@@ -27,7 +27,7 @@ pub(crate) fn materials(
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let buffer = Buffer::new(gpu, "material", size_of_val(&packed) as u64, usage, Memory::Upload)?;
         buffer.write(0, bytemuck::bytes_of(&packed));
-        let mut writer = SetWriter::default().buffer(0, &buffer);
+        let mut writer = SetWriter::default().named(&format!("material `{}`", material.name)).buffer(0, &buffer);
         for (slot, used) in material.textures.iter().enumerate() {
             let wanted = used.map(|u| model.textures[u.texture].sampler).unwrap_or_default();
             let sampler = match samplers.get(&wanted) {

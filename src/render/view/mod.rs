@@ -178,7 +178,7 @@ impl View {
 
         // HDR to the picture: exposure, tone map, sRGB.
         encoder.transition(output.image, output.before, Use::Color);
-        passes.tone_map(encoder, output.image, rect);
+        encoder.pass("tone map", |encoder| passes.tone_map(encoder, output.image, rect));
         Ok(())
     }
 

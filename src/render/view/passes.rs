@@ -50,8 +50,14 @@ impl Passes<'_> {
         let sorted =
             self.frame.scene.as_ref().map(|scene| sort(scene, self.frame.state.camera.eye)).unwrap_or_default();
         if let Some(behind) = &targets.behind {
-            self.behind(encoder, &sorted.opaque, behind);
+            encoder.pass("behind", |encoder| self.behind(encoder, &sorted.opaque, behind));
         }
+        encoder.pass("model", |encoder| self.surfaces(encoder, &sorted));
+    }
+
+    /// Draws the surfaces that `behind` has not drawn, and the sky.
+    fn surfaces(&self, encoder: &mut Encoder, sorted: &Sorted<'_>) {
+        let targets = self.targets;
         // After `behind` the opaque surfaces are there, unless this mode shows them otherwise than they are seen through
         // transmissive ones.
         let has_opaque = targets.behind.is_some() && !self.request().draws_opaque_twice();
@@ -103,6 +109,10 @@ impl Passes<'_> {
     pub(super) fn accumulate(&self, encoder: &mut Encoder, index: u32) {
         let Some(mean) = &self.targets.mean else { return };
         let Some(pipeline) = self.request().average_key().and_then(|key| self.pipeline(&key)) else { return };
+        encoder.pass("accumulate", |encoder| self.add_to_mean(encoder, mean, pipeline, index));
+    }
+
+    fn add_to_mean(&self, encoder: &mut Encoder, mean: &Arc<Image>, pipeline: &Arc<Pipeline>, index: u32) {
         encoder.transition(mean, if index == 0 { Use::Undefined } else { Use::Sampled }, Use::Color);
         encoder.begin_rendering(&Attachments {
             color: mean,

@@ -1,0 +1,55 @@
+//! Faults that tests inject through the environment variable `SPECULA_FAULT`. For tests only: users never set it.
+//!
+//! The form is `SPECULA_FAULT=name:value[,name:value]`, where a value is an unsigned integer. The process reads the variable
+//! once, at the first question. The device layer knows these names; other layers may ask for names of their own.
+//!
+//! - `image-bytes:N`: creating an image of more than `N` bytes of device memory fails with [`super::GpuError::OutOfMemory`].
+//! - `buffer-bytes:N`: the same for buffers.
+
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// The environment variable that this module reads.
+pub const VARIABLE: &str = "SPECULA_FAULT";
+
+/// The value of the fault `name`, or `None` when `SPECULA_FAULT` does not have it.
+pub fn value(name: &str) -> Option<u64> {
+    static FAULTS: OnceLock<BTreeMap<String, u64>> = OnceLock::new();
+    let faults = FAULTS.get_or_init(|| {
+        let text = std::env::var(VARIABLE).unwrap_or_default();
+        parse(&text).unwrap_or_else(|part| {
+            tracing::warn!("{VARIABLE} is ignored: expected `name:number[,name:number]`, found `{part}` in `{text}`");
+            BTreeMap::new()
+        })
+    });
+    faults.get(name).copied()
+}
+
+/// Parses the variable's text. The error is the part that is not a fault.
+fn parse(text: &str) -> Result<BTreeMap<String, u64>, String> {
+    let parts = text.split(',').map(str::trim).filter(|part| !part.is_empty());
+    let fault = |part: &str| {
+        let (name, value) = part.split_once(':')?;
+        Some((name.trim().to_owned(), value.trim().parse().ok()?))
+    };
+    parts.map(|part| fault(part).ok_or_else(|| part.to_owned())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse;
+
+    #[test]
+    fn faults_are_named_numbers() {
+        let faults = parse("image-bytes:1000, lost-frame:3").unwrap();
+        assert_eq!(faults.get("image-bytes"), Some(&1000));
+        assert_eq!(faults.get("lost-frame"), Some(&3));
+        assert!(parse("").unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_part_that_is_no_fault_is_named() {
+        assert_eq!(parse("image-bytes:1000,image").unwrap_err(), "image");
+        assert_eq!(parse("image-bytes:many").unwrap_err(), "image-bytes:many");
+    }
+}

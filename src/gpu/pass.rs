@@ -1,0 +1,68 @@
+//! Passes: labeled regions of commands, whose time on the device is measured.
+
+use ash::vk;
+
+use super::device::Gpu;
+use super::encoder::Encoder;
+
+/// Number of passes of a submission that are timed. Passes beyond it have a label only.
+pub(super) const MAX_TIMED_PASSES: u32 = 64;
+
+/// Timestamps of a submission: two for the whole, then two for each pass.
+pub(super) const MAX_TIMESTAMPS: u32 = 2 + 2 * MAX_TIMED_PASSES;
+
+/// Device time of a pass.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct PassTime {
+    /// The pass's name.
+    pub name: String,
+    /// Milliseconds from the end of all earlier commands to the end of the pass.
+    pub ms: f64,
+}
+
+/// The query pool of the commands being recorded, and the names of the passes timed so far.
+pub(super) struct PassTimer {
+    queries: vk::QueryPool,
+    pub(super) names: Vec<String>,
+}
+
+impl PassTimer {
+    /// `queries` holds [`MAX_TIMESTAMPS`] timestamps, all reset.
+    pub(super) fn new(queries: vk::QueryPool) -> Self {
+        Self { queries, names: Vec::new() }
+    }
+
+    /// The first of the two timestamps of a new pass, if one is free.
+    fn reserve(&mut self, name: &str) -> Option<(vk::QueryPool, u32)> {
+        let pass = u32::try_from(self.names.len()).ok().filter(|pass| *pass < MAX_TIMED_PASSES)?;
+        self.names.push(name.to_owned());
+        Some((self.queries, 2 + 2 * pass))
+    }
+}
+
+impl Encoder {
+    /// Records `commands` as the pass `name`. GPU debuggers and validation messages show the name as a label, and
+    /// [`super::Frames::pass_times`] reports the pass's time once the frame is finished.
+    ///
+    /// Passes may nest, and names may repeat. A pass inside [`Encoder::begin_rendering`] is valid but less exact: it makes a
+    /// software device finish the drawing before it, and a tiled GPU measures whole tiles.
+    pub fn pass<T>(&mut self, name: &str, commands: impl FnOnce(&mut Self) -> T) -> T {
+        let timestamps = self.timer.as_mut().and_then(|timer| timer.reserve(name));
+        self.gpu.begin_label(self.raw, name);
+        if let Some((queries, first)) = timestamps {
+            write_timestamp(&self.gpu, self.raw, queries, first);
+        }
+        let result = commands(self);
+        if let Some((queries, first)) = timestamps {
+            write_timestamp(&self.gpu, self.raw, queries, first + 1);
+        }
+        self.gpu.end_label(self.raw);
+        result
+    }
+}
+
+/// Writes a timestamp when all earlier commands are finished.
+pub(super) fn write_timestamp(gpu: &Gpu, commands: vk::CommandBuffer, queries: vk::QueryPool, query: u32) {
+    // SAFETY: the command buffer is recording and has reset the query.
+    unsafe { gpu.device.cmd_write_timestamp2(commands, vk::PipelineStageFlags2::ALL_COMMANDS, queries, query) };
+}

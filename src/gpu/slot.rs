@@ -1,0 +1,178 @@
+//! A frame slot: one command buffer with its fence and timestamps, and the resources that its commands use.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::device::Gpu;
+use super::encoder::Encoder;
+use super::error::{Context, GpuError};
+use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer, write_timestamp};
+
+/// How long a wait may take before the device counts as lost, in nanoseconds. A frame this long would freeze the desktop.
+const FENCE_TIMEOUT_NS: u64 = 60_000_000_000;
+
+/// Semaphores of a submission that goes to a window.
+#[derive(Clone, Copy, Default)]
+pub struct Submission {
+    pub(super) wait: Option<vk::Semaphore>,
+    pub(super) signal: Option<vk::Semaphore>,
+}
+
+/// Device times of one submission.
+#[derive(Default)]
+pub(super) struct Times {
+    /// Milliseconds of all its commands.
+    pub(super) ms: f64,
+    /// Times of its passes, in the order in which they began.
+    pub(super) passes: Vec<PassTime>,
+}
+
+/// One command buffer with its fence and timestamps.
+pub(super) struct Slot {
+    gpu: Arc<Gpu>,
+    pool: vk::CommandPool,
+    buffer: vk::CommandBuffer,
+    fence: vk::Fence,
+    queries: vk::QueryPool,
+    /// Whether the fence belongs to a submission that nobody has waited for.
+    pending: bool,
+    /// Names of the timed passes of the last submission; `None` before the first.
+    passes: Option<Vec<String>>,
+    kept: Vec<Arc<dyn Any + Send + Sync>>,
+}
+
+impl Slot {
+    /// Creates a slot whose objects are called `name`. `timed` asks for timestamps, if the queue has them.
+    pub(super) fn new(gpu: &Arc<Gpu>, name: &str, timed: bool) -> Result<Self, GpuError> {
+        // A later step that fails leaves null handles, which `Drop` ignores.
+        let mut slot = Self {
+            gpu: gpu.clone(),
+            pool: vk::CommandPool::null(),
+            buffer: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+            queries: vk::QueryPool::null(),
+            pending: false,
+            passes: None,
+            kept: Vec::new(),
+        };
+        let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
+        // SAFETY: the device is live.
+        slot.pool = unsafe { gpu.device.create_command_pool(&info, None) }.context("creating a command pool")?;
+        gpu.name(slot.pool, name);
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(slot.pool).command_buffer_count(1);
+        // SAFETY: the pool is live and only this slot uses it.
+        slot.buffer = unsafe { gpu.device.allocate_command_buffers(&info) }.context("allocating a command buffer")?[0];
+        gpu.name(slot.buffer, name);
+        // SAFETY: the device is live.
+        slot.fence =
+            unsafe { gpu.device.create_fence(&vk::FenceCreateInfo::default(), None) }.context("creating a fence")?;
+        gpu.name(slot.fence, name);
+        if timed && gpu.timestamp_period().is_some() {
+            let info =
+                vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(MAX_TIMESTAMPS);
+            // SAFETY: the device is live.
+            slot.queries = unsafe { gpu.device.create_query_pool(&info, None) }.context("creating a query pool")?;
+            gpu.name(slot.queries, name);
+        }
+        Ok(slot)
+    }
+
+    /// SYNC: waits until the device has run this slot's last submission, then releases the resources that it used.
+    pub(super) fn wait(&mut self) -> Result<(), GpuError> {
+        if self.pending {
+            // SAFETY: the fence is live, and a submission signals it.
+            match unsafe { self.gpu.device.wait_for_fences(&[self.fence], true, FENCE_TIMEOUT_NS) } {
+                Err(vk::Result::TIMEOUT) => return Err(GpuError::DeviceLost("waiting a minute for a frame")),
+                other => other.context("waiting for a frame")?,
+            }
+            self.pending = false;
+        }
+        self.kept.clear();
+        Ok(())
+    }
+
+    /// Whether the device has run this slot's last submission; true before the first, false on a lost device.
+    pub(super) fn is_finished(&self) -> bool {
+        // SAFETY: the fence is live.
+        !self.pending || unsafe { self.gpu.device.get_fence_status(self.fence) } == Ok(true)
+    }
+
+    /// SYNC: waits for the slot's last submission, whose command buffer and timestamps are then recorded anew.
+    pub(super) fn begin(&mut self) -> Result<Encoder, GpuError> {
+        self.wait()?;
+        let device = &self.gpu.device;
+        // SAFETY: no submission is pending, so nothing uses the pool; the buffer belongs to it.
+        unsafe {
+            device.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()).context("resetting commands")?;
+            let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+            device.begin_command_buffer(self.buffer, &info).context("beginning commands")?;
+        }
+        if self.queries == vk::QueryPool::null() {
+            return Ok(Encoder::new(&self.gpu, self.buffer, None));
+        }
+        // SAFETY: the buffer is recording, and no pending submission uses the queries.
+        unsafe { device.cmd_reset_query_pool(self.buffer, self.queries, 0, MAX_TIMESTAMPS) };
+        write_timestamp(&self.gpu, self.buffer, self.queries, 0);
+        Ok(Encoder::new(&self.gpu, self.buffer, Some(PassTimer::new(self.queries))))
+    }
+
+    /// Submits the commands of the last [`Slot::begin`]. If that fails, the slot can begin again.
+    pub(super) fn submit(&mut self, encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
+        let device = &self.gpu.device;
+        self.kept = encoder.kept;
+        let passes = encoder.timer.map(|timer| timer.names);
+        if passes.is_some() {
+            write_timestamp(&self.gpu, self.buffer, self.queries, 1);
+        }
+        // SAFETY: the buffer is recording.
+        unsafe { device.end_command_buffer(self.buffer) }.context("ending commands")?;
+        let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
+        let stage = vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT;
+        // SYNC: color output writes the swapchain image first, so no other stage waits for its acquisition.
+        let wait = sync.wait.map(|s| vk::SemaphoreSubmitInfo::default().semaphore(s).stage_mask(stage));
+        let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+        let signal = sync.signal.map(|s| vk::SemaphoreSubmitInfo::default().semaphore(s).stage_mask(all));
+        let info = vk::SubmitInfo2::default()
+            .command_buffer_infos(&buffers)
+            .wait_semaphore_infos(wait.as_slice())
+            .signal_semaphore_infos(signal.as_slice());
+        let queue = self.gpu.lock_queue();
+        // SAFETY: no submission is pending on the fence, the queue is locked, and `kept` holds all that the commands use.
+        unsafe {
+            device.reset_fences(&[self.fence]).context("resetting a fence")?;
+            device.queue_submit2(*queue, &[info], self.fence).context("submitting a frame")?;
+        }
+        // A failed submission never signals the fence, so only a successful one is waited for.
+        self.pending = true;
+        self.passes = passes;
+        Ok(())
+    }
+
+    /// Device times of the last submission, which must be finished. `None` without timestamps.
+    pub(super) fn times(&self) -> Option<Times> {
+        let names = self.passes.as_ref()?;
+        let mut ticks = vec![0u64; 2 + 2 * names.len()];
+        // SAFETY: a finished submission has written these queries, two for itself and two for each pass.
+        unsafe { self.gpu.device.get_query_pool_results(self.queries, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
+            .ok()?;
+        let mut ms = ticks.chunks_exact(2).map(|pair| self.gpu.ticks_to_ms(pair[0], pair[1]));
+        let whole = ms.next()?;
+        let passes = names.iter().zip(ms).map(|(name, ms)| PassTime { name: name.clone(), ms }).collect();
+        Some(Times { ms: whole, passes })
+    }
+}
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        // SYNC: the device may still run the commands. An error means a lost device, which runs nothing.
+        let _ = self.wait();
+        // SAFETY: the device has run the commands, or is lost. Vulkan ignores null handles.
+        unsafe {
+            self.gpu.device.destroy_query_pool(self.queries, None);
+            self.gpu.device.destroy_fence(self.fence, None);
+            self.gpu.device.destroy_command_pool(self.pool, None);
+        }
+    }
+}
