@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::gpu::{Frames, Gpu, GpuError, Image, SetLayouts, Use};
+use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError,
     Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
@@ -195,6 +195,11 @@ impl Headless {
     /// Device time of the last frame in milliseconds, where the device can tell.
     pub fn device_ms(&self) -> Option<f64> {
         self.frames.last_device_ms()
+    }
+
+    /// Device time of each pass of the last frame, where the device can tell.
+    pub fn pass_times(&self) -> &[PassTime] {
+        self.frames.pass_times()
     }
 
     /// Takes changed shaders in. On failure the last good ones stay.

@@ -121,13 +121,17 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
     let (source, settings) = (args.common.source()?, args.common.settings()?);
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     headless.draw()?;
-    let (mut wall, mut device) = (Vec::new(), Vec::new());
+    let (mut wall, mut device, mut passes) = (Vec::new(), Vec::new(), BTreeMap::<String, Vec<f64>>::new());
     for _ in 0..args.samples {
         let begin = Instant::now();
         headless.draw()?;
         wall.push(ms(begin));
         device.extend(headless.device_ms());
+        for pass in headless.pass_times() {
+            passes.entry(pass.name.clone()).or_default().push(pass.ms);
+        }
     }
+    let passes: serde_json::Map<String, Value> = passes.into_iter().map(|(name, ms)| (name, summary(ms))).collect();
     // A mode that was asked for is all that is of interest.
     let slugs: Vec<String> = match args.common.mode.is_empty() {
         false => Vec::new(),
@@ -150,6 +154,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         "size": [args.common.size.0, args.common.size.1],
         "frame_ms": summary(wall),
         "device_ms": summary(device),
+        "passes": passes,
         "mode_first_ms": summary(first),
         "mode_again_ms": summary(again),
         "modes": modes,
@@ -256,6 +261,11 @@ fn print_table(result: &Value) {
                 out!("{name:24} min {min:>10}   median {median:>10}   p95 {p95:>10}")
             }
             _ if value.is_array() && name == "modes" => {}
+            _ if name == "passes" => {
+                for (pass, ms) in value.as_object().into_iter().flatten() {
+                    out!("{:24} median {:>10}", format!("  pass {pass}"), ms["median"]);
+                }
+            }
             _ => out!("{name:24} {value}"),
         }
     }
