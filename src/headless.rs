@@ -76,7 +76,7 @@ impl Headless {
         }
         let upload = Instant::now();
         model.variant(&settings.variant).map_err(HeadlessError::Settings)?;
-        let uploaded = GpuScene::upload(gpu, &layouts, &model)?;
+        let (model, uploaded) = GpuScene::upload(gpu, &layouts, model)?;
         let scene = uploaded.dressed(gpu, &layouts, &model, &settings)?;
         let upload_ms = upload.elapsed().as_secs_f64() * 1e3;
         let samples = samples(gpu, &settings).map_err(HeadlessError::Settings)?;
@@ -199,8 +199,7 @@ impl Headless {
     /// # Errors
     /// A model that does not fit the device.
     pub fn set_model(&mut self, model: Model) -> Result<(), HeadlessError> {
-        self.uploaded = GpuScene::upload(&self.gpu, &self.layouts, &model)?;
-        self.model = model;
+        (self.model, self.uploaded) = GpuScene::upload(&self.gpu, &self.layouts, model)?;
         Ok(())
     }
 

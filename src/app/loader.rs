@@ -56,8 +56,8 @@ pub(super) fn upload(
             Err(_) => Err(("the loader failed; please report the model".to_owned(), path.iter().cloned().collect())),
         };
         let result = result.and_then(|model| {
-            let scene = GpuScene::upload(&gpu, &layouts, &model).map_err(|e| (e.to_string(), model.files.clone()))?;
-            Ok((model, scene))
+            let files = model.files.clone();
+            GpuScene::upload(&gpu, &layouts, model).map_err(|e| (e.to_string(), files))
         });
         // The window may be gone by now; then nobody waits for the model.
         let ms = start.elapsed().as_secs_f64() * 1e3;

@@ -46,14 +46,14 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     }
     let opened = loop {
         let opened =
-            Headless::new(&gpu, &compiler()?, source.clone(), model.clone(), settings.clone(), args.common.size);
+            Headless::new(&gpu, &compiler()?, source.clone(), model, settings.clone(), args.common.size);
         match (opened, &mut watch) {
             (Err(HeadlessError::Shaders(diagnostics)), Some(watch)) => {
                 tell(&args, &diagnostics);
                 eprintln!("specula: no picture yet; waiting for the next save");
                 match watch.next() {
-                    Some(changes) if changes.model => model = args.common.model(args.model.as_deref())?,
-                    Some(_) => {}
+                    // The upload has consumed the model.
+                    Some(_) => model = args.common.model_silently(args.model.as_deref())?,
                     None => return Ok(()),
                 }
             }

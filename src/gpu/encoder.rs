@@ -285,11 +285,16 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_draw_indexed(self.raw, count, 1, first, 0, 0) };
     }
 
-    /// Copies part of a buffer.
+    /// Copies part of a buffer to the start of another one.
     pub fn copy_buffer(&mut self, from: &Arc<Buffer>, from_offset: u64, to: &Arc<Buffer>, size: u64) {
+        self.copy_range(from, from_offset, to, 0, size);
+    }
+
+    /// Copies `size` bytes of a buffer to an offset in another one. Both ranges must lie inside of their buffers.
+    pub fn copy_range(&mut self, from: &Arc<Buffer>, from_offset: u64, to: &Arc<Buffer>, to_offset: u64, size: u64) {
         self.keep(from);
         self.keep(to);
-        let region = [vk::BufferCopy { src_offset: from_offset, dst_offset: 0, size }];
+        let region = [vk::BufferCopy { src_offset: from_offset, dst_offset: to_offset, size }];
         // SAFETY: recording into our own buffer; both buffers are kept.
         unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
     }

@@ -17,7 +17,7 @@ use crate::scene::{self as model, Model, Topology};
 
 use crate::render::scene::appearance::Dress;
 use crate::render::scene::materials::{Textures, materials, variant};
-use crate::render::scene::upload::{Geometry, Range, Staging};
+use crate::render::scene::upload::{Range, Uploaded, upload};
 use crate::render::wanted::MaterialVariant;
 
 /// Why a model cannot be put on the device.
@@ -69,22 +69,25 @@ pub struct GpuScene {
 }
 
 impl GpuScene {
-    /// Uploads a model and waits for it. From any thread.
+    /// Uploads a model and waits for it. From any thread. The model comes back without pixels: `rgba8` of each of its
+    /// images is empty.
     ///
     /// # Errors
     /// An image beyond the device's limit, or no memory left.
-    pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, model: &Model) -> Result<Arc<Self>, UploadError> {
-        let mut staging = Staging::new(gpu, model)?;
-        let Geometry { vertices, indices, ranges } = staging.geometry(model)?;
-        let textures = staging.textures(model)?;
-        staging.submit()?;
-        let materials = materials(gpu, layouts, model, &textures)?;
-        let draws = draws(model, vertices.address(), &ranges);
+    pub fn upload(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        mut model: Model,
+    ) -> Result<(Model, Arc<Self>), UploadError> {
+        let Uploaded { vertices, indices, ranges, textures } = upload(gpu, &mut model)?;
+        let materials = materials(gpu, layouts, &model, &textures)?;
+        let draws = draws(&model, vertices.address(), &ranges);
         let variants = draws.iter().map(|d| d.variant).collect();
-        let stand_ins = textures.into_iter().filter(|(source, _)| source.image(model).is_none()).collect();
+        let stand_ins = textures.into_iter().filter(|(source, _)| source.image(&model).is_none()).collect();
         let last_dress = Mutex::new(None);
         let own_lights = model.lights.len();
-        Ok(Arc::new(Self { indices, vertices, materials, draws, stand_ins, last_dress, variants, own_lights }))
+        let scene = Self { indices, vertices, materials, draws, stand_ins, last_dress, variants, own_lights };
+        Ok((model, Arc::new(scene)))
     }
 
     /// The same with only those of the model's instances that are `kept`.
