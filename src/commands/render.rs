@@ -45,8 +45,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
         watch.follow(&model, &[]);
     }
     let opened = loop {
-        let opened =
-            Headless::new(&gpu, &compiler()?, source.clone(), model, settings.clone(), args.common.size);
+        let opened = Headless::new(&gpu, &compiler()?, source.clone(), model, settings.clone(), args.common.size);
         match (opened, &mut watch) {
             (Err(HeadlessError::Shaders(diagnostics)), Some(watch)) => {
                 tell(&args, &diagnostics);

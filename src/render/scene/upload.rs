@@ -87,7 +87,8 @@ struct Staging<'a> {
 
 impl<'a> Staging<'a> {
     fn new(gpu: &'a Arc<Gpu>, model: &Model, sources: &[Source]) -> Result<Self, UploadError> {
-        let geometry = model.primitives.iter().map(|p| size_of_val(p.vertices.as_slice()).max(size_of_val(&*p.indices)));
+        let geometry =
+            model.primitives.iter().map(|p| size_of_val(p.vertices.as_slice()).max(size_of_val(&*p.indices)));
         let images = || sources.iter().map(|source| staged_bytes(source, model));
         let total = images().sum::<u64>().max(geometry.map(|bytes| bytes as u64).sum());
         let size = total.min(STAGING_BYTES).max(images().max().unwrap_or_default());
