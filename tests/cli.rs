@@ -87,13 +87,19 @@ fn a_cycle_of_nodes() {
 }
 
 #[test]
-fn an_image_that_does_not_decode() {
+fn an_image_that_cannot_be_decoded_is_a_checkerboard() {
+    let directory = directory();
     let bytes = spoiled(|json| {
-        json["images"] = json!([{ "uri": "data:image/png;base64,bm8gcGljdHVyZQ==" }]);
+        json["images"] = json!([{ "name": "a.ktx2", "uri": "data:image/ktx2;base64,q0tUWCAyMLsNChoK" }]);
         json["textures"] = json!([{ "source": 0 }]);
+        json["materials"][0]["name"] = json!("wall");
         json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
     });
-    refused(&bytes, &["image", "decode"]);
+    fs::write(directory.path().join("wall.glb"), bytes).unwrap();
+    let warning = "material 'wall', base color texture: image 'a.ktx2' cannot be decoded (KTX2 is not supported)";
+    render(directory.path(), "wall.glb", &[]).expect(0, &["warning: wall", warning, "a checkerboard is shown"]);
+    let picture = open_image(&directory.path().join("out.png")).into_rgba8();
+    assert!(picture.pixels().any(|pixel| pixel.0[3] == 255), "the rest of the model is drawn");
 }
 
 #[test]

@@ -9,11 +9,11 @@ use super::encoder::Encoder;
 use super::image::Image;
 
 impl Encoder {
-    /// Copies `size` bytes of a buffer to the start of another.
-    pub fn copy_buffer(&mut self, from: &Arc<Buffer>, from_offset: u64, to: &Arc<Buffer>, size: u64) {
+    /// Copies `size` bytes of a buffer to an offset in another. Both ranges lie inside their buffers.
+    pub fn copy_buffer(&mut self, from: &Arc<Buffer>, from_offset: u64, to: &Arc<Buffer>, to_offset: u64, size: u64) {
         self.keep(from);
         self.keep(to);
-        let region = [vk::BufferCopy { src_offset: from_offset, dst_offset: 0, size }];
+        let region = [vk::BufferCopy { src_offset: from_offset, dst_offset: to_offset, size }];
         // SAFETY: this encoder records the command buffer; both buffers are kept.
         unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
     }

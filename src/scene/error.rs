@@ -121,19 +121,6 @@ pub enum Problem {
         /// Why it cannot be read.
         source: std::io::Error,
     },
-    /// An image that does not decode.
-    #[error(
-        "has an image that does not decode: {image}, used as {used_by}: expected PNG, JPEG or WebP, found {found}. \
-         Save the image again."
-    )]
-    Image {
-        /// Index and name of the image.
-        image: String,
-        /// The material slot.
-        used_by: String,
-        /// The decoder's words.
-        found: String,
-    },
     /// Nothing visible.
     #[error(
         "has nothing to draw: expected a scene with at least one mesh, found {found}. \

@@ -205,7 +205,7 @@ pub struct Image {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// `width * height * 4` bytes.
+    /// `width * height * 4` bytes; empty once the model has been uploaded, which frees the pixels.
     pub rgba8: Vec<u8>,
 }
 

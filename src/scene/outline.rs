@@ -1,22 +1,28 @@
 //! The points of a model that decide whether it fits into a picture.
 
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::model::{Instance, Model, Primitive};
 
-/// How many directions are asked. More fit closer: with these a sphere's edge is found to 1 %.
+/// Number of directions in which the farthest point is searched. More directions fit closer; these find the edge of a
+/// sphere to 1 %.
 const DIRECTIONS: usize = 192;
-/// With more instances than this, the corners of their boxes stand for them: among so many, a loose one counts little.
+/// In a model with more instances than this, the corners of its bounds stand for each primitive. A box that is too
+/// large for its primitive hardly matters among so many.
 const MOST_INSTANCES: usize = 2000;
-/// With more points than this over all instances, each primitive is searched once in its own space, and its instances
-/// place what was found: still vertices, a little less close around what is stretched or turned.
+/// If the instances have more points than this in total, each primitive is searched once in its own space, and its
+/// instances place only the points found there. These are still vertices of the model, but the fit is less close
+/// around instances that are stretched or rotated.
 const MOST_POINTS: usize = 1 << 21;
+/// Points that one task searches.
+const POINTS_A_TASK: usize = 4096;
 
-/// The model's outermost points, world space: the farthest one in each of many directions. They are vertices that some
-/// index refers to, as in its bounds.
+/// The model's outermost points, world space: the farthest point in each of many directions. They are vertices that
+/// some index refers to, as in the model's bounds. The work grows with the number of points and never faster than the
+/// number of instances.
 pub fn outline(model: &Model) -> Vec<Vec3> {
-    let directions: Vec<Vec3> = (0..DIRECTIONS).map(fibonacci).collect();
+    let directions = Directions::new();
     let mut points: Vec<Vec<Vec3>> = if model.instances.len() > MOST_INSTANCES {
         model.primitives.iter().map(|primitive| primitive.bounds.corners().to_vec()).collect()
     } else {
@@ -24,17 +30,14 @@ pub fn outline(model: &Model) -> Vec<Vec3> {
     };
     let total: usize = model.instances.iter().map(|instance| points[instance.primitive].len()).sum();
     if total > MOST_POINTS {
-        points.par_iter_mut().for_each(|points| *points = farthest(points, &directions));
+        points.par_iter_mut().for_each(|points| *points = directions.farthest(points));
     }
     let placed = |instance: &Instance| {
-        // max over points of direction . (M p) is max of (M^T direction) . p
-        let local_from_world = Mat3::from_mat4(instance.world_from_object).transpose();
-        let local: Vec<Vec3> = directions.iter().map(|direction| local_from_world * *direction).collect();
-        let found = farthest(&points[instance.primitive], &local);
-        found.into_iter().map(|point| instance.world_from_object.transform_point3(point)).collect::<Vec<_>>()
+        let world_from_object = instance.world_from_object;
+        points[instance.primitive].iter().map(move |point| world_from_object.transform_point3(*point))
     };
-    let candidates: Vec<Vec3> = model.instances.par_iter().flat_map_iter(placed).collect();
-    farthest(&candidates, &directions)
+    let points_ws: Vec<Vec3> = model.instances.par_iter().flat_map_iter(placed).collect();
+    directions.farthest(&points_ws)
 }
 
 /// The positions that indices refer to, in the order of the vertices.
@@ -45,11 +48,58 @@ fn referred(primitive: &Primitive) -> Vec<Vec3> {
     used.map(|(vertex, _)| Vec3::from(vertex.position)).collect()
 }
 
-/// For each direction the point that lies farthest along it.
-fn farthest(points: &[Vec3], directions: &[Vec3]) -> Vec<Vec3> {
-    let support =
-        |direction: &Vec3| points.iter().max_by(|a, b| direction.dot(**a).total_cmp(&direction.dot(**b))).copied();
-    directions.par_iter().filter_map(support).collect()
+/// Unit vectors spread evenly over the sphere. Each component has an array of its own, so that the compiler compares
+/// one point with several directions at a time.
+struct Directions {
+    x: [f32; DIRECTIONS],
+    y: [f32; DIRECTIONS],
+    z: [f32; DIRECTIONS],
+}
+
+/// For each direction the largest distance along it, and the index of the point there.
+struct Farthest {
+    distance: [f32; DIRECTIONS],
+    point: [u32; DIRECTIONS],
+}
+
+impl Directions {
+    fn new() -> Self {
+        let all: [Vec3; DIRECTIONS] = std::array::from_fn(fibonacci);
+        Self { x: all.map(|d| d.x), y: all.map(|d| d.y), z: all.map(|d| d.z) }
+    }
+
+    /// For each direction the point that lies farthest along it; of several the last. Empty without points.
+    fn farthest(&self, points: &[Vec3]) -> Vec<Vec3> {
+        let search = |(task, points): (usize, &[Vec3])| self.search(points, task * POINTS_A_TASK);
+        let found = points.par_chunks(POINTS_A_TASK).enumerate().map(search).reduce_with(Farthest::or_later);
+        found.iter().flat_map(|found| found.point).map(|index| points[index as usize]).collect()
+    }
+
+    /// Searches points whose first one has the index `first` among all.
+    fn search(&self, points: &[Vec3], first: usize) -> Farthest {
+        let mut found = Farthest { distance: [f32::NEG_INFINITY; DIRECTIONS], point: [first as u32; DIRECTIONS] };
+        for (index, point) in (first as u32..).zip(points) {
+            for k in 0..DIRECTIONS {
+                let distance = self.x[k] * point.x + self.y[k] * point.y + self.z[k] * point.z;
+                let is_farther = distance >= found.distance[k];
+                found.distance[k] = if is_farther { distance } else { found.distance[k] };
+                found.point[k] = if is_farther { index } else { found.point[k] };
+            }
+        }
+        found
+    }
+}
+
+impl Farthest {
+    /// For each direction the farther point; if both lie equally far, that of `later`.
+    fn or_later(mut self, later: Self) -> Self {
+        for k in 0..DIRECTIONS {
+            if later.distance[k] >= self.distance[k] {
+                (self.distance[k], self.point[k]) = (later.distance[k], later.point[k]);
+            }
+        }
+        self
+    }
 }
 
 /// Directions spread evenly over the sphere: a Fibonacci lattice (Swinbank and Purser 2006).

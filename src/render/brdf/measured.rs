@@ -26,7 +26,7 @@ pub fn measured_buffer(gpu: &Arc<Gpu>, measured: Option<&Measured>) -> Result<Ar
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
     let buffer = Buffer::new(gpu, "measured BRDF", size, usage, Memory::Device)?;
     one_shot(gpu, |encoder| {
-        encoder.copy_buffer(&staging, 0, &buffer, size);
+        encoder.copy_buffer(&staging, 0, &buffer, 0, size);
         encoder.copies_done();
         Ok(())
     })?;

@@ -25,7 +25,7 @@ pub(crate) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer
     let staging = Buffer::new(gpu, "staging", bytes, Usage::TRANSFER_SRC, Memory::Upload)?;
     staging.write(0, &vec![0; bytes as usize]);
     one_shot(gpu, |encoder| {
-        encoder.copy_buffer(&staging, 0, &results, bytes);
+        encoder.copy_buffer(&staging, 0, &results, 0, bytes);
         encoder.copies_done();
         Ok(())
     })?;

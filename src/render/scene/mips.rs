@@ -1,8 +1,14 @@
-//! Mip levels of 8-bit images, made on the CPU: a software device blits them seven times slower, and every device gets the same.
+//! Mip levels of 8-bit images, made on the CPU: a software device would blit them seven times slower, and every device
+//! gets the same bytes.
 
 use std::sync::LazyLock;
 
+use rayon::prelude::*;
+
 use crate::settings::linear_from_srgb;
+
+/// Pixels of a level that one task makes.
+const PIXELS_A_TASK: usize = 1 << 14;
 
 /// Number of levels down to 1x1.
 pub(crate) fn count(width: u32, height: u32) -> u32 {
@@ -23,15 +29,15 @@ pub(crate) fn bytes(width: u32, height: u32) -> usize {
     (0..count(width, height)).map(pixels).sum::<usize>() * 4
 }
 
-/// Levels 1 and up of an RGBA image, one after the other: each pixel is the mean of up to 2x2 pixels above it, of the linear
-/// values when the image is sRGB-encoded. Alpha is linear always.
+/// Levels 1 and up of an RGBA image, one after the other: each pixel is the mean of up to 2x2 pixels above it, of the
+/// linear values when the image is sRGB-encoded. Alpha is always linear.
 pub(crate) fn below(rgba8: &[u8], width: u32, height: u32, srgb: bool) -> Vec<u8> {
-    let mut chain: Vec<u8> = Vec::with_capacity(bytes(width, height) - rgba8.len());
+    let mut chain = vec![0; bytes(width, height) - rgba8.len()];
+    let (mut above, mut rest) = (rgba8, chain.as_mut_slice());
     for level in 1..count(width, height) {
-        let start = chain.len();
-        let above = if level == 1 { rgba8 } else { &chain[start - level_bytes(width, height, level - 1)..] };
-        let halved = halve(above, size(width, height, level - 1), size(width, height, level), srgb);
-        chain.extend_from_slice(&halved);
+        let (to, later) = rest.split_at_mut(level_bytes(width, height, level));
+        halve(above, size(width, height, level - 1), to, size(width, height, level), srgb);
+        (above, rest) = (to, later);
     }
     chain
 }
@@ -41,25 +47,25 @@ fn level_bytes(width: u32, height: u32, level: u32) -> usize {
     width as usize * height as usize * 4
 }
 
-fn halve(above: &[u8], (from_w, from_h): (u32, u32), (to_w, to_h): (u32, u32), srgb: bool) -> Vec<u8> {
-    let mut out = vec![0; to_w as usize * to_h as usize * 4];
+fn halve(above: &[u8], (from_w, from_h): (u32, u32), to: &mut [u8], (to_w, _): (u32, u32), srgb: bool) {
     let row_bytes = from_w as usize * 4;
     let curve = srgb.then(|| &*CURVE);
-    for (y, row) in out.chunks_exact_mut(to_w as usize * 4).enumerate() {
+    let halve_row = |(y, row): (usize, &mut [u8])| {
         // A side of one pixel has no second one to average.
         let (top, bottom) = if from_h > 1 { (2 * y, 2 * y + 1) } else { (0, 0) };
         let top = &above[top * row_bytes..][..row_bytes];
         let bottom = &above[bottom * row_bytes..][..row_bytes];
         if from_w == 1 {
             mean_of_four(row, [top, top, bottom, bottom], curve);
-            continue;
+            return;
         }
         let pairs = top.chunks_exact(8).zip(bottom.chunks_exact(8));
         for (pixel, (top, bottom)) in row.chunks_exact_mut(4).zip(pairs) {
             mean_of_four(pixel, [&top[..4], &top[4..], &bottom[..4], &bottom[4..]], curve);
         }
-    }
-    out
+    };
+    let rows_a_task = PIXELS_A_TASK.div_ceil(to_w as usize);
+    to.par_chunks_exact_mut(to_w as usize * 4).enumerate().with_min_len(rows_a_task).for_each(halve_row);
 }
 
 fn mean_of_four(pixel: &mut [u8], taps: [&[u8]; 4], curve: Option<&Curve>) {

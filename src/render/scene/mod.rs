@@ -14,7 +14,7 @@ use crate::interface::{Draw, Vertex};
 use crate::render::state::{Appearance, MaterialVariant, Scene};
 use crate::scene::{Instance, Model, Topology};
 use materials::{Textures, materials};
-use upload::{Geometry, Range, Staging};
+use upload::{Range, Uploaded, upload};
 
 /// Why a model cannot be put on the device.
 #[derive(Debug, thiserror::Error)]
@@ -62,21 +62,18 @@ pub struct GpuModel {
 }
 
 impl GpuModel {
-    /// Uploads a model and waits for it. From any thread.
+    /// Uploads a model and waits for it. From any thread. The model keeps everything but the pixels of its images.
     ///
     /// # Errors
     /// An image beyond the device's limit, or no memory left.
-    pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, model: Model) -> Result<Arc<Self>, UploadError> {
-        let mut staging = Staging::new(gpu, &model)?;
-        let Geometry { vertices, indices, ranges } = staging.geometry(&model)?;
-        let textures = staging.textures(&model)?;
-        staging.submit()?;
+    pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, mut model: Model) -> Result<Arc<Self>, UploadError> {
+        let Uploaded { vertices, indices, ranges, textures } = upload(gpu, &mut model)?;
         let materials = materials(gpu, layouts, &model, &textures)?;
         let default_textures = textures.into_iter().filter(|(source, _)| source.image(&model).is_none()).collect();
         Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, default_textures }))
     }
 
-    /// The model that was uploaded.
+    /// The model that was uploaded, without the pixels of its images.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }

@@ -68,7 +68,17 @@ impl Source {
         }
     }
 
-    /// Its pixels, RGBA, rows top to bottom. The model's images stay as they are.
+    /// The images that its pixels come from, as indices into `Model::images`.
+    pub(crate) fn images(self) -> impl Iterator<Item = usize> {
+        let [first, second] = match self {
+            Self::White | Self::FlatNormal => [None, None],
+            Self::Image { image, .. } => [Some(image), None],
+            Self::Packed { metallic_roughness, occlusion } => [Some(metallic_roughness), Some(occlusion)],
+        };
+        first.into_iter().chain(second)
+    }
+
+    /// Its pixels, RGBA, rows top to bottom. Reads `Image::rgba8`, which an upload empties.
     pub(crate) fn pixels(self, model: &Model) -> Cow<'_, [u8]> {
         match self {
             Self::White => Cow::Borrowed(&[255; 4]),

@@ -1,4 +1,5 @@
-//! A model's geometry and textures on their way to the device: one staging buffer, one submission.
+//! Copies a model's geometry and textures to the device, through one staging buffer of bounded size. The CPU's pixels
+//! are freed on the way, so that they never exist next to a second copy of all of them.
 
 use std::sync::Arc;
 
@@ -12,11 +13,16 @@ use crate::render::scene::mips;
 use crate::render::scene::texture_source::{Source, sources};
 use crate::scene::Model;
 
-/// All primitives in two buffers.
-pub(super) struct Geometry {
+/// A model's data on the device.
+pub(super) struct Uploaded {
+    /// The vertices of all primitives, one after the other.
     pub(super) vertices: Arc<Buffer>,
+    /// The indices of all primitives, one after the other, each relative to its primitive's first vertex.
     pub(super) indices: Arc<Buffer>,
+    /// Where each primitive lies in these buffers.
     pub(super) ranges: Vec<Range>,
+    /// What the materials read, and the stand-ins for missing textures.
+    pub(super) textures: Textures,
 }
 
 /// Where a primitive lies in the shared buffers.
@@ -25,122 +31,152 @@ pub(super) struct Range {
     pub(super) first_index: u32,
 }
 
-/// Collects copies into one staging buffer and runs them as one submission.
-pub(super) struct Staging<'a> {
-    gpu: &'a Arc<Gpu>,
-    buffer: Arc<Buffer>,
-    used: u64,
-    buffers: Vec<(u64, Arc<Buffer>)>,
-    images: Vec<(u64, Arc<Image>)>,
-}
+/// Size of the staging buffer in bytes, unless the model needs less, or one of its images more.
+const STAGING_BYTES: u64 = 32 << 20;
+/// A copy to an image starts at a multiple of this: Vulkan asks for the texel size, and devices like 16.
+const ALIGNMENT: u64 = 16;
+/// Bytes that one task writes to the staging buffer. The first write to a page costs as much as the copy itself, so
+/// even one image is shared out.
+const BYTES_A_TASK: usize = 1 << 20;
 
 const TEXTURE_USAGE: vk::ImageUsageFlags =
     vk::ImageUsageFlags::from_raw(vk::ImageUsageFlags::SAMPLED.as_raw() | vk::ImageUsageFlags::TRANSFER_DST.as_raw());
 
-impl<'a> Staging<'a> {
-    pub(super) fn new(gpu: &'a Arc<Gpu>, model: &Model) -> Result<Self, UploadError> {
-        let geometry: usize = model
-            .primitives
-            .iter()
-            .map(|p| size_of_val(p.vertices.as_slice()) + size_of_val(p.indices.as_slice()) + 32)
-            .sum();
-        let bytes = |source: &Source| {
-            let (width, height) = size(source, model);
-            mips::bytes(width, height) + 16
-        };
-        let images: usize = sources(model).iter().map(bytes).sum();
-        let size = (geometry + images + 64) as u64;
-        let buffer = Buffer::new(gpu, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload)?;
-        Ok(Self { gpu, buffer, used: 0, buffers: Vec::new(), images: Vec::new() })
+/// Uploads a model and waits for it. Afterwards `rgba8` of each of its images is empty; the rest of the model is as it
+/// was, since picking and framing read it.
+///
+/// # Errors
+/// An image beyond the device's limit, or no memory left. Some pixels may be gone then.
+pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, UploadError> {
+    let sources: Vec<Source> = sources(model).into_iter().collect();
+    check_sizes(gpu, model, &sources)?;
+    let staging = Staging::new(gpu, model, &sources)?;
+    let textures = staging.textures(model, &sources)?;
+    let (mut ranges, mut first_vertex, mut first_index) = (Vec::new(), 0u64, 0u32);
+    for primitive in &model.primitives {
+        ranges.push(Range { first_vertex, first_index });
+        first_vertex += primitive.vertices.len() as u64;
+        first_index += primitive.indices.len() as u32;
     }
+    use vk::BufferUsageFlags as Usage;
+    let vertex_usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
+    let vertices: Vec<&[Vertex]> = model.primitives.iter().map(|p| p.vertices.as_slice()).collect();
+    let vertices = staging.buffer("vertices", &vertices, vertex_usage)?;
+    let indices: Vec<&[u32]> = model.primitives.iter().map(|p| p.indices.as_slice()).collect();
+    let indices = staging.buffer("indices", &indices, Usage::INDEX_BUFFER)?;
+    Ok(Uploaded { vertices, indices, ranges, textures })
+}
 
-    /// Sets `length` bytes apart; returns where.
-    fn reserve(&mut self, length: usize) -> u64 {
-        let offset = self.used.next_multiple_of(16);
-        self.used = offset + length as u64;
-        offset
-    }
-
-    fn push(&mut self, bytes: &[u8]) -> u64 {
-        let offset = self.reserve(bytes.len());
-        self.buffer.write(offset, bytes);
-        offset
-    }
-
-    pub(super) fn geometry(&mut self, model: &Model) -> Result<Geometry, UploadError> {
-        let (mut ranges, mut first_vertex, mut first_index) = (Vec::new(), 0u64, 0u32);
-        for primitive in &model.primitives {
-            ranges.push(Range { first_vertex, first_index });
-            first_vertex += primitive.vertices.len() as u64;
-            first_index += primitive.indices.len() as u32;
+fn check_sizes(gpu: &Gpu, model: &Model, sources: &[Source]) -> Result<(), UploadError> {
+    let most = gpu.max_image_size();
+    let too_large = sources.iter().filter_map(|source| source.image(model)).find(|i| i.width > most || i.height > most);
+    match too_large {
+        None => Ok(()),
+        Some(image) => {
+            let (name, width, height) = (image.name.clone(), image.width, image.height);
+            Err(UploadError::ImageTooLarge { name, width, height, most })
         }
-        let flat: Vec<Vertex> = model.primitives.iter().flat_map(|p| p.vertices.iter().copied()).collect();
-        let indices: Vec<u32> = model.primitives.iter().flat_map(|p| p.indices.iter().copied()).collect();
-        use vk::BufferUsageFlags as Usage;
-        let vertex_usage = Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS | Usage::TRANSFER_DST;
-        let vertices = self.buffer("vertices", bytemuck::cast_slice(&flat), vertex_usage)?;
-        let index_usage = Usage::INDEX_BUFFER | Usage::TRANSFER_DST;
-        let indices = self.buffer("indices", bytemuck::cast_slice(&indices), index_usage)?;
-        Ok(Geometry { vertices, indices, ranges })
+    }
+}
+
+/// Memory that the CPU fills and the device copies from, again and again.
+struct Staging<'a> {
+    gpu: &'a Arc<Gpu>,
+    buffer: Arc<Buffer>,
+}
+
+impl<'a> Staging<'a> {
+    fn new(gpu: &'a Arc<Gpu>, model: &Model, sources: &[Source]) -> Result<Self, UploadError> {
+        let geometry =
+            model.primitives.iter().map(|p| size_of_val(p.vertices.as_slice()).max(size_of_val(&*p.indices)));
+        let images = || sources.iter().map(|source| staged_bytes(source, model));
+        let total = images().sum::<u64>().max(geometry.map(|bytes| bytes as u64).sum());
+        let size = total.min(STAGING_BYTES).max(images().max().unwrap_or_default());
+        let buffer = Buffer::new(gpu, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload)?;
+        Ok(Self { gpu, buffer })
     }
 
-    fn buffer(&mut self, name: &str, bytes: &[u8], usage: vk::BufferUsageFlags) -> Result<Arc<Buffer>, UploadError> {
-        let buffer = Buffer::new(self.gpu, name, bytes.len() as u64, usage, Memory::Device)?;
-        if !bytes.is_empty() {
-            let offset = self.push(bytes);
-            self.buffers.push((offset, buffer.clone()));
+    /// Makes a buffer of slices that follow each other.
+    fn buffer<T: bytemuck::Pod>(
+        &self,
+        name: &str,
+        parts: &[&[T]],
+        usage: vk::BufferUsageFlags,
+    ) -> Result<Arc<Buffer>, UploadError> {
+        let size: usize = parts.iter().map(|part| size_of_val(*part)).sum();
+        let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
+        let buffer = Buffer::new(self.gpu, name, size as u64, usage, Memory::Device)?;
+        let (mut copied, mut filled) = (0, 0);
+        for part in parts {
+            let mut bytes: &[u8] = bytemuck::cast_slice(part);
+            while !bytes.is_empty() {
+                let fitting = bytes.len().min((self.buffer.size() - filled) as usize);
+                let (now, rest) = bytes.split_at(fitting);
+                self.buffer.write(filled, now);
+                filled += now.len() as u64;
+                bytes = rest;
+                if filled == self.buffer.size() {
+                    self.copy_to_buffer(&buffer, copied, filled)?;
+                    copied += std::mem::take(&mut filled);
+                }
+            }
+        }
+        if filled > 0 {
+            self.copy_to_buffer(&buffer, copied, filled)?;
         }
         Ok(buffer)
     }
 
-    pub(super) fn textures(&mut self, model: &Model) -> Result<Textures, UploadError> {
+    fn copy_to_buffer(&self, to: &Arc<Buffer>, offset: u64, size: u64) -> Result<(), UploadError> {
+        one_shot(self.gpu, |encoder| {
+            encoder.copy_buffer(&self.buffer, 0, to, offset, size);
+            encoder.copies_done();
+            Ok(())
+        })?;
+        Ok(())
+    }
+
+    /// Makes all textures, as many at a time as the staging buffer holds, and frees each image's pixels after the last
+    /// texture that is made of them.
+    fn textures(&self, model: &mut Model, sources: &[Source]) -> Result<Textures, UploadError> {
+        let mut readers = vec![0u32; model.images.len()];
+        sources.iter().flat_map(|source| source.images()).for_each(|image| readers[image] += 1);
+        free_unread(model, &readers);
         let mut textures = Textures::new();
-        let most = self.gpu.max_image_size();
-        let mut places = Vec::new();
-        for source in sources(model) {
-            let (width, height) = size(&source, model);
-            let name = source.image(model).map_or("default", |image| &image.name);
-            if width > most || height > most {
-                return Err(UploadError::ImageTooLarge { name: name.to_owned(), width, height, most });
-            }
-            let offset = self.reserve(mips::bytes(width, height));
-            textures.insert(source, self.image(name, (width, height), source.is_srgb(), offset)?);
-            places.push((source, (width, height), offset));
+        let mut waiting = sources;
+        while !waiting.is_empty() {
+            let (batch, later) = waiting.split_at(self.fitting(waiting, model));
+            self.batch(batch, model, &mut textures)?;
+            batch.iter().flat_map(|source| source.images()).for_each(|image| readers[image] -= 1);
+            free_unread(model, &readers);
+            waiting = later;
         }
-        // The first touch of staging memory costs as much as the copy, so that is shared out too.
-        let staging = &self.buffer;
-        places.par_iter().for_each(|(source, (width, height), offset)| {
-            let pixels = source.pixels(model);
-            staging.write(*offset, &pixels);
-            let below = mips::below(&pixels, *width, *height, source.is_srgb());
-            staging.write(offset + pixels.len() as u64, &below);
-        });
         Ok(textures)
     }
 
-    /// Makes an image whose levels will lie at `offset`, one after the other.
-    fn image(
-        &mut self,
-        name: &str,
-        (width, height): (u32, u32),
-        srgb: bool,
-        offset: u64,
-    ) -> Result<Arc<Image>, UploadError> {
-        let format = if srgb { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
-        let mips = mips::count(width, height);
-        let image =
-            Image::new(self.gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?;
-        self.images.push((offset, image.clone()));
-        Ok(image)
+    /// How many of the first sources fit into the staging buffer; at least 1, as it holds the largest.
+    fn fitting(&self, sources: &[Source], model: &Model) -> usize {
+        let mut free = self.buffer.size();
+        let fits = |source: &&Source| {
+            let bytes = staged_bytes(source, model);
+            let fits = bytes <= free;
+            free = free.saturating_sub(bytes);
+            fits
+        };
+        sources.iter().take_while(fits).count().max(1)
     }
 
-    /// Copies everything.
-    pub(super) fn submit(self) -> Result<(), UploadError> {
+    fn batch(&self, sources: &[Source], model: &Model, textures: &mut Textures) -> Result<(), UploadError> {
+        let mut places = Vec::new();
+        let mut used = 0;
+        for source in sources {
+            let image = make_image(self.gpu, source, model)?;
+            places.push((*source, image, used));
+            used += staged_bytes(source, model);
+        }
+        places.par_iter().for_each(|(source, _, offset)| self.fill(*source, model, *offset));
         one_shot(self.gpu, |encoder| {
-            for (offset, buffer) in &self.buffers {
-                encoder.copy_buffer(&self.buffer, *offset, buffer, buffer.size());
-            }
-            for (offset, image) in &self.images {
+            for (_, image, offset) in &places {
                 encoder.transition(image, Use::Undefined, Use::CopyTo);
                 encoder.copy_to_image(&self.buffer, *offset, image);
                 encoder.transition(image, Use::CopyTo, Use::Sampled);
@@ -148,11 +184,47 @@ impl<'a> Staging<'a> {
             encoder.copies_done();
             Ok(())
         })?;
+        textures.extend(places.into_iter().map(|(source, image, _)| (source, image)));
         Ok(())
+    }
+
+    /// Writes all levels of a texture to `offset`, one after the other.
+    fn fill(&self, source: Source, model: &Model, offset: u64) {
+        let (width, height) = size(&source, model);
+        let pixels = source.pixels(model);
+        self.write(offset, &pixels);
+        let below = mips::below(&pixels, width, height, source.is_srgb());
+        self.write(offset + pixels.len() as u64, &below);
+    }
+
+    fn write(&self, offset: u64, bytes: &[u8]) {
+        let write = |(task, bytes): (usize, &[u8])| self.buffer.write(offset + (task * BYTES_A_TASK) as u64, bytes);
+        bytes.par_chunks(BYTES_A_TASK).enumerate().for_each(write);
     }
 }
 
-/// Width and height.
+/// Frees the pixels of images that no texture is still to be made of.
+fn free_unread(model: &mut Model, readers: &[u32]) {
+    let unread = model.images.iter_mut().zip(readers).filter(|(_, readers)| **readers == 0);
+    unread.for_each(|(image, _)| image.rgba8 = Vec::new());
+}
+
+/// Makes the image of a texture, without content.
+fn make_image(gpu: &Arc<Gpu>, source: &Source, model: &Model) -> Result<Arc<Image>, UploadError> {
+    let name = source.image(model).map_or("default", |image| &image.name);
+    let format = if source.is_srgb() { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
+    let (width, height) = size(source, model);
+    let mips = mips::count(width, height);
+    Ok(Image::new(gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?)
+}
+
+/// Bytes of the staging buffer that all levels of a texture take.
+fn staged_bytes(source: &Source, model: &Model) -> u64 {
+    let (width, height) = size(source, model);
+    (mips::bytes(width, height) as u64).next_multiple_of(ALIGNMENT)
+}
+
+/// Width and height in pixels.
 fn size(source: &Source, model: &Model) -> (u32, u32) {
     source.image(model).map_or((1, 1), |image| (image.width, image.height))
 }

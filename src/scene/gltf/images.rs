@@ -1,7 +1,9 @@
-//! Finds and decodes the images that materials use.
+//! Finds and decodes the images that materials use. What is wrong with one image costs that image and not the model:
+//! `placeholder` takes its place.
 
 use std::borrow::Cow;
-use std::io::Cursor;
+use std::io::{Cursor, ErrorKind};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use gltf::json;
 use image::{ImageFormat, ImageReader};
@@ -10,67 +12,151 @@ use rayon::prelude::*;
 use super::super::error::Problem;
 use super::super::model::Image;
 use super::buffers::{Buffers, Files};
-use super::place;
+use super::textures::Origin;
+use super::{place, placeholder};
 
 /// Widest and highest image: what every Vulkan device with 16k textures takes.
 const MAX_SIZE: u32 = 16384;
 /// Most bytes that a decoder may ask for.
 const MAX_DECODED_BYTES: u64 = 512 << 20;
+/// Longest quote of a decoder's message, characters.
+const LONGEST_REASON: usize = 120;
+
+/// How files of other formats begin.
+const OTHER_FORMATS: [(&[u8], &str); 4] =
+    [(b"\xabKTX 20\xbb", "KTX2"), (b"\xabKTX 11\xbb", "KTX"), (b"DDS ", "DDS"), (b"sB", "Basis Universal")];
 
 /// An image before decoding.
-pub struct Source<'a> {
+pub struct Encoded<'a> {
     name: String,
-    place: String,
-    used_by: String,
-    bytes: Cow<'a, [u8]>,
+    /// How messages name it: `image 'a.png'`.
+    title: String,
+    bytes: Result<Cow<'a, [u8]>, String>,
 }
 
-/// Reads the encoded bytes of an image.
-pub fn find<'a>(
+/// An image after decoding: the placeholder if that failed.
+pub struct Decoded {
+    /// The image.
+    pub image: Image,
+    /// Which image failed and why, as the middle of a sentence.
+    pub failure: Option<String>,
+}
+
+/// Reads the encoded bytes of an image. Files outside of the model's folder are not opened unless that is allowed.
+pub fn find<'a>(root: &json::Root, buffers: &'a Buffers<'_>, files: &mut Files<'_>, origin: Origin) -> Encoded<'a> {
+    let (index, lacking) = match origin {
+        Origin::Image(index) => (Some(index), None),
+        Origin::Texture(index) => lacking(root, index),
+    };
+    let image = index.and_then(|index| root.images.get(index));
+    let file = image.and_then(|image| image.uri.as_ref()).filter(|uri| !uri.starts_with("data:"));
+    let name = image.and_then(|image| image.name.as_ref());
+    let number = match (index, origin) {
+        (Some(index), _) => format!("image {index}"),
+        (None, Origin::Image(index) | Origin::Texture(index)) => format!("the image of texture {index}"),
+    };
+    let title = file.or(name).map_or_else(|| number.clone(), |name| format!("image '{}'", name.escape_debug()));
+    let bytes = match (lacking, index) {
+        (None, Some(index)) => read(root, buffers, files, index).map_err(|problem| {
+            let reason = shorten(&reason(problem));
+            format!("{title} cannot be read ({reason})")
+        }),
+        (lacking, _) => Err(format!("{title} cannot be decoded ({})", lacking.unwrap_or_default())),
+    };
+    Encoded { name: name.or(file).cloned().unwrap_or(number), title, bytes }
+}
+
+/// Why a texture has no image that Specula can decode, and the one that it has instead.
+fn lacking(root: &json::Root, texture: usize) -> (Option<usize>, Option<String>) {
+    let extensions = root.textures.get(texture).and_then(|texture| texture.extensions.as_ref());
+    let named = extensions.and_then(|extensions| extensions.others.iter().next());
+    let Some((name, value)) = named else { return (None, Some("the texture names none".into())) };
+    let image = value.get("source").and_then(json::Value::as_u64).and_then(|index| usize::try_from(index).ok());
+    (image, Some(format!("{name} is not supported")))
+}
+
+fn read<'a>(
     root: &json::Root,
     buffers: &'a Buffers<'_>,
     files: &mut Files<'_>,
     index: usize,
-    used_by: String,
-) -> Result<Source<'a>, Problem> {
+) -> Result<Cow<'a, [u8]>, Problem> {
     let Some(image) = root.images.get(index) else {
-        return Err(super::out_of_range(&used_by, "images", index, root.images.len()));
+        return Err(super::out_of_range("textures", "images", index, root.images.len()));
     };
     let place = place("images", index, image.name.as_deref());
-    let bytes = match (&image.uri, image.buffer_view) {
-        (Some(uri), None) => Cow::Owned(files.load(uri, &place)?),
-        (None, Some(view)) => Cow::Borrowed(buffers.view(root, view, &place)?),
-        (Some(_), Some(_)) => return Err(Problem::invalid(place, "a uri or a bufferView", "both")),
-        (None, None) => return Err(Problem::invalid(place, "a uri or a bufferView", "neither")),
-    };
-    let uri = image.uri.as_ref().filter(|uri| !uri.starts_with("data:"));
-    let name = image.name.clone().or_else(|| uri.cloned()).unwrap_or_else(|| format!("image {index}"));
-    Ok(Source { name, place, used_by, bytes })
+    match (&image.uri, image.buffer_view) {
+        (Some(uri), None) => Ok(Cow::Owned(files.load(uri, &place)?)),
+        (None, Some(view)) => Ok(Cow::Borrowed(buffers.view(root, view, &place)?)),
+        (Some(_), Some(_)) => Err(Problem::invalid(place, "a uri or a bufferView", "both")),
+        (None, None) => Err(Problem::invalid(place, "a uri or a bufferView", "neither")),
+    }
 }
 
-/// Decodes images in parallel.
-pub fn decode(sources: &[Source<'_>]) -> Result<Vec<Image>, Problem> {
-    sources.par_iter().map(decode_one).collect()
+/// What is wrong, in fewer words than the message of a model that cannot be loaded.
+fn reason(problem: Problem) -> String {
+    match problem {
+        Problem::External { source, .. } if source.kind() == ErrorKind::NotFound => "there is no such file".into(),
+        Problem::External { source, .. } => source.to_string(),
+        Problem::Outside { found, .. } => {
+            format!("expected a file in the model's folder, found {found}; --allow-outside reads it")
+        }
+        Problem::Scheme { scheme, .. } => format!("the scheme `{scheme}:` is never opened"),
+        Problem::Invalid { place, expected, found } => format!("{place}: expected {expected}, found {found}"),
+        other => other.to_string(),
+    }
 }
 
-fn decode_one(source: &Source<'_>) -> Result<Image, Problem> {
-    let failed = |found: String| Problem::Image { image: source.place.clone(), used_by: source.used_by.clone(), found };
+/// Decodes images in parallel. The bytes of each are freed as soon as it is decoded.
+pub fn decode(encoded: Vec<Encoded<'_>>) -> Vec<Decoded> {
+    encoded.into_par_iter().map(decode_one).collect()
+}
+
+fn decode_one(encoded: Encoded<'_>) -> Decoded {
+    let Encoded { name, title, bytes } = encoded;
+    let pixels = bytes.and_then(|bytes| {
+        // A decoder that panics at a damaged image costs no more than that image.
+        let pixels = catch_unwind(AssertUnwindSafe(|| pixels(&bytes)));
+        let pixels = pixels.unwrap_or_else(|_| Err("the decoder failed".into()));
+        pixels.map_err(|reason| format!("{title} cannot be decoded ({})", shorten(&reason)))
+    });
+    match pixels {
+        Ok((width, height, rgba8)) => Decoded { image: Image { name, width, height, rgba8 }, failure: None },
+        Err(failure) => Decoded { image: placeholder::checkerboard(name), failure: Some(failure) },
+    }
+}
+
+/// Width, height and pixels, or why there are none.
+fn pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
+    let other = OTHER_FORMATS.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name);
     // The content decides: mimeType and file endings are often wrong, and may be absent.
-    let format = match image::guess_format(&source.bytes) {
+    let format = match image::guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,
-        Ok(other) => return Err(failed(format!("{other:?}"))),
-        Err(_) => return Err(failed(format!("{} bytes of another kind", source.bytes.len()))),
+        _ if bytes.is_empty() => return Err("it is empty".into()),
+        found => {
+            let name = other.map(str::to_owned).or_else(|| Some(format!("{:?}", found.ok()?)));
+            return Err(name.map_or("it is not PNG, JPEG or WebP".into(), |name| format!("{name} is not supported")));
+        }
     };
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAX_SIZE);
     limits.max_image_height = Some(MAX_SIZE);
     limits.max_alloc = Some(MAX_DECODED_BYTES);
-    let mut reader = ImageReader::with_format(Cursor::new(&*source.bytes), format);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| failed(error.to_string()))?.into_rgba8();
+    let decoded = reader.decode().map_err(|error| error.to_string())?.into_rgba8();
     let (width, height) = decoded.dimensions();
     if width == 0 || height == 0 {
-        return Err(failed(format!("{width}x{height} pixels")));
+        return Err(format!("it has {width}x{height} pixels"));
     }
-    Ok(Image { name: source.name.clone(), width, height, rgba8: decoded.into_raw() })
+    Ok((width, height, decoded.into_raw()))
+}
+
+/// One line that fits into a sentence.
+fn shorten(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(LONGEST_REASON) {
+        Some((end, _)) => format!("{}...", &line[..end]),
+        None => line,
+    }
 }

@@ -8,7 +8,7 @@ use super::super::error::Problem;
 use super::super::model::{AlphaMode, Material, Texture};
 use super::extensions;
 use super::place;
-use super::textures::{Collector, Slot};
+use super::textures::{Collector, Origin, Slot};
 use super::values::{self, clamp, roughness};
 use crate::interface as contract;
 
@@ -18,8 +18,8 @@ pub struct Materials {
     pub materials: Vec<Material>,
     /// Used pairs of image and sampler.
     pub textures: Vec<Texture>,
-    /// Used images: index in the file and the first use, for messages. `Texture::image` counts these.
-    pub images: Vec<(usize, String)>,
+    /// Where the used images are. `Texture::image` counts these.
+    pub images: Vec<Origin>,
     /// Tolerated values.
     pub warnings: Vec<String>,
 }

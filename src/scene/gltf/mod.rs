@@ -9,6 +9,7 @@ mod images;
 mod material;
 mod mesh;
 mod nodes;
+mod placeholder;
 mod tangents;
 #[cfg(test)]
 mod tests;
@@ -67,20 +68,18 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     let container::Document { root, bin, mut warnings } = container::parse(bytes)?;
     let buffers = Buffers::load(&root, bin, &mut files)?;
     let scene = nodes::walk(&root)?;
-    let material::Materials { materials, textures, images, warnings: material_warnings } = material::read(&root)?;
+    let material::Materials { mut materials, textures, images, warnings: material_warnings } = material::read(&root)?;
     let variants = variants::names(&root, &mut warnings)?;
-    let sources = images
-        .into_iter()
-        .map(|(index, used_by)| images::find(&root, &buffers, &mut files, index, used_by))
-        .collect::<Result<Vec<_>, _>>()?;
+    let encoded = images.into_iter().map(|origin| images::find(&root, &buffers, &mut files, origin)).collect();
     let meshes = read_meshes(Reader { root: &root, buffers: &buffers }, &scene, &materials, variants.len())?;
     let parse_ms = milliseconds(start);
     let ((images, decode_ms), (meshes, tangents_ms)) =
-        rayon::join(|| timed(|| images::decode(&sources)), || timed(|| finish_meshes(meshes, &materials)));
-    let images: Vec<Image> = images?;
+        rayon::join(|| timed(|| images::decode(encoded)), || timed(|| finish_meshes(meshes, &materials)));
+    let (images, failures): (Vec<Image>, Vec<_>) = images.into_iter().map(|i| (i.image, i.failure)).unzip();
 
     warnings.extend(scene.warnings);
     warnings.extend(material_warnings);
+    warnings.extend(placeholder::replace(&mut materials, &textures, &failures));
     let files = files.tried.clone();
     let mut model = Model { name: name.to_owned(), materials, textures, images, variants, files, ..Model::default() };
     let mut ranges = HashMap::new();

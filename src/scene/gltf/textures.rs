@@ -20,13 +20,24 @@ const LAST_UV_SET: u32 = 1;
 pub struct Collector<'a> {
     /// Used pairs of image and sampler.
     pub textures: Vec<Texture>,
-    /// Used images: index in the file and the first use, for messages. `Texture::image` counts these.
-    pub images: Vec<(usize, String)>,
+    /// Where the used images are. `Texture::image` counts these.
+    pub images: Vec<Origin>,
     /// Tolerated values.
     pub warnings: Vec<String>,
     root: &'a json::Root,
-    /// Textures by file index of the image and sampler.
-    seen: HashMap<(usize, Sampler), usize>,
+    /// Indices into `images`.
+    image_of: HashMap<Origin, usize>,
+    /// Indices into `textures`, by image and sampler.
+    texture_of: HashMap<(usize, Sampler), usize>,
+}
+
+/// Where an image of a texture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Origin {
+    /// Index of an image of the file; in range.
+    Image(usize),
+    /// Index of a texture that names no image which Specula could decode.
+    Texture(usize),
 }
 
 /// A textureInfo of any kind.
@@ -57,7 +68,8 @@ impl Slot {
 impl<'a> Collector<'a> {
     /// With nothing in it.
     pub fn new(root: &'a json::Root) -> Self {
-        Self { textures: Vec::new(), images: Vec::new(), warnings: Vec::new(), root, seen: HashMap::new() }
+        let (textures, images, warnings) = (Vec::new(), Vec::new(), Vec::new());
+        Self { textures, images, warnings, root, image_of: HashMap::new(), texture_of: HashMap::new() }
     }
 
     /// Gives a material the texture of a slot, `interface::TEXTURE_*`.
@@ -77,7 +89,7 @@ impl<'a> Collector<'a> {
         let Some(texture) = textures.get(slot.texture) else {
             return Err(super::out_of_range(place, "textures", slot.texture, textures.len()));
         };
-        let image = self.image_of(texture, slot.texture)?;
+        let origin = self.origin(texture, slot.texture)?;
         let sampler = match texture.sampler {
             None => Sampler::default(),
             Some(at) => match self.root.samplers.get(at.value()) {
@@ -92,20 +104,19 @@ impl<'a> Collector<'a> {
             uv_set = 0;
         }
         let uv_from_mesh = slot.transform.as_ref().map_or(Ok(Affine2::IDENTITY), |t| affine(t, place))?;
-        let texture = *self.seen.entry((image, sampler)).or_insert_with(|| {
-            let known = self.images.iter().position(|(index, _)| *index == image);
-            let image = known.unwrap_or_else(|| {
-                self.images.push((image, place.to_owned()));
-                self.images.len() - 1
-            });
+        let image = *self.image_of.entry(origin).or_insert_with(|| {
+            self.images.push(origin);
+            self.images.len() - 1
+        });
+        let texture = *self.texture_of.entry((image, sampler)).or_insert_with(|| {
             self.textures.push(Texture { image, sampler });
             self.textures.len() - 1
         });
         Ok(TextureUse { texture, uv_set, uv_from_mesh })
     }
 
-    /// Index of the image of a texture: the WebP one of EXT_texture_webp, or the core one.
-    fn image_of(&self, texture: &json::Texture, index: usize) -> Result<usize, Problem> {
+    /// Where the image of a texture is: the WebP one of EXT_texture_webp, or the core one.
+    fn origin(&self, texture: &json::Texture, index: usize) -> Result<Origin, Problem> {
         let place = place("textures", index, texture.name.as_deref());
         let webp =
             texture.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp")).and_then(|e| e.get("source"));
@@ -115,16 +126,13 @@ impl<'a> Collector<'a> {
             Some(source) => Some(values::index(Some(source), &place, "images")?),
             None => core,
         };
-        let Some(source) = source else {
-            let expected = "a source that is a PNG, JPEG or WebP image";
-            let only: Vec<&str> = texture.extensions.iter().flat_map(|e| e.others.keys()).map(String::as_str).collect();
-            let found = if only.is_empty() { "none".into() } else { format!("only the extension {}", only.join(", ")) };
-            return Err(Problem::invalid(place, expected, found));
-        };
-        if source >= self.root.images.len() {
-            return Err(super::out_of_range(&place, "images", source, self.root.images.len()));
+        match source {
+            Some(source) if source >= self.root.images.len() => {
+                Err(super::out_of_range(&place, "images", source, self.root.images.len()))
+            }
+            Some(source) => Ok(Origin::Image(source)),
+            None => Ok(Origin::Texture(index)),
         }
-        Ok(source)
     }
 }
 

@@ -141,16 +141,8 @@ fn buffers_and_views() {
     assert_refused("/buffers/0/byteLength", json!(8), "a range inside of the 8 bytes");
     assert_refused("/buffers/0/uri", json!("%ff"), "percent-encoded UTF-8");
     assert_refused("/buffers/0/uri", json!("data:;base64,!!"), "base64");
-    assert_refused("/images/0/bufferView", json!(99), "an index into bufferViews");
-    assert_refused("/images/0/uri", json!("x.png"), "found both");
-    assert_refused("/images/0", json!({}), "found neither");
-    let mut builder = rich();
-    let text = builder.json.to_string();
+    let text = rich().json.to_string();
     assert!(load_bytes("x", text.as_bytes()).unwrap_err().to_string().contains("binary chunk of a GLB"));
-    // A view with an image in it may not be cut short either.
-    let view = builder.json["images"][0]["bufferView"].as_u64().unwrap() as usize;
-    builder.json["bufferViews"][view]["byteOffset"] = json!(1 << 20);
-    assert!(builder.error().contains("a range inside"));
 }
 
 #[test]
@@ -167,12 +159,6 @@ fn primitives_and_references() {
         assert_refused(&format!("{primitive}/{key}"), value, word);
     }
     assert_refused("/textures/0/source", json!(9), "an index into images");
-    assert_refused("/textures/0", json!({}), "a source that is a PNG");
-    assert_refused(
-        "/textures/0",
-        json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } }),
-        "KHR_texture_basisu",
-    );
     assert_refused("/textures/0/sampler", json!(9), "an index into samplers");
     assert_refused("/samplers/0/wrapS", json!(1), "samplers[0].wrapS");
     assert_refused("/samplers/0/minFilter", json!(1), "samplers[0].minFilter");

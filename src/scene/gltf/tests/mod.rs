@@ -3,9 +3,11 @@
 mod extensions;
 mod features;
 mod geometry;
+mod growth;
 mod invalid;
 mod materials;
 mod nodes;
+mod placeholders;
 
 use serde_json::{Value, json};
 
