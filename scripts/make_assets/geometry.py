@@ -15,7 +15,7 @@ class Surface:
 
 @dataclasses.dataclass
 class Profile:
-    """A curve in the half plane (radius, height): points and unit normals, and the length along it in metres."""
+    """A curve in the half plane (radius, height): points and unit normals, and the length along it in meters."""
 
     points: np.ndarray
     normals: np.ndarray
@@ -75,7 +75,7 @@ def _right_of(along):
 
 
 def subdivided(profile, longest):
-    """The same curve with no step longer than `longest` metres; inserted normals are interpolated."""
+    """The same curve with no step longer than `longest` meters; inserted normals are interpolated."""
     points, normals = [profile.points[:1]], [profile.normals[:1]]
     for i in range(1, len(profile.points)):
         count = max(1, int(np.ceil(np.linalg.norm(profile.points[i] - profile.points[i - 1]) / longest)))

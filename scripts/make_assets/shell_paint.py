@@ -28,7 +28,7 @@ CAP = (167.0, 180.0, 1, 0.0)
 
 
 class Sheet:
-    """The shell's UV sheet in metres: where each row lies on the ball and how large its texels are."""
+    """The shell's UV sheet in meters: where each row lies on the ball and how large its texels are."""
 
     def __init__(self, angle, radius, row_length, inside, wall):
         rows = (np.arange(DRAWN) + 0.5) / DRAWN
@@ -36,7 +36,7 @@ class Sheet:
         self.angle = angle(rows)  # degrees from the opening's axis
         self.inside = inside(rows)  # rows of the rim, the wall and the inner side
         self.wall = wall(rows)  # rows of the rim and the wall
-        self.width = np.maximum(radius(rows) * np.pi, 0.12)  # metres that one tile (half a turn) covers
+        self.width = np.maximum(radius(rows) * np.pi, 0.12)  # meters that one tile (half a turn) covers
         self.texel_x = self.width / DRAWN
         self.texel_y = row_length(rows) / DRAWN
         self.along = np.cumsum(self.texel_y)
@@ -47,14 +47,14 @@ class Sheet:
         return np.interp(-angle, -self.angle[outside], self.along[outside])
 
     def cells(self, count, shift=0.0):
-        """Index of the cell and metres from its middle, `count` cells a tile; and half a cell in metres."""
+        """Index of the cell and meters from its middle, `count` cells a tile; and half a cell in meters."""
         x = self.u * count + shift
         index = np.floor(x)
         cell = self.width[:, None] / count
         return index.astype(int) % count, (x - index - 0.5) * cell, cell / 2
 
     def zone(self, zone, gap=0.0045, corner=0.02):
-        """Distance inside the zone's panels (metres, negative in the gaps), the panel's index and the zone's rows."""
+        """Distance inside the zone's panels (meters, negative in the gaps), the panel's index and the zone's rows."""
         start, end, count, shift = zone
         top, bottom = self.row_of(end), self.row_of(start)
         index, x, half = self.cells(count, shift)
@@ -72,7 +72,7 @@ def paint(sheet):
     color = np.broadcast_to(GRAPHITE, shape + (3,)).copy()
     metallic, lamp = np.zeros(shape), np.zeros(shape)
     rough = np.full(shape, 0.62)
-    edge = np.full(shape, 1.0)  # metres from the nearest panel edge
+    edge = np.full(shape, 1.0)  # meters from the nearest panel edge
 
     def cover(mask, new_color, new_rough, new_metallic):
         nonlocal color, rough, metallic
@@ -235,7 +235,7 @@ def handled(sheet, rough):
 
 
 def finger_mark(sheet, rough, x, y, angle, warp):
-    """One finger mark, 8 by 12 centimetres: larger than life, so that it shows."""
+    """One finger mark, 8 by 12 centimeters: larger than life, so that it shows."""
     row = int(y * DRAWN)
     reach = 90
     rows = slice(max(row - reach, 0), min(row + reach, DRAWN))
