@@ -13,7 +13,7 @@ void main() {
     mat3 directions = mat3(draw.world_from_object);
 
     fragment.position_ws = draw.world_from_object * vec4(vertex.position, 1.0);
-    // Normalized per vertex: otherwise, on a non-uniformly scaled mesh, interpolation would favor the longer normals.
+    // Unit length at each vertex: on a non-uniformly scaled mesh, interpolation would otherwise favor the longer normals.
     // A zero normal stays zero; the fragment stage replaces it.
     fragment.normal_ws = safe_normalize(draw.normal_ws_from_object * vertex.normal, vec3(0.0));
     // A mirroring transform flips cross(n, t), so the sign of the bitangent flips too.

@@ -21,12 +21,12 @@ layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {
     vec3 rim_color;            //@ui "Rim color" color = 1 0.8 0.6
 };
 
-// Runs before lighting: change the material here. The debug modes show the surface as you leave it.
+// The surface before it is lit: change the material here. The debug modes show the surface as you leave it.
 void user_surface(inout Surface s) {
     s.roughness = saturate(s.roughness * roughness_scale);
 }
 
-// Runs after lighting: change the radiance that reaches the eye.
+// The radiance that reaches the eye: change the result of lighting here.
 vec3 user_radiance(Surface s, vec3 v, vec3 radiance) {
     // Rim light: grows where the surface turns away from the eye. It has no light source.
     radiance += rim_color * rim_strength * pow(1.0 - saturate(dot(s.n, v)), rim_power);
