@@ -1,4 +1,4 @@
-"""The shell's textures. Every channel comes from one height field and a few masks, so all agree."""
+"""The shell's textures. All channels derive from one height field and a few masks, so they match."""
 
 import numpy as np
 
@@ -117,12 +117,12 @@ def paint(sheet):
     rough = handled(sheet, rough)
     cavity = np.clip((blur(height, 26) - height) / 0.0075, 0.0, 1.0)
     occlusion = 1.0 - 0.85 * smooth(0.0, 1.0, cavity)
-    color = mix(color, color * 0.5, 0.8 * cavity)  # dirt gathers where light does not
+    color = mix(color, color * 0.5, 0.8 * cavity)  # dirt in the cavities
     return textures(sheet, color, occlusion, rough, metallic, height, lamp)
 
 
 def textures(sheet, color, occlusion, rough, metallic, height, lamp):
-    """The drawn fields, averaged to the final size and packed as glTF wants them."""
+    """The drawn fields, averaged to the final size and packed into glTF's channels."""
     normal = halved(normals(height, sheet.texel_x, sheet.texel_y))
     normal /= np.linalg.norm(normal, axis=2, keepdims=True)
     orm = halved(np.stack([occlusion, rough, metallic], axis=2))
@@ -191,7 +191,7 @@ def lamps(sheet, cover, height):
 
 
 def inner_ring(sheet, height, lamp):
-    """A line of light on the inner side, behind the opening's wall, so that the core is lit from around."""
+    """A line of light on the inner side, behind the opening's wall, which lights the core from all sides."""
     rows = sheet.inside & (sheet.angle > 53.0) & (sheet.angle < 56.5)
     rows = blur(np.repeat(rows[:, None].astype(float), 2, axis=1), 3)[:, :1]
     groove = sheet.inside & (np.floor(sheet.angle / 9.0) != np.floor((sheet.angle + 1.2) / 9.0))
@@ -211,7 +211,7 @@ def wear(sheet, cover, edge, painted):
 
 
 def handled(sheet, rough):
-    """Roughness of a thing in use: smears, fine scratches and finger marks."""
+    """Roughness of an object in use: smears, fine scratches and finger marks."""
     shape = rough.shape
     smear = fractal(shape, (6, 7), 5) - 0.5
     rough = rough + 0.20 * smear
