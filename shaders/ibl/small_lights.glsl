@@ -1,8 +1,8 @@
 // Small lights: sources far brighter than their surroundings and smaller than any lobe, such as suns, lamps and their
 // glints. Most of the light is then in a few texels, and a mip level does not know where in a texel it comes from: its
 // highlights are off by up to half a texel. That was most of the prefilter's error (10 % RMSE under a sun, at level 2
-// with 64 samples; 0.02 % without). So level 0 keeps the full picture, while the levels below clip texels at a limit.
-// The clipped light becomes a list of directions, which the bake adds exactly.
+// with 64 samples; 0.02 % once they are removed). So level 0 keeps the full picture, while the levels below clip texels
+// at a limit. The clipped light becomes a list of directions, which the bake adds exactly.
 #ifndef IBL_SMALL_LIGHTS_GLSL
 #define IBL_SMALL_LIGHTS_GLSL
 
