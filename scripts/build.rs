@@ -1,4 +1,4 @@
-//! Tells cargo that the program embeds `shaders/` and `assets/`, so that a new file there is a reason to build again.
+//! Makes cargo rebuild when a file in `shaders/` or `assets/`, which the program embeds, is added or changed.
 
 fn main() {
     println!("cargo:rerun-if-changed=shaders");

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# shellcheck disable=SC2034 # what is defined here is used by the scripts that source it
-# Shared by play, test, setup and thesis-figures; sourced, never run. Expects `set -euo pipefail`.
+# shellcheck disable=SC2034 # the scripts that source this file use its variables
+# Functions shared by the other scripts, which source this file. Expects `set -euo pipefail`.
 
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 RUST_NEEDED=1.95
@@ -8,14 +8,14 @@ TARGET_DIR=${CARGO_TARGET_DIR:-target}
 [[ $TARGET_DIR == /* ]] || TARGET_DIR=$ROOT/$TARGET_DIR
 SPECULA=$TARGET_DIR/release/specula
 
-# To build: the compilers and what shaderc's own build runs.
-# To run: Vulkan with a software device, and the libraries that winit opens.
+# To build: compilers, and the tools that shaderc's build needs.
+# To run: Vulkan with a software device, and the libraries that winit loads.
 PACKAGES_PLAY=(
     ca-certificates curl cmake g++ git ninja-build pkg-config python3
     libvulkan1 mesa-vulkan-drivers
     libwayland-client0 libx11-6 libx11-xcb1 libxcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0
 )
-# To test: validation layers, and a display for the window tests.
+# To test: validation layers, and an X server for the window tests.
 PACKAGES_TEST=(vulkan-validationlayers xauth xdotool xvfb)
 
 say() { printf '%s\n' "specula: $*" >&2; }
@@ -30,7 +30,7 @@ have() { command -v "$1" >/dev/null 2>&1; }
 # is_at_least HAVE WANTED: compares versions of the form 1.2.3.
 is_at_least() { [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]; }
 
-# Prints those of the named packages that are not installed.
+# Prints the given packages that are not installed.
 missing_packages() {
     local name state
     for name in "$@"; do
@@ -43,11 +43,11 @@ missing_packages() {
     done
 }
 
-# install_packages NAME...: installs what is missing, or prints the line that does and ends.
+# install_packages NAME...: installs missing packages, or prints the command that does and exits.
 install_packages() {
     local missing=() as_root=()
     if ! have dpkg-query || ! have apt-get; then
-        say "this is not Debian or Ubuntu, so nothing is installed. Needed by these names there: $*"
+        say "this is not Debian or Ubuntu, so install these packages (Debian names) yourself: $*"
         return 0
     fi
     mapfile -t missing < <(missing_packages "$@")
@@ -55,7 +55,7 @@ install_packages() {
     local line="apt-get update && apt-get install -y --no-install-recommends ${missing[*]}"
     if [ "$(id -u)" -ne 0 ]; then
         if ! have sudo || ! sudo -n true 2>/dev/null; then
-            say "system packages are missing. Run this, then run me again:"
+            say "system packages are missing. Run this command, then this script again:"
             printf '\n    sudo sh -c "%s"\n\n' "$line" >&2
             exit 1
         fi
@@ -64,17 +64,17 @@ install_packages() {
         as_root=(env)
     fi
     say "installing ${missing[*]}"
-    # A repository that is out of reach need not be the one that we want: let the installation decide.
-    "${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get update -qq >&2 || say "apt-get update failed; trying on"
+    # An unreachable repository may not be needed, so only the installation may fail.
+    "${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get update -qq >&2 || say "apt-get update failed; trying to install anyway"
     "${as_root[@]}" DEBIAN_FRONTEND=noninteractive \
         apt-get install -y -qq --no-install-recommends --no-remove "${missing[@]}" </dev/null >&2 ||
-        die "apt-get failed (its message is above). The line to run by hand:
+        die "apt-get failed (see its message above). To install by hand, run:
     $line"
 }
 
 rust_version() { cargo --version 2>/dev/null | cut -d ' ' -f 2 | cut -d - -f 1; }
 
-# Puts a cargo that is new enough on PATH, through the distribution's rustup where there is one.
+# Ensures that a recent enough cargo is on PATH, by the distribution's rustup if there is one.
 ensure_rust() {
     local found
     if [ -d "$HOME/.cargo/bin" ]; then export PATH="$HOME/.cargo/bin:$PATH"; fi
@@ -86,24 +86,24 @@ ensure_rust() {
     if have rustup; then
         say "installing the stable Rust toolchain (found ${found:-none}, $RUST_NEEDED is needed)"
         rustup toolchain install stable --profile minimal --component clippy --component rustfmt >&2 ||
-            die "rustup could not install Rust; its message is above"
+            die "rustup could not install Rust; see its message above"
         export RUSTUP_TOOLCHAIN=stable
         found=$(rust_version || true)
         if [ -n "$found" ] && is_at_least "$found" "$RUST_NEEDED"; then return 0; fi
     fi
-    say "Rust $RUST_NEEDED or newer is needed, found ${found:-none}. Run this (see https://rustup.rs), then me again:"
+    say "Rust $RUST_NEEDED or newer is needed, found ${found:-none}. Run this (see https://rustup.rs), then this script again:"
     printf '\n    %s\n\n' "curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs | sh" >&2
     exit 1
 }
 
-# Adds the parts of the toolchain that the checks need.
+# Adds clippy and rustfmt to the toolchain.
 ensure_lints() {
     if cargo clippy --version >/dev/null 2>&1 && cargo fmt --version >/dev/null 2>&1; then return 0; fi
-    have rustup || die "cargo clippy or cargo fmt is missing: install them from where $(command -v cargo) comes"
-    rustup component add clippy rustfmt >&2 || die "rustup could not add clippy and rustfmt; its message is above"
+    have rustup || die "cargo clippy or cargo fmt is missing: install them from the same source as $(command -v cargo)"
+    rustup component add clippy rustfmt >&2 || die "rustup could not add clippy and rustfmt; see its message above"
 }
 
-# The newest shader compiler that cargo has built in this target folder.
+# Prints the newest shaderc library that cargo has built in this target folder.
 built_shaderc() {
     local lib newest=
     for lib in "$TARGET_DIR"/release/build/shaderc-sys-*/out/lib/libshaderc_combined.a; do
@@ -114,7 +114,7 @@ built_shaderc() {
 
 host_triple() { rustc -vV | sed -n 's/^host: //p'; }
 
-# Where the shader compiler is kept between checkouts. A new version, target or compiler has another folder.
+# Prints the folder that caches the shaderc library between checkouts: one per version, target and C++ compiler.
 shaderc_cache() {
     local version gxx
     version=$(sed -n '/^name = "shaderc-sys"$/{n;s/^version = "\(.*\)"$/\1/p;}' "$ROOT/Cargo.lock")
@@ -122,11 +122,11 @@ shaderc_cache() {
     printf '%s\n' "${SPECULA_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/specula}/shaderc-$version-$(host_triple)-g++$gxx"
 }
 
-# Sets SHADERC_CONFIG: cargo options that link the kept shader compiler in place of ten minutes of C++.
+# Sets SHADERC_CONFIG: cargo options that link the cached shaderc library instead of building it (ten minutes of C++).
 #
-# shaderc-sys with `build-from-source` ignores SHADERC_LIB_DIR, so its build script is overridden as cargo's `links` key
-# allows. Cargo rebuilds whatever depends on it when the override comes or goes; hence one that built it here stays
-# with that, as a plain `cargo build` does, and only a target folder without it uses the kept one.
+# shaderc-sys with `build-from-source` ignores SHADERC_LIB_DIR, so this overrides its build script by cargo's `links`
+# key. Cargo rebuilds everything that depends on shaderc-sys when the override changes. So a target folder that has
+# built the library keeps using its own, as a plain `cargo build` does; only other folders use the cache.
 use_kept_shaderc() {
     local cache triple
     SHADERC_CONFIG=()
@@ -138,29 +138,29 @@ use_kept_shaderc() {
             --config "target.$triple.shaderc.rustc-link-search=['native=$cache']"
             --config "target.$triple.shaderc.rustc-link-lib=['static=shaderc_combined']"
         )
-        say "using the shader compiler kept in $cache"
+        say "using the cached shader compiler in $cache"
     else
-        say "building the shader compiler (C++, about ten minutes on two cores; once)"
+        say "building the shader compiler (C++, once; about ten minutes on two cores)"
     fi
 }
 
-# Keeps the shader compiler that this target folder built. That it cannot be kept is no failure.
+# Caches the shaderc library that this target folder has built. Failing to cache it is not an error.
 keep_shaderc() {
     local cache lib
     lib=$(built_shaderc) || return 0
     cache=$(shaderc_cache)
     [ ! -s "$cache/libshaderc_combined.a" ] || return 0
-    # Renamed into place, so that nobody links half a file.
+    # The rename is atomic, so that no other build links an incomplete file.
     if mkdir -p "$cache" && cp "$lib" "$cache/.$$.a" && mv "$cache/.$$.a" "$cache/libshaderc_combined.a"; then
-        say "kept the shader compiler in $cache"
+        say "cached the shader compiler in $cache"
     else
         rm -f "$cache/.$$.a" || true
-        say "could not keep the shader compiler in $cache (see above); the next fresh checkout builds it again"
+        say "could not cache the shader compiler in $cache (see above); the next fresh checkout will build it again"
     fi
 }
 
-# build_cargo COMMAND [ARGUMENTS]: cargo in the one profile that everything uses. The options stand after the command,
-# because `cargo --config ... clippy` does not hand them on.
+# build_cargo COMMAND [ARGUMENTS]: runs cargo in the one profile that everything uses. The options follow the command,
+# because `cargo --config ... clippy` does not pass them on.
 build_cargo() {
     local command=$1 status=0
     shift

@@ -1,4 +1,5 @@
-// glTF's materials: textures times factors make a Surface. Extensions read their textures only where FEATURES has them.
+// Builds a Surface from a glTF material: textures times factors. An extension's textures are read only if its FEATURES
+// bit is set.
 #ifndef MATERIAL_GLSL
 #define MATERIAL_GLSL
 
@@ -9,54 +10,56 @@
 #include "common/math.glsl"
 #include "material_textures.glsl"
 
-// For debug modes: a condition that should cost nothing has the comparison itself (ARCHITECTURE.md, "Features").
+// For debug modes. Code that must vanish where the bit is not set writes the comparison out instead (ARCHITECTURE.md,
+// "Features").
 bool has_feature(uint feature) { return (FEATURES & feature) != 0u; }
 
-// A normal texture's texel, tangent space: 0..1 stands for -1..1, x and y are scaled (glTF 2.0, 3.9.3). Its length is
-// not made 1: what turns it into world space does that.
+// Decodes a texel of a normal texture into tangent space: 0..1 maps to -1..1, then x and y are scaled (glTF 2.0,
+// 3.9.3). The result is not normalized: mapped_normal normalizes it in world space.
 vec3 normal_texel(vec4 texel, float scale) { return (texel.xyz * 2.0 - 1.0) * vec3(scale, scale, 1.0); }
 
-// The normal texture, tangent space, unit. A texel of no direction is flat.
+// The normal from the normal texture: tangent space, unit. A texel that decodes to zero counts as flat.
 vec3 normal_ts(Fragment f) {
     vec4 texel = texture(normal_texture, texture_uv(f, TEXTURE_NORMAL));
     return safe_normalize(normal_texel(texel, material.normal_scale), vec3(0.0, 0.0, 1.0));
 }
 
-// glTF 2.0, 3.7.2.1. Not normalized: MikkTSpace bakers use the interpolated vectors as they are (Mikkelsen 2008).
+// glTF 2.0, 3.7.2.1. Not normalized, since MikkTSpace bakers use the interpolated vectors as they are (Mikkelsen 2008).
 vec3 bitangent_ws(Fragment f) {
     return cross(f.normal_ws, f.tangent_ws.xyz) * (f.tangent_ws.w < 0.0 ? -1.0 : 1.0);
 }
 
-// A direction of the front seen from behind is the opposite one. Mirrored meshes have their winding turned by the
-// renderer, so gl_FrontFacing is right for them too.
+// Flips a direction of the front face for a back face. The renderer reverses the winding of mirrored meshes, so
+// gl_FrontFacing is right for them too.
 vec3 towards_viewer(vec3 direction_ws) { return gl_FrontFacing ? direction_ws : -direction_ws; }
 
-// The mesh's normal, interpolated. Where normals are zero or cancel out, the surface faces the eye.
+// The interpolated vertex normal, unit, on the viewer's side. Falls back to v where normals are zero or cancel out.
 vec3 geometric_normal(Fragment f, vec3 v) { return safe_normalize(towards_viewer(f.normal_ws), v); }
 
-// The normal that a texel stands for. A zero tangent leaves the geometric normal, since its bitangent is zero too; so
-// does a texel of no direction. The choice comes first, so that one vector is normalized, not two.
+// Transforms a decoded normal texel to world space. Where the result is zero (a texel that decodes to zero, say), this
+// returns the geometric normal. A zero tangent makes the bitangent zero too, so the geometric normal is all that is
+// left. The fallback is selected before normalizing, so that only one vector is normalized.
 vec3 mapped_normal(Fragment f, vec3 v, vec3 texel) {
     vec3 n_ws = f.tangent_ws.xyz * texel.x + bitangent_ws(f) * texel.y + f.normal_ws * texel.z;
     return safe_normalize(towards_viewer(dot(n_ws, n_ws) > 1e-20 ? n_ws : f.normal_ws), v);
 }
 
-// The normal that is shaded.
+// The shading normal: unit, world space.
 vec3 shading_normal(Fragment f, vec3 v) {
     if ((FEATURES & FEATURE_NORMAL_TEXTURE) == 0u) return geometric_normal(f, v);
     vec4 texel = texture(normal_texture, texture_uv(f, TEXTURE_NORMAL));
     return mapped_normal(f, v, normal_texel(texel, material.normal_scale));
 }
 
-// The coat does not take over the bumps of what it covers (KHR_materials_clearcoat).
+// The clear coat has its own normal texture and ignores the base's (KHR_materials_clearcoat).
 vec3 clearcoat_normal(Fragment f, vec3 v) {
     if ((FEATURES & FEATURE_CLEARCOAT_NORMAL) == 0u) return geometric_normal(f, v);
     vec4 texel = texture(clearcoat_normal_texture, texture_uv(f, TEXTURE_CLEARCOAT_NORMAL));
     return mapped_normal(f, v, normal_texel(texel, material.clearcoat_normal_scale));
 }
 
-// KHR_materials_anisotropy: the direction in tangent space, turned by the material's rotation, and laid into the plane
-// of the shading normal. Without a texture it is the tangent.
+// KHR_materials_anisotropy: rotates the texture's direction by the material's rotation and projects it into the tangent
+// plane of the shading normal. Without a texture the direction is the tangent.
 void read_anisotropy(Fragment f, inout Surface s) {
     vec2 direction = vec2(1.0, 0.0);
     s.anisotropy = material.anisotropy_strength;
@@ -72,8 +75,9 @@ void read_anisotropy(Fragment f, inout Surface s) {
     s.b = cross(s.n, s.t);
 }
 
-// KHR_materials_pbrSpecularGlossiness: the textures of base color and metallic-roughness hold diffuse color, and
-// F0 with glossiness. What the strongest component of F0 leaves enters: metals are materials of a black diffuse color.
+// KHR_materials_pbrSpecularGlossiness: the base color slot holds the diffuse color, the metallic-roughness slot holds
+// F0 (RGB) and glossiness (A). The diffuse color is scaled by 1 - max(F0). Metals have a black diffuse color there, so
+// metallic stays 0.
 void read_specular_glossiness(vec4 specular_glossiness, inout Surface s) {
     s.f0 = saturate(specular_glossiness.rgb * material.specular_color);
     s.base_color *= 1.0 - max_component(s.f0);
@@ -89,7 +93,7 @@ void read_specular(Fragment f, inout Surface s) {
     s.f90 = factor;
 }
 
-// The layers: coat, sheen, film.
+// Reads the layers: clear coat, sheen and thin film.
 void read_layers(Fragment f, vec3 v, inout Surface s) {
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
         vec2 roughness_uv = texture_uv(f, TEXTURE_CLEARCOAT_ROUGHNESS);
@@ -111,7 +115,7 @@ void read_layers(Fragment f, vec3 v, inout Surface s) {
     }
 }
 
-// The mean length of the object's axes in the world: thickness is in the object's meters (KHR_materials_volume).
+// Mean scale from object to world: KHR_materials_volume gives thickness in object space.
 float object_scale() {
     mat4x3 m = draw.world_from_object;
     return (length(m[0]) + length(m[1]) + length(m[2])) / 3.0;
@@ -138,7 +142,7 @@ void read_transmission(Fragment f, inout Surface s) {
     }
 }
 
-// All that an extension sets, as it is without.
+// Sets every member that belongs to an extension to its neutral value.
 void clear_extensions(inout Surface s) {
     s.t = s.b = vec3(0.0);
     s.anisotropy = 0.0;
@@ -157,7 +161,7 @@ void clear_extensions(inout Surface s) {
     s.diffuse_transmission_color = vec3(1.0);
 }
 
-// `v`: unit, towards the eye, world space. Leaves s.dfg and s.multiple to complete_surface (brdf/multiscatter.glsl).
+// `v`: towards the eye, world space, unit. complete_surface (brdf/multiscatter.glsl) fills in s.dfg and s.multiple.
 Surface make_surface(Fragment f, vec3 v) {
     vec4 base_color = texture(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR));
     vec4 metallic_roughness = texture(metallic_roughness_texture, texture_uv(f, TEXTURE_METALLIC_ROUGHNESS));
@@ -181,7 +185,7 @@ Surface make_surface(Fragment f, vec3 v) {
     s.ior = material.ior;
     s.f0 = vec3(f0_from_ior(s.ior));
     s.f90 = 1.0;
-    s.dfg = vec4(0.0);   // of a mirror, along the normal
+    s.dfg = vec4(0.0);   // a mirror at normal incidence
     s.multiple = vec3(0.0);
     clear_extensions(s);
 

@@ -1,11 +1,11 @@
-// The textures of a material, and where each is read.
+// The textures of a material and their texture coordinates.
 #ifndef MATERIAL_TEXTURES_GLSL
 #define MATERIAL_TEXTURES_GLSL
 
 #include "interface.glsl"
 #include "common/fragment.glsl"
 
-// Where a material has no texture a neutral one is bound (white, or a flat normal): hardly anything asks which exist.
+// A slot without a texture has a neutral one bound (white, or a flat normal), so shaders rarely need has_texture.
 layout(set = SET_MATERIAL, binding = BINDING_BASE_COLOR_TEXTURE) uniform sampler2D base_color_texture;
 layout(set = SET_MATERIAL, binding = BINDING_METALLIC_ROUGHNESS_TEXTURE) uniform sampler2D metallic_roughness_texture;
 layout(set = SET_MATERIAL, binding = BINDING_NORMAL_TEXTURE) uniform sampler2D normal_texture;
@@ -31,7 +31,7 @@ layout(set = SET_MATERIAL, binding = BINDING_DIFFUSE_TRANSMISSION_COLOR_TEXTURE)
 
 bool has_texture(uint which) { return (material.texture_mask & 1u << which) != 0u; }
 
-// Where texture `which` is read: its set of coordinates, moved by KHR_texture_transform.
+// Coordinates of texture `which`: its TEXCOORD set, transformed by KHR_texture_transform.
 vec2 texture_uv(Fragment f, uint which) {
     if ((FEATURES & FEATURE_TEXTURE_COORDINATES) == 0u) return f.uv0;
     vec2 uv = (material.uv1_mask & 1u << which) != 0u ? f.uv1 : f.uv0;

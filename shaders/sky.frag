@@ -2,12 +2,12 @@
 #include "interface.glsl"
 #include "lighting/environment.glsl"
 
-// The environment behind the model. Scene-referred linear RGB, opaque.
+// Draws the environment behind the model: scene-referred linear RGB, opaque.
 
 layout(location = 0) out vec4 out_color;
 
-// From the eye through the pixel. A point at infinity has w = 0, and its coordinates are the direction; for a far plane
-// at a distance w is above 0, and the eye is subtracted as often.
+// The direction from the eye through the pixel, not normalized. With an infinite far plane the unprojected point has
+// w = 0, and its xyz is the direction. With a finite one w > 0, and xyz - w eye is the direction.
 vec3 direction_ws() {
     vec2 clip = gl_FragCoord.xy / frame.viewport_px * 2.0 - 1.0;
     vec4 far = frame.world_from_clip * vec4(clip, 0.0, 1.0);
@@ -15,6 +15,6 @@ vec3 direction_ws() {
 }
 
 void main() {
-    // As in pbr.frag: beyond what the target holds lies infinity.
+    // As in pbr.frag: the clamp keeps values finite that the target's format cannot hold.
     out_color = vec4(min(background_radiance(direction_ws()), frame.largest_value), 1.0);
 }

@@ -1,6 +1,6 @@
 #version 460
 
-// One triangle that covers the screen: (-1, -1), (3, -1), (-1, 3). A quad of two would shade their shared diagonal
+// A full-screen triangle: (-1, -1), (3, -1), (-1, 3). Two triangles would shade the pixels along their shared edge
 // twice.
 
 void main() {

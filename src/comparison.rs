@@ -1,23 +1,23 @@
-//! How far two pictures are apart: for goldens, and for what an edit changed.
+//! Compares two pictures, for the goldens and for `specula diff`.
 
 use std::path::Path;
 
 use image::{DynamicImage, Rgb32FImage, RgbImage, Rgba32FImage, RgbaImage};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
 
-/// A picture as a file holds it.
+/// A picture as stored in a file.
 pub enum Picture {
-    /// 8 bits a channel, encoded for a display, alpha straight.
+    /// Display-encoded, 8 bits a channel, straight alpha.
     Display(RgbaImage),
-    /// Floats, linear, in any unit.
+    /// Linear floats in any unit.
     Raw(Rgba32FImage),
 }
 
 impl Picture {
-    /// Reads a file; what it holds says what it is, not its ending.
+    /// Reads a file. Its content, not its extension, determines the format.
     ///
     /// # Errors
-    /// A file that cannot be read or is no picture, in words.
+    /// A message if the file cannot be read or decoded.
     pub fn open(path: &Path) -> Result<Self, String> {
         let error = |e: &dyn std::fmt::Display| format!("cannot read {}: {e}", path.display());
         let reader = image::ImageReader::open(path).map_err(|e| error(&e))?;
@@ -35,7 +35,7 @@ impl Picture {
         }
     }
 
-    /// RGBA, each pixel of a display's picture in 0..1.
+    /// RGBA; 0..1 for display-encoded pictures.
     fn pixels(&self) -> Vec<[f32; 4]> {
         match self {
             Self::Display(image) => image.pixels().map(|pixel| pixel.0.map(|c| f32::from(c) / 255.0)).collect(),
@@ -44,29 +44,29 @@ impl Picture {
     }
 }
 
-/// What [`Comparison::error`] is.
+/// The metric of [`Comparison::error`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Measure {
-    /// Mean of FLIP (Andersson et al. 2020), 0..1: what an eye sees from 0.7 m on a 4K screen, over middle gray.
+    /// Mean FLIP (Andersson et al. 2020), 0..1: the perceived difference at 0.7 m from a 4K screen, over middle gray.
     Flip,
-    /// Root of the mean square of the difference, over all pixels and channels, in the pictures' own unit.
+    /// Root mean square of the difference over all pixels and channels, in the pictures' unit.
     Rmse,
 }
 
-/// Two pictures of one size, compared.
+/// The comparison of two pictures of the same size.
 pub struct Comparison {
-    /// What `error` is: FLIP for a display's pictures, RMSE for raw ones.
+    /// The metric of `error`: FLIP for display-encoded pictures, RMSE for raw ones.
     pub measure: Measure,
-    /// 0: they are the same, each pixel of them. Infinite where one of two has NaN or infinity.
+    /// 0 only if all pixels are equal. Infinite if a pixel is NaN or infinite in only one picture.
     pub error: f64,
-    /// Largest difference of one channel, alpha too; infinite as above.
+    /// Largest difference of a channel, including alpha; infinite in the same case.
     pub largest: f64,
-    /// The first pixel that has it, from the top left.
+    /// The first pixel with the largest difference, from the top left.
     pub largest_at: (u32, u32),
-    /// Pixels that are not the same.
+    /// Number of pixels that differ.
     pub differing: usize,
-    /// All pixels.
+    /// Number of all pixels.
     pub pixels: usize,
     map: DynamicImage,
 }
@@ -75,7 +75,7 @@ impl Comparison {
     /// Compares `b` with `a`.
     ///
     /// # Errors
-    /// Pictures of different sizes, or one for a display and one raw, in words.
+    /// A message if the sizes differ, or if one picture is display-encoded and the other raw.
     pub fn new(a: &Picture, b: &Picture) -> Result<Self, String> {
         let (width, height) = a.size();
         if b.size() != a.size() {
@@ -101,9 +101,9 @@ impl Comparison {
                 let rmse = (squares / (4 * differences.len()).max(1) as f64).sqrt();
                 (Measure::Rmse, rmse, raw_map(&differences, width, height)?)
             }
-            _ => return Err("a picture for a display (PNG) and a raw one (EXR) cannot be compared".to_owned()),
+            _ => return Err("a display-encoded picture (PNG) and a raw one (EXR) cannot be compared".to_owned()),
         };
-        // FLIP of what no eye can see rounds to 0.
+        // FLIP rounds invisible differences to 0, but 0 means equal.
         let error = if differing == 0 { 0.0 } else { error.max(f64::MIN_POSITIVE) };
         let index = largest.1 as u32;
         Ok(Self {
@@ -117,13 +117,13 @@ impl Comparison {
         })
     }
 
-    /// Where they differ, and how much: FLIP from black to white through the colors of magma; of raw pictures |a - b|, raw.
+    /// The difference per pixel: FLIP in magma colors for display-encoded pictures, |a - b| for raw ones.
     pub fn map(&self) -> &DynamicImage {
         &self.map
     }
 }
 
-/// b - a; 0 where both are the same even if that is NaN, infinite where only one of them is a number.
+/// b - a. 0 if both are equal or both NaN; infinite if the difference is not finite.
 fn differences(a: &[[f32; 4]], b: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let difference = |a: f32, b: f32| match b - a {
         _ if a == b || (a.is_nan() && b.is_nan()) => 0.0,
@@ -143,7 +143,7 @@ fn flip_of(a: &RgbaImage, b: &RgbaImage) -> Result<(f64, DynamicImage), String> 
     Ok((f64::from(FlipPool::from_image(&error).mean()), map.into()))
 }
 
-/// In encoded values, as a browser lays pictures over a page.
+/// Composites over middle gray in encoded values, as browsers do.
 fn over_gray(image: &RgbaImage) -> Vec<u8> {
     let blend = |c: u8, alpha: u8| {
         let (c, alpha) = (u32::from(c), u32::from(alpha));

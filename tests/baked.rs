@@ -1,4 +1,4 @@
-//! What is baked of the built-in environments, against sums over every texel of the map.
+//! The baked maps of the built-in environments, against sums over every texel.
 
 mod support;
 
@@ -10,7 +10,7 @@ use support::{Session, assert_validated, glb, load, ready, settings};
 const SIDE: u32 = 256;
 /// The level that holds roughness 1.
 const LAST: f64 = 5.0;
-/// The lookup at the center of a texel of the level with this roughness, as [`texel`] has it.
+/// Replaces the lookup by one at the texel center of the level with this roughness, like [`texel`].
 const AT_TEXEL: &str = "vec3 prefiltered_radiance(vec3 r, float roughness) {
     float side = exp2(8.0 - round(5.0 * roughness * (2.0 - roughness)));
     vec3 p = r / max(max(abs(r.x), abs(r.y)), abs(r.z));
@@ -18,7 +18,7 @@ const AT_TEXEL: &str = "vec3 prefiltered_radiance(vec3 r, float roughness) {
     r = mix(center, p, greaterThanEqual(abs(p), vec3(0.999999)));
 ";
 
-/// The center of the texel around `n` on a cube with `side` texels; none where floats may disagree which it is.
+/// The center of the texel around `n` on a cube with `side` texels; `None` where rounding may select another texel.
 fn texel(n: DVec3, side: f64) -> Option<DVec3> {
     let p = n / n.abs().max_element();
     let place = (p * 0.5 + 0.5) * side;
@@ -47,7 +47,7 @@ impl Sky {
         Self { texels: map.pixels.iter().enumerate().map(texel).collect() }
     }
 
-    /// Mean of the radiance, weighted by a function of the cosine to `n`.
+    /// Mean radiance, weighted by a function of the cosine to `n`.
     fn mean(&self, n: DVec3, weight: impl Fn(f64) -> f64) -> DVec3 {
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
         for (at, radiance, solid_angle) in &self.texels {
@@ -70,7 +70,7 @@ fn ggx(alpha: f64) -> impl Fn(f64) -> f64 {
     }
 }
 
-/// Values of a mode where the sphere is seen, some pixels of it, by normal.
+/// The values of a mode on the sphere, at some pixels, with their normals.
 fn shown(session: &mut Session, slug: &str) -> Vec<(DVec3, DVec3)> {
     let mut out = Vec::new();
     for eye in ["[3, 1, 2]", "[-3, -1, -2]"] {
@@ -86,7 +86,7 @@ fn shown(session: &mut Session, slug: &str) -> Vec<(DVec3, DVec3)> {
     out
 }
 
-/// Root of the mean square of the differences, over the mean.
+/// Root mean square of the differences, relative to the mean.
 fn rmse(pairs: &[(DVec3, DVec3)]) -> f64 {
     let square: f64 = pairs.iter().map(|(a, b)| (*a - *b).length_squared() / 3.0).sum();
     let mean: f64 = pairs.iter().map(|(_, truth)| truth.element_sum() / 3.0).sum();
@@ -100,8 +100,9 @@ fn baked_like_brute_force(environment: &str) {
     ready(&session.edit("debug/light.glsl", "specular_radiance(s, v)", "prefiltered_radiance(s.n, s.roughness)"));
     let sky = Sky::new(&EnvironmentFile::open(environment).unwrap().decode().unwrap());
     session.set("material.enabled=true");
-    // Between levels, where a sun's highlight is made of one too sharp and one too wide and its error says nothing; at levels,
-    // where what lies between texels is the sampler's; at the texel around the normal.
+    // Three kinds of lookup: between levels (not for the sky, where the blend of a sharper and a wider highlight
+    // dominates the error), on a level, where the sampler's interpolation contributes, and at texel centers, where only
+    // the bake does.
     let between: &[u32] = if environment == "sky" { &[] } else { &[1, 3, 5, 7, 9] };
     let edits = [(between, 0.1), (&[2, 4, 6, 8, 10], 0.025), (&[2, 4, 6, 8, 10], 0.01)];
     for (pass, (steps, allowed)) in edits.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! `specula brdf`: the BRDF as the shader tree has it, held against physics and against its own claims.
+//! `specula brdf`: the BRDF of the shader tree, checked against physics and against its own claims.
 
 mod support;
 
@@ -12,10 +12,10 @@ use specula::shader::{Change, Constant, Library, Source, Update};
 use support::process::{Finished, run};
 use support::{Tree, assert_validated, compiler, gpu};
 
-/// Above what an estimate may be off by.
+/// Largest albedo that counts as energy conserving; the tolerance covers the error of the estimate.
 const MOST: f64 = 1.005;
 
-/// `specula brdf` with these arguments, under validation.
+/// Runs `specula brdf` with these arguments and validation layers.
 fn brdf(directory: &Path, args: &[&str]) -> Finished {
     run(directory, &[&["brdf"], args, &["--validate"]].concat())
 }
@@ -56,9 +56,9 @@ fn the_split_sum_is_reported_by_roughness() {
         assert_eq!(rows.len(), 10);
         rows.iter().map(|row| row["bias"].as_f64().unwrap().abs()).fold(0.0, f64::max)
     };
-    // In a furnace the product of the two sums is exact.
+    // In a furnace the split sum is exact.
     assert!(near("1") < 0.01, "{}", near("1"));
-    // Under a studio it is not, but not far off either.
+    // Under a studio it is not, but the error is small.
     let studio = json(&["split-sum", "--frames", "16"]);
     let rms = |row: &Value| row["rms"].as_f64().unwrap();
     let rows = studio["rows"].as_array().unwrap();
@@ -70,7 +70,7 @@ fn without_multiple_scattering_a_rough_metal_keeps_light() {
     let furnace = json(&["furnace", "--set", "MULTI_SCATTER=None"]);
     let rows = furnace["rows"].as_array().unwrap();
     let of = |roughness: f64| rows.iter().filter(move |row| row["roughness"] == roughness);
-    // Walter et al. 2007, figure 11 and Heitz 2014, section 5.2: half of it, at roughness 1.
+    // Walter et al. 2007, figure 11, and Heitz 2014, section 5.2: it keeps about half at roughness 1.
     let rough = of(1.0).flat_map(|row| numbers(&row["albedo"])).fold(f64::MAX, f64::min);
     assert!((0.3..0.6).contains(&rough), "{rough}");
     assert!(of(0.05).all(|row| numbers(&row["albedo"])[0] > 0.99));
@@ -93,7 +93,7 @@ fn a_dielectric_that_does_not_claim_to_conserve_says_why() {
     assert!(said.stdout.contains("does not claim to conserve energy (DIFFUSE=Burley)"), "{said:#?}");
 }
 
-/// One edit of brdf/ndf.glsl; the exit codes of furnace and normalization.
+/// Applies one edit to brdf/ndf.glsl and runs furnace and normalization.
 fn edited(from: &str, to: &str) -> [Finished; 2] {
     let tree = Tree::new();
     tree.write("brdf/ndf.glsl", &tree.edited("brdf/ndf.glsl", from, to));
@@ -111,7 +111,7 @@ fn a_distribution_without_its_pi_fails_both() {
 
 #[test]
 fn a_distribution_of_another_width_fails_the_furnace() {
-    // D stays a distribution, only not the one that G is for: its integral is still 1.
+    // The edited D is still normalized, but it no longer matches G.
     let [furnace, normalization] = edited("float a2 = alpha * alpha;", "float a2 = alpha;");
     furnace.expect(1, &["furnace", "claims to conserve energy"]);
     normalization.expect(0, &[]);
@@ -134,7 +134,7 @@ fn what_claims_to_be_reciprocal_is() {
     let reciprocal = json(&["reciprocity"]);
     assert!(reciprocal["error"].as_f64().unwrap() < 1e-4, "{reciprocal}");
     assert_eq!((&reciprocal["claims_reciprocity"], &reciprocal["reciprocal"]), (&true.into(), &true.into()));
-    // The measurement can fail.
+    // FdezAguera is not reciprocal, which shows that the measurement can fail.
     let other = json(&["reciprocity", "--set", "MULTI_SCATTER=FdezAguera"]);
     assert!(other["error"].as_f64().unwrap() > 0.01, "{other}");
     assert_eq!((&other["claims_reciprocity"], &other["reciprocal"]), (&false.into(), &false.into()));
@@ -162,14 +162,14 @@ fn a_plot_is_drawn() {
     let directory = tempfile::tempdir().unwrap();
     brdf(directory.path(), &["plot", "--out", "lobes.png", "--roughness", "0.3,0.7"]).expect(0, &[]);
     let picture = support::open_image(&directory.path().join("lobes.png")).into_rgb8();
-    // Lines of each lobe, in its own ink.
+    // The curve of each lobe, in its own color.
     for ink in [[224, 108, 32], [36, 104, 214], [34, 150, 92]] {
         let inked = picture.pixels().filter(|pixel| pixel.0 == ink).count();
         assert!(inked > 200, "{inked} pixels of {ink:?}");
     }
 }
 
-/// Every choice of some constants, each set in turn.
+/// Every combination of the choices that `kept` accepts, over these constants.
 fn combinations(constants: &[&Constant], kept: impl Fn(&Constant, &str) -> bool) -> Vec<Settings> {
     let mut all = vec![Settings::default()];
     for constant in constants {
@@ -187,7 +187,7 @@ fn combinations(constants: &[&Constant], kept: impl Fn(&Constant, &str) -> bool)
 }
 
 #[test]
-fn no_combination_that_claims_to_conserve_makes_light() {
+fn no_combination_that_claims_to_conserve_gains_energy() {
     let mut library = Library::new(Source::embedded(), compiler().clone(), &all_stages());
     let Update::Ready(shaders, _) = library.update(&Change::All) else { panic!("the embedded tree compiles") };
     let bench = Bench::new(gpu(), &shaders, &Settings::default()).unwrap();
@@ -203,7 +203,7 @@ fn no_combination_that_claims_to_conserve_makes_light() {
             .unwrap()
     };
     let claiming = |c: &Constant, name: &str| Claim::Conserves.of(c).unwrap().iter().any(|n| n == name);
-    // What the boundary of a metal does not depend on, and of a dielectric.
+    // Leave out constants that do not affect a metal, or a dielectric.
     let parts = |without: &[&str]| -> Vec<&Constant> {
         let models = shaders.constants.iter().filter(|c| Claim::Conserves.of(c).is_some());
         models.filter(|c| !without.contains(&c.name.as_str())).collect()
@@ -223,8 +223,8 @@ fn no_combination_that_claims_to_conserve_makes_light() {
             }
         }
     }
-    println!("{count} combinations claim to conserve; most of the light: {:.4}, {}", worst.0, worst.1);
-    // Those that do not claim it, one constant at a time, beside choices that do.
+    println!("{count} combinations claim to conserve; the largest albedo is {:.4}, {}", worst.0, worst.1);
+    // Prints the choices without the claim, one constant at a time, with conserving choices for the others.
     let mut sound = Settings::default();
     for (constant, _) in unclaimed(Claim::Conserves, &sound.clone(), &shaders) {
         let claiming = Claim::Conserves.of(constant).unwrap()[0].clone();

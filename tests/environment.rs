@@ -1,4 +1,4 @@
-//! Light from all around: what is baked is what the file or the name says, bad files cost nothing, the cache is sound.
+//! Environments: the bake matches the file or name, a bad file keeps the last good one, and the cache is reliable.
 
 mod support;
 
@@ -18,7 +18,7 @@ use tempfile::TempDir;
 
 const SMALL: [&str; 6] = ["--size", "48x32", "--set", "view.msaa=1", "--lights", "none"];
 
-/// A folder with a small white sphere.
+/// A folder with a model of a small white sphere.
 fn folder() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     let white = serde_json::json!({ "pbrMetallicRoughness": { "metallicFactor": 0.0 } });
@@ -26,13 +26,13 @@ fn folder() -> TempDir {
     directory
 }
 
-/// `render` of the sphere in an environment, under validation.
+/// Runs `render` of the sphere in an environment, with validation layers.
 fn lit_by(directory: &Path, environment: &str, more: &[&str]) -> Finished {
     let args = ["render", "ball.glb", "--env", environment, "--validate", "--out", "out.exr"];
     run(directory, &[&args[..], &SMALL, more].concat())
 }
 
-/// An EXR of 4x2 pixels: gray, but for one of them.
+/// A gray EXR of 4x2 pixels with one other pixel.
 fn exr_with(odd: (f32, f32, f32)) -> Vec<u8> {
     let channels = SpecificChannels::rgb(
         move |at: exr::prelude::Vec2<usize>| {
@@ -44,7 +44,7 @@ fn exr_with(odd: (f32, f32, f32)) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// An EXR with nothing but luminance.
+/// An EXR with a luminance channel only.
 fn exr_of_luminance() -> Vec<u8> {
     let channels = AnyChannels::sort([AnyChannel::new("Y", FlatSamples::F32(vec![1.0; 8]))].into_iter().collect());
     let mut bytes = std::io::Cursor::new(Vec::new());
@@ -70,7 +70,7 @@ fn a_bad_file_is_named_with_the_reason() {
     assert!(!directory.path().join("out.exr").exists(), "a picture in a refused environment");
 }
 
-/// Renders with a cache of its own; the `bake` event and the picture.
+/// Renders with a cache of its own. Returns the `bake` event and the picture.
 fn baked(directory: &Path) -> (Value, Vec<u8>) {
     let mut command = specula(directory);
     command.env("SPECULA_CACHE", directory.join("cache"));
@@ -95,7 +95,7 @@ fn a_bake_is_told_and_kept_and_a_damaged_entry_is_baked_anew() {
     assert_eq!(second["cached"], true, "{second}");
     assert!(picture == same, "what came from the cache looks different");
 
-    // Every entry loses its end; then one byte of it is another.
+    // Truncate every entry; then corrupt one byte of it.
     let damages: [fn(&mut Vec<u8>); 2] = [|bytes| bytes.truncate(bytes.len() / 2), |bytes| bytes[1000] ^= 4];
     for damage in damages {
         let entries: Vec<_> = fs::read_dir(directory.path().join("cache/baked")).unwrap().collect();
@@ -125,24 +125,24 @@ fn a_bad_file_keeps_the_last_good_picture_and_a_good_one_shows() {
     running.event("bake");
     running.event("ready");
     let pixel = |x, y| open_image(&tree.beside("out.png")).into_rgb8().get_pixel(x, y).0;
-    // 1 / 1.2 of radiance 1, sRGB-encoded.
+    // Radiance 1 exposed by 1 / 1.2, sRGB-encoded.
     assert_eq!(pixel(0, 0), [235, 0, 0], "the sky behind the model");
     assert!(pixel(24, 16)[0] > 100 && pixel(24, 16)[1] == 0, "the model in a red sky: {:?}", pixel(24, 16));
 
     fs::write(&sky, b"#?RADIANCE\n").unwrap();
-    // A good edit of the shaders after it is drawn with the last good environment.
+    // A shader edit after that is drawn with the last good environment.
     let user = tree.edited("user.glsl", "    return radiance;", "    return radiance + vec3(0.0, 1.0, 0.0);");
     tree.write("user.glsl", &user);
     running.reload(true);
     assert_eq!(pixel(0, 0), [235, 0, 0], "the sky after its file was damaged");
     assert_eq!(pixel(24, 16)[1], 235, "the edit shows");
 
-    // Whole again.
+    // Restore the file.
     let new = tree.beside("new.hdr");
     fs::write(&new, hdr::uniform([0, 0, 128, 129])).unwrap();
     fs::rename(&new, &sky).unwrap();
     running.event("bake");
-    // The picture is written after the event; the next reload comes after the picture.
+    // The picture is written after its event, but before the next reload.
     tree.write("user.glsl", &user.replace("vec3(0.0, 1.0, 0.0)", "vec3(1.0, 0.0, 0.0)"));
     running.reload(true);
     assert_eq!(pixel(0, 0), [0, 0, 235], "the new sky");
@@ -151,7 +151,7 @@ fn a_bad_file_keeps_the_last_good_picture_and_a_good_one_shows() {
     assert!(stderr.contains("sky.hdr") && stderr.contains("the last good environment stays"), "{stderr}");
 }
 
-/// A ball that leaves most of the picture to what is behind it; left is -X.
+/// A ball that leaves most of the picture to the background. Left is -X.
 fn before_the_sky(environment: &str) -> Headless {
     let settings = settings(&[
         &format!("environment.name={environment}"),
@@ -182,7 +182,7 @@ fn the_sky_behind_the_model_is_the_files_and_turns() {
     let (red, blue) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
     for (assignment, expected) in [
         ("environment.rotation=180", [blue, red]),
-        // What was ahead is now left, what was right is ahead.
+        // What was ahead is now left, and what was right is ahead.
         ("environment.rotation=90", [blue, blue]),
         ("environment.rotation=-90", [red, red]),
         ("environment.rotation=0", [red, blue]),
@@ -197,23 +197,23 @@ fn the_sky_behind_the_model_is_the_files_and_turns() {
     let [left, right] = sides(&with("environment.blur=1"));
     assert!(left[0] > left[2] && left[2] > 0.05 && right[2] > right[0] && right[0] > 0.05, "{left:?} {right:?}");
     with("environment.blur=0");
-    // No light is seen behind a mode that shows none, but the plain background.
+    // A mode that does not show light has a plain background.
     let behind = render(&mut headless, "metallic");
     assert_eq!(behind.rgba8[4 * (16 * 48 + 4)..][..4], [0x1b, 0x1d, 0x21, 255]);
-    // Without a background nothing is seen behind the model, and it is lit as before.
+    // Without a background the pixels behind the model are empty, and the lighting does not change.
     let lit = render(&mut headless, "final").raw_at(24, 16).unwrap();
     headless.settings_mut().view.background = "none".into();
     let alone = render(&mut headless, "final");
     assert_eq!((alone.raw_at(4, 16), alone.raw_at(24, 16)), (Some([0.0; 4]), Some(lit)));
 }
 
-/// Where the surface is seen at less than 78 degrees: the raw values of the model, all channels.
+/// The raw values of the model, all channels, where it is seen at less than 78 degrees.
 fn on_model(capture: &Capture, n_dot_v: &Capture) -> Vec<f32> {
     let seen = capture.raw.iter().zip(&n_dot_v.raw).filter(|(value, cosine)| value[3] == 1.0 && cosine[0] > 0.2);
     seen.flat_map(|(value, _)| [value[0], value[1], value[2]]).collect()
 }
 
-/// Largest distance from 1, and the root of the mean square of it.
+/// Largest difference from 1, and the root mean square difference.
 fn off_one(values: &[f32]) -> (f32, f32) {
     let squares = values.iter().map(|value| (value - 1.0).powi(2)).sum::<f32>() / values.len() as f32;
     (values.iter().map(|value| (value - 1.0).abs()).fold(0.0, f32::max), squares.sqrt())
@@ -239,7 +239,7 @@ fn a_white_metal_cannot_be_seen_in_a_furnace() {
     let single = off_one(&on_model(&render(&mut headless, "final"), &n_dot_v));
     assert!(single.1 > 0.1, "without multiple scattering: off 1 by {} (r.m.s.) only", single.1);
     headless.settings_mut().assign("MULTI_SCATTER=KullaConty").unwrap();
-    // The truth is a mean over frames: of 64 it is closer to 1 than of one.
+    // Monte Carlo converges: 64 frames are closer to 1 than one.
     headless.settings_mut().view.frames = 1;
     let noisy = off_one(&on_model(&render(&mut headless, "monte-carlo"), &n_dot_v));
     headless.settings_mut().view.frames = 64;
@@ -248,8 +248,8 @@ fn a_white_metal_cannot_be_seen_in_a_furnace() {
     assert!(noisy.1 > 3.0 * mean.1, "of one frame: off 1 by {}, of 64 by {}", noisy.1, mean.1);
 }
 
-/// Image-based light from filtered images minus the same by random paths, over the mean of these: the mean of the difference,
-/// and of its size.
+/// Split sum against Monte Carlo, relative to the mean of Monte Carlo: the mean difference, and the mean absolute
+/// difference.
 fn split_sum_error(headless: &mut Headless, frames: u32) -> (f32, f32) {
     headless.settings_mut().view.frames = frames;
     let n_dot_v = render(headless, "n-dot-v");
@@ -269,17 +269,17 @@ fn stretched_highlights_are_those_of_random_paths() {
     assert!(bias.abs() < 0.02 && off < 0.13, "off by {off}, all in all by {bias}");
 }
 
-/// Where the bumps of the base turn away, the coat above them does not; neither way to light may forget it.
+/// Where the base's bumps face away, the coat above them does not. Split sum and Monte Carlo must both light it.
 #[test]
 fn coats_over_bumps_are_lit_by_random_paths() {
     let chosen = ["environment.name=furnace", "view.msaa=1", "view.background=none", "lights.source=none"];
     let mut headless = renderer(model("clearcoat"), settings(&chosen), (96, 54));
     let (bias, off) = split_sum_error(&mut headless, 32);
-    // In a few pixels the coat's own bumps turn it away from the eye, where it has no reflection.
+    // In a few pixels the coat's own bumps face away from the eye, where it has no reflection.
     assert!(bias.abs() < 0.01 && off < 0.03, "off by {off}, all in all by {bias}");
 }
 
-/// The sun fills 5e-6 of the sky and brings most of the light: paths that do not look for it would miss it.
+/// The sun covers 5e-6 of the sky and provides most of the light, so paths that do not sample it would miss it.
 #[test]
 fn random_paths_find_the_sun() {
     let chosen = settings(&[
@@ -310,13 +310,13 @@ fn an_edit_of_a_baking_stage_bakes_again() {
     for (whole, half) in whole.raw.iter().zip(&half.raw).filter(|(value, _)| value[3] == 1.0) {
         assert!((whole[0] - 2.0 * half[0]).abs() < 2e-3 * whole[0], "{whole:?} {half:?}");
     }
-    // A stage that does not compile keeps what was baked.
+    // If a stage does not compile, the baked maps remain.
     assert!(!failed(&session.edit(file, "sum.rgb / sum.w", "sum / sum.w.x.y")).is_empty());
     assert_same(&half, &session.render(), "after a broken edit");
     ready(&session.save(file, &original));
     assert_same(&whole, &session.render(), "back at the first text");
     assert!(session.headless.bake_report().cached, "the first bake is kept");
-    // What does not bake leaves the bake alone.
+    // An edit that no bake stage depends on does not bake again.
     let user = session.tree.edited("user.glsl", "    return radiance;", "    return radiance * 2.0;");
     let before = session.headless.bake_report().total_ms;
     ready(&session.save("user.glsl", &user));

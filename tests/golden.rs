@@ -1,11 +1,11 @@
-//! A few pictures of the shader ball, and one of each material extension, against those in `tests/golden/`, as an eye
-//! would compare them.
+//! Compares a few pictures of the shader ball, and one of each material extension, with those in `tests/golden/`, by
+//! perceived difference.
 //!
-//! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m on a 4K screen; we take the mean.
-//! Measured on these pictures: one sample a pixel in place of four, or a camera moved by 1 cm, 0.006 to 0.023; exposure
-//! off by a tenth of a stop 0.04; roughness times 0.7 0.07; a light or the ambient light missing 0.09 to 0.14. Drivers
-//! differ in the last bit of a color, in filtering and in which samples an edge covers, which is less than the first of
-//! these. So the threshold is 0.02. A slip in a BRDF term that no eye sees is for `tests/shading.rs` to find.
+//! FLIP (Andersson et al. 2020) gives each pixel an error of 0..1, as seen from 0.7 m on a 4K screen; these tests use
+//! the mean. Measured on these pictures: one sample a pixel instead of four, or a camera moved by 1 cm, 0.006 to 0.023;
+//! a tenth of a stop of exposure 0.04; roughness times 0.7 0.07; a light or the ambient light missing 0.09 to 0.14.
+//! Drivers differ in the last bit of a color, in filtering, and in which samples an edge covers, which is below the
+//! first of these. So the threshold is 0.02. `tests/shading.rs` finds errors of BRDF terms that are not visible.
 
 mod support;
 
@@ -25,7 +25,7 @@ const BLESS: &str = "SPECULA_BLESS=1 cargo test --release --test golden";
 
 #[test]
 fn pictures_are_as_they_were() {
-    // The camera is given, so that a change of framing changes no golden; the look is the default.
+    // A fixed camera, so that a change of framing changes no golden; everything else is the default.
     let settings = settings(&[
         "camera.eye=[2.0, 2.0, 3.4]",
         "camera.target=[0, 1.0, 0]",
@@ -36,7 +36,7 @@ fn pictures_are_as_they_were() {
     let mut headless = renderer(model("shader-ball"), settings, SIZE);
     let mut wrong = Vec::new();
     for slug in ["final", "shading-normal", "metallic", "light-2", "diffuse-lobe"] {
-        // The picture by all light; its parts by the lamps alone.
+        // The picture with all light; its parts with the lamps alone.
         let environment = if slug == "final" { "studio" } else { "none" };
         headless.settings_mut().environment.name = environment.into();
         wrong.extend(bless_or_compare(slug, &render(&mut headless, slug)));
@@ -46,7 +46,7 @@ fn pictures_are_as_they_were() {
 
 #[test]
 fn extensions_are_as_they_were() {
-    // In the studio, as the program opens them; the lanterns of one have their lamps inside.
+    // In the studio, as the program shows them by default. The lanterns of one chart contain lamps.
     let mut wrong = Vec::new();
     for name in BUILT_IN.into_iter().filter(|name| is_chart(name)) {
         let lights = if name == "diffuse-transmission" { "lights.source=model" } else { "lights.source=orbit" };
@@ -56,12 +56,12 @@ fn extensions_are_as_they_were() {
     assert!(wrong.is_empty(), "{}\nIf the change is meant: {BLESS}", wrong.join("\n"));
 }
 
-/// Whether a built-in model shows a material extension.
+/// Whether a built-in model is a chart of a material extension.
 fn is_chart(name: &str) -> bool {
     !["shader-ball", "sphere-grid", "metal-grid", "material-override", "many-lights"].contains(&name)
 }
 
-/// What is wrong with a picture; nothing while blessing, which writes it.
+/// Returns what is wrong with a picture. When blessing, writes the golden instead.
 fn bless_or_compare(name: &str, capture: &Capture) -> Option<String> {
     let picture = picture(capture);
     if std::env::var_os("SPECULA_BLESS").is_none() {
@@ -80,7 +80,7 @@ fn picture(capture: &Capture) -> RgbImage {
     RgbImage::from_raw(capture.width, capture.height, rgb).unwrap()
 }
 
-/// Compares with the golden; on failure leaves the actual picture and the difference in cargo's folder for tests.
+/// Compares with the golden. On failure, writes the actual picture and the difference to cargo's folder for tests.
 fn compare(slug: &str, actual: &RgbImage) -> Result<(), String> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
     std::fs::create_dir_all(&folder).unwrap();

@@ -1,5 +1,5 @@
-//! assets/ltc.bin, the table of linearly transformed cosines, against the lobe that it stands for: GGX (Walter et al.
-//! 2007) with height-correlated Smith (Heitz 2014), written a second time and integrated over the hemisphere.
+//! assets/ltc.bin, the table of linearly transformed cosines, against the lobe that it approximates: an independent GGX
+//! (Walter et al. 2007) with height-correlated Smith (Heitz 2014), integrated over the hemisphere.
 
 use std::f64::consts::PI;
 
@@ -27,15 +27,15 @@ fn ggx(l: [f64; 3], n_dot_v: f64, alpha: f64) -> f64 {
     d / (4.0 * n_dot_v * (1.0 + lambda(l[2]) + lambda(n_dot_v)))
 }
 
-/// The transformed cosine, scaled up by what is cut off at the horizon: shaders/lighting/area.glsl.
+/// The transformed cosine, scaled up to compensate for clipping at the horizon, as in shaders/lighting/area.glsl.
 fn transformed_cosine(l: [f64; 3], [a, b, c, d]: [f64; 4]) -> f64 {
     let (x, y, z) = (a * l[0] + b * l[2], l[1], c * l[0] + d * l[2]);
     let above = 0.5 + 0.5 * a / a.hypot(c);
     (a * d - b * c) / PI * z.max(0.0) / (x * x + y * y + z * z).powi(2) / above
 }
 
-/// Sums over directions of equal solid angle: the albedo, the cosine's integral, and half the integral of the absolute
-/// difference of the two shapes, which is the most that any light, of whatever outline, can be wrong by.
+/// Sums over directions of equal solid angle. Returns the integral of the transformed cosine, and half the integral of
+/// the absolute difference of the two normalized shapes, which bounds the error for a light of any outline.
 fn compare(column: usize, row: usize) -> (f64, f64) {
     let roughness = column as f64 / (SIZE - 1) as f64;
     let n_dot_v = 1.0 - (row as f64 / (SIZE - 1) as f64).powi(2);
@@ -60,7 +60,7 @@ fn compare(column: usize, row: usize) -> (f64, f64) {
 #[test]
 fn transformed_cosines_have_the_shape_of_ggx() {
     assert_eq!(TABLE.len(), SIZE * SIZE * 4 * 2);
-    // Column, row, and a bound a fifth above what the fit reaches there.
+    // Column, row, and a bound of 1.2 times the error of the fit.
     let bounds = [(24, 0, 0.013), (24, 36, 0.032), (40, 20, 0.031), (40, 50, 0.094), (63, 44, 0.032), (63, 0, 0.019)];
     for (column, row, most) in bounds {
         let (mass, distance) = compare(column, row);

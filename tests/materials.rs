@@ -1,4 +1,4 @@
-//! Variants of a model and a material of one's own in place of the model's.
+//! Variants of a model, and the material override.
 
 mod support;
 
@@ -82,7 +82,7 @@ fn a_material_of_ones_own_stands_in_for_all_of_the_models() {
         shown(&mut headless, "clearcoat").iter().all(|value| [0.180017, 0.260017].contains(&value[0])),
         "a coat is left"
     );
-    // The shapes stay: shading normals are the mesh's, without a texture's bumps.
+    // The shading normals are the mesh's, without the bumps of textures.
     assert_eq!(shown(&mut headless, "shading-normal"), shown(&mut headless, "geometric-normal"));
     headless.settings_mut().material.enabled = false;
     assert_same(&own, &render(&mut headless, "final"), "the model's own materials again");
@@ -96,7 +96,7 @@ fn the_axis_of_anisotropy_turns() {
     headless.settings_mut().material.anisotropy_rotation = 90.0;
     let across = shown(&mut headless, "anisotropy-direction");
     let dot = |a: &[f32; 3], b: &[f32; 3]| (0..3).map(|c| a[c] * b[c]).sum::<f32>();
-    // The tangent is interpolated; the axis lies at right angles to the normal.
+    // The tangent is interpolated; the axis is perpendicular to the normal.
     assert!(along.iter().zip(&tangent).all(|(a, t)| dot(a, t) > 0.99), "0 degrees is the tangent");
     assert!(along.iter().zip(&across).all(|(a, b)| dot(a, b).abs() < 0.01), "90 degrees is at right angles to it");
 }

@@ -1,7 +1,7 @@
-//! The glTF BRDF with all of its extensions, written a second time from the specifications, against the program.
+//! An independent implementation of glTF's BRDF with all extensions, from the specifications, against the renderer.
 //!
-//! Of the program only the inputs are taken, pixel by pixel, from its modes: positions, normals, and the material with
-//! its textures read. `reference/` redoes the rest in f64: what the lamps send to the eye must be the same to 1e-3.
+//! The renderer provides only the inputs per pixel, from its debug modes: positions, normals, and the sampled material.
+//! `reference/` computes the rest in f64. The radiance from the lamps must agree to 1e-3.
 
 mod reference {
     pub mod brdf;
@@ -23,23 +23,23 @@ use specula::interface::LIGHT_POINT;
 use specula::scene::Model;
 use support::{glb, load, model, render, renderer, settings};
 
-/// Relative to the value, or to 1 % of the brightest channel of the pixel, or to 1e-3, which is all but black.
+/// Tolerance, relative to the value, to 1 % of the pixel's brightest channel, or to 1e-3 (almost black).
 const TOLERANCE: f64 = 1e-3;
 
-/// Large enough for a hundred pixels on each ball of a chart.
+/// Gives each ball of a chart about a hundred pixels.
 const SIZE: (u32, u32) = (160, 90);
 
-/// Every so many pixels is compared: some hundred in all.
+/// Compares every so many pixels: some hundred in all.
 const STRIDE: usize = 11;
 
-/// A pixel and what it sends to the eye.
+/// A pixel and its reference radiance.
 struct Point {
     pixel: usize,
     lobes: Lobes,
     emitted: DVec3,
 }
 
-/// A part of the picture: the mode that shows it, and what it is here.
+/// A part of the picture: the mode that shows it and its reference.
 type Part = (&'static str, fn(&Point) -> DVec3);
 
 const ALL: Part = ("final", |point| point.lobes.all() + point.emitted);
@@ -50,7 +50,7 @@ const SHEEN: Part = ("sheen-light", |point| point.lobes.sheen);
 const COAT: Part = ("clearcoat-light", |point| point.lobes.coat);
 const EMITTED: Part = ("emissive-only", |point| point.emitted);
 
-/// The three lamps around the model and nothing else; what the specification has no word on is off.
+/// Lights the model with three lamps only, and turns off what the specification does not define.
 fn open(model: Model) -> Headless {
     let settings = settings(&[
         "view.msaa=1",
@@ -67,7 +67,7 @@ fn vector([x, y, z]: [f32; 3]) -> DVec3 {
     DVec3::new(x.into(), y.into(), z.into())
 }
 
-/// A part of the picture by the lamps alone.
+/// The part of the picture that a mode shows, lit by the lamps alone.
 fn shown(headless: &mut Headless, slug: &str) -> Vec<DVec3> {
     let mut values = |chosen: u32| {
         headless.settings_mut().lights.chosen = chosen;
@@ -75,7 +75,8 @@ fn shown(headless: &mut Headless, slug: &str) -> Vec<DVec3> {
     };
     let mut all = values(0);
     if slug == TRANSMITTED.0 {
-        // The mode has what is seen through the surface as well. It alone is left by a chosen lamp that is not there.
+        // The mode also includes what is seen through the surface. Selecting a lamp that does not exist leaves only
+        // that.
         let behind = values(4);
         all.iter_mut().zip(behind).for_each(|(value, behind)| *value -= behind);
     }
@@ -83,14 +84,14 @@ fn shown(headless: &mut Headless, slug: &str) -> Vec<DVec3> {
     all
 }
 
-/// The sampled pixels with what they should show.
+/// The sampled pixels with their reference.
 fn points(headless: &Headless, inputs: &Inputs, masking: Masking) -> Vec<Point> {
     let state = headless.frame_state().unwrap();
     assert!(state.lights.len() == 3 && state.lights.iter().all(|light| light.kind == LIGHT_POINT));
     let at = |pixel: usize| {
         let position = inputs.shown(pixel, "position");
         let (surface, v) = (inputs.surface(pixel), (state.camera.eye.as_dvec3() - position).normalize());
-        // Where a normal texture turns the surface away from the eye there is no BRDF.
+        // No BRDF is defined where a normal texture turns the surface away from the eye.
         if surface.n.dot(v).min(surface.coat.n.dot(v)) < 0.02 {
             return None;
         }
@@ -105,7 +106,7 @@ fn points(headless: &Headless, inputs: &Inputs, masking: Masking) -> Vec<Point> 
     inputs.covered().step_by(STRIDE).filter_map(at).collect()
 }
 
-/// Compares parts of the picture under one masking, and names the worst pixel.
+/// Compares parts of the picture under one masking-shadowing model, and reports the worst pixel.
 #[track_caller]
 fn compare(headless: &mut Headless, inputs: &Inputs, parts: &[Part], masking: Masking) {
     headless.settings_mut().assign(&format!("MASKING_SHADOWING={masking:?}")).unwrap();
@@ -175,7 +176,7 @@ fn anisotropy() {
         let Some(found) = inputs.extra(pixel, "anisotropy-direction").filter(|_| plain) else { continue };
         let (sin, cos) = f64::from(material.anisotropy.rotation).sin_cos();
         let expected = inputs.shown(pixel, "tangent") * cos + inputs.shown(pixel, "bitangent") * sin;
-        // Interpolated tangents are not quite unit and not quite at right angles to the normal.
+        // Interpolated tangents are not exactly unit, nor exactly perpendicular to the normal.
         assert!(found.dot(expected) > 1.0 - 1e-3, "pixel {pixel}: found {found}, expected {expected}");
         turned += usize::from(sin != 0.0);
     }
@@ -204,7 +205,7 @@ fn iridescence() {
 
 #[test]
 fn ior() {
-    // Of its glass the lamps' transmitted light is a point: in the chart of transmission it is not.
+    // In this chart the lamps' transmitted light is a point, unlike in the chart of transmission.
     check("ior", &["transmission", "thickness", "attenuation-color"], &[DIFFUSE, SPECULAR]);
 }
 
@@ -273,7 +274,7 @@ fn light_from_above() -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// glTF's material of it.
+/// The glTF material of the glass.
 fn material_of(glass: &Glass) -> serde_json::Value {
     json!({
         "pbrMetallicRoughness": {
@@ -294,8 +295,8 @@ fn material_of(glass: &Glass) -> serde_json::Value {
     })
 }
 
-/// Compares what is seen through `glass` at each sampled pixel with `expected`, which gets position, normal and v. The
-/// extremes of what it expects must differ, or nothing would be compared.
+/// Compares what is seen through `glass` at each sampled pixel with `expected`, a function of position, normal and v.
+/// Requires that the reference varies, so that the comparison means something.
 #[track_caller]
 fn compare_glass(headless: &mut Headless, what: &str, expected: impl Fn(DVec3, DVec3, DVec3) -> DVec3) {
     let mut shown = |slug: &str| render(headless, slug).raw;
@@ -308,7 +309,7 @@ fn compare_glass(headless: &mut Headless, what: &str, expected: impl Fn(DVec3, D
         let at = |values: &[[f32; 4]]| vector([values[pixel][0], values[pixel][1], values[pixel][2]]);
         let (position, n) = (at(&positions), at(&normals).normalize());
         let v = (eye - position).normalize();
-        // The table of albedos has steps; towards the rim F rises within one of them. Environments are half floats.
+        // Tolerance for the steps of the albedo table, in which F rises fast near the rim, and for half floats.
         if n.dot(v) < 0.15 {
             continue;
         }
@@ -323,7 +324,7 @@ fn compare_glass(headless: &mut Headless, what: &str, expected: impl Fn(DVec3, D
     assert!(count > 200 && most > 1.3 * least, "{what}: {count} pixels from {least} to {most}");
 }
 
-/// A drop in front of a sky whose radiance says which way each color was bent.
+/// A drop of glass in front of an environment whose radiance encodes the direction of each color's ray.
 #[test]
 fn glass_bends_swallows_and_spreads() {
     let directory = tempfile::tempdir().unwrap();
@@ -358,7 +359,7 @@ fn glass_bends_swallows_and_spreads() {
     }
 }
 
-/// Red is x and green is y of a wall 1 m behind a slab of glass: the wall is seen where the bent ray leaves the slab.
+/// A wall 1 m behind a slab of glass encodes x in red and y in green: it must appear where the refracted ray exits.
 #[test]
 fn glass_shifts_what_is_behind_it() {
     const REACH: f64 = 4.0;

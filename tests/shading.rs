@@ -1,9 +1,9 @@
-//! The shading model, written a second time from its papers, against the raw values of the renderer.
+//! An independent implementation of the shading model, from its papers, against the renderer's raw values.
 //!
-//! Lambert, GGX (Walter et al. 2007), height-correlated Smith (Heitz 2014), Schlick 1994, metallic-roughness as the mix
-//! of two results, one punctual light (KHR_lights_punctual), ambient light and emission; and multiple scattering (Kulla
-//! & Conty 2017), which is off in the other tests. All in f64, from the eye, the light and the factors in the file; of
-//! the renderer only the position of a pixel is taken.
+//! Covers Lambert, GGX (Walter et al. 2007), height-correlated Smith (Heitz 2014), Schlick 1994, metallic-roughness as
+//! a blend of two results, one punctual light (KHR_lights_punctual), ambient light, emission, and multiple scattering
+//! (Kulla & Conty 2017), which the other tests turn off. Computes in f64 from the eye, the light and the factors in the
+//! file; the renderer provides only the position of each pixel.
 
 mod support;
 
@@ -14,13 +14,13 @@ use serde_json::{Value, json};
 use specula::headless::Headless;
 use support::{SIZE, glb, load, render, renderer, settings};
 
-/// Relative to the value, or to 1 where the value is smaller than its own rounding.
+/// Tolerance relative to the value, or to 1 for values that are smaller.
 const TOLERANCE: f64 = 1e-3;
 
 const EYE: DVec3 = DVec3::new(0.6, 0.9, 2.6);
 const AMBIENT: [f64; 3] = [0.05, 0.07, 0.09];
 
-/// A material of factors only.
+/// A material with factors only.
 #[derive(Clone, Copy, Debug)]
 struct Material {
     base_color: [f64; 3],
@@ -37,7 +37,7 @@ impl Material {
     }
 }
 
-/// A light: direction towards it and irradiance on a plane that faces it, of a point.
+/// A light: the direction towards it and the irradiance on a plane perpendicular to it, at a point.
 struct Lamp {
     name: &'static str,
     json: Value,
@@ -70,7 +70,7 @@ fn lamps() -> [Lamp; 4] {
         Lamp {
             name: "directional",
             json: json!({ "type": "directional", "color": COLOR, "intensity": 3.0 }),
-            // A quarter turn around Y: it shines along -X, not along -Z.
+            // Rotated by 90 degrees around Y, so it shines along -X instead of -Z.
             node: json!({ "rotation": [0.0, 0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()] }),
             at: |_| (DVec3::X, 3.0),
         },
@@ -78,7 +78,7 @@ fn lamps() -> [Lamp; 4] {
             name: "spot",
             json: json!({ "type": "spot", "color": COLOR, "intensity": 12.0,
                 "spot": { "innerConeAngle": 0.1, "outerConeAngle": 0.3 } }),
-            // Without a rotation it shines along -Z; the outer cone ends on the sphere.
+            // Not rotated, so it shines along -Z. The outer cone ends on the sphere.
             node: json!({ "translation": [SPOT.x, SPOT.y, SPOT.z] }),
             at: |p| {
                 let l = (SPOT - p).normalize();
@@ -89,7 +89,7 @@ fn lamps() -> [Lamp; 4] {
     ]
 }
 
-/// Every BRDF term of a point, as the modes of the same names show it.
+/// Every BRDF term at a point, as the modes of the same names show it.
 struct Terms {
     n_dot_l: f64,
     n_dot_v: f64,
@@ -112,10 +112,10 @@ fn terms(material: &Material, n: DVec3, l: DVec3, v: DVec3) -> Terms {
     let cos2 = n_dot_h * n_dot_h;
     let tan2 = (1.0 - cos2) / cos2;
     let d = alpha2 / (PI * cos2 * cos2 * (alpha2 + tan2).powi(2));
-    // Heitz 2014, eq. 72 and 99, with the Lambda function itself.
+    // Heitz 2014, eq. 72 and 99, with the Lambda function written out.
     let lambda = |cosine: f64| ((1.0 + alpha2 * (1.0 - cosine * cosine) / (cosine * cosine)).sqrt() - 1.0) / 2.0;
     let g = 1.0 / (1.0 + lambda(n_dot_l) + lambda(n_dot_v));
-    // A light behind the surface lights nothing.
+    // A light behind the surface contributes nothing.
     let above = if n_dot_l > 0.0 { 1.0 } else { 0.0 };
     let (d, v) = if n_dot_l > 0.0 { (d, g / (4.0 * n_dot_l * n_dot_v)) } else { (0.0, 0.0) };
     let schlick = |f0: f64| f0 + (1.0 - f0) * (1.0 - v_dot_h).powi(5);
@@ -128,7 +128,7 @@ fn terms(material: &Material, n: DVec3, l: DVec3, v: DVec3) -> Terms {
     Terms { n_dot_l, n_dot_v, n_dot_h, v_dot_h, d, v, f, k_d, diffuse, specular }
 }
 
-/// Ambient light, the light and emission, towards the eye.
+/// Radiance towards the eye: ambient light, the light, and emission.
 fn radiance(material: &Material, terms: &Terms, irradiance: f64) -> [f64; 3] {
     std::array::from_fn(|c| {
         let direct = (terms.diffuse[c] + terms.specular[c]) * irradiance * COLOR[c] * terms.n_dot_l;
@@ -143,7 +143,7 @@ const MATERIALS: [Material; 4] = [
     Material { base_color: [0.6, 0.6, 0.6], metallic: 0.25, roughness: 1.0, emissive: [0.0; 3] },
 ];
 
-/// One sample a pixel, no tone map in the way: the raw values are what the shader wrote.
+/// One sample a pixel and no tone map, so that raw values are what the shader wrote.
 fn open(bytes: &[u8]) -> Headless {
     let [r, g, b] = AMBIENT;
     let settings = settings(&[
@@ -164,7 +164,7 @@ fn model(material: &Material, lamp: &Lamp) -> Vec<u8> {
     glb::model_with_light(&glb::sphere(48, 96), &material.json(), &lamp.json, &lamp.node)
 }
 
-/// Positions of the pixels on the model, by index.
+/// World positions of the pixels on the model, by pixel index.
 fn positions(headless: &mut Headless) -> Vec<(usize, DVec3)> {
     let capture = render(headless, "position");
     let on = capture.raw.iter().enumerate().filter(|(_, value)| value[3] == 1.0);
@@ -190,7 +190,7 @@ fn every_term_follows_its_equation() {
         let points: Vec<(usize, DVec3, Terms)> = places
             .into_iter()
             .map(|(i, p)| (i, p, terms(material, p.normalize(), (lamp.at)(p).0, (EYE - p).normalize())))
-            // Grazing by less than the sphere's own facets.
+            // Skip grazing angles, where the sphere's facets dominate.
             .filter(|(_, _, terms)| terms.n_dot_v > 0.05 && !(1e-6..0.02).contains(&terms.n_dot_l))
             .collect();
         type Term = fn(&Terms) -> [f64; 3];
@@ -242,7 +242,7 @@ fn the_picture_is_the_sum_over_light_ambient_and_emission() {
     }
 }
 
-/// The loop over lights is unrolled for up to four of them, and counts more.
+/// The shader unrolls the loop over up to four lights, and uses a dynamic count for more.
 #[test]
 fn many_lights_are_as_bright_as_one_that_has_their_light() {
     let (material, lamp) = (&MATERIALS[0], &lamps()[0]);
@@ -262,11 +262,11 @@ fn many_lights_are_as_bright_as_one_that_has_their_light() {
     }
 }
 
-/// The part of white light that a metal of F = 1 sends towards v after one reflection: an integral over the hemisphere.
+/// The albedo towards v of a metal with F = 1 after one reflection, integrated over the hemisphere.
 fn white_albedo(n_dot_v: f64, roughness: f64) -> f64 {
     let white = Material { base_color: [1.0; 3], metallic: 1.0, roughness, emissive: [0.0; 3] };
     let v = DVec3::new((1.0 - n_dot_v * n_dot_v).sqrt(), 0.0, n_dot_v);
-    // Rings of equal solid angle; the lobe is the same on both sides of the plane of n and v.
+    // Rings of equal solid angle. The lobe is symmetric to the plane of n and v.
     let (rings, sectors) = (200, 100);
     let sum: f64 = (0..rings * sectors)
         .map(|i| {
@@ -290,7 +290,7 @@ fn what_is_scattered_more_than_once_follows_kulla_and_conty() {
     // 2 integral of E(mu) mu dmu
     let mu = |i: i32| (f64::from(i) + 0.5) / 50.0;
     let e_avg = (0..50).map(|i| 2.0 * white_albedo(mu(i), material.roughness) * mu(i) / 50.0).sum::<f64>();
-    // F of all orders, of the mean of Schlick's F over the hemisphere.
+    // F of all orders, from the cosine-weighted mean of Schlick's F.
     let f_ms = |f0: f64| {
         let f_avg = (20.0 * f0 + 1.0) / 21.0;
         f_avg * f_avg * e_avg / (1.0 - f_avg * (1.0 - e_avg))
@@ -316,7 +316,7 @@ fn what_is_scattered_more_than_once_follows_kulla_and_conty() {
 
 #[test]
 fn what_a_material_does_not_say_is_gltfs_default() {
-    // glTF 2.0, section 3.9 and its schema: white, a rough metal. A dielectric has index 1.5, so F0 0.04.
+    // glTF 2.0, section 3.9 and its schema: white, metallic, rough. A dielectric has index 1.5, so F0 is 0.04.
     let bare = json!({});
     let dielectric = json!({ "pbrMetallicRoughness": { "metallicFactor": 0.0 } });
     let mut headless = open(&glb::model(&glb::quad(1.0), &bare));
@@ -338,7 +338,7 @@ fn normals_and_positions_are_where_the_camera_sees_them() {
     let places = positions(&mut headless);
     let normals = render(&mut headless, "shading-normal");
     let (width, height) = (SIZE.0 as f32, SIZE.1 as f32);
-    // The camera a second time: look-at and perspective, with y down on the screen.
+    // An independent camera: look-at and perspective, with y down on the screen.
     let view = view_from_world(EYE.as_vec3());
     let tan = (45_f32.to_radians() * 0.5).tan();
     for (i, p) in places {
@@ -353,7 +353,7 @@ fn normals_and_positions_are_where_the_camera_sees_them() {
     }
 }
 
-/// World to view space, from an eye that looks at the origin.
+/// World to view space for an eye that looks at the origin.
 fn view_from_world(eye: Vec3) -> Mat4 {
     let back = eye.normalize();
     let right = Vec3::Y.cross(back).normalize();
@@ -363,7 +363,7 @@ fn view_from_world(eye: Vec3) -> Mat4 {
 
 #[test]
 fn straight_down_the_normal_the_terms_have_closed_forms() {
-    // An odd number of pixels, so that one lies on the axis; eye and light both there, 3 m away.
+    // With an odd number of pixels, one lies on the axis. Eye and light are both on the axis, 3 m away.
     let light = json!({ "type": "point", "intensity": 9.0 });
     let node = json!({ "translation": [0.0, 0.0, 3.0] });
     for roughness in [0.2, 0.5, 1.0] {

@@ -1,1 +1,1 @@
-"""What scripts/make-assets is made of: geometry, painting, and a writer for PNG and GLB."""
+"""The modules of scripts/make-assets: geometry, painting, and writers for PNG and GLB."""

@@ -1,4 +1,4 @@
-"""A chart of materials: a grid of balls that faces the viewer's default camera, so that one sees all of them alike."""
+"""A chart of materials: a grid of balls that faces the default camera, so that all have the same perspective."""
 
 import math
 
@@ -8,13 +8,13 @@ from . import shapes
 from .glb import NEAREST, Glb
 from .raster import bytes_of, srgb
 
-STEP = 2.3  # meters between the centers of balls of radius 1
+STEP = 2.3  # meters between the centers of the balls, which have radius 1
 AZIMUTH_DEG = 30.0  # of the viewer's default camera, from +Z towards +X
 PALETTE = np.array([(0.60, 0.58, 0.54), (0.03, 0.20, 0.23), (0.55, 0.12, 0.05), (0.60, 0.34, 0.04), (0.06, 0.08, 0.22)])
 
 
 def numbers(value):
-    """JSON with floats that are short to read: five decimals."""
+    """JSON with floats rounded to five decimals."""
     if isinstance(value, dict):
         return {key: numbers(v) for key, v in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
@@ -23,7 +23,7 @@ def numbers(value):
 
 
 def about(axis, degrees):
-    """A quaternion (x, y, z, w): a turn around the axis 0, 1 or 2."""
+    """A quaternion (x, y, z, w): a rotation around the axis 0, 1 or 2."""
     half = math.radians(degrees) / 2
     turn = [0.0, 0.0, 0.0, math.cos(half)]
     turn[axis] = math.sin(half)
@@ -31,7 +31,7 @@ def about(axis, degrees):
 
 
 def dielectric(color, roughness=0.5, **more):
-    """A material that is no metal, of a linear base color."""
+    """A dielectric with a linear base color."""
     return metallic_roughness(color, 0.0, roughness, **more)
 
 
@@ -41,20 +41,20 @@ def metal(color, roughness=0.5, **more):
 
 
 def metallic_roughness(color, metallic, roughness, **more):
-    """glTF's base material of plain factors and what else the material has."""
+    """A glTF material with metallic-roughness factors, and additional members."""
     alpha = () if len(color) == 4 else (1.0,)
     return {"pbrMetallicRoughness": {"baseColorFactor": [*color, *alpha], "metallicFactor": float(metallic),
                                      "roughnessFactor": float(roughness)}, **more}
 
 
 def extended(base, **extensions):
-    """The material with extensions of the prefix KHR_materials_."""
+    """Adds extensions, named without their prefix KHR_materials_, to the material."""
     mine = {f"KHR_materials_{name}": value for name, value in extensions.items()}
     return {**base, "extensions": {**base.get("extensions", {}), **mine}}
 
 
 class Chart:
-    """A grid of shapes, each with a material of its own. Row 0 is the top one."""
+    """A grid of shapes, each with its own material. Row 0 is at the top."""
 
     def __init__(self, title, columns, rows, ball=None):
         self.glb = Glb()
@@ -67,7 +67,7 @@ class Chart:
         return [(column - (self.columns - 1) / 2) * STEP, ((self.rows - 1) / 2 - row) * STEP, 0.0]
 
     def put(self, row, column, name, material, shape=None, tangents=False, **node):
-        """A shape, else the ball, at a cell. Texture coordinates are written where the material has a texture."""
+        """Places a shape, by default the ball, at a cell. Writes texture coordinates if the material has a texture."""
         textured = "Texture" in str(material)
         needed = {"POSITION", "NORMAL"} | ({"TEXCOORD_0"} if textured else set()) | ({"TANGENT"} if tangents else set())
         index = self.glb.material(name, **numbers(material))
@@ -81,16 +81,16 @@ class Chart:
             self.put(row, column, name, material, **options)
 
     def add(self, node):
-        """A node in the chart's own, turned space: x to the right, y up, z towards the viewer."""
+        """A node in the chart's rotated space: x to the right, y up, z towards the viewer."""
         self.nodes.append(node)
         self.nodes[0].setdefault("children", []).append(len(self.nodes) - 1)
 
     def texture(self, name, pixels, **options):
-        """A reference to a new texture, for a material."""
+        """Adds a texture and returns a reference to it, for a material."""
         return {"index": self.glb.texture(name, pixels, **options)}
 
     def panel(self, pattern=None, cell=0.5, behind=1.9):
-        """A wall behind the grid for what is seen through the balls: 8 x 8 cells that repeat, one texel each."""
+        """A wall behind the grid, to be seen through the balls: 8 x 8 repeating cells, one texel each."""
         columns, rows = round((self.columns * STEP + 2.2) / cell), round((self.rows * STEP + 0.8) / cell)
         texture = self.texture("panel", checkers() if pattern is None else pattern, magnified=NEAREST)
         material = self.glb.material("panel", pbrMetallicRoughness={
@@ -108,7 +108,7 @@ class Chart:
 
 
 def checkers():
-    """Colors and off-white by turns; the color changes along the diagonal, so that one sees what was displaced."""
+    """Alternates colors and off-white. The color changes along the diagonal, which makes refraction visible."""
     x, y = np.meshgrid(np.arange(8), np.arange(8))
     hue = 1 + (x + y) // 2 % (len(PALETTE) - 1)
     return bytes_of(srgb(PALETTE[np.where((x + y) % 2 == 1, hue, 0)]))

@@ -1,4 +1,4 @@
-"""Charts of the extensions that change how a surface reflects: from without to with, then with their textures."""
+"""Charts of the extensions that change reflection: from off to full strength, then with textures."""
 
 import numpy as np
 

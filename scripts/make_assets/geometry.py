@@ -15,7 +15,7 @@ class Surface:
 
 @dataclasses.dataclass
 class Profile:
-    """A curve in the half plane (radius, height): points and unit normals, and the length along it in metres."""
+    """A curve in the half plane (radius, height): points and unit normals, and the length along it in meters."""
 
     points: np.ndarray
     normals: np.ndarray
@@ -35,7 +35,7 @@ def arc(center, radius, start, end, count, inward=False):
 
 
 def joined(*pieces):
-    """One profile of pieces that meet, each (points, normals); doubled points are dropped."""
+    """Joins pieces (points, normals) that meet to one profile and drops duplicate points."""
     points = np.concatenate([p for p, _ in pieces])
     normals = np.concatenate([n for _, n in pieces])
     keep = np.concatenate([[True], np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-6])
@@ -43,7 +43,7 @@ def joined(*pieces):
 
 
 def rounded(corners, steps=8):
-    """A polyline of (radius, height, fillet), its corners replaced by arcs; outside is to the right of the way."""
+    """A polyline of (radius, height, fillet) with rounded corners. The outside is on the right of its direction."""
     corners = np.asarray(corners, float)
     pieces = []
     for i, (*corner, fillet) in enumerate(corners):
@@ -75,7 +75,7 @@ def _right_of(along):
 
 
 def subdivided(profile, longest):
-    """The same curve with no step longer than `longest` metres; inserted normals are interpolated."""
+    """The same curve with no step longer than `longest` meters; inserted normals are interpolated."""
     points, normals = [profile.points[:1]], [profile.normals[:1]]
     for i in range(1, len(profile.points)):
         count = max(1, int(np.ceil(np.linalg.norm(profile.points[i] - profile.points[i - 1]) / longest)))
@@ -94,7 +94,7 @@ def revolve(profile, segments, v, u_repeat=1.0):
     rows, columns = len(profile.points), segments + 1
     turn = np.linspace(0.0, 2.0 * np.pi, columns)
     sin, cos = np.sin(turn), np.cos(turn)
-    sin[-1], cos[-1] = sin[0], cos[0]  # the seam closes bit for bit
+    sin[-1], cos[-1] = sin[0], cos[0]  # closes the seam bit for bit
     radius, height = profile.points.T
     normal_radius, normal_height = profile.normals.T
 
@@ -105,7 +105,7 @@ def revolve(profile, segments, v, u_repeat=1.0):
     normal = around(normal_radius, normal_height).reshape(-1, 3)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     way = np.diff(profile.points, axis=0)
-    # Where the outside lies right of the way, v runs up the surface, so u runs against the turn to stay unmirrored.
+    # The outside is on the right, so v runs up the surface; u runs against the rotation, so that nothing is mirrored.
     right = (profile.normals[:-1] * np.stack([way[:, 1], -way[:, 0]], axis=1)).sum() > 0
     u = turn / (2.0 * np.pi) * u_repeat
     if right:
@@ -123,7 +123,7 @@ def revolve(profile, segments, v, u_repeat=1.0):
 
 
 def checked(surface):
-    """The surface, once its triangles agree with its normals and its texture is not mirrored."""
+    """Returns the surface after checking that its triangles match its normals and its texture is not mirrored."""
     p, n, uv = (surface.attributes[k] for k in ("POSITION", "NORMAL", "TEXCOORD_0"))
     t = surface.triangles
     face = np.cross(p[t[:, 1]] - p[t[:, 0]], p[t[:, 2]] - p[t[:, 0]])

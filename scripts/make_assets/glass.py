@@ -1,4 +1,4 @@
-"""Charts of the extensions that let light through; a colored wall behind them shows what is refracted."""
+"""Charts of the extensions for transmission, in front of a colored wall that makes refraction visible."""
 
 import numpy as np
 
@@ -8,12 +8,12 @@ from .raster import bytes_of
 
 QUARTERS = (0.0, 0.33, 0.67, 1.0)
 CLEAR = (1.0, 1.0, 1.0)
-BALL = {"thicknessFactor": 2.0}  # a solid ball of radius 1, seen through its middle
+BALL = {"thicknessFactor": 2.0}  # a solid ball of radius 1, at its center
 OPEN = {"transmissionFactor": 1.0}
 
 
 def ior():
-    """Index of refraction: what a dark plastic reflects, and how far a solid ball bends what is behind it."""
+    """Index of refraction: reflection of a dark plastic, and refraction of a solid ball."""
     chart = Chart("Index of refraction", 4, 2)
     names = {1.0: "air", 1.33: "water", 1.5: "glass", 2.42: "diamond"}
     plastic, clear = dielectric((0.02, 0.025, 0.03), 0.15), dielectric(CLEAR, 0.0)
@@ -25,7 +25,7 @@ def ior():
 
 
 def transmission():
-    """Thin glass: how much it lets through, frosted, colored, and from a texture."""
+    """Thin glass: transmission factor, roughness, colors, and a texture."""
     chart = Chart("Transmission", 4, 3)
 
     def glass(factor=1.0, roughness=0.0, color=CLEAR, **texture):
@@ -42,7 +42,7 @@ def transmission():
 
 
 def volume():
-    """Solid glass: thickness, how far light gets, the color that is left, and a thickness texture."""
+    """Solid glass: thickness, attenuation distance, attenuation color, and a thickness texture."""
     chart = Chart("Volume", 4, 3)
 
     def solid(thickness=2.0, distance=1.0, color=(0.10, 0.55, 0.45), **texture):
@@ -52,7 +52,7 @@ def volume():
     chart.row(0, [(f"thickness {t}", solid(t)) for t in (0.0, 0.5, 1.0, 2.0)])
     amber = (0.85, 0.35, 0.08)
     chart.row(1, [(f"attenuation distance {d}", solid(distance=d, color=amber)) for d in (8.0, 3.0, 1.0, 0.3)])
-    # Thickness is in the mesh's own units, so half the size has half the thickness and a paler color.
+    # Thickness is in object space, so half the size has half the thickness and a paler color.
     chart.put(2, 0, "attenuation blue", solid(color=(0.08, 0.16, 0.85)))
     chart.put(2, 1, "attenuation blue, half the size", solid(color=(0.08, 0.16, 0.85)), scale=[0.5] * 3)
     bands = chart.texture("thickness", patterns.data(0.0, patterns.falling()))
@@ -64,7 +64,7 @@ def volume():
 
 
 def dispersion():
-    """Glass that parts the colors; the value is 20 over the Abbe number. Balls and cut stones before white lines."""
+    """Dispersion, 20 over the Abbe number: balls and cut stones in front of white lines."""
     chart = Chart("Dispersion", 4, 2)
 
     def prism(value, index, thickness):
@@ -87,7 +87,7 @@ def grille():
 
 
 def diffuse_transmission():
-    """Thin stuff that scatters light through: lanterns with a lamp inside, a sheet and a leaf with one behind."""
+    """Diffuse transmission: lanterns with a lamp inside, a sheet and a leaf with a lamp behind."""
     chart = Chart("Diffuse transmission", 4, 2)
     warm = (1.0, 0.78, 0.50)
 

@@ -1,4 +1,4 @@
-"""Writes PNG images and GLB files with the standard library alone."""
+"""Writes PNG images and GLB files, with only numpy and the standard library."""
 
 import json
 import struct
@@ -12,7 +12,7 @@ ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
 
 def png(pixels):
-    """PNG bytes of a (height, width, 3 or 4) uint8 array. A row's filter is the one of the smallest residuals."""
+    """PNG bytes of a (height, width, 3 or 4) uint8 array. Each row uses the filter with the smallest residuals."""
     height, width, channels = pixels.shape
     raw = pixels.reshape(height, width * channels).astype(np.int16)
     up = np.vstack([np.zeros((1, raw.shape[1]), np.int16), raw[:-1]])
@@ -37,7 +37,7 @@ def png(pixels):
 
 
 class Glb:
-    """A glTF document under construction; `document` takes everything that needs no buffer."""
+    """A glTF document under construction. Write what needs no buffer directly to `document`."""
 
     def __init__(self):
         self.document = {
@@ -55,7 +55,7 @@ class Glb:
         return len(self.document["bufferViews"]) - 1
 
     def _accessor(self, array, component, kind, target, **extra):
-        """An accessor of these values: what two attributes or meshes have in common is written once."""
+        """Returns an accessor of these values. Equal values share one accessor."""
         data = array.tobytes()
         key = (data, component, kind, target)
         if key not in self._accessors:

@@ -8,10 +8,10 @@ A matrix M^-1 takes it to a cosine, and so a polygonal light to another polygon,
            | c 0 d |                pi      |q|^4     1 + cos beta
 
 The first two factors are the paper's (section 3), in a frame with n = z and v in the half plane y = 0, x > 0. Their
-lobe reaches under the horizon when c is not 0, where a surface receives nothing; the last factor makes up for what the
+lobe reaches below the horizon if c is not 0, where a surface receives nothing; the last factor compensates for what the
 shader clips away there. A cosine lobe cut by a second plane through its center, at an angle beta between the two
 normals, keeps (1 + cos beta) / 2; the horizon's normal becomes (-c, 0, a) in the space of the cosine, so
-cos beta = a / sqrt(a^2 + c^2). Thus t integrates to 1, and a light that fills the sky gives exactly the albedo.
+cos beta = a / sqrt(a^2 + c^2). So t integrates to 1, and a light that fills the sky gives exactly the albedo.
 
 Table: SIZE x SIZE texels of (a, b, c, d), half floats; column i is roughness i / (SIZE - 1), row j is
 sqrt(1 - NoV) = j / (SIZE - 1).
@@ -22,7 +22,7 @@ import numpy as np
 SIZE = 64
 BYTES = SIZE * SIZE * 8
 MIN_ALPHA = 0.0025    # as in shaders/brdf/surface.glsl
-MIN_N_DOT_V = 1e-4    # as in shaders/brdf/evaluate.glsl
+MIN_N_DOT_V = 1e-4    # as in shaders/brdf/visibility.glsl
 
 LANES = 8             # columns fitted side by side: few enough for the cache
 GRID = (24, 20)       # directions per technique, azimuth x polar
@@ -51,14 +51,14 @@ def half_z(l, v):
 
 
 def lobe(l, v, alpha):
-    """D V NoL in 1/sr, F = 1; 0 under the horizon. V: Heitz 2014, eq. 99."""
+    """D V NoL in 1/sr, F = 1; 0 below the horizon. V: Heitz 2014, eq. 99."""
     n_dot_l, n_dot_v = np.maximum(l[..., 2], 0.0), v[2]
     visibility = 0.5 / (n_dot_v * smith_root(n_dot_l, alpha) + n_dot_l * smith_root(n_dot_v, alpha))
     return d_ggx(half_z(l, v), alpha) * visibility * n_dot_l
 
 
 def sample_lobe(u1, u2, v, alpha):
-    """Mirror directions of visible normals: spherical caps (Dupuy & Benyoub 2023). Some lie under the horizon."""
+    """Mirror directions of visible normals: spherical caps (Dupuy & Benyoub 2023). Some are below the horizon."""
     alpha = np.broadcast_to(alpha, np.broadcast_shapes(np.shape(alpha), u1.shape))
     stretched = np.stack([alpha * v[0], alpha * v[1], np.broadcast_to(v[2], alpha.shape)], -1)
     stretched /= np.linalg.norm(stretched, axis=-1, keepdims=True)
@@ -71,15 +71,15 @@ def sample_lobe(u1, u2, v, alpha):
 
 
 def density(l, v, alpha):
-    """Of `sample_lobe`, per steradian (Heitz 2018, eq. 3 and 17)."""
+    """The density of `sample_lobe`, per steradian (Heitz 2018, eq. 3 and 17)."""
     return d_ggx(half_z(l, v), alpha) / (2.0 * (v[2] + smith_root(v[2], alpha)))
 
 
 def directions(n_dot_v, alpha):
     """Directions l (lanes, n, 3), solid angles w (lanes, n), and the normalized lobe g there.
 
-    A third each is spread like the lobe, like a wider one, and evenly, so that neither core nor tail is missed; w is
-    one over the sum of their densities. All is even in y, so only y > 0 is looked at, and counts twice.
+    A third each follows the lobe, a wider lobe, and a uniform distribution, so that they cover both core and tail; w is
+    one over the sum of their densities. Everything is even in y, so only y > 0 is sampled, and counts twice.
     """
     v = np.array([np.sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v])
     u1, u2 = np.meshgrid((np.arange(GRID[0]) + 0.5) / (2 * GRID[0]), (np.arange(GRID[1]) + 0.5) / GRID[1])
@@ -132,10 +132,10 @@ def cosine(p, l):
 
 def fit(p, l, w, g, free):
     """Levenberg-Marquardt from `p` on the parameters `free` for the least sum of w (g - t)^2 / (g / max g + FLOOR),
-    among those with a, d > 0: the rest turn the lobe's top under the surface.
+    among those with a, d > 0; the others would turn the lobe's peak below the surface.
 
-    A plain square would look at the core alone and leave the tail, the glow around a highlight, to chance; divided by g
-    (Pearson's chi squared) a part counts by the light that it carries. FLOOR keeps what nobody sees from ruling.
+    A plain square would fit only the core and ignore the tail, the glow around a highlight. Divided by g
+    (Pearson's chi squared), each part counts by its share of the light. FLOOR limits the weight of very dark parts.
     """
     weight = w / (g / g.max(1, keepdims=True) + FLOOR)
     damping = np.full(len(p), 1e-2)
@@ -166,13 +166,13 @@ def fit(p, l, w, g, free):
 
 
 def fit_columns(alpha):
-    """All angles for a few alphas: (SIZE, lanes, 4) of (a, b, c, d). Each row starts from the one above it."""
+    """Fits all angles for a few alphas: (SIZE, lanes, 4) of (a, b, c, d). Each row starts from the previous one."""
     rows = np.zeros((SIZE, len(alpha), 4))
     p = np.stack([0.0 * alpha, 0.0 * alpha, np.log(alpha), 0.0 * alpha], 1)
     tilt = 0.0 * alpha
     for j, y in enumerate(np.linspace(0.0, 1.0, SIZE)):
         l, w, g = directions(max(1.0 - y * y, MIN_N_DOT_V), alpha)
-        if j == 0:    # seen from above the lobe is round: a = 1 and b = c = 0
+        if j == 0:    # at normal incidence the lobe is isotropic: a = 1 and b = c = 0
             p = fit(p, l, w, g, [2])
         else:         # a lobe narrower than a row's step would be lost: turn with where most of it is
             center = np.sum((w * g * g)[..., None] * l, 1)

@@ -1,7 +1,7 @@
-"""How far the table of ltc.py is from the lobe that it stands for: random rectangles, against a sum over directions.
+"""Measures the error of the table from ltc.py: random rectangles, against a sum over directions.
 
-`integrate_rect` is shaders/lighting/area.glsl in numpy, line by line and in its precision; so this judges the matrix,
-the half floats, the interpolation between texels, the clipping and the rounding together.
+`integrate_rect` is shaders/lighting/area.glsl in numpy, line by line and in float precision. So the error includes the
+matrix, the half floats, the interpolation between texels, the clipping and the rounding.
 """
 
 import numpy as np
@@ -9,9 +9,9 @@ import numpy as np
 from . import ltc
 
 SURFACES = 160        # pairs of roughness and angle
-RECTANGLES = 16       # for each
-TRUTH_GRID = 448      # directions are its square
-NOTABLE = 0.05        # relative errors are counted where the true value, 0..1, is more than this
+RECTANGLES = 16       # per surface
+TRUTH_GRID = 448      # the reference sums over its square of directions
+NOTABLE = 0.05        # relative errors count only if the reference, 0..1, is larger than this
 
 
 def fetch(texels, roughness, n_dot_v):
@@ -66,7 +66,7 @@ def integrate_rect(texels, roughness, n_dot_v, center, half_x, half_y, facing):
 
 
 def truth(n_dot_v, alpha):
-    """Directions (n, 3) spread like the lobe, and the part of the lobe that each stands for."""
+    """Directions (n, 3) distributed like the lobe, and the fraction of the lobe that each represents."""
     v = np.array([np.sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v])
     u = (np.arange(TRUTH_GRID) + 0.5) / TRUTH_GRID
     u1, u2 = (t.ravel() for t in np.meshgrid(u, u))
@@ -76,7 +76,7 @@ def truth(n_dot_v, alpha):
 
 
 def hits(l, center, half_x, half_y, facing):
-    """Which directions meet the front of one rectangle."""
+    """Which directions hit the front of one rectangle."""
     slope = l @ facing
     with np.errstate(divide="ignore", invalid="ignore"):
         p = l * ((center @ facing) / slope)[:, None] - center

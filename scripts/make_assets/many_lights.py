@@ -12,7 +12,7 @@ USED = {"POSITION", "NORMAL"}
 
 
 class Scene:
-    """Nodes under one root, and lights."""
+    """A model of nodes under one root, and lights."""
 
     def __init__(self):
         self.glb = Glb()
@@ -20,17 +20,17 @@ class Scene:
         self.lights = []
 
     def mesh(self, name, shape, material):
-        """A mesh of a shape with a material of its own."""
+        """A mesh of a shape with its own material."""
         index = self.glb.material(name, **material)
         return self.glb.mesh(name, self.glb.primitive(shape, index, only=USED, compact=True))
 
     def add(self, name, place, **node):
-        """A node at a place."""
+        """A node at a position."""
         self.nodes.append({"name": name, "translation": numbers(place), **node})
         self.nodes[0]["children"].append(len(self.nodes) - 1)
 
     def light(self, kind, place, color, candela, reach, node=None, **more):
-        """A light in a node of its own."""
+        """A light in its own node."""
         name = f"{kind} {len(self.lights) + 1}"
         self.lights.append(numbers(
             {"name": name, "type": kind, "color": color, "intensity": candela, "range": reach, **more}))
@@ -51,7 +51,7 @@ def build():
 
 
 def room(scene):
-    """A floor that shines a little and two walls."""
+    """A slightly glossy floor and two walls."""
     floor = scene.mesh("floor", shapes.quad(SIZE, SIZE), dielectric((0.30, 0.30, 0.31), 0.3))
     wall = scene.mesh("wall", shapes.quad(SIZE, HEIGHT), dielectric((0.60, 0.59, 0.57), 0.8))
     scene.add("floor", [0.0, 0.0, 0.0], mesh=floor, rotation=about(0, -90.0))
@@ -82,7 +82,7 @@ def points(scene):
 
 
 def spots(scene):
-    """4 x 4 that look straight down, warm and cold by turns."""
+    """4 x 4 spots that point straight down, alternately warm and cold."""
     cone = {"innerConeAngle": 0.2, "outerConeAngle": 0.35}
     for row in range(4):
         for column in range(4):

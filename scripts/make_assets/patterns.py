@@ -41,13 +41,13 @@ def clouds(seed, width=WIDTH, height=HEIGHT):
 
 
 def data(red=0.0, green=0.0, blue=0.0, alpha=None):
-    """Linear channels as pixels; a channel is a field or a number, without alpha there are three."""
+    """Packs linear channels into pixels. A channel is a field or a number; without alpha there are three."""
     channels = [red, green, blue] + ([] if alpha is None else [alpha])
     return bytes_of(np.stack(np.broadcast_arrays(*(np.asarray(c, float) for c in channels)), axis=2))
 
 
 def color(field, low, high, alpha=None):
-    """sRGB pixels between two linear colors; alpha, where wanted, is linear."""
+    """sRGB pixels between two linear colors, with optional linear alpha."""
     low, high = np.asarray(low, float), np.asarray(high, float)
     rgb = srgb(low + (high - low) * field[..., None])
     return bytes_of(rgb if alpha is None else np.dstack([rgb, np.broadcast_to(alpha, rgb.shape[:2])]))
@@ -67,7 +67,7 @@ def directions(angle_rad, strength=1.0):
 
 
 def circular(size=64):
-    """Directions around the middle of a disc, as a lathe leaves them; counter-clockwise, v down."""
+    """Directions around the center of a disc, as a lathe leaves them; counterclockwise, v down."""
     u, v = _grid(size, size)
     return directions(np.arctan2(0.5 - v, u - 0.5) + np.pi / 2)
 

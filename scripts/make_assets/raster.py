@@ -64,7 +64,7 @@ def box(x, y, half_x, half_y, corner):
 def normals(height, texel_x, texel_y):
     """Tangent-space normals of a height field, glTF's way: green is up, so towards the image's first row.
 
-    Height and texel sizes in metres; `texel_x` and `texel_y` hold one number a row.
+    Height and texel sizes in meters; `texel_x` and `texel_y` hold one number a row.
     """
     dx = (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1)) / (2.0 * texel_x[:, None])
     dy = np.gradient(height, axis=0) / texel_y[:, None]

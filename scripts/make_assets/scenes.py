@@ -1,4 +1,4 @@
-"""Scenes that are no chart of one extension: metals by n and k, shapes to override, a vase in variants."""
+"""Scenes other than extension charts: metals by n and k, shapes for the material override, a vase with variants."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ METALS = {
 
 
 def reflectance(n, k):
-    """Of a smooth conductor in air at normal incidence: F0 = ((n-1)^2 + k^2) / ((n+1)^2 + k^2)."""
+    """Reflectance of a smooth conductor in air at normal incidence: F0 = ((n-1)^2 + k^2) / ((n+1)^2 + k^2)."""
     n, k = np.asarray(n), np.asarray(k)
     return ((n - 1.0) ** 2 + k**2) / ((n + 1.0) ** 2 + k**2)
 
@@ -49,7 +49,7 @@ def material_override():
 
 
 def variants():
-    """A vase in three materials. Its body and its band change with the variant, its plinth does not."""
+    """A vase in three variants, which change the materials of its body and its band, but not of its plinth."""
     glb = Glb()
     looks = {
         "Porcelain": (dielectric((0.80, 0.79, 0.74), 0.12), metal(reflectance(*METALS["gold"]), 0.25)),

@@ -10,7 +10,7 @@ CENTER = np.array([0.0, 1.16, 0.0])
 OUTER, INNER, CORE = 0.82, 0.69, 0.50
 OPENING = 38.0  # degrees from the axis to the rim
 FILLET = 0.022
-AXIS_AZIMUTH, AXIS_ELEVATION = -13.0, 19.0  # where the opening looks, degrees; the default camera stands at 30, 15
+AXIS_AZIMUTH, AXIS_ELEVATION = -13.0, 19.0  # direction of the opening, degrees; the default camera is at 30, 15
 INNER_SHARE = 0.28  # texture rows given to the hidden inner side, as a share of its length
 
 
@@ -22,7 +22,7 @@ def shell_profile():
     def on(radius, angle):
         return radius * np.array([np.sin(np.radians(angle)), np.cos(np.radians(angle))])
 
-    wall = OPENING - 90.0  # the wall's normal: square to the radius, to the axis
+    wall = OPENING - 90.0  # the wall's normal: perpendicular to the radius, towards the axis
     outside = geometry.arc((0, 0), OUTER, 180.0, OPENING + out, 97)
     rim = geometry.arc(on(OUTER - FILLET, OPENING + out), FILLET, OPENING + out, wall, 10)
     lip = geometry.arc(on(INNER + FILLET, OPENING + into), FILLET, wall, OPENING + into - 180.0, 10)
@@ -51,7 +51,7 @@ def shell():
 
 
 def open_sky(points, normals_, solid, reach, seed):
-    """Share of the sky that points of a profile see, `solid(p)` telling what blocks, by cosine-weighted rays."""
+    """Fraction of the sky visible from points of a profile, by cosine-weighted rays; `solid(p)` is the occluder."""
     random = np.random.Generator(np.random.PCG64(seed)).random((256, 2))
     r, phi = np.sqrt(random[:, 0]), 2.0 * np.pi * random[:, 1]
     local = np.stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1.0 - random[:, 0])], axis=1)
@@ -131,9 +131,9 @@ def stand_textures(profile):
 
 
 def facing():
-    """Quaternion that turns +Y to where the opening looks."""
+    """Quaternion that rotates +Y to the direction of the opening."""
     azimuth, tilt = np.radians(AXIS_AZIMUTH) / 2, np.radians(90.0 - AXIS_ELEVATION) / 2
-    # First +Y leans towards +Z (around +X), then it turns around +Y.
+    # First tilt +Y towards +Z (around +X), then rotate around +Y.
     y, w, x, k = np.sin(azimuth), np.cos(azimuth), np.sin(tilt), np.cos(tilt)
     return [float(q) for q in (w * x, y * k, -y * x, w * k)]
 

@@ -1,7 +1,7 @@
 """Meshes that the models share: sphere, cylinder, rounded cube, vase, gem, disc, quad; all with glTF's tangents.
 
-Each is a `geometry.Surface` in meters with POSITION, NORMAL, TEXCOORD_0 and TANGENT; what a material does not use is
-left out by the writer. Tangents point where u grows; textures are not mirrored, so their w is 1.
+Each is a `geometry.Surface` in meters with POSITION, NORMAL, TEXCOORD_0 and TANGENT; the writer omits attributes that a
+material does not use. Tangents point in the direction of u; textures are not mirrored, so their w is 1.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ def _downwards(profile):
 
 
 def sphere(segments=48, rings=32):
-    """Radius 1, so that a position is its own normal and the file holds it once."""
+    """Radius 1, so that positions equal normals and the file stores them once."""
     profile = geometry.joined(geometry.arc((0, 0), 1.0, 0.0, 180.0, rings + 1))
     profile.points[[0, -1], 0] = 0.0
     profile.normals[:] = profile.points
@@ -53,7 +53,7 @@ def vase(segments=30):
     ends = np.vstack([2 * controls[0] - controls[1], controls, 2 * controls[-1] - controls[-2]])
     points = []
     for i, (a, b, c, d) in enumerate(zip(ends, ends[1:], ends[2:], ends[3:])):  # Catmull-Rom
-        steps = 1 if i < 4 else 2 if i < 8 or i > 14 else 4  # fine where one sees the outline
+        steps = 1 if i < 4 else 2 if i < 8 or i > 14 else 4  # finer along the visible outline
         t = (np.arange(steps) / steps)[:, None]
         points.append(b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a))))
     points = np.vstack([*points, controls[-1:]])

@@ -1,4 +1,4 @@
-"""The shell's textures. Every channel comes from one height field and a few masks, so all agree."""
+"""The shell's textures. All channels derive from one height field and a few masks, so they match."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ CAP = (167.0, 180.0, 1, 0.0)
 
 
 class Sheet:
-    """The shell's UV sheet in metres: where each row lies on the ball and how large its texels are."""
+    """The shell's UV sheet in meters: where each row lies on the ball and how large its texels are."""
 
     def __init__(self, angle, radius, row_length, inside, wall):
         rows = (np.arange(DRAWN) + 0.5) / DRAWN
@@ -36,7 +36,7 @@ class Sheet:
         self.angle = angle(rows)  # degrees from the opening's axis
         self.inside = inside(rows)  # rows of the rim, the wall and the inner side
         self.wall = wall(rows)  # rows of the rim and the wall
-        self.width = np.maximum(radius(rows) * np.pi, 0.12)  # metres that one tile (half a turn) covers
+        self.width = np.maximum(radius(rows) * np.pi, 0.12)  # meters that one tile (half a turn) covers
         self.texel_x = self.width / DRAWN
         self.texel_y = row_length(rows) / DRAWN
         self.along = np.cumsum(self.texel_y)
@@ -47,14 +47,14 @@ class Sheet:
         return np.interp(-angle, -self.angle[outside], self.along[outside])
 
     def cells(self, count, shift=0.0):
-        """Index of the cell and metres from its middle, `count` cells a tile; and half a cell in metres."""
+        """Index of the cell and meters from its middle, `count` cells a tile; and half a cell in meters."""
         x = self.u * count + shift
         index = np.floor(x)
         cell = self.width[:, None] / count
         return index.astype(int) % count, (x - index - 0.5) * cell, cell / 2
 
     def zone(self, zone, gap=0.0045, corner=0.02):
-        """Distance inside the zone's panels (metres, negative in the gaps), the panel's index and the zone's rows."""
+        """Distance inside the zone's panels (meters, negative in the gaps), the panel's index and the zone's rows."""
         start, end, count, shift = zone
         top, bottom = self.row_of(end), self.row_of(start)
         index, x, half = self.cells(count, shift)
@@ -72,7 +72,7 @@ def paint(sheet):
     color = np.broadcast_to(GRAPHITE, shape + (3,)).copy()
     metallic, lamp = np.zeros(shape), np.zeros(shape)
     rough = np.full(shape, 0.62)
-    edge = np.full(shape, 1.0)  # metres from the nearest panel edge
+    edge = np.full(shape, 1.0)  # meters from the nearest panel edge
 
     def cover(mask, new_color, new_rough, new_metallic):
         nonlocal color, rough, metallic
@@ -117,12 +117,12 @@ def paint(sheet):
     rough = handled(sheet, rough)
     cavity = np.clip((blur(height, 26) - height) / 0.0075, 0.0, 1.0)
     occlusion = 1.0 - 0.85 * smooth(0.0, 1.0, cavity)
-    color = mix(color, color * 0.5, 0.8 * cavity)  # dirt gathers where light does not
+    color = mix(color, color * 0.5, 0.8 * cavity)  # dirt in the cavities
     return textures(sheet, color, occlusion, rough, metallic, height, lamp)
 
 
 def textures(sheet, color, occlusion, rough, metallic, height, lamp):
-    """The drawn fields, averaged to the final size and packed as glTF wants them."""
+    """The drawn fields, averaged to the final size and packed into glTF's channels."""
     normal = halved(normals(height, sheet.texel_x, sheet.texel_y))
     normal /= np.linalg.norm(normal, axis=2, keepdims=True)
     orm = halved(np.stack([occlusion, rough, metallic], axis=2))
@@ -191,7 +191,7 @@ def lamps(sheet, cover, height):
 
 
 def inner_ring(sheet, height, lamp):
-    """A line of light on the inner side, behind the opening's wall, so that the core is lit from around."""
+    """A line of light on the inner side, behind the opening's wall, which lights the core from all sides."""
     rows = sheet.inside & (sheet.angle > 53.0) & (sheet.angle < 56.5)
     rows = blur(np.repeat(rows[:, None].astype(float), 2, axis=1), 3)[:, :1]
     groove = sheet.inside & (np.floor(sheet.angle / 9.0) != np.floor((sheet.angle + 1.2) / 9.0))
@@ -211,7 +211,7 @@ def wear(sheet, cover, edge, painted):
 
 
 def handled(sheet, rough):
-    """Roughness of a thing in use: smears, fine scratches and finger marks."""
+    """Roughness of an object in use: smears, fine scratches and finger marks."""
     shape = rough.shape
     smear = fractal(shape, (6, 7), 5) - 0.5
     rough = rough + 0.20 * smear
@@ -235,7 +235,7 @@ def handled(sheet, rough):
 
 
 def finger_mark(sheet, rough, x, y, angle, warp):
-    """One finger mark, 8 by 12 centimetres: larger than life, so that it shows."""
+    """One finger mark, 8 by 12 centimeters: larger than life, so that it shows."""
     row = int(y * DRAWN)
     reach = 90
     rows = slice(max(row - reach, 0), min(row + reach, DRAWN))

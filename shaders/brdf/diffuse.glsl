@@ -1,42 +1,42 @@
-// Light that enters the surface, loses its direction and comes out again: five answers to how it is spread. All give
-// f / albedo, in 1/sr; what enters at all is the coupling's matter (brdf/evaluate.glsl).
+// Diffuse models: how light that enters the surface and scatters below it leaves again. All return f in 1/sr; the three
+// without an albedo argument return f / albedo. The coupling (brdf/evaluate.glsl) decides how much light enters.
 #ifndef BRDF_DIFFUSE_GLSL
 #define BRDF_DIFFUSE_GLSL
 
 #include "brdf/models.glsl"
 #include "common/math.glsl"
 
-// f = albedo / pi (Lambert 1760): the same in all directions. 1 / pi, because the cosine integrates to pi over the
-// hemisphere, so that albedo is the part of the light that leaves again.
+// f = albedo / pi (Lambert 1760), the same in all directions. The cosine integrates to pi over the hemisphere, so
+// albedo is the fraction of the light that leaves again.
 vec3 f_lambert(vec3 albedo) { return albedo / PI; }
 
-// A fit to the MERL materials (Burley 2012, section 5.3): smooth ones darken towards grazing angles, since less light
-// enters; rough ones brighten, and throw light back to where it came from.
+// A fit to the MERL materials (Burley 2012, section 5.3): smooth ones darken at grazing angles, where less light
+// enters; rough ones brighten there and reflect light back to its source.
 //
 //   f = albedo / pi (1 + (FD90 - 1) (1 - NoL)^5) (1 + (FD90 - 1) (1 - NoV)^5)        FD90 = 1/2 + 2 roughness VoH^2
 //
-// Roughness 1, grazing: FD90 = 2.5, more comes out than went in.
+// Gains energy: at roughness 1 and grazing angles FD90 = 2.5.
 float f_burley(float n_dot_l, float n_dot_v, float v_dot_h, float roughness) {
     float rise = 2.0 * roughness * v_dot_h * v_dot_h - 0.5;
     return (1.0 + rise * pow5(1.0 - n_dot_l)) * (1.0 + rise * pow5(1.0 - n_dot_v)) / PI;
 }
 
-// Burley's, bent until its albedo stays below 1 (Lagarde & de Rousiers 2014, listing 1): FD90 starts at 0 .. 1/2
-// instead of at 1/2, and all of it is divided by 1 .. 1.51.
+// Burley's model, renormalized to keep its albedo below 1 (Lagarde & de Rousiers 2014, listing 1): FD90 gets an offset
+// that grows from 0 to 1/2 with roughness, and the result is divided by 1 .. 1.51.
 float f_renormalized_burley(float n_dot_l, float n_dot_v, float v_dot_h, float roughness) {
     float rise = roughness * (0.5 + 2.0 * v_dot_h * v_dot_h) - 1.0;
     float scale = mix(1.0, 1.0 / 1.51, roughness);
     return scale * (1.0 + rise * pow5(1.0 - n_dot_l)) * (1.0 + rise * pow5(1.0 - n_dot_v)) / PI;
 }
 
-// Oren & Nayar 1994: grooves whose walls are Lambertian, so that rough surfaces look flat. In the form of Fujii 2012,
-// with the light that goes from wall to wall given back (EON, Portsmouth, Kutz & Hill 2025). A, E and E_avg are the
-// albedos of a white surface that loses that light:
+// Oren & Nayar 1994: V-grooves with Lambertian walls, which make rough surfaces look flat. In the form of Fujii 2012,
+// with compensation for light that bounces between the walls (EON: Portsmouth, Kutz & Hill 2025). A, E and E_avg are
+// albedos of the white single-scattering lobe:
 //
 //   f_single = albedo A / pi (1 + r s / t)        s = LoV - NoL NoV        t = s > 0 ? max(NoL, NoV) : 1
 //   f_multi = rho / pi (1 - E(l)) (1 - E(v)) / (1 - E_avg)     rho = albedo^2 E_avg / (1 - albedo (1 - E_avg))
 //
-// E(c) by the paper's polynomial, off by less than 0.1 %. r: roughness, from Lambert at 0 to steep grooves at 1.
+// E(c) is the paper's polynomial, with an error below 0.1 %. r: roughness, 0 (Lambert) to 1 (steep grooves).
 float eon_albedo(float c, float r, float a) {
     float x = 1.0 - c;
     return a * (1.0 + r * x * (0.0571085289 + x * (0.491881867 + x * (0.0714429953 * x - 0.332181442))));
@@ -49,7 +49,7 @@ vec3 f_oren_nayar(vec3 albedo, float n_dot_l, float n_dot_v, float l_dot_v, floa
     float s_over_t = s > 0.0 ? s / max(n_dot_l, n_dot_v) : s;
     vec3 single = albedo * (a * (1.0 + r * s_over_t));
 
-    // Lambert loses nothing: 0 / 0, where 1e-6 makes 0 of it.
+    // Lambert (r = 0) loses nothing, so `multi` would be 0 / 0; 1e-6 makes it 0.
     float lost = max(1.0 - average, 1e-6);
     vec3 rho = albedo * albedo * average / (1.0 - albedo * lost);
     vec3 multi = rho * ((1.0 - eon_albedo(n_dot_l, r, a)) * (1.0 - eon_albedo(n_dot_v, r, a)) / lost);
@@ -57,7 +57,7 @@ vec3 f_oren_nayar(vec3 albedo, float n_dot_l, float n_dot_v, float l_dot_v, floa
 }
 
 // A fit to simulated Lambertian microfacets under a Fresnel layer (Chan 2018, "Material Advances in Call of Duty:
-// WWII"): between a smooth and a rough lobe, and a bump of retroreflection. g: glossiness, 0 at alpha 1.
+// WWII"): a blend of a smooth and a rough lobe, plus retroreflection. g: glossiness, 0 at alpha 1.
 float f_call_of_duty(float n_dot_l, float n_dot_v, float n_dot_h, float v_dot_h, float alpha) {
     float g = saturate(log2(2.0 / (alpha * alpha) - 1.0) / 18.0);
     float rough = v_dot_h + pow5(1.0 - v_dot_h);

@@ -1,20 +1,20 @@
-// The BRDF, and all of it: the picture, the debug modes and every measurement call this one function.
+// The complete BRDF. The picture, the debug modes and every measurement call evaluate_brdf.
 //
 //            n                    n    shading normal                  h    half vector, (l + v) / |l + v|
 //        l   |   h                l    towards the light               F0   reflectance along the normal
 //         \  |  /   . v           v    towards the eye                 alpha = roughness^2
 //          \ | / .                NoL  max(n . l, 0), likewise NoH, VoH
-//     ______\|/.______            all vectors have unit length and leave the surface, in world space
+//     ______\|/.______            all vectors are unit, in world space, and point away from the surface
 //
 //   f = k_d f_diffuse + k_s D V + f_multiple     (Cook & Torrance 1982 over a diffuse base; glTF 2.0, appendix B)
 //   k_s = mix(F_dielectric, F_metal, metallic)
-//   k_d = (1 - metallic) (1 - F_dielectric)      what is not reflected enters; in a metal it is absorbed
+//   k_d = (1 - metallic) (1 - F_dielectric)      a dielectric transmits what it does not reflect; a metal absorbs it
 //
-// `metallic` mixes the results of two materials, not their F0: the dielectric's diffuse part is weakened by its own
-// Fresnel term, which must not depend on the metal beside it. So f = mix(f_dielectric, f_metal, metallic), exactly.
+// `metallic` blends the results of two materials, not their F0: the dielectric's own Fresnel term attenuates its
+// diffuse lobe and must not depend on the metal. So f = mix(f_dielectric, f_metal, metallic), exactly.
 //
-// Above this base lie, where the material has them, sheen and then a clear coat; each weakens what is below it. Behind
-// it lies what is transmitted, instead of a part of the diffuse light.
+// Sheen and then clear coat lie above this base; each attenuates what is below it. Transmission replaces part of the
+// diffuse lobe.
 #ifndef BRDF_EVALUATE_GLSL
 #define BRDF_EVALUATE_GLSL
 
@@ -32,7 +32,7 @@
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
-// Lobes in 1/sr, weakened by the layers above them.
+// Lobes in 1/sr, attenuated by the layers above them.
 struct Brdf {
     float n_dot_l;
     float n_dot_v;
@@ -47,15 +47,15 @@ struct Brdf {
     vec3 k_s;
     vec3 diffuse;              // k_d f_diffuse
     vec3 specular;             // k_s D V
-    vec3 multiple;             // light that met more than one facet
+    vec3 multiple;             // reflected by more than one microfacet
     vec3 sheen;
     vec3 clearcoat;
-    vec3 transmitted;          // through the surface, in a lobe around -v
-    vec3 diffuse_transmitted;  // through the surface, everywhere
+    vec3 transmitted;          // through the surface, a lobe around -v
+    vec3 diffuse_transmitted;  // through the surface, Lambertian
     vec3 value;                // f: their sum
 };
 
-// D and V of the specular lobe: round or stretched (KHR_materials_anisotropy: alpha grows towards 1 along t).
+// D and V of the specular lobe, isotropic or anisotropic.
 void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
     float alpha = alpha_from_roughness(s.roughness);
     if ((FEATURES & FEATURE_ANISOTROPY) == 0u) {
@@ -71,7 +71,7 @@ void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
     f.v = v_specular(f.n_dot_l, f.n_dot_v, a2_l, a2_v);
 }
 
-// f_diffuse of the chosen model, 1/sr.
+// f_diffuse of the selected model, 1/sr.
 vec3 f_diffuse(Surface s, Brdf f, float l_dot_v) {
     float fit = 1.0 / PI;
     if (DIFFUSE == OREN_NAYAR) return f_oren_nayar(s.base_color, f.n_dot_l, f.n_dot_v, l_dot_v, s.roughness);
@@ -83,26 +83,26 @@ vec3 f_diffuse(Surface s, Brdf f, float l_dot_v) {
     return s.base_color * fit;
 }
 
-// How much of the light passes the dielectric's boundary twice, on its way in and out. Colors of F count with their
-// largest component, so that the diffuse part does not take on the complementary color (KHR_materials_specular).
+// The fraction of light that passes the dielectric boundary on the way in and again on the way out. A colored F counts
+// by its largest component, so that the diffuse lobe does not take on the complementary color (KHR_materials_specular).
 //
-// Fresnel: 1 - F (glTF 2.0, appendix B). Multiple scattering takes nothing more from it: that light is the part of F
-// which single scattering lost between the facets.
+// Fresnel: 1 - F (glTF 2.0, appendix B). Multiple scattering does not reduce it further: that lobe returns energy that
+// single scattering lost between the facets and that F already counts as reflected.
 //
-// Albedo: (1 - R(l)) (1 - R(v)) / (1 - R_avg), R being all that the boundary reflects (Kelemen & Szirmay-Kalos 2001). A
-// white base returns exactly what the boundary let through. R = 1 throughout: 0 / 0, where 1e-4 makes 0 of it.
+// Albedo: (1 - R(l)) (1 - R(v)) / (1 - R_avg), with R the boundary's total reflectance (Kelemen & Szirmay-Kalos 2001).
+// A white base returns exactly what the boundary transmitted. R = 1 everywhere would be 0 / 0; 1e-4 makes it 0.
 float entering(Surface s, Brdf f, vec4 dfg_l) {
     if (DIFFUSE_COUPLING == FRESNEL_COUPLING) return 1.0 - max_component(f.f_dielectric);
     float through = (1.0 - boundary_albedo(s, dfg_l)) * (1.0 - boundary_albedo(s, s.dfg));
     return through / max(1.0 - boundary_albedo_average(s), 1e-4);
 }
 
-// KHR_materials_clearcoat: a layer of index 1.5 with a normal and a roughness of its own,
+// KHR_materials_clearcoat: a layer with index of refraction 1.5 and its own normal and roughness,
 //
-//   f = mix(f_base, D V, clearcoat F)        F = F(NoV): one number for what is reflected and for what passes
+//   f = mix(f_base, D V, clearcoat F)        F = F(NoV), for both the reflected and the transmitted part
 //
-// f is multiplied by |NoL| of the base, the coat's light arrives under its own angle: hence the quotient. A bump of the
-// base that turns away from the light leaves the coat as it is. Returns F.
+// The caller multiplies f by |NoL| of the base normal; the quotient `turned` replaces it by NoL of the coat normal. So
+// a bump of the base that turns away from the light does not darken the coat. Returns clearcoat F.
 float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf f) {
     vec3 h = safe_normalize(l + v, s.clearcoat_n);
     float n_dot_l = saturate(dot(s.clearcoat_n, l));
@@ -115,7 +115,7 @@ float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf f) {
     return weight;
 }
 
-// Multiplies what lies below by what sheen and coat let through.
+// Adds sheen and clear coat, and attenuates what is below them.
 void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf f) {
     float passes = 1.0;
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
@@ -136,8 +136,9 @@ void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf f) {
     f.diffuse_transmitted *= passes;
 }
 
-// To be multiplied by |n . l| and the light's irradiance. l below the horizon: all but the transmitted lobes and a
-// coat that lies flatter is 0, D, G and V too. Without transmission l = -v leaves h without a direction, and n is as good as any.
+// The caller multiplies f by |n . l| and the light's irradiance. For l below the horizon only the transmitted lobes,
+// and a coat whose normal still faces l, can be nonzero; D, G and V are 0. Without transmission, l = -v leaves h
+// undefined; then h = n.
 Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     const bool transmits = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
     vec3 h = safe_normalize((transmits ? unfolded(s.n, l) : l) + v, s.n);
@@ -167,7 +168,7 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     f.k_d = (1.0 - s.metallic) * entering(s, f, dfg_l);
     float below = 1.0 - above;
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
-        // Lambert, on the other side (KHR_materials_diffuse_transmission).
+        // Lambertian, on the far side (KHR_materials_diffuse_transmission).
         f.diffuse_transmitted = f_lambert(s.diffuse_transmission_color) * (below * f.k_d * s.diffuse_transmission);
         f.k_d *= 1.0 - s.diffuse_transmission;
     }

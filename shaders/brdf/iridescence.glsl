@@ -1,14 +1,14 @@
-// A thin film on the surface, as of soap or oil: what its two faces reflect interferes, and the color depends on the
-// angle. It replaces F (KHR_materials_iridescence, after Belcour & Barla 2017).
+// Thin-film interference, as on soap or oil: reflections from the film's two faces interfere, so the color depends on
+// the angle. The result replaces F (KHR_materials_iridescence, after Belcour & Barla 2017).
 #ifndef BRDF_IRIDESCENCE_GLSL
 #define BRDF_IRIDESCENCE_GLSL
 
 #include "brdf/fresnel.glsl"
 #include "common/math.glsl"
 
-// The eye's response to cos(2 pi path / wavelength + shift), linear RGB. The CIE color matching functions are taken for
-// four Gaussians over the wave number, whose Fourier transforms are Gaussians over the path (Belcour & Barla 2017,
-// section 4; the numbers are theirs, in SI units).
+// The eye's response to cos(2 pi path / wavelength + shift), linear RGB. Four Gaussians over the wavenumber approximate
+// the CIE color matching functions; their Fourier transforms are Gaussians over the path (Belcour & Barla 2017, section
+// 4, which gives the constants in SI units).
 vec3 film_sensitivity(float path_nm, vec3 shift) {
     const vec3 HEIGHT = vec3(5.4856e-13, 4.4201e-13, 5.2481e-13);
     const vec3 PLACE = vec3(1.6810e6, 1.7953e6, 2.2084e6);
@@ -18,28 +18,28 @@ vec3 film_sensitivity(float path_nm, vec3 shift) {
     float phase = 2.0 * PI * path_nm * 1e-9;
     float phase2 = phase * phase;
     vec3 xyz = HEIGHT * sqrt(2.0 * PI * VARIANCE) * cos(PLACE * phase + shift) * exp(-phase2 * VARIANCE);
-    // X has a second hump, in the blue.
+    // X has a second peak, in the blue.
     xyz.x += 9.7470e-14 * sqrt(2.0 * PI * 4.5282e9) * cos(2.2399e6 * phase + shift.x) * exp(-4.5282e9 * phase2);
     return RGB_FROM_XYZ * (xyz / 1.0685e-7);
 }
 
-// F of a film in air. f0: of the base below it in air; a metal is taken for a dielectric of that f0. The series of
-// reflections between the faces, in which polarization is left out, is cut after the second order:
+// F of a film in air. f0: reflectance of the base in air; a metal is treated as a dielectric with that f0. The series
+// of reflections between the faces ignores polarization and is cut off after the second order:
 //
 //   F = R12 + Rs + sum over m of 2 (Rs - T12) (R12 R23)^(m/2) S(m path, m shift)     Rs = T12^2 R23 / (1 - R12 R23)
-//   path = 2 ior nm cos2                                                             cos2: refracted angle
+//   path = 2 ior nm cos2                                                      cos2: cosine of the refracted angle
 //
-// A reflection at a denser medium turns the phase by pi. Under 30 nm the film's index goes to that of air, so that no
-// film is none. The cut series and the colors outside of sRGB leave 0..1, which reflectance may not.
+// Reflection at a denser medium shifts the phase by pi. Below 30 nm the film's index fades to that of air, so that zero
+// thickness means no film. The truncated series and colors outside sRGB can leave 0..1, so the result is clamped.
 vec3 f_film(vec3 f0, float ior, float nm, float c) {
     ior = mix(1.0, ior, smoothstep(0.0, 30.0, nm));
     float cos2_squared = 1.0 - (1.0 - c * c) / (ior * ior);
-    if (cos2_squared < 0.0) return vec3(1.0);   // total reflection, for a film thinner than air
+    if (cos2_squared < 0.0) return vec3(1.0);   // total internal reflection: film index below that of air
     float cos2 = sqrt(cos2_squared);
 
     float r12 = f_schlick(f0_from_ior(ior), c);
     float t12 = 1.0 - r12;
-    // 0.9999: a base of f0 = 1 has no finite index.
+    // 0.9999: f0 = 1 would need an infinite index.
     vec3 root = sqrt(min(f0, 0.9999));
     vec3 base_ior = (1.0 + root) / (1.0 - root);
     vec3 ratio = (base_ior - ior) / (base_ior + ior);
@@ -47,7 +47,7 @@ vec3 f_film(vec3 f0, float ior, float nm, float c) {
 
     vec3 shift = vec3(ior < 1.0 ? 0.0 : PI) + vec3(lessThan(base_ior, vec3(ior))) * PI;
     float path_nm = 2.0 * ior * nm * cos2;
-    vec3 r123 = clamp(r12 * r23, 1e-5, 0.9999);   // a root and a quotient follow
+    vec3 r123 = clamp(r12 * r23, 1e-5, 0.9999);   // keeps the square root and the quotient below finite
     vec3 r = sqrt(r123);
     vec3 rs = t12 * t12 * r23 / (1.0 - r123);
     vec3 f = r12 + rs;

@@ -1,10 +1,10 @@
-// Measured BRDFs: what light a real material was seen to reflect, to hold an analytic BRDF against.
+// Measured BRDFs: tables of reflectance measured on real materials, as references for the analytic BRDF.
 //
 //   MERL (Matusik et al. 2003): isotropic, over half and difference angles, 90 x 90 x 180 bins
 //   UTIA (Filip & Vavra 2014): anisotropic, over the angles of light and view, (6 x 48) x (6 x 48) directions
 //
-// The table, RGB in 1/sr, is made by src/scene/measured, where the formats are described; its `evaluate` is the same
-// lookup as here. Linear between the samples in every angle.
+// src/scene/measured builds the table (RGB, 1/sr) and documents the file formats; its `evaluate` does the same lookup
+// on the CPU. All lookups are linear in every angle.
 #ifndef BRDF_MEASURED_GLSL
 #define BRDF_MEASURED_GLSL
 
@@ -23,21 +23,21 @@ const uint MERL_PHI_D = 180u;
 const uint UTIA_THETA = 6u;
 const uint UTIA_PHI = 48u;
 
-// Two neighboring samples of one angle, and how far on the way from the one to the other.
+// Two neighboring samples of one angle and the interpolation factor between them.
 struct MeasuredBetween {
     uint low;
     uint high;
     float t;
 };
 
-// x in samples. Before the first and after the last of them, those hold.
+// x: position in samples, clamped to the first and last sample.
 MeasuredBetween measured_clamped(float x, uint count) {
     x = clamp(x, 0.0, float(count - 1u));
     uint low = min(uint(x), count - 2u);
     return MeasuredBetween(low, low + 1u, x - float(low));
 }
 
-// x in samples, -1 <= x <= count; after the last comes the first.
+// x: position in samples, -1 <= x <= count; wraps around.
 MeasuredBetween measured_around(float x, uint count) {
     float low = floor(x);
     uint index = uint(low + float(count)) % count;
@@ -53,13 +53,13 @@ vec3 merl_row(uint theta_h, uint theta_d, MeasuredBetween phi_d) {
     return mix(measured_rgb(row + phi_d.low), measured_rgb(row + phi_d.high), phi_d.t);
 }
 
-// Half and difference angles (Rusinkiewicz 1998): h halves the way from l to v; turned so that h is the normal, l is at
-// (theta_d, phi_d). An isotropic BRDF does not depend on phi_h. By reciprocity phi_d and phi_d + pi are the same.
+// Half and difference angles (Rusinkiewicz 1998): h is the half vector; after the rotation that takes h to the normal,
+// l is at (theta_d, phi_d). An isotropic BRDF does not depend on phi_h. By reciprocity phi_d and phi_d + pi are equal.
 //
 //   l + v = 2 cos(theta_d) h        l - v = 2 sin(theta_d) (across h, towards phi_d)
 //
-// So all angles come from arc tangents, exact at the highlight's peak, where acos(n . h) is off by whole bins.
-// Samples are the middles of bins: 1 degree of theta_d and phi_d, theta_h = 90 (i / 90)^2 degrees.
+// All angles come from arctangents, which stay exact at the highlight's peak; acos(n . h) is off by whole bins there.
+// Samples are bin centers: 1 degree of theta_d and phi_d, theta_h = 90 (i / 90)^2 degrees.
 vec3 f_merl(vec3 l, vec3 v) {
     vec3 sum = l + v;
     vec3 difference = l - v;
@@ -67,11 +67,11 @@ vec3 f_merl(vec3 l, vec3 v) {
     float theta_h = atan(aside, sum.z);
     float theta_d = atan(length(difference), length(sum));
 
-    // Along the meridian through h and across it; h at the pole has every meridian, and x is as good as any.
+    // Components along the meridian through h and across it. At the pole any meridian will do: this takes x.
     vec2 meridian = aside > 0.0 ? sum.xy / aside : vec2(1.0, 0.0);
     float along = dot(difference, vec3(cos(theta_h) * meridian, -sin(theta_h)));
     float across = dot(difference.xy, vec2(-meridian.y, meridian.x));
-    // l = v has no phi_d, and atan(0, 0) is undefined.
+    // l = v leaves phi_d undefined, as is atan(0, 0).
     float phi_d = along == 0.0 && across == 0.0 ? 0.0 : atan(across, along);
     phi_d += phi_d < 0.0 ? PI : 0.0;
 
@@ -87,7 +87,7 @@ MeasuredBetween utia_theta(vec3 w) {
 }
 
 MeasuredBetween utia_phi(vec3 w) {
-    // The pole has no phi, and atan(0, 0) is undefined.
+    // phi is undefined at the pole, as is atan(0, 0).
     float phi = w.x == 0.0 && w.y == 0.0 ? 0.0 : atan(w.y, w.x);
     phi += phi < 0.0 ? 2.0 * PI : 0.0;
     return measured_around(phi / radians(7.5), UTIA_PHI);
@@ -106,15 +106,15 @@ vec3 utia_ring(uint theta, MeasuredBetween phi, MeasuredBetween theta_v, Measure
     return mix(utia_light(ring + phi.low, theta_v, phi_v), utia_light(ring + phi.high, theta_v, phi_v), phi.t);
 }
 
-// Every 15 degrees of theta and 7.5 of phi. Nothing was measured beyond theta = 75 degrees: the value there holds.
+// Samples every 15 degrees of theta and 7.5 of phi. The last, at theta = 75 degrees, is used up to the horizon.
 vec3 f_utia(vec3 l, vec3 v) {
     MeasuredBetween theta = utia_theta(l), phi = utia_phi(l), theta_v = utia_theta(v), phi_v = utia_phi(v);
     return mix(utia_ring(theta.low, phi, theta_v, phi_v), utia_ring(theta.high, phi, theta_v, phi_v), theta.t);
 }
 
-// f(l, v) in 1/sr; black without a measured BRDF, and for l below the horizon. All vectors are world space; l, v and n
-// have unit length and leave the surface. t (tangent, phi = 0) and b (bitangent, phi = 90 degrees) matter to UTIA
-// alone: t is made perpendicular to n, b only tells which way phi goes.
+// f(l, v) in 1/sr; black if no measured BRDF is loaded or l is below the horizon. All vectors are in world space; l, v
+// and n are unit and point away from the surface. Only UTIA uses t (tangent, phi = 0) and b (bitangent, phi = 90
+// degrees): t is made perpendicular to n, and b gives the sense of phi.
 vec3 f_measured(vec3 l, vec3 v, vec3 n, vec3 t, vec3 b) {
     float n_dot_l = dot(n, l);
     if (measured_kind == MEASURED_NONE || !(n_dot_l > 0.0)) return vec3(0.0);
@@ -122,26 +122,27 @@ vec3 f_measured(vec3 l, vec3 v, vec3 n, vec3 t, vec3 b) {
     t = safe_normalize(t - n * dot(n, t), normalize(axis - n * dot(n, axis)));
     vec3 across = cross(n, t);
     b = dot(across, b) < 0.0 ? -across : across;
-    // A normal map can turn n away from the eye. Seen at a grazing angle then, as the analytic BRDF is (MIN_N_DOT_V).
+    // A normal map can turn n away from the eye. v is then clamped to a grazing angle, as in the analytic BRDF
+    // (MIN_N_DOT_V).
     vec3 v_ts = normalize(vec3(dot(t, v), dot(b, v), max(dot(n, v), 1e-4)));
     vec3 l_ts = vec3(dot(t, l), dot(b, l), n_dot_l);
     return measured_kind == MEASURED_MERL ? f_merl(l_ts, v_ts) : f_utia(l_ts, v_ts);
 }
 
-// How far an analytic BRDF is off, both in 1/sr, as a photographer counts: in stops of luminance.
+// The error of the analytic BRDF in stops of luminance; both arguments in 1/sr.
 //
 //   e = log2((Y_analytic + eps) / (Y_measured + eps))        0 equal, 1 twice as bright, -1 half as bright
 //
-// For small errors e ln 2 is the relative error, (Y_analytic - Y_measured) / Y_measured; unlike that, e weighs too dark
-// as much as too bright. eps = 1e-3 is a Lambertian albedo of 0.3 %, blacker than black velvet: two values far below
-// it count as equal, where a quotient would show the noise of the device.
+// For small errors, e ln 2 is the relative error (Y_analytic - Y_measured) / Y_measured; unlike that, e weighs too dark
+// and too bright alike. eps = 1e-3, a Lambertian albedo of 0.3 % (blacker than black velvet), makes values far below it
+// count as equal; otherwise the measurement's noise would dominate there.
 float relative_error(vec3 measured, vec3 analytic) {
     const float eps = 1e-3;
     return log2((max(luminance(analytic), 0.0) + eps) / (max(luminance(measured), 0.0) + eps));
 }
 
-// Green: equal. Blue: the analytic BRDF is darker, by a stop or more; cyan: by half a stop. Red: it is brighter, by a
-// stop or more; yellow: by half a stop. A difference of hue alone does not show.
+// Green: equal. Cyan, blue: the analytic BRDF is darker, by half a stop, by one or more. Yellow, red: it is brighter,
+// by half a stop, by one or more. Differences in hue alone do not show.
 vec3 relative_error_color(vec3 measured, vec3 analytic) { return heat(0.5 + 0.5 * relative_error(measured, analytic)); }
 
 #endif

@@ -1,20 +1,21 @@
-// The choices of the BRDF: each is a list in the window and on the command line, and what is not chosen costs nothing.
+// The choices of BRDF models. Each is a list in the window and an option of `--set`. Models that are not selected cost
+// nothing at run time.
 //
-// After the choices stand two claims, which `specula brdf` can hold against the code:
+// Each choice may make two claims, which `specula brdf` checks against the code:
 //
-//   conserves    a white surface reflects no more light than it gets, at every angle and roughness
+//   conserves    a white surface reflects no more light than it receives, at every angle and roughness
 //   reciprocal   f(l, v) = f(v, l)
 //
-// A combination claims what all of its choices claim; the claims are about materials without extensions, so of index
-// 1.5: beside it, the dielectric Exact under the coupling Albedo gains up to 2 % (measured: n = 1.1, grazing). Formulas
-// and sources stand with each model; what is claimed of energy follows from them: Kulla & Conty 2017 and Fdez-Aguera
-// 2019 for multiple scattering, Kelemen & Szirmay-Kalos 2001 for the coupling Albedo, Portsmouth et al. 2025 (EON) for
-// OrenNayar, glTF 2.0, appendix B.3.5, for the coupling Fresnel, which only mixes. Who does not claim, and why:
+// A combination makes the claims that all of its choices make. The claims hold for materials without extensions, so for
+// an index of refraction of 1.5: for other indices, Exact with the Albedo coupling gains up to 2 % (measured: n = 1.1,
+// grazing). Each model's file gives its formula and source. The energy claims follow from: Kulla & Conty 2017 and
+// Fdez-Aguera 2019 (multiple scattering), Kelemen & Szirmay-Kalos 2001 (Albedo coupling), Portsmouth et al. 2025 (EON,
+// OrenNayar). These choices make fewer claims:
 //
-//   Burley, CallOfDuty    fits to the look of real surfaces; both add light at grazing angles.
-//   Coupling Fresnel      light enters by 1 - F at the angle to h. For v at a grazing angle F(NoV) of the light is
-//                         reflected, but h of most l is far from grazing: what enters and what does not exceed 1.
-//   FdezAguera            spreads what is missing towards v over all l alike: albedo 1, but l and v differ.
+//   Burley, CallOfDuty    fits to the look of real surfaces; both gain energy at grazing angles.
+//   Coupling Fresnel      glTF 2.0, appendix B.3.5. Light enters by 1 - F(VoH), but at a grazing v the surface reflects
+//                         about F(NoV), while VoH is far from grazing for most l: the two sum to more than 1.
+//   FdezAguera            distributes the energy that v misses uniformly over l: the albedo is 1, but l and v differ.
 #ifndef BRDF_MODELS_GLSL
 #define BRDF_MODELS_GLSL
 

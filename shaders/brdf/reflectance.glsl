@@ -1,4 +1,4 @@
-// F of this surface: of its dielectric and of its metal, by the equations that are chosen, under its film.
+// F of a Surface: of its dielectric and its metal, by the selected equations, including the thin film.
 #ifndef BRDF_REFLECTANCE_GLSL
 #define BRDF_REFLECTANCE_GLSL
 
@@ -9,13 +9,13 @@
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 
-// Where the metal's n and k are not given, base color leaves one of them free: Gulbrandsen's edge tint chooses it.
+// Edge tint for metals whose n and k are not given (see complex_ior).
 const vec3 EDGE_TINT = vec3(0.5);
 
 bool has_film() { return (FEATURES & FEATURE_IRIDESCENCE) != 0u; }
 
-// How far F has come on its way from F0 to F90: (1 - c)^5 for Schlick. From the exact equations it is
-// (F - F(1)) / (1 - F(1)), and specular color and factor (KHR_materials_specular) keep their meaning.
+// How far F has risen from F0 to F90: (1 - c)^5 for Schlick; (F - F(1)) / (1 - F(1)) for the exact equations, so that
+// KHR_materials_specular's color and factor keep their meaning.
 float dielectric_rise(float ior, float f) {
     float f0 = f0_from_ior(ior);
     return saturate((f - f0) / max(1.0 - f0, 1e-4));   // 1e-4: infinite ior, where F is 1 throughout
@@ -35,8 +35,8 @@ void metal_ior(Surface s, out vec3 n, out vec3 k) {
     if ((FEATURES & FEATURE_CONDUCTOR) == 0u) complex_ior(s.base_color, EDGE_TINT, n, k);
 }
 
-// F as f0 + (f90 - f0) (1 - c)^5 - beta c (1 - c)^6, of which the integrals over the specular lobe are in a table
-// (brdf/energy.glsl), and its average over the hemisphere, 2 integral F c dc.
+// Parameters of F = f0 + (f90 - f0) (1 - c)^5 - beta c (1 - c)^6, whose integrals over the specular lobe the table
+// holds (brdf/energy.glsl), and its cosine-weighted average, 2 integral F c dc.
 struct FresnelCurve {
     vec3 f0;
     vec3 f90;
@@ -44,10 +44,10 @@ struct FresnelCurve {
     vec3 average;
 };
 
-// The average of each term of the curve: f0 20/21 + f90 / 21 - beta / 126.
+// The average of that curve: f0 20/21 + f90 / 21 - beta / 126.
 vec3 curve_average(vec3 f0, vec3 f90, vec3 beta) { return (f0 * 20.0 + f90) / 21.0 - beta / 126.0; }
 
-// Without a film. Schlick is exact; the exact equations are met at 0, 82 and 90 degrees (Kutz et al. 2021).
+// Without the film. Exact for Schlick; for the conductor the curve is exact at 0, 82 and 90 degrees (Kutz et al. 2021).
 FresnelCurve bare_metal_curve(Surface s) {
     vec3 f0 = s.base_color;
     vec3 beta = vec3(0.0);
@@ -75,22 +75,22 @@ vec3 metal_fresnel(Surface s, float c) {
     return f;
 }
 
-// The angle that stands for the whole lobe. The table says how much of it meets its facets under which angle: B / E is
-// the mean of (1 - c)^5. For F that is a straight line over (1 - c)^5, as Schlick's, F(effective_cosine) E is the
-// lobe's albedo; for others it nearly is, and for a mirror it is exactly.
+// A single angle that represents the whole lobe. B / E is the mean of (1 - c)^5 over the lobe, so this angle has that
+// value. F(effective_cosine) E equals the lobe's albedo exactly if F is linear in (1 - c)^5, as Schlick's is, or the
+// surface is a mirror, and approximately otherwise.
 float effective_cosine(vec4 dfg) { return 1.0 - pow(clamp(dfg.g / (1.0 - dfg.r), 1e-10, 1.0), 0.2); }
 
-// 2 integral c^2 dc.
+// Cosine-weighted mean of the cosine, 2 integral c^2 dc.
 const float MEAN_COSINE = 2.0 / 3.0;
 
-// A film's average has no formula: F at the mean cosine, and from there a rise to 1 as Schlick's, whose average is
-// 1/21, and (1 - 2/3)^5 = 1/243 is in F already.
+// A film's average F has no closed form. This takes F at the mean cosine and adds Schlick's rise to 1: the average of
+// (1 - c)^5 is 1/21, of which F already contains (1 - 2/3)^5 = 1/243.
 vec3 film_average(Surface s, vec3 f0) {
     vec3 f = f_film(f0, s.iridescence_ior, s.iridescence_nm, MEAN_COSINE);
     return f + (1.0 - f) * (1.0 / 21.0 - 1.0 / 243.0);
 }
 
-// dfg: the table's entry for the direction that is asked for (s.dfg: towards the eye).
+// dfg: the table entry of the direction in question (s.dfg: towards the eye).
 FresnelCurve dielectric_curve(Surface s, vec4 dfg) {
     FresnelCurve curve = FresnelCurve(s.f0, vec3(s.f90), vec3(0.0), curve_average(s.f0, vec3(s.f90), vec3(0.0)));
     if (FRESNEL_DIELECTRIC == EXACT_DIELECTRIC) {
@@ -117,7 +117,7 @@ FresnelCurve metal_curve(Surface s, vec4 dfg) {
     return curve;
 }
 
-// Towards the eye.
+// The same, towards the eye.
 FresnelCurve dielectric_curve(Surface s) { return dielectric_curve(s, s.dfg); }
 FresnelCurve metal_curve(Surface s) { return metal_curve(s, s.dfg); }
 

@@ -1,4 +1,4 @@
-// A point on a surface as the shading sees it: textures are read, factors multiplied. material.glsl makes it.
+// A point on a surface, as shading uses it: textures sampled, factors applied. material.glsl builds it.
 #ifndef BRDF_SURFACE_GLSL
 #define BRDF_SURFACE_GLSL
 
@@ -6,21 +6,21 @@ struct Surface {
     vec3 position_ws;
     vec3 n;                    // shading normal, world space, unit
     vec3 base_color;           // linear RGB: albedo of a dielectric, F0 of a metal
-    float coverage;            // glTF's alpha; `alpha` is kept for the width of the GGX lobe
+    float coverage;            // glTF's alpha; the name `alpha` means roughness^2
     float metallic;            // 0 dielectric .. 1 metal
     float roughness;           // perceptual, 0..1
-    float occlusion;           // 1: sees the whole sky
+    float occlusion;           // 1: unoccluded
     vec3 emissive;             // radiance
-    vec3 f0;                   // of the dielectric: reflectance along the normal
-    float f90;                 // of the dielectric: reflectance at a grazing angle
+    vec3 f0;                   // of the dielectric: reflectance at normal incidence
+    float f90;                 // of the dielectric: reflectance at grazing incidence
     float ior;                 // of the dielectric
-    vec4 dfg;                  // albedo terms towards the eye: see brdf/energy.glsl
-    vec3 multiple;             // strength of multiple scattering: see brdf/multiscatter.glsl, which fills in both
+    vec4 dfg;                  // albedo terms towards the eye (brdf/energy.glsl), by complete_surface
+    vec3 multiple;             // multiple scattering (brdf/multiscatter.glsl), by complete_surface
 
-    // What follows is set where FEATURES has the extension's bit, and neutral else.
-    vec3 t;                    // FEATURE_ANISOTROPY: direction in which the lobe is stretched, unit, at right angles to n
+    // The members below are neutral unless FEATURES has the extension's bit.
+    vec3 t;                    // FEATURE_ANISOTROPY: direction of the larger alpha, unit, perpendicular to n
     vec3 b;                    // cross(n, t)
-    float anisotropy;          // 0 round .. 1
+    float anisotropy;          // 0 isotropic .. 1
     vec3 conductor_n;          // FEATURE_CONDUCTOR: complex index of refraction of the metal, n + i k
     vec3 conductor_k;
     vec3 clearcoat_n;          // FEATURE_CLEARCOAT
@@ -32,20 +32,20 @@ struct Surface {
     float iridescence_ior;     // of the film
     float iridescence_nm;      // thickness of the film, nanometers
     float transmission;        // FEATURE_TRANSMISSION: 0 none .. 1
-    float thickness;           // FEATURE_VOLUME: world meters, 0 is a thin wall
-    vec3 attenuation_color;    // what is left of white light after attenuation_distance
+    float thickness;           // FEATURE_VOLUME: meters in world space, 0 is thin-walled
+    vec3 attenuation_color;    // transmittance of attenuation_distance
     float attenuation_distance; // meters
     float dispersion;          // FEATURE_DISPERSION: 20 / Abbe number
-    float diffuse_transmission; // FEATURE_DIFFUSE_TRANSMISSION: part of the diffuse light that passes through
+    float diffuse_transmission; // FEATURE_DIFFUSE_TRANSMISSION: transmitted fraction of the diffuse light
     vec3 diffuse_transmission_color;
 };
 
-// Below this the lobe is narrower than the numbers can say. Its peak 1 / (pi alpha^2) must fit into a half float
-// (65504), in which the scene color may be kept, so alpha > 0.0022; and D takes NoH^2 from 1, known to 6e-8 only, so
-// alpha^2 must be far more. 0.0025 is a roughness of 0.05. At 0 a point light, having no size, has no reflection.
+// Smallest alpha. The peak 1 / (pi alpha^2) must fit into a half float (65504), the format of the scene color, so
+// alpha > 0.0022; and alpha^2 must be far above the rounding error of NoH^2, 6e-8. 0.0025 is a roughness of 0.05. (With
+// alpha = 0, a punctual light would have no reflection at all.)
 const float MIN_ALPHA = 0.0025;
 
-// alpha = roughness^2 makes equal steps of roughness look equal (Burley 2012, section 5.4; glTF 2.0, appendix B.2.3).
+// alpha = roughness^2 makes roughness perceptually uniform (Burley 2012, section 5.4; glTF 2.0, appendix B.2.3).
 float alpha_from_roughness(float roughness) { return max(roughness * roughness, MIN_ALPHA); }
 
 #endif

@@ -1,5 +1,5 @@
-// What the vertex stage hands to the fragment stage: an `out Fragment` there, an `in Fragment` here. Interpolated, so
-// no direction has unit length anymore.
+// Varyings from the vertex to the fragment stage: `out Fragment` there, `in Fragment` here. Interpolation leaves
+// directions without unit length.
 #ifndef COMMON_FRAGMENT_GLSL
 #define COMMON_FRAGMENT_GLSL
 

@@ -1,5 +1,5 @@
-// The debug override. MODE is a specialization constant: the driver keeps the one branch that is taken, drops the
-// others, and with them every texture and light that only they read.
+// Dispatches debug modes. MODE is a specialization constant, so the driver keeps only the selected branch and drops all
+// textures and lights that only other branches read.
 #ifndef DEBUG_DEBUG_GLSL
 #define DEBUG_DEBUG_GLSL
 
@@ -14,8 +14,8 @@
 #include "debug/truth.glsl"
 #include "lighting/shade.glsl"
 
-// Whether MODE shows a value of its own; if not, the picture is shown. Each function answers for one group of modes.
-// `s`, `lit`, `radiance`: what is shaded and what came of it, as surface_of_mode and lights_of_mode have it.
+// Returns false if MODE shows the picture. Each function below handles one group of modes. `s`, `lit` and `radiance`
+// are the surface of surface_of_mode and its shading under lights_of_mode.
 bool debug_value(Fragment f, Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     if (your_mode(f, s, v, value)) return true;
     if (debug_geometry(f, s, v, value)) return true;

@@ -1,4 +1,4 @@
-// Modes of the group Geometry: the mesh and its textures' footprint.
+// Modes of the group Geometry: the mesh, and the density of its textures on screen.
 #ifndef DEBUG_GEOMETRY_GLSL
 #define DEBUG_GEOMETRY_GLSL
 
@@ -15,22 +15,22 @@ const vec3 BAD = vec3(0.8, 0.06, 0.03);
 
 bool has_attribute(uint bit) { return (draw.attributes & bit) != 0u; }
 
-// The level that the base color texture is read at; half way up the scale is level 4.
+// The mip level at which the base color texture is sampled; the middle of the scale is level 4.
 vec3 mip_level_color(Fragment f) {
     return heat(textureQueryLod(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR)).x / 8.0);
 }
 
-// Area in texels over area in the world, both of one pixel: its root is texels per meter. Shown from 2^4 to 2^14.
+// Texels per meter: the square root of a pixel's area in texels over its area in the world. Scale: 2^4 to 2^14.
 vec3 texel_density_color(Fragment f) {
     vec2 texel = texture_uv(f, TEXTURE_BASE_COLOR) * vec2(textureSize(base_color_texture, 0));
     float texels = abs(determinant(mat2(dFdx(texel), dFdy(texel))));
     float area = length(cross(dFdx(f.position_ws), dFdy(f.position_ws)));
-    // 1e-20: a triangle may have no area, in either.
+    // 1e-20: a triangle may have zero area in UV or world space.
     float density_log2 = 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));
     return heat((density_log2 - 4.0) / 10.0);
 }
 
-// The plane of the triangle, on the viewer's side. `v` where it is seen edge-on and the derivatives vanish.
+// The triangle's normal, on the viewer's side. Falls back to v where the triangle is edge-on and derivatives vanish.
 vec3 facet_normal(Fragment f, vec3 v) {
     vec3 n = safe_normalize(cross(dFdx(f.position_ws), dFdy(f.position_ws)), v);
     return dot(n, v) < 0.0 ? -n : n;

@@ -1,6 +1,7 @@
-// Modes of the group Light, and clay: parts of the picture, in the picture's own units.
+// Modes of the group Light, and clay: parts of the picture, in the picture's units.
 //
-// The shader shades once. These modes say what is shaded (surface_of_mode, lights_of_mode) and pick from the result.
+// The shader shades only once. A mode selects what is shaded (surface_of_mode, lights_of_mode) and what of the result
+// is shown.
 #ifndef DEBUG_LIGHT_GLSL
 #define DEBUG_LIGHT_GLSL
 
@@ -15,7 +16,7 @@
 #include "lighting/shade.glsl"
 #include "material.glsl"
 
-// Matte gray, and none of the extensions.
+// Matte gray, without extensions.
 Surface as_clay(Surface s) {
     s.base_color = vec3(0.5);
     s.metallic = 0.0;
@@ -33,19 +34,19 @@ Surface as_clay(Surface s) {
     return s;
 }
 
-// What the mode shades instead of the material. The picture is the mix of `dielectric` and `metal`, as metallic says.
+// The surface that the mode shades. The picture is the blend of `dielectric` and `metal` by metallic.
 Surface surface_of_mode(Surface s) {
     if (MODE == MODE_CLAY) return as_clay(s);
     if (MODE == MODE_DIELECTRIC) s.metallic = 0.0;
     if (MODE == MODE_METAL) s.metallic = 1.0;
-    if (MODE == MODE_IBL_ERROR) s.occlusion = 1.0;   // as Monte Carlo has it
-    // Below this D is off by more than 0.1 %, for the rounding of NoH, and white metals would be dotted with red.
+    if (MODE == MODE_IBL_ERROR) s.occlusion = 1.0;   // Monte Carlo ignores occlusion
+    // Below roughness 0.1 the error of the estimate (FURNACE_PATHS) can exceed the tolerance and flag white metals.
     if (MODE == MODE_ENERGY) s.roughness = max(s.roughness, 0.1);
     if (MODE == MODE_ENERGY) s.clearcoat_roughness = max(s.clearcoat_roughness, 0.1);
     return s;
 }
 
-// Light number `i`, or none if there are fewer.
+// Light `i` alone; empty if there are fewer lights.
 LightRange one_light(uint i) { return LightRange(i, min(i + 1u, frame.light_count), false); }
 
 LightRange lights_of_mode() {
@@ -71,7 +72,8 @@ LightRange lights_of_mode() {
     }
 }
 
-// Diffuse reflection as if every light stood above the point: no cosine, no Fresnel. A rectangle has no one irradiance.
+// Diffuse reflection with every light at normal incidence: no cosine, no Fresnel. Rectangles are left out, since their
+// irradiance has no single direction.
 vec3 lambert_without_cosine(Surface s, LightRange range) {
     vec3 irradiance = vec3(0.0);
     for (uint i = range.first; i < range.end; ++i) {
@@ -80,7 +82,7 @@ vec3 lambert_without_cosine(Surface s, LightRange range) {
     return f_lambert(s.base_color) * irradiance;
 }
 
-// The picture without what was reflected more than once.
+// The picture without multiple scattering.
 vec3 single_scattering(Surface s, vec3 v, Lit lit) {
     lit.punctual.all -= lit.punctual.multiple;
     lit.area.all -= lit.area.multiple;
@@ -100,12 +102,12 @@ bool debug_environment(Surface s, vec3 v, Lit lit, out vec3 value) {
     return known;
 }
 
-// `lit` and `radiance`: surface_of_mode under lights_of_mode.
+// `lit` and `radiance`: the surface of surface_of_mode under lights_of_mode.
 bool debug_light(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     LightRange range = lights_of_mode();
     bool is_lit = !has_feature(FEATURE_UNLIT);
     bool present = is_lit && !is_empty(range);
-    bool has_picture = is_lit && frame.chosen_light <= frame.light_count;   // of all lights there may be none
+    bool has_picture = is_lit && frame.chosen_light <= frame.light_count;   // 0 selects all lights, if any
     bool has_area = present && has_feature(FEATURE_RECT_LIGHTS);
     bool has_transmission = has_feature(FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION);
     bool known = true;

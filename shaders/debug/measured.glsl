@@ -1,4 +1,4 @@
-// Modes of the group Measured: the lights through a measured BRDF (brdf/measured.glsl) beside the material's own.
+// Modes of the group Measured: shading with a measured BRDF (brdf/measured.glsl), next to the material's own.
 #ifndef DEBUG_MEASURED_GLSL
 #define DEBUG_MEASURED_GLSL
 
@@ -14,10 +14,10 @@
 
 struct MeasuredLight {
     vec3 radiance;             // towards the eye
-    float irradiance;          // that makes it: luminance, W/m2
+    float irradiance;          // its luminance
 };
 
-// The same sum over lights as in lighting/shade.glsl. The grain of an anisotropic material follows the mesh's tangents.
+// The sum over punctual lights, as in lighting/shade.glsl. An anisotropic material's grain follows the mesh's tangents.
 MeasuredLight measured_light(Fragment f, Surface s, vec3 v, LightRange range) {
     vec3 t = f.tangent_ws.xyz;
     vec3 b = bitangent_ws(f);
@@ -32,14 +32,14 @@ MeasuredLight measured_light(Fragment f, Surface s, vec3 v, LightRange range) {
     return sum;
 }
 
-// Left of the middle of the view the one, right of it the other, and a white line of two pixels between.
+// `left` and `right` of the center of the view, with a white line two pixels wide between them.
 vec3 split(vec3 left, vec3 right) {
     float x = gl_FragCoord.x - 0.5 * frame.viewport_px.x;
     if (abs(x) < 1.0) return vec3(1.0 / frame.exposure);
     return x < 0.0 ? left : right;
 }
 
-// The error is that of the mean f over the lights, weighted by what each of them gives; in shadow there is none.
+// The error of the mean f over the lights, weighted by irradiance. Undefined in shadow.
 vec3 measured_error(MeasuredLight measured, vec3 analytic) {
     if (measured.irradiance <= 0.0) return if_present(false, vec3(0.0));
     return relative_error_color(measured.radiance / measured.irradiance, analytic / measured.irradiance);

@@ -1,4 +1,4 @@
-// Modes of the group Material: the surface as it is shaded, textures times factors.
+// Modes of the group Material: the surface as shaded, textures times factors.
 #ifndef DEBUG_SURFACE_GLSL
 #define DEBUG_SURFACE_GLSL
 
@@ -9,7 +9,7 @@
 #include "debug/modes.glsl"
 #include "material.glsl"
 
-// Whether the material has what the mode shows: its extension, or a normal texture.
+// True if the material has the extension, or the normal texture, that the mode shows.
 bool has_shown_feature() {
     switch (MODE) {
         case MODE_NORMAL_TEXTURE: return has_texture(TEXTURE_NORMAL);

@@ -1,4 +1,4 @@
-// Modes of the group BRDF terms: what evaluate_brdf finds on the way to f.
+// Modes of the group BRDF terms: intermediate results of evaluate_brdf.
 #ifndef DEBUG_TERMS_GLSL
 #define DEBUG_TERMS_GLSL
 
@@ -12,8 +12,8 @@
 bool shows_lobes() { return MODE >= MODE_DIFFUSE_LOBE && MODE <= MODE_SHEEN_LOBE; }
 bool shows_terms() { return MODE >= MODE_D && MODE <= MODE_SHEEN_LOBE; }
 
-// Lobes are added up over the chosen lights, whatever their strength: where does the BRDF send light to the eye at all?
-// The other terms are those of one light, the first of the chosen ones.
+// Lobe modes sum over the selected lights, regardless of intensity, to show where the BRDF sends light to the eye. The
+// other modes show the terms of the first selected light.
 LightRange lights_of_terms() {
     LightRange range = chosen_lights();
     if (!shows_lobes()) range.end = min(range.end, range.first + 1u);
@@ -21,7 +21,7 @@ LightRange lights_of_terms() {
     return range;
 }
 
-// `lit`: under lights_of_terms.
+// `lit`: the result for lights_of_terms.
 bool debug_terms(Surface s, vec3 v, Lit lit, out vec3 value) {
     if (!shows_terms()) return false;
     Brdf f = lit.last;

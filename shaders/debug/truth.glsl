@@ -1,4 +1,5 @@
-// Modes of the group Truth: what cannot be, or should not be. What is well stays dark, so that a single pixel shows.
+// Modes of the group Truth: they flag invalid or implausible values. Valid pixels stay dark, so that a single bad one
+// is visible.
 #ifndef DEBUG_TRUTH_GLSL
 #define DEBUG_TRUTH_GLSL
 
@@ -15,7 +16,7 @@
 const vec3 TOO_LOW = vec3(0.05, 0.15, 1.0);
 const vec3 TOO_HIGH = vec3(1.0, 0.06, 0.03);
 
-// The picture behind a warning: its luminance, squeezed below 1/4.
+// Dimmed luminance of the picture, below 1/4, as the background of warnings.
 vec3 dimmed(vec3 radiance) {
     float seen = max(luminance(radiance) * frame.exposure, 0.0);
     return vec3(0.25 * seen / (1.0 + seen));
@@ -38,15 +39,15 @@ vec3 clipped_color(vec3 radiance) {
     return any(above) ? vec3(above) : dimmed(radiance);
 }
 
-// Stops above and below 18 % gray, the reflectance that a light meter takes for the mean of a scene: -6 .. +6.
+// Stops above and below 18 % gray, the mean reflectance that light meters assume: -6 .. +6.
 vec3 false_color(vec3 radiance) {
-    // 1e-6: log2 of black is -infinity; 17 stops down is off the scale already.
+    // 1e-6: log2(0) is -infinity; 17 stops below gray is off the scale anyway.
     float seen = max(luminance(radiance) * frame.exposure, 1e-6);
     return heat((log2(seen / 0.18) + 6.0) / 12.0);
 }
 
 // No common dielectric is darker than charcoal (sRGB 30) or lighter than fresh snow (240) (McDermott 2018, The PBR
-// Guide). A metal's base color is not an albedo, so the more metal, the less is said: half and above, nothing.
+// Guide). A metal's base color is not an albedo, so the check applies only below metallic 0.5.
 vec3 albedo_range_color(Surface s) {
     vec3 srgb = srgb_from_linear(s.base_color) * 255.0;
     if (s.metallic < 0.5 && max_component(srgb) < 30.0) return TOO_LOW;
@@ -54,8 +55,8 @@ vec3 albedo_range_color(Surface s) {
     return vec3(0.25 * luminance(s.base_color));
 }
 
-// Along the normal, dielectrics reflect 2 to 5 % and metals sRGB 180 and more (McDermott 2018). Nothing common lies
-// between: a metal that dark is covered by dirt or rust, which are dielectrics, and `metallic` should say so.
+// At normal incidence dielectrics reflect 2 to 5 % and metals sRGB 180 or more (McDermott 2018). Values between are
+// suspect: such a metal is covered by dirt or rust, which are dielectrics and need a lower `metallic`.
 vec3 f0_range_color(Surface s) {
     float f0 = max_component(mix(s.f0, s.base_color, s.metallic));
     if (f0 < 0.02) return TOO_LOW;
@@ -64,7 +65,7 @@ vec3 f0_range_color(Surface s) {
     return vec3(0.25 * f0);
 }
 
-// A little over 1 is within the error of the estimate.
+// The tolerance above 1 is the error of the estimate.
 vec3 energy_color(vec3 albedo) { return max_component(albedo) > 1.005 ? TOO_HIGH : albedo; }
 
 bool debug_paths(Surface s, vec3 v, Lit lit, out vec3 value) {

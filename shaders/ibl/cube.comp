@@ -5,26 +5,27 @@
 #include "ibl/half.glsl"
 #include "ibl/small_lights.glsl"
 
-// From an equirectangular image to level 0 of a cube map. One invocation is a texel; z of the group is the face.
+// Converts an equirectangular image to level 0 of a cube map. One invocation per texel; z is the face.
 //
-// Alpha is the brightest component; below, of all texels that a texel covers. So who follows it down finds the sun.
+// Alpha holds the largest component. In the levels below it holds the largest of all texels covered, which
+// lighting/sun.glsl follows to the brightest texel.
 //
-// The image's center column is seen looking down -Z, what is right of it towards +X:
+// The image's center column is seen looking down -Z; columns to its right are towards +X:
 // u = 0.5 + atan(x, -z) / 2 pi, v = acos(y) / pi.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_SOURCE) uniform sampler2D source;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
-// acos(y) as an arctangent: acos loses half its digits near the poles. u = 0 and u = 1 are one column: the sampler
-// repeats, and with a level given there is no derivative that could jump there.
+// An arctangent replaces acos(y), which loses half its digits near the poles. u = 0 and u = 1 are the same column: the
+// sampler repeats, and the explicit level avoids a derivative across the seam.
 vec3 radiance_from(vec3 d) {
     vec2 uv = vec2(0.5 + atan(d.x, -d.z) / (2.0 * PI), atan(length(d.xz), d.y) / PI);
     return textureLod(source, uv, 0.0).rgb;
 }
 
-// The mean over task.samples x task.samples points, so that what is smaller than a texel, such as a sun, keeps its
-// energy. Within one texel each point stands for the same solid angle, nearly.
+// The mean over task.samples x task.samples points, so that features smaller than a texel, such as a sun, keep their
+// energy. Within one texel, all points have nearly the same solid angle.
 vec3 mean_radiance(uvec3 texel) {
     vec3 sum = vec3(0.0);
     float step_st = 2.0 / (float(task.size.x) * float(task.samples));
@@ -37,7 +38,7 @@ vec3 mean_radiance(uvec3 texel) {
     return rounded_to_half(sum * (task.radiance_scale / float(task.samples * task.samples)));
 }
 
-// Counted in the group first: all of an image's texels on one counter would wait for each other.
+// Counts per workgroup first: a single global counter for all texels would serialize the atomics.
 shared uint group_count[BRIGHTNESS_STEPS];
 
 void main() {

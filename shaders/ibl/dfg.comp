@@ -7,16 +7,16 @@
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
-// How much light the specular lobe reflects in all, for brdf/energy.glsl: with c = VoH and integrals over all l,
+// Directional albedo of the specular lobe, for brdf/energy.glsl. With c = VoH and integrals over all l,
 //
 //   A = integral of D V (1 - (1 - c)^5) NoL dl      B = integral of D V (1 - c)^5 NoL dl
 //   C = integral of D V c (1 - c)^6 NoL dl          E = A + B,  E_avg = 2 integral of E(mu) mu dmu over 0..1
 //
-// Half vectors are drawn with a density that holds D, and D cancels (Karis 2013). So brdf/ndf.glsl is not called: the
-// table stays that of a true D, and what an edit of D does to the energy shows in the furnace and does not heal itself.
+// Half vectors are sampled with a density that contains D, so D cancels (Karis 2013) and brdf/ndf.glsl is not called.
+// This table does not follow an edit of D, so the furnace shows the error.
 //
-// A group is a row, roughness from 0 to 1; its invocations are the columns, NoV at texel centers. Stored are 1 - E, B,
-// C and 1 - E_avg, which half floats hold to three digits where E is close to 1.
+// One workgroup per row (roughness 0 to 1), one invocation per column (NoV at texel centers). The stored 1 - E, B, C
+// and 1 - E_avg keep three digits in half floats even where E is close to 1.
 
 const uint COLUMNS = 128u;
 layout(local_size_x = 128) in;
@@ -24,13 +24,13 @@ layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform imag
 
 shared float partial[COLUMNS];
 
-// D of Beckmann over D of GGX for the same alpha, at most 4 / e: both are there to be divided by.
+// Ratio of Beckmann's D to GGX's for the same alpha, at most 4 / e. Both densities contain NoH, which cancels.
 float beckmann_over_ggx(float n_dot_h, float alpha) { return pdf_beckmann(n_dot_h, alpha) / pdf_ggx(n_dot_h, alpha); }
 
-// Half vectors are the facets that v sees: pdf_h = G1 D VoH / NoV and dh / dl = 1 / (4 VoH), so D / pdf_l = 4 NoV / G1.
-// The points are a lattice, which is exact to high order where the integrand is periodic: it is in the angle, and
-// 3 u^2 - 2 u^3 with its derivative as a weight makes it so in the radius. 512 points leave an error of 0.0006, of
-// Hammersley's 1024 one of 0.0016.
+// Visible normals: pdf_h = G1 D VoH / NoV and dh / dl = 1 / (4 VoH), so D / pdf_l = 4 NoV / G1. The points form a
+// lattice, which converges fast for periodic integrands. The integrand is periodic in the azimuth; the substitution 3
+// u^2 - 2 u^3, with its derivative as a weight, makes it periodic in the radius. 512 points have an error of 0.0006,
+// 1024 Hammersley points 0.0016.
 vec4 terms(vec3 v, float alpha) {
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < task.samples; ++i) {

@@ -5,11 +5,11 @@
 #include "ibl/half.glsl"
 #include "ibl/small_lights.glsl"
 
-// One level of the cube map from the level above it. Each of the four texels counts by its solid angle: so a level
-// holds as much light as the one above, and a texel's value is the mean radiance of what it covers. (In a corner of a
-// face a texel covers a fifth of one at the center, so an even mean would move light about.)
+// Computes one level of the cube map from the level above. Its four texels are weighted by solid angle, so a level
+// keeps the light of the one above, and a texel is the mean radiance of the area it covers. (A corner texel covers a
+// fifth of the solid angle of a center texel, so an unweighted mean would move light.)
 //
-// From level 0 to 1, small lights are taken out: see ibl/small_lights.glsl. Alpha still tells of them: it is the largest.
+// From level 0 to 1 small lights are removed (ibl/small_lights.glsl). Alpha still includes them.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray level_above;
@@ -26,10 +26,10 @@ void main() {
     if (any(greaterThanEqual(texel.xy, task.size))) return;
 
     float reach = 0.5 / float(task.size.x);
-    vec4 kept = vec4(0.0);     // w: of the solid angles
+    vec4 kept = vec4(0.0);     // w: solid angle
     float brightest = 0.0;
     vec3 cut = vec3(0.0);
-    vec3 center = vec3(0.0);   // of what was cut
+    vec3 center = vec3(0.0);   // of the removed light
     for (uint i = 0u; i < 4u; ++i) {
         uvec2 above = 2u * texel.xy + uvec2(i & 1u, i >> 1);
         vec2 st = texel_center(above, 2u * task.size);
@@ -47,7 +47,7 @@ void main() {
 
     if (max_component(cut) > 0.0) {
         uint place = atomicAdd(small_light_count, 1u);
-        // Four points half a texel of level 0 from their center, along both axes: a sixteenth of the area.
+        // Variance of four points, each half a texel of level 0 from the center along both axes: 1/16 of the area.
         if (place < LARGEST_COUNT) small_lights[place] = SmallLight(normalize(center), cut, kept.w / 16.0);
     }
 }

@@ -5,12 +5,12 @@
 #include "ibl/half.glsl"
 #include "ibl/small_lights.glsl"
 
-// Diffuse light from the environment: the radiance that leaves a white Lambert surface with the normal n,
+// Diffuse light from the environment: the radiance that a white Lambertian surface with the normal n reflects,
 //
 //   E(n) / pi = integral of L max(n . l, 0) dl / pi
 //
-// as a sum over all texels of one level of the cube map, which must be as blurred as 16 x 16 texels a face or less:
-// then a texel is small beside the cosine. The weights' own sum stands for pi, so that constant light stays what it is.
+// summed over all texels of one level of the cube map. That level must have at least 16 x 16 texels a face, so that
+// a texel is small against the cosine. Dividing by the sum of the weights instead of by pi keeps constant light exact.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray source;
@@ -26,14 +26,14 @@ void main() {
     for (uint i = 0u; i < 6u * side * side; ++i) {
         uvec3 from = uvec3(i % side, i / side % side, i / (side * side));
         vec3 d = cube_position(texel_center(from.xy, uvec2(side)), from.z);
-        // n . l is n . d / |d|, and the texel's solid angle goes with |d|^-3.
+        // n . l = n . d / |d|, and the texel's solid angle is proportional to |d|^-3.
         float squared = dot(d, d);
         float weight = max(dot(n, d), 0.0) / (squared * squared);
         sum += vec4(imageLoad(source, ivec3(from)).rgb, 1.0) * weight;
     }
     vec3 radiance = sum.rgb / sum.w;
 
-    // The level lacks the small lights.
+    // Adds the small lights, which the levels below 0 do not have.
     for (uint i = 0u; i < listed_lights(); ++i) {
         radiance += small_lights[i].intensity * (max(dot(n, small_lights[i].direction), 0.0) / PI);
     }

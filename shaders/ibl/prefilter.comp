@@ -9,24 +9,24 @@
 #include "ibl/levels.glsl"
 #include "ibl/small_lights.glsl"
 
-// Light from the environment as a rough surface mirrors it, one level: the mean of radiance with the weight
-// K = D NoL of GGX, seen along the lobe's axis, N = V = R (Karis 2013).
+// Prefilters one level for GGX: the mean of radiance weighted by K = D NoL, with N = V = R (Karis 2013).
 //
-// With x = sin^2 of the angle to h, NoL = 1 - 2x, and GGX is K = (1 - 2x) / q^2 with q = alpha^2 + (1 - alpha^2) x.
-// (All constant factors cancel in the mean.) dl = 4 pi dx: light above the horizon has x < 1/2.
+// With x = sin^2 of the angle to h, NoL = 1 - 2x and GGX is K = (1 - 2x) / q^2, q = alpha^2 + (1 - alpha^2) x.
+// (Constant factors cancel in the mean.) dl = 4 pi dx, and light above the horizon has x < 1/2.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
 struct LobeSample {
     vec3 direction;            // tangent space
-    float footprint;           // steradians that it stands for
+    float footprint;           // steradians that the sample represents
     float weight;              // K / pdf
-    float sharpened;           // the same, with the blur of the footprints taken back
+    float sharpened;           // the same, corrected for the blur of the footprints
 };
 
-// Sample i of the lobe, drawn with a density of q^(-3/2), by which r = q^(-1/2) is uniform. K falls with q^-2: drawn
-// with that (Walter et al. 2007, eq. 35), the last samples would stand for half the sky and mix the peak into it.
+// Sample i of the lobe, with a density proportional to q^(-3/2), which makes r = q^(-1/2) uniform. K falls with q^-2.
+// Sampled with that density (Walter et al. 2007, eq. 35), the last samples would represent half the sky and mix the
+// peak into it.
 LobeSample lobe_sample(uint i, float alpha) {
     float a2 = alpha * alpha;
     float b = 1.0 - a2;
@@ -39,10 +39,10 @@ LobeSample lobe_sample(uint i, float alpha) {
     float pdf = b * r3 / (8.0 * PI * (r_first - r_last));
     float footprint = max(1.0 / (float(task.samples) * pdf), finest_footprint());
 
-    // Reading each sample with a filter of variance s^2 = S q^(3/2) is a mean with K + laplacian(s^2 K) / 2, up to
-    // terms of s^4. So K is replaced by K - laplacian(s^2 K) / 2, which about halves the error. Around an axis the
-    // laplacian of g(x) on the unit sphere is (1 - 2x) g' + x (1 - x) g'', here of g = (1 - 2x) q^(-1/2);
-    // S is footprint times FILTER_VARIANCE over q^(3/2), which 1 / pdf of the weight cancels.
+    // Reading each sample with a filter of variance s^2 = S q^(3/2) amounts to a mean with K + laplacian(s^2 K) / 2, up
+    // to terms of s^4. So K - laplacian(s^2 K) / 2 replaces K, which about halves the error. The laplacian of g(x)
+    // around an axis of the unit sphere is (1 - 2x) g' + x (1 - x) g'', here for g = (1 - 2x) q^(-1/2). S is footprint
+    // times FILTER_VARIANCE over q^(3/2), which cancels against the 1 / pdf of the weight.
     float g1 = -2.0 * r - 0.5 * n_dot_l * b * r3;
     float g2 = 2.0 * b * r3 + 0.75 * n_dot_l * b * b * r3 * r * r;
     float laplacian = n_dot_l * g1 + x * (1.0 - x) * g2;
@@ -51,7 +51,7 @@ LobeSample lobe_sample(uint i, float alpha) {
     return LobeSample(direction_from_cosine(n_dot_l, golden_turns(i)), footprint, weight, sharpened);
 }
 
-// The mean of what the levels hold, and in w the integral of K.
+// rgb: the mean over the mip levels, without small lights. w: the integral of K.
 vec4 filtered_mean(vec3 n, float alpha) {
     mat3 basis = basis_around(n);
     vec4 sum = vec4(0.0);
@@ -66,14 +66,14 @@ vec4 filtered_mean(vec3 n, float alpha) {
     return vec4(sum.rgb / sum.w, integral * scale);
 }
 
-// Small lights: sum of K intensity. One that is spread out sees a wider lobe, as much as its variance.
+// The small lights: sum of K intensity. A light's variance widens the lobe.
 vec3 small_light_sum(vec3 n, float alpha) {
     float a2 = alpha * alpha;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < listed_lights(); ++i) {
         SmallLight light = small_lights[i];
         vec3 chord = light.direction - n;
-        float x = 0.25 * dot(chord, chord);   // not 1 - NoL, which has no digits where a sharp lobe needs them
+        float x = 0.25 * dot(chord, chord);   // not 1 - NoL, which loses its digits where a narrow lobe needs them
         float wide = a2 + light.spread;
         float q = wide + (1.0 - a2) * x;
         sum += light.intensity * (max(1.0 - 2.0 * x, 0.0) * wide / (a2 * q * q));
@@ -88,11 +88,11 @@ void main() {
 
     vec3 radiance;
     if (task.level == 0u) {
-        // A mirror. The source has as many texels, or twice as many along each side: then n is where four of them meet,
-        // and the filter takes their mean.
+        // A mirror. The source has as many texels a side, or twice as many: then n is where four of them meet, and
+        // linear interpolation averages them.
         radiance = textureLod(source_cube, n, 0.0).rgb;
     } else {
-        // 0.999: at 1, where K is the cosine, differences of equal numbers would be divided by their difference.
+        // 0.999: at alpha = 1, where K is the cosine, `scale` and x would be 0 / 0.
         float alpha = min(alpha_from_roughness(roughness_of_level(task.level, task.levels)), 0.999);
         vec4 mean = filtered_mean(n, alpha);
         radiance = mean.rgb + small_light_sum(n, alpha) / mean.w;

@@ -9,16 +9,17 @@
 #include "ibl/levels.glsl"
 #include "ibl/small_lights.glsl"
 
-// Light from the environment as sheen reflects it, one level: the mean of radiance with the weight K = D NoL of
-// "Charlie", seen along the lobe's axis (KHR_materials_sheen). As ibl/prefilter.comp, which explains the notation.
+// Prefilters one level for sheen: the mean of radiance weighted by K = D NoL of "Charlie", with N = V = R
+// (KHR_materials_sheen). ibl/prefilter.comp explains the notation.
 //
-// D goes with sin^(1 / alpha) = x^p, p = 1 / (2 alpha), so K = (1 - 2x) (2x)^p, up to factors that cancel. Its integral
-// is 4 pi times the one over x from 0 to 1/2: 2 pi / ((p + 1) (p + 2)).
+// D is proportional to sin^(1 / alpha) = x^p, p = 1 / (2 alpha), so K = (1 - 2x) (2x)^p up to factors that cancel. Its
+// integral is 4 pi times the one over x from 0 to 1/2: 2 pi / ((p + 1) (p + 2)).
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
-// Drawn with the density of (2x)^p, (2x)^(p + 1) is uniform: a ring around the horizon, where NoL takes over.
+// With a density proportional to (2x)^p, (2x)^(p + 1) is uniform. The samples form a ring near the horizon; NoL is
+// their weight.
 vec3 filtered_mean(vec3 n, float p) {
     mat3 basis = basis_around(n);
     vec4 sum = vec4(0.0);

@@ -5,12 +5,12 @@
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
-// How much light the sheen lobe reflects in all, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are
-// the root of NoV, at texel centers; rows are roughness, the first 0 and the last 1. Directions cover the hemisphere:
-// of the lobe's own distribution most lies below it. The points are a lattice with 3 u^2 - 2 u^3 as the cosine, its
-// derivative as a weight, as in ibl/dfg.comp.
+// Directional albedo of the sheen lobe, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are sqrt(NoV) at
+// texel centers; rows are roughness, 0 in the first and 1 in the last. The samples cover the whole hemisphere, since
+// most of the lobe's own distribution lies below it. They are a lattice with the cosine 3 u^2 - 2 u^3, weighted by its
+// derivative, as in ibl/dfg.comp.
 //
-// E exceeds 1 (up to 2.2) where v grazes a smooth sheen: V grows without bound there. It is what the lobe does.
+// E exceeds 1 (up to 2.2) for grazing v on smooth sheen, where V is unbounded. The lobe itself gains that energy.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;

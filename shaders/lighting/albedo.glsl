@@ -1,11 +1,10 @@
-// How much light each lobe sends towards the eye when light of radiance 1 comes from everywhere: its directional
-// albedo, R(v) = integral of f NoL dl. What does not depend on a light is computed here, once.
+// The directional albedo of each lobe: the light it sends towards the eye under uniform lighting of radiance 1,
+// R(v) = integral of f NoL dl. It does not depend on the lights, so it is computed once per fragment.
 //
-// Light that does not come from one direction is reflected by the split sum (Karis 2013): the integral of a product is
-// taken as the product of two integrals, the albedo and the light that the lobe gathers on average. In a white furnace,
-// where all light is 1, the product is exact: there the picture is the sum of these albedos. So what is lit by the
-// environment conserves energy just as far as what is lit by a lamp does: each albedo is the integral of the lobe that
-// evaluate_brdf has, for whatever is chosen.
+// Light that does not come from a single direction is reflected by the split sum (Karis 2013): the integral of a
+// product becomes the product of two integrals, the albedo and the lobe's mean incident radiance. In a white furnace
+// (all radiance 1) the product is exact. Each albedo is the integral of the lobe that evaluate_brdf returns for the
+// selected models, so lighting from the environment conserves energy exactly as far as lighting from lamps does.
 #ifndef LIGHTING_ALBEDO_GLSL
 #define LIGHTING_ALBEDO_GLSL
 
@@ -25,35 +24,35 @@ struct Albedo {
     vec3 multiple;             // by more than one
     vec3 clearcoat;
     vec3 sheen;
-    vec3 transmitted;          // passes straight through, or refracted
-    vec3 diffuse_transmitted;  // passes through and is scattered
-    float under_coat;          // part of any light from below the coat that passes it
+    vec3 transmitted;          // transmitted straight through, or refracted
+    vec3 diffuse_transmitted;  // transmitted and scattered
+    float under_coat;          // transmittance of the coat, for light from below it
 };
 
 float n_dot_v_of(vec3 n, vec3 v) { return clamp(dot(n, v), MIN_N_DOT_V, 1.0); }
 
-// The mean of (1 - VoH)^5 over l, weighted by the cosine NoL / pi: our fit, off by at most 0.00025. It is small: h is
-// seldom far from v, even where v grazes the surface.
+// The cosine-weighted mean of (1 - VoH)^5 over l: our fit, with an error of at most 0.00025. The mean is small, since h
+// is seldom far from v, even at grazing v.
 float mean_rise(float n_dot_v) {
     float x = 1.0 - n_dot_v;
     return x * x * (0.01693 + 0.01112 * x * x);
 }
 
-// The part of the light that enters the dielectric and comes back to v.
+// The fraction of light that enters the dielectric and leaves towards v.
 //
-// Coupling Fresnel: 1 - F(VoH), integrated. With the specular albedo, in which F is taken where the lobe is, this
-// exceeds 1 at grazing angles, just as it does for lamps: brdf/models.glsl claims nothing else.
-// Coupling Albedo: (1 - R(l)) (1 - R(v)) / (1 - R_avg) integrates to 1 - R(v): all that the boundary does not reflect.
+// Fresnel coupling: 1 - F(VoH), integrated. The sum with the specular albedo exceeds 1 at grazing angles, as it does
+// for lamps; brdf/models.glsl claims no conservation for this coupling. Albedo coupling: (1 - R(l)) (1 - R(v)) / (1 -
+// R_avg) integrates to 1 - R(v), all that the boundary does not reflect.
 float entering_albedo(Surface s, FresnelCurve dielectric, float n_dot_v) {
     if (DIFFUSE_COUPLING == ALBEDO_COUPLING) return 1.0 - boundary_albedo(s, s.dfg);
     vec3 f = has_film() ? dielectric.average : s.f0 + (s.f90 - s.f0) * mean_rise(n_dot_v);
     return 1.0 - max_component(f);
 }
 
-// Integral of f_diffuse NoL dl. Lambert's is base color; Oren-Nayar's is in brdf/diffuse.glsl. The two by Burley are a
-// product of one factor for l and one for v, in which VoH^2 = (1 + l . v) / 2 is taken at its mean: (1 + 2/3 NoV) / 2
-// over all l, 1/2 over grazing ones; (1 - NoL)^5 has the mean 1/21. Off by less than 0.02; Call of Duty's by 0.05, with
-// our fit to its bump.
+// Integral of f_diffuse NoL dl. Lambert's is the base color; Oren-Nayar's is in brdf/diffuse.glsl. Both of Burley's are
+// a product of a factor of l and a factor of v, in which VoH^2 = (1 + l . v) / 2 is replaced by its mean: (1 + 2/3 NoV)
+// / 2 over all l, 1/2 over grazing ones. (1 - NoL)^5 has the mean 1/21. Error below 0.02; for Call of Duty, with our
+// fit to its retroreflection, below 0.05.
 vec3 diffuse_albedo(Surface s, float n_dot_v) {
     float r = s.roughness;
     float rise = pow5(1.0 - n_dot_v);
@@ -79,8 +78,8 @@ vec3 diffuse_albedo(Surface s, float n_dot_v) {
     return s.base_color * fit;
 }
 
-// The layers' weights are those of evaluate_brdf. Sheen stops what its fibers stop towards l or towards v, whichever is
-// more; for l from everywhere the mean cosine stands in.
+// The layers attenuate as in evaluate_brdf. Sheen attenuates by the larger of E(l) and E(v); for lobes that gather from
+// the whole hemisphere, the mean cosine stands in for l.
 Albedo directional_albedo(Surface s, vec3 v) {
     float n_dot_v = n_dot_v_of(s.n, v);
     FresnelCurve dielectric = dielectric_curve(s);
@@ -94,7 +93,7 @@ Albedo directional_albedo(Surface s, vec3 v) {
     albedo.under_coat = 1.0;
 
     float base = 1.0;
-    float wide_base = 1.0;     // below sheen, for lobes that gather from all of the hemisphere
+    float wide_base = 1.0;     // below sheen, for lobes that gather from the whole hemisphere
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
         float sheen = sheen_albedo(n_dot_v, s.sheen_roughness);
         albedo.sheen = s.sheen_color * sheen;
@@ -113,8 +112,8 @@ Albedo directional_albedo(Surface s, vec3 v) {
 
     float enters = wide_base * (1.0 - s.metallic) * entering_albedo(s, dielectric, n_dot_v);
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
-        // The lobe around -v meets its facets at the angles at which the specular lobe does: F is that lobe's mean, its
-        // albedo over that of a mirror-white one. What facets hide from each other is counted as passing, not as lost.
+        // The transmitted lobe has the facet angles of the specular lobe, so F is that lobe's mean: its albedo over its
+        // albedo for F = 1. Light lost between facets is counted as transmitted.
         float f = max_component(single_dielectric) / white_albedo(s.dfg);
         float passes = base * (1.0 - s.metallic) * s.transmission;
         albedo.transmitted = s.base_color * (1.0 - f) * passes;

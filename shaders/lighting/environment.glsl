@@ -1,5 +1,5 @@
-// Light from the environment, baked by ibl/*.comp: sharp, diffuse, and as rough surfaces mirror it. Directions are in
-// world space and need not have unit length.
+// Looks up light from the environment, as baked by ibl/*.comp: unfiltered, diffuse, and prefiltered for rough surfaces.
+// Directions are in world space and need not be unit.
 #ifndef LIGHTING_ENVIRONMENT_GLSL
 #define LIGHTING_ENVIRONMENT_GLSL
 
@@ -11,8 +11,8 @@ layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform samplerCube prefi
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED_SHEEN) uniform samplerCube prefiltered_sheen_cube;
 layout(set = SET_FRAME, binding = BINDING_IRRADIANCE) uniform samplerCube irradiance_cube;
 
-// The map turns by an angle around +Y, counterclockwise from above: its center column is seen looking down -Z at 0
-// degrees, down -X at 90. So a direction turns back by it, into the map.
+// Rotates a direction from the world into the map. The map turns by an angle around +Y, counterclockwise from above:
+// the camera sees its center column when it looks down -Z at 0 degrees, down -X at 90.
 vec3 map_from_world(vec3 d) {
     float c = frame.environment_rotation.x;
     float s = frame.environment_rotation.y;
@@ -25,30 +25,30 @@ vec3 world_from_map(vec3 d) {
     return vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
 }
 
-// Level `lod` of the sharp image.
+// Level `lod` of the unfiltered cube.
 vec3 environment_radiance(vec3 direction, float lod) {
     return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;
 }
 
-// E / pi, the radiance that leaves a white Lambert surface with the normal n.
+// E / pi: the radiance that a white Lambertian surface with the normal n reflects.
 vec3 irradiance_over_pi(vec3 n) {
     return frame.environment_intensity * textureLod(irradiance_cube, map_from_world(n), 0.0).rgb;
 }
 
-// Mean of the radiance around r as GGX weights it, seen along the normal: the first sum of the split sum (Karis 2013).
+// The GGX-weighted mean of radiance around r, for v = n: the first factor of the split sum (Karis 2013).
 vec3 prefiltered_radiance(vec3 r, float roughness) {
     float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_cube));
     return frame.environment_intensity * textureLod(prefiltered_cube, map_from_world(r), lod).rgb;
 }
 
-// The same with the sheen's distribution.
+// The same with the sheen distribution.
 vec3 prefiltered_sheen(vec3 r, float roughness) {
     float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_sheen_cube));
     return frame.environment_intensity * textureLod(prefiltered_sheen_cube, map_from_world(r), lod).rgb;
 }
 
-// What is seen behind the model. Blurred as by a surface with this roughness; up to the first level that has one, the
-// sharp image, which has more texels than the prefiltered level 0, is faded out.
+// The background. environment_blur acts as a roughness. Below level 1 this blends with the unfiltered cube, which has
+// more texels than level 0 of the prefiltered one.
 vec3 background_radiance(vec3 direction) {
     float lod = level_of_roughness(frame.environment_blur, textureQueryLevels(prefiltered_cube));
     if (lod <= 0.0) return environment_radiance(direction, 0.0);

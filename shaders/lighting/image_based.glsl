@@ -1,9 +1,9 @@
 // Light from the environment, by the split sum (Karis 2013, "Real Shading in Unreal Engine 4"): each lobe's albedo
-// towards the eye (lighting/albedo.glsl) times the radiance that the lobe gathers on average, looked up in images that
-// were filtered before (ibl/prefilter.comp, ibl/irradiance.comp) for a lobe seen along its axis.
+// towards the eye (lighting/albedo.glsl) times its mean incident radiance, from cube maps that were prefiltered for a
+// lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp).
 //
-// Multiple scattering (Kulla & Conty 2017; Fdez-Aguera 2019) leaves the facets in all directions, and gathers what the
-// diffuse lobe gathers.
+// Multiple scattering (Kulla & Conty 2017; Fdez-Aguera 2019) leaves the facets in all directions, so it uses the
+// irradiance, as the diffuse lobe does.
 #ifndef LIGHTING_IMAGE_BASED_GLSL
 #define LIGHTING_IMAGE_BASED_GLSL
 
@@ -15,20 +15,20 @@
 #include "lighting/environment.glsl"
 #include "lighting/lobes.glsl"
 
-// Where a lobe gathers its light: around the mirrored eye, but a rough one more from above, since NoL weighs it
-// (Lagarde & de Rousiers 2014, section 4.9.3). Within 0.1 of the true mean's share of n for most angles; a mirror -> r,
-// alpha = 1 -> n. Not unit length: it only looks up a cube.
+// The direction in which to look up a lobe: the mirror direction, shifted towards n for rough lobes, since NoL weights
+// them (Lagarde & de Rousiers 2014, section 4.9.3). The weight of n is within 0.1 of the true mean's at most angles. A
+// mirror -> r, alpha = 1 -> n. Not normalized, since a cube lookup does not need it.
 vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
     float alpha = roughness * roughness;
     float smoothness = 1.0 - alpha;
     return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
 }
 
-// A stretched lobe (KHR_materials_anisotropy) is a row of round ones, as wide as its narrow side, whose normals lean
-// along t. The slopes of GGX along t have the density 1 / (2 a (1 + x^2 / a^2)^(3/2)); x takes the middle of each eighth
-// of it. A round lobe has a width of its own, so a^2 is what the long side has more than the short one: without
-// anisotropy all are the same. Each counts as much as a facet that leans so sends to the eye, V NoL VoH / NoH (Walter
-// et al. 2007, eq. 41).
+// Approximates an anisotropic lobe (KHR_materials_anisotropy) by a row of isotropic ones with its smaller alpha, whose
+// normals are tilted along t. The slopes x of GGX along t have the density 1 / (2 a (1 + x^2 / a^2)^(3/2)); each strip
+// takes the middle of an equal share of it. An isotropic lobe already has a width, so a^2 is the difference of the two
+// alpha^2; without anisotropy all strips coincide. Each strip is weighted like a facet with its normal,
+// V NoL VoH / NoH (Walter et al. 2007, eq. 41).
 const int STRIPS = 8;
 
 vec3 stretched_radiance(Surface s, vec3 v) {
@@ -52,15 +52,15 @@ vec3 stretched_radiance(Surface s, vec3 v) {
     return sum.rgb / max(sum.a, 1e-6);
 }
 
-// What the specular lobe of the base gathers.
+// Mean incident radiance of the base's specular lobe.
 vec3 specular_radiance(Surface s, vec3 v) {
     if ((FEATURES & FEATURE_ANISOTROPY) != 0u) return stretched_radiance(s, v);
     return prefiltered_radiance(lobe_direction(s.n, v, s.roughness), s.roughness);
 }
 
-// Occlusion is the part of the hemisphere that is open; glTF says that it dims indirect light, not how it dims a lobe
-// that looks at a part of it (glTF 2.0, 3.9.3). Lagarde & de Rousiers 2014, listing 26: a wide lobe is dimmed as much,
-// a narrow one only where it grazes the surface and the rest of the sky is hidden. occlusion = 1 -> 1.
+// Occlusion is the open fraction of the hemisphere. glTF says that it dims indirect light, but not how it dims a narrow
+// lobe (glTF 2.0, 3.9.3). Lagarde & de Rousiers 2014, listing 26: a wide lobe is dimmed by the same factor, a narrow
+// one only at grazing angles and under strong occlusion. occlusion = 1 -> 1.
 float specular_occlusion(float n_dot_v, float occlusion, float roughness) {
     float alpha = roughness * roughness;
     return saturate(pow(n_dot_v + occlusion, exp2(-16.0 * alpha - 1.0)) - 1.0 + occlusion);

@@ -1,14 +1,14 @@
-// Light, or the part of it that is reflected, by the lobe of the BRDF that sends it to the eye.
+// Radiance, or the BRDF's value, split by the lobe that reflects it.
 #ifndef LIGHTING_LOBES_GLSL
 #define LIGHTING_LOBES_GLSL
 
 #include "interface.glsl"
 #include "brdf/evaluate.glsl"
 
-// Whether light from behind the surface can come through.
+// Light from behind the surface can contribute.
 const bool LIGHT_PASSES = (FEATURES & (FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION)) != 0u;
 
-// Whether a coat can face a light that the base, by its bumps, turns away from.
+// The coat's normal may differ from the base's, so the coat can face a light that the base faces away from.
 bool coat_lies_apart() {
     return (FEATURES & FEATURE_CLEARCOAT) != 0u
         && (FEATURES & (FEATURE_NORMAL_TEXTURE | FEATURE_CLEARCOAT_NORMAL)) != 0u;
@@ -20,7 +20,7 @@ struct Lobes {
     vec3 multiple;             // by more than one
     vec3 clearcoat;
     vec3 sheen;
-    vec3 transmitted;          // from behind the surface, straight or scattered
+    vec3 transmitted;          // from behind the surface, refracted or scattered
     vec3 all;                  // their sum
 };
 
@@ -28,7 +28,7 @@ Lobes no_light() {
     return Lobes(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
 }
 
-// The sum has its own field, not a function: the picture needs it alone, so that the driver drops the others.
+// The sum is a field of its own: the picture reads only this field, so the driver can drop the others.
 Lobes with_sum(Lobes x) {
     x.all = x.diffuse + x.specular + x.multiple + x.clearcoat + x.sheen + x.transmitted;
     return x;

@@ -1,13 +1,13 @@
-// The truth that the split sum is held against: the same integrals by random paths, with the same evaluate_brdf.
+// The reference for the split sum: the same integrals by Monte Carlo, with the same evaluate_brdf.
 //
 //   L(v) = integral of L(l) f(l, v) |NoL| dl  =  mean of L(l) f |NoL| / p(l) over directions l drawn with density p
 //
-// One density fits no f: the highlight wants directions where D is large, the diffuse part where the cosine is. So p is
-// the mean of one density for each lobe, from which one is drawn by chance: the balance heuristic (Veach & Guibas 1995,
-// eq. 14; one-sample form: Veach 1997, section 9.2.4), which is never much worse than the best of them. Nothing is
-// prefiltered or clamped. Lights smaller than the sun's surroundings, all but the brightest, make bright dots
-// ("fireflies") until enough frames have come together; the brightest has a density of its own (lighting/sun.glsl).
-// Occlusion is left out: it is the texture's word about a shape, which an integral over the whole sky does not know.
+// No single density fits f: the highlight needs directions where D is large, the diffuse lobe follows the cosine. So
+// each path picks one lobe's density at random, and p is the mean of all: the one-sample balance heuristic (Veach &
+// Guibas 1995, eq. 14; Veach 1997, section 9.2.4), which is never much worse than the best density. Nothing is
+// prefiltered or clamped. The brightest light of the environment has a density of its own (lighting/sun.glsl); other
+// small lights cause bright dots ("fireflies") until enough frames have accumulated. Baked occlusion is ignored: this
+// estimate assumes an unoccluded sky.
 #ifndef LIGHTING_MONTE_CARLO_GLSL
 #define LIGHTING_MONTE_CARLO_GLSL
 
@@ -27,17 +27,18 @@ const uint PATH_SIDES = LIGHT_PASSES ? 2u : 1u;
 
 struct Path {
     vec3 l;                    // unit, world space
-    float weight;              // |NoL| / density; 0: the path leads nowhere
+    float weight;              // |NoL| / density; 0: no contribution
 };
 
-// A lobe's frame, and the eye in it.
+// A lobe's tangent frame, and the eye in it.
 struct LobeFrame {
     mat3 world_from_lobe;
     vec3 v;
-    vec2 alpha;                // along x and y
+    vec2 alpha;                // along the frame's x and y
 };
 
-// A normal map can turn n away from the eye; the lobe is then drawn as for a grazing angle. Any density > 0 will do.
+// A normal map can turn n away from the eye; v is then clamped to a grazing angle. The estimate stays correct, since
+// any density above 0 will do.
 LobeFrame lobe_frame(mat3 world_from_lobe, vec3 v, vec2 alpha) {
     vec3 v_lobe = v * world_from_lobe;
     return LobeFrame(world_from_lobe, normalize(vec3(v_lobe.xy, max(v_lobe.z, 1e-4))), alpha);
@@ -63,8 +64,8 @@ float pdf_lobe(LobeFrame lobe, vec3 l) {
     return pdf_reflected(pdf_ggx_vndf(lobe.v, h, lobe.alpha), dot(lobe.v, h));
 }
 
-// One of `choices` densities, each drawn equally often: those of the lobes, the same mirrored behind the surface where
-// light passes, and the sun.
+// Draws from one of `choices` densities, all equally likely: one per lobe, the same mirrored behind the surface where
+// light is transmitted, and the sun's.
 Path sample_path(Surface s, vec3 v, vec2 u, uint choice, uint choices, Sun sun) {
     LobeFrame specular = specular_frame(s, v);
     LobeFrame coat = specular;
@@ -77,8 +78,8 @@ Path sample_path(Surface s, vec3 v, vec2 u, uint choice, uint choices, Sun sun) 
     else if (lobe == 1u) l = specular.world_from_lobe * sample_cosine(u);
     else l = sample_lobe(specular, u);
 
-    // A reflection into the surface leads nowhere; below it the sun shines through, and a coat that lies flatter than the
-    // bumps of its base is lit.
+    // A direction below the surface contributes nothing, with two exceptions: transmission of the sun, and a coat whose
+    // normal is not the base's.
     bool by_sun = choice >= PATH_LOBES * PATH_SIDES;
     bool mirrored = !by_sun && choice >= PATH_LOBES;
     float n_dot_l = dot(s.n, l);
@@ -90,30 +91,30 @@ Path sample_path(Surface s, vec3 v, vec2 u, uint choice, uint choices, Sun sun) 
     vec3 front = LIGHT_PASSES ? unfolded(s.n, l) : l;
     float pdf = pdf_lobe(specular, front) + pdf_cosine(dot(s.n, front)) + pdf_sun(sun, l);
     if (HAS_COAT) pdf += pdf_lobe(coat, front);
-    // What the coat sends below the base, beside what is mirrored there.
+    // The coat's own reflections below the base's horizon, in addition to the mirrored ones.
     if (HAS_COAT && LIGHT_PASSES && dot(s.n, l) < 0.0 && coat_lies_apart()) pdf += pdf_lobe(coat, l);
-    // 0: a reflection into the coat.
+    // pdf = 0: a reflection below the coat's horizon.
     return Path(l, pdf > 0.0 ? abs(n_dot_l) * float(choices) / pdf : 0.0);
 }
 
 // Additive recurrence in three dimensions: point i is the fraction of i times (1/g, 1/g^2, 1/g^3), g^4 = g + 1 (Roberts
-// 2018, "The unreasonable effectiveness of quasirandom sequences"). Any run of it fills the cube evenly, so frames
-// can go on where the last one ended. In integers, 2^32 standing for 1, it never loses digits; the pixel's own random
-// shift (Cranley & Patterson 1976) keeps neighbors from having the same error.
+// 2018, "The unreasonable effectiveness of quasirandom sequences"). Every contiguous run fills the cube evenly, so each
+// frame continues where the last one stopped. Integers, with 2^32 for 1, never lose digits. A random shift per pixel
+// (Cranley & Patterson 1976) decorrelates neighboring pixels.
 vec3 path_numbers(uint i, uvec3 shift) {
     return vec3((shift + i * uvec3(3518319155u, 2882110345u, 2360945575u)) >> 8) * exp2(-24.0);
 }
 
-// A furnace has the same points for each pixel, so that the error is smooth, not noise: Fibonacci's lattice, whose
-// second coordinate is periodic as the azimuth is, once for each density. For a white metal of a roughness of 0.1 and
-// more, at up to 85 degrees, the result is at most 0.0045 too high and 0.01 too low.
+// The furnace uses the same points for every pixel, so that its error is smooth instead of noisy: one Fibonacci lattice
+// per density, whose second coordinate is periodic like the azimuth. For a white metal with a roughness of 0.1 or more,
+// at up to 85 degrees, the result is at most 0.0045 too high and 0.01 too low.
 const uint LATTICE = 89u;
 const uint FURNACE_PATHS = LATTICE * PATH_LOBES * PATH_SIDES;
 vec2 lattice_point(uint i) { return vec2(float(i) + 0.5, float(i * 55u % LATTICE)) / float(LATTICE); }
 
-// Mean over paths number first .. first + count - 1 of this pixel of the light that they bring from the environment,
-// sharp. `furnace`: a radiance of 1 comes from everywhere instead. That is the albedo; by reciprocity, the part of a
-// beam from the eye that is not absorbed. It takes FURNACE_PATHS, from 0.
+// Mean of the light that paths first .. first + count - 1 of this pixel bring from the unfiltered environment.
+// `furnace`: uniform radiance 1 instead; the result is the albedo. By reciprocity that is also the fraction of a beam
+// from the eye that is not absorbed. Requires first = 0 and count = FURNACE_PATHS.
 vec3 monte_carlo(Surface s, vec3 v, bool furnace, uint first, uint count) {
     uvec3 shift = random_words(uvec3(gl_FragCoord.xy, 0u));
     Sun sun = Sun(s.n, false);
@@ -132,7 +133,7 @@ vec3 monte_carlo(Surface s, vec3 v, bool furnace, uint first, uint count) {
         bool behind = LIGHT_PASSES && dot(s.n, path.l) < 0.0;
         Brdf f = evaluate_brdf(s, path.l, v);
         vec3 value = f.value * path.weight;
-        // What passes straight through is not the sky's alone: lighting/transmission.glsl looks up the scene for it.
+        // Specular transmission is left out: lighting/transmission.glsl looks it up in the rendered scene.
         if (behind && !furnace) {
             value = (f.diffuse_transmitted * attenuation(s, s.thickness) + f.clearcoat) * path.weight;
         }

@@ -1,4 +1,4 @@
-// Lights without a size (KHR_lights_punctual): directional, point and spot.
+// Punctual lights (KHR_lights_punctual): directional, point and spot.
 #ifndef LIGHTING_PUNCTUAL_GLSL
 #define LIGHTING_PUNCTUAL_GLSL
 
@@ -7,26 +7,26 @@
 
 struct Illumination {
     vec3 l;                    // unit, towards the light
-    vec3 irradiance;           // on a plane that faces the light; times NoL on the surface
+    vec3 irradiance;           // on a plane perpendicular to l; the surface receives NoL times it
 };
 
-// A surface closer than 0.1 mm is lit as from there: 1 / distance^2 has no limit at 0.
+// Distances are clamped to 0.1 mm, since 1 / distance^2 diverges.
 const float MIN_DISTANCE_SQUARED = 1e-8;
 
-// max(min(1 - (d / range)^4, 1), 0) (KHR_lights_punctual): brings 1 / d^2 smoothly to 0 at `range`.
+// max(min(1 - (d / range)^4, 1), 0) (KHR_lights_punctual): fades 1 / d^2 smoothly to 0 at `range`.
 float range_window(float distance_squared, float inverse_range) {
     float ratio_squared = distance_squared * (inverse_range * inverse_range);
     return saturate(1.0 - ratio_squared * ratio_squared);
 }
 
-// Square of a ramp in the cosine, from the outer cone to the inner one (KHR_lights_punctual).
+// A squared linear ramp in the cosine, from the outer to the inner cone angle (KHR_lights_punctual).
 float spot_falloff(float cos_angle, float scale, float offset) {
     float ramp = saturate(cos_angle * scale + offset);
     return ramp * ramp;
 }
 
-// One formula for all kinds: a directional light is a point at infinity, in homogeneous coordinates, seen from a
-// distance of 1; a light that is no spot has a ramp that is 1 everywhere; one without end has the range 1 / 0.
+// One formula without branches for all kinds. A directional light is a point at infinity in homogeneous coordinates, at
+// distance 1; a light that is not a spot has the constant ramp 1; unlimited range is inverse_range = 0.
 Illumination illuminate(Light light, vec3 position_ws) {
     vec3 to_light = light.position_ws.xyz - light.position_ws.w * position_ws;
     float distance_squared = max(dot(to_light, to_light), MIN_DISTANCE_SQUARED);

@@ -1,4 +1,4 @@
-// The picture: all light that leaves a surface for the eye.
+// The picture: all radiance that leaves a surface towards the eye.
 #ifndef LIGHTING_RADIANCE_GLSL
 #define LIGHTING_RADIANCE_GLSL
 
@@ -9,10 +9,10 @@
 vec3 reflected_radiance(Lit lit) { return lit.punctual.all + lit.area.all + lit.ambient.all + lit.behind; }
 
 vec3 outgoing_radiance(Surface s, vec3 v, Lit lit) {
-    if ((FEATURES & FEATURE_UNLIT) != 0u) return s.base_color;   // KHR_materials_unlit: a color, not a material
+    if ((FEATURES & FEATURE_UNLIT) != 0u) return s.base_color;   // KHR_materials_unlit: a constant color
 
-    // Emission is added, for light adds up: a lamp in the sun is brighter than a lamp or the sun. max() would swallow
-    // the weaker of the two, and leave a seam where they change places.
+    // Emission is added, since light is additive. max() would hide the weaker of the two and leave a seam where they
+    // are equal.
     return user_radiance(s, v, reflected_radiance(lit) + lit.emitted);
 }
 

@@ -1,4 +1,4 @@
-// Lights with the shape of a rectangle: lighting/area.glsl says how much of each lobe they fill, here it is made light.
+// Rectangular lights: weights each lobe's albedo by the fraction that the light covers (lighting/area.glsl).
 #ifndef LIGHTING_RECTANGLE_GLSL
 #define LIGHTING_RECTANGLE_GLSL
 
@@ -10,7 +10,7 @@
 #include "lighting/area.glsl"
 #include "lighting/lobes.glsl"
 
-// As it is seen in the surface's plane.
+// The light mirrored in the surface's tangent plane.
 Light mirrored_rectangle(Light light, vec3 position_ws, vec3 n) {
     light.position_ws.xyz = position_ws + reflect(light.position_ws.xyz - position_ws, n);
     light.direction_ws = reflect(light.direction_ws, n);
@@ -19,8 +19,8 @@ Light mirrored_rectangle(Light light, vec3 position_ws, vec3 n) {
     return light;
 }
 
-// Each lobe's albedo times the part of it that looks at the rectangle times the rectangle's radiance. Light that met
-// several facets, and the fibers of sheen, which have no table of their own, count as diffuse: they are about as wide.
+// Each lobe's albedo, times the fraction of the lobe that the rectangle covers, times the rectangle's radiance.
+// Multiple scattering and sheen have no table; they use the fraction of the diffuse lobe, which is about as wide.
 Lobes rectangle_light(Surface s, vec3 v, Albedo albedo, Light light) {
     AreaLight base = integrate_rect(light, s.position_ws, s.n, v, s.roughness);
     Lobes seen = no_light();
@@ -37,8 +37,8 @@ Lobes rectangle_light(Surface s, vec3 v, Albedo albedo, Light light) {
         seen.transmitted += albedo.diffuse_transmitted * back.diffuse;
     }
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
-        // A wall's lobe around -v is its reflection's, looked at through the wall, as in evaluate_brdf; what the facets
-        // hide from each other is lost there, so it is here.
+        // The transmitted lobe of a thin wall is the reflected lobe, mirrored, as in evaluate_brdf. evaluate_brdf loses
+        // light between the facets, so this multiplies by the albedo for F = 1.
         float roughness = transmission_roughness(s.roughness, s.ior);
         vec3 passes = albedo.transmitted * white_albedo(dfg(n_dot_v_of(s.n, v), roughness));
         Light mirror = mirrored_rectangle(light, s.position_ws, s.n);

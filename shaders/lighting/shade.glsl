@@ -1,5 +1,5 @@
-// A surface under lights: the rendering equation (Kajiya 1986), the integral replaced by a sum over the lights and by
-// the split sum for what comes from everywhere.
+// Lights a surface: the rendering equation (Kajiya 1986) with a sum over the lights, and the split sum for light from
+// all directions.
 #ifndef LIGHTING_SHADE_GLSL
 #define LIGHTING_SHADE_GLSL
 
@@ -13,28 +13,29 @@
 #include "lighting/rectangle.glsl"
 #include "lighting/transmission.glsl"
 
-// Radiance towards the eye, by origin.
+// Radiance towards the eye, by source.
 struct Lit {
-    Lobes punctual;            // lights without a size
-    Lobes area;                // rectangles
-    Lobes ambient;             // the environment, or flat ambient light
+    Lobes punctual;            // punctual lights
+    Lobes area;                // rectangular lights
+    Lobes ambient;             // the environment, or uniform ambient light
     vec3 behind;               // what is seen through the surface
-    vec3 emitted;              // the material's own light, as far as the coat lets it pass (KHR_materials_clearcoat)
-    Lobes lobes;               // of the BRDF, added up over the lights whatever their strength, 1/sr
-    Brdf last;                 // of the last light
+    vec3 emitted;              // emission, attenuated by the coat (KHR_materials_clearcoat)
+    Lobes lobes;               // of the BRDF, 1/sr, summed over the lights regardless of their intensity
+    Brdf last;                 // of the last light evaluated
 };
 
-// Lights number first .. end - 1.
+// Lights first .. end - 1.
 struct LightRange {
     uint first;
     uint end;
-    bool for_terms;            // Lit's `lobes` and `last` are wanted: of each light, even one that cannot shine here
+    bool for_terms;            // fill in Lit's `lobes` and `last`, even for lights that do not reach the surface
 };
 
-// A number that is known beforehand lets the driver unroll the loop over the lights.
+// A constant LIGHT_COUNT lets the driver unroll the loop over the lights.
 LightRange all_lights() { return LightRange(0u, LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count, false); }
 
-// What the debug modes of one light look at: the chosen light, or all. Empty if there is none, or nothing to light.
+// The lights that most debug modes of direct light show: the selected light, or all. Empty if there is none or the
+// material is unlit.
 LightRange chosen_lights() {
     uint end = (FEATURES & FEATURE_UNLIT) != 0u ? 0u : frame.light_count;
     if (frame.chosen_light == 0u) return LightRange(0u, end, false);
@@ -43,11 +44,11 @@ LightRange chosen_lights() {
 
 bool is_empty(LightRange range) { return range.first >= range.end; }
 
-// L = f E |NoL|, E being the irradiance on a plane that faces the light.
+// L = f E |NoL|, with E the irradiance on a plane perpendicular to l.
 void add_punctual(inout Lit lit, Surface s, vec3 v, Light light, bool for_terms) {
     Illumination illumination = illuminate(light, s.position_ws);
     float n_dot_l = dot(s.n, illumination.l);
-    // Behind the surface: f is 0, unless light passes through, or a coat has a normal of its own.
+    // Below the horizon f is 0, unless the surface transmits light or the coat has its own normal.
     if (n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms) return;
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
@@ -60,7 +61,7 @@ Lobes ambient_light(Surface s, vec3 v, Albedo albedo) {
     return with_sum(flat_light(s));
 }
 
-// A lamp's or the sky's light from behind crosses the volume; how far does not depend on where it came from.
+// Attenuates transmitted light by the volume's thickness, wherever the light comes from.
 void cross_volume(Surface s, inout Lobes light) {
     light.all -= light.transmitted;
     light.transmitted *= attenuation(s, s.thickness);
@@ -76,7 +77,7 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     lit.emitted = s.emissive * albedo.under_coat;
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
     for (uint i = range.first; i < range.end; ++i) {
-        // Among the terms a rectangle counts as if all of it were at its center.
+        // For BRDF terms a rectangle counts as a point light at its center.
         bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && lights[i].kind == LIGHT_RECT;
         if (has_size) {
             add(lit.area, rectangle_light(s, v, albedo, lights[i]), vec3(1.0));

@@ -1,5 +1,6 @@
-// The brightest spot of the environment, found in the alpha of its mip levels: the largest component of what each texel
-// covers (ibl/cube.comp). Paths that look for it find a sun that no other path would meet.
+// The brightest spot of the environment. The alpha of each mip level holds the largest component of all texels below
+// (ibl/cube.comp), so a descent through the levels finds it. Monte Carlo paths sample it on purpose: random directions
+// would hardly ever hit a sun.
 #ifndef LIGHTING_SUN_GLSL
 #define LIGHTING_SUN_GLSL
 
@@ -9,17 +10,17 @@
 #include "ibl/cube_map.glsl"
 #include "lighting/environment.glsl"
 
-// Directions around a spot, drawn evenly.
+// A cone around the spot, sampled uniformly.
 struct Sun {
     vec3 axis;                 // unit, world space
-    bool counts;               // bright enough to be looked for
+    bool counts;               // bright enough to be sampled
 };
 
-// 1 degree: the brightest texel may lie on the rim of the real sun, whose disc is 0.53 degrees wide, and the filter of
-// the cube map spreads it by a texel, which is 0.22 in the middle of a face.
+// 1 degree. The brightest texel may lie on the rim of the real sun, which is 0.53 degrees wide, and the cube map's
+// filter spreads it by a texel, which is 0.22 degrees at the center of a face.
 const float ONE_MINUS_SUN_COSINE = 1.523e-4;
 const float SUN_STERADIANS = 2.0 * PI * ONE_MINUS_SUN_COSINE;
-// Of the light that a surface gets, the part that a spot must be able to bring.
+// The spot is sampled if it can contribute more than this fraction of the irradiance.
 const float SUN_PART = 0.02;
 
 vec4 spot(vec2 st, uint face, int level) {
@@ -63,7 +64,7 @@ vec3 sample_sun(Sun sun, vec2 u) {
     return basis_around(sun.axis) * direction_from_cosine(1.0 - u.x * ONE_MINUS_SUN_COSINE, u.y);
 }
 
-// The chord of the angle: a cosine this close to 1 has lost its digits.
+// Tests the chord, since a cosine this close to 1 has lost its digits.
 float pdf_sun(Sun sun, vec3 l) {
     vec3 chord = l - sun.axis;
     return sun.counts && dot(chord, chord) <= 2.0 * ONE_MINUS_SUN_COSINE ? 1.0 / SUN_STERADIANS : 0.0;

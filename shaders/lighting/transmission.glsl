@@ -1,10 +1,10 @@
-// What is seen through a surface: KHR_materials_transmission, _volume and _dispersion.
+// The scene seen through a surface: KHR_materials_transmission, _volume and _dispersion.
 //
-//        eye                       The opaque scene, drawn before, is the one thing known to be behind. A volume bends
-//          \  v  |  n              the ray where it enters; where it leaves, `thickness` further on, the picture of the
-//     ______\____|________         opaque scene is looked up. A thin wall bends nothing: both of its sides do, and
-//            \   :                 undo each other. A rough boundary blurs: a level of the picture's mip chain.
-//        exit *  :                 What lies between the exit and the thing seen there is taken as clear.
+//        eye                       Only the opaque scene, drawn before, is visible through a surface. A volume refracts
+//          \  v  |  n              the ray at the entry; at the exit, `thickness` further on, the picture of the opaque
+//     ______\____|________         scene is looked up. A thin wall does not deflect the ray: its two faces cancel.
+//            \   :                 A rough boundary blurs: it reads a mip level of the picture.
+//        exit *  :                 Whatever lies between the exit and the opaque scene is ignored.
 #ifndef LIGHTING_TRANSMISSION_GLSL
 #define LIGHTING_TRANSMISSION_GLSL
 
@@ -14,39 +14,39 @@
 #include "common/math.glsl"
 #include "lighting/environment.glsl"
 
-// The opaque scene: radiance times coverage, coverage; with mips.
+// The opaque scene: premultiplied radiance and coverage, with mips.
 layout(set = SET_PASS, binding = BINDING_BEHIND) uniform sampler2D behind;
 
-// Part of light left after `path` meters: exp(-sigma path), sigma = -log(color) / distance (Beer-Lambert;
-// KHR_materials_volume). 1e-6: log(0) is -infinity, and times a path of 0 it would be NaN. The distance is infinite
-// where a model gives none, so that the quotient is 0; 1e30: white lets all pass, but 0 times infinity is NaN.
+// Transmittance after `path` meters: exp(-sigma path), sigma = -log(color) / distance (Beer-Lambert;
+// KHR_materials_volume). 1e-6 avoids log(0) = -infinity, which a path of 0 would turn into NaN. Models that give no
+// distance have an infinite one, so the quotient is 0. 1e30: for white, 0 times infinity would be NaN.
 vec3 attenuation(Surface s, float path) {
     if ((FEATURES & FEATURE_VOLUME) == 0u) return vec3(1.0);
     return exp(log(max(s.attenuation_color, 1e-6)) * min(path / s.attenuation_distance, 1e30));
 }
 
-// The ray inside of the volume, from Snell's law; unit. An infinite ior (0 in glTF) refracts along -n. max: an ior
-// below 1 could reflect all light, for which there is no ray.
+// The refracted ray inside the volume (Snell's law), unit. An infinite ior (0 in glTF) refracts to -n. max: an ior
+// below 1 could cause total reflection, which has no refracted ray.
 vec3 refracted(Surface s, vec3 v, float ior) { return refract(-v, s.n, ior > 0.0 ? 1.0 / max(ior, 1.0) : 0.0); }
 
-// Where a point is in the picture of the scene, 0..1. A point behind the eye is nowhere; such a thickness reaches past
-// the eye, and what is in front of the surface stands in for it.
+// Position of a point in the picture of the scene, 0..1. If the thickness reaches behind the eye, this falls back to
+// the current pixel.
 vec2 picture_uv(vec3 position_ws) {
     vec4 clip = frame.clip_from_world * vec4(position_ws, 1.0);
     vec2 here = gl_FragCoord.xy / frame.viewport_px;
     return clip.w > 0.0 ? 0.5 + 0.5 * clip.xy / clip.w : here;
 }
 
-// Where the scene covers a pixel partly or not at all, the surroundings show: the environment, or the background. That
-// one is a color of the display; divided by the exposure it is the light that (but for the tone map) looks like it.
+// Where the scene does not fully cover a pixel, the environment or the background shows. The background is a display
+// color; divided by the exposure it becomes the radiance that looks like it, apart from the tone map.
 vec3 surroundings(vec3 direction, float roughness) {
     if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) return prefiltered_radiance(direction, roughness);
     return frame.background.rgb * (frame.background.a / frame.exposure);
 }
 
-// Radiance that comes out of the surface towards v, before the boundary's own losses and tint. The blurred picture:
-// each level doubles the width of a texel, and roughness 1 is as wide as the picture (as in Khronos's glTF Sample
-// Renderer, getTransmissionSample).
+// Radiance that leaves the surface towards v, before the boundary's Fresnel losses and tint. Blur: each mip level
+// doubles the texel size, and roughness 1 reads the level of a single texel (as in Khronos's glTF Sample Renderer,
+// getTransmissionSample).
 vec3 radiance_behind(Surface s, vec3 v, float ior) {
     bool thin = (FEATURES & FEATURE_VOLUME) == 0u;
     vec3 direction = thin ? -v : refracted(s, v, ior);
@@ -57,11 +57,11 @@ vec3 radiance_behind(Surface s, vec3 v, float ior) {
     return radiance * attenuation(s, s.thickness);
 }
 
-// The same with an ior for each channel, spread around the middle one: n_blue - n_red = (n - 1) / Abbe number, and
-// dispersion = 20 / Abbe number (KHR_materials_dispersion).
+// The same with one ior per channel, spread around green's: n_blue - n_red = (n - 1) / Abbe number, and dispersion =
+// 20 / Abbe number (KHR_materials_dispersion).
 vec3 transmitted_radiance(Surface s, vec3 v) {
     if ((FEATURES & FEATURE_DISPERSION) == 0u) return radiance_behind(s, v, s.ior);
-    // An infinite index has no spread; nothing bends less than air.
+    // An infinite index has no dispersion; no index goes below that of air.
     float half_spread = max(s.ior - 1.0, 0.0) * s.dispersion * (0.5 / 20.0);
     float red = s.ior > 0.0 ? max(s.ior - half_spread, 1.0) : 0.0;
     return vec3(radiance_behind(s, v, red).r,

@@ -2,8 +2,8 @@
 #include "interface.glsl"
 #include "measure/surface.glsl"
 
-// The white furnace (Heitz 2014, section 5.2): how much of light from everywhere leaves towards the eye, for each
-// roughness (rows) and angle of the eye (columns). 1 is all of it; more cannot be.
+// The white furnace test (Heitz 2014, section 5.2): the albedo towards the eye, for each roughness (rows) and angle of
+// the eye (columns). 1 is all of the light; more is a gain of energy.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

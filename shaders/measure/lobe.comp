@@ -2,13 +2,13 @@
 #include "interface.glsl"
 #include "measure/surface.glsl"
 
-// The lobes in the plane of incidence, to be plotted: columns are the angle of the eye from -90 (the light's side) to 90
-// degrees; rows are roughness. The light stands at `theta_first` degrees, on the negative side.
+// Samples the lobes in the plane of incidence, for plots. Columns are the angle of the eye from -90 (the light's side)
+// to 90 degrees; rows are roughness. The light is `theta_first` degrees from the normal, on the negative side.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Each f NoV: what leaves into a solid angle, of light that arrives with an irradiance of 1, in 1/sr. Over the
-// hemisphere that adds up to the albedo.
+// Each lobe times NoV, in 1/sr: the fraction of the irradiance that leaves per steradian. Its integral over the
+// hemisphere is the albedo.
 struct Lobe {
     vec3 diffuse;
     vec3 specular;
@@ -21,7 +21,7 @@ void main() {
     uvec2 cell = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(cell, task.size))) return;
     vec3 l = direction_at(-radians(task.theta_first), 0.0);
-    // Centers of the columns: at 90 degrees itself nothing is seen.
+    // Column centers, since nothing is visible at exactly 90 degrees.
     float theta = PI * ((float(cell.x) + 0.5) / float(task.size.x) - 0.5);
     vec3 v = direction_at(theta, 0.0);
     Surface s = measured_surface(roughness_of_row(cell.y), v);

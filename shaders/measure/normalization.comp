@@ -3,12 +3,12 @@
 #include "brdf/ndf.glsl"
 #include "measure/surface.glsl"
 
-// The facets, seen from above, cover the surface exactly: integral of D NoH dh = 1 (Walter et al. 2007, eq. 4). One row
-// for each roughness.
+// The projected area of the microfacets equals that of the surface: integral of D NoH dh = 1 (Walter et al. 2007, eq.
+// 4). One row per roughness.
 //
-// D is round, so the integral is one over the angle. Half of the points lie where GGX has its facets (eq. 35), half
-// follow the cosine, for what an edited D may have elsewhere; weighted by the balance heuristic (Veach 1997, section
-// 9.2.2). Sine and cosine both come from tan^2: of a cosine close to 1 the sine could not be told.
+// D is isotropic, so one angle is enough. Half of the points follow GGX's own distribution (eq. 35). The other half
+// follow the cosine, in case an edited D has facets elsewhere. The balance heuristic weights both (Veach 1997, section
+// 9.2.2). Sine and cosine come from tan^2, since a cosine close to 1 does not give a precise sine.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -19,7 +19,7 @@ float d_over_pdf(float tan2, float alpha) {
     float sin2 = tan2 * cos2;
     float a2 = alpha * alpha;
     float spread = cos2 * a2 + sin2;
-    float pdf = 0.5 / PI * (a2 / (spread * spread) + 1.0);   // over the cosine, as D NoH is
+    float pdf = 0.5 / PI * (a2 / (spread * spread) + 1.0);   // relative to the cosine, as D NoH is
     return d_specular(sqrt(cos2), sin2, alpha) / pdf;
 }
 

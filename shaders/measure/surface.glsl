@@ -1,4 +1,4 @@
-// The surface that is measured, and how its BRDF is integrated. Tangent space: z is the normal.
+// The surface under test and the integration of its BRDF. Tangent space: z is the normal.
 #ifndef MEASURE_SURFACE_GLSL
 #define MEASURE_SURFACE_GLSL
 
@@ -9,7 +9,7 @@
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 
-// What the task says, with glTF's defaults for all else. `v`: unit, towards the eye.
+// Takes base color and metallic from the task, and glTF's defaults for the rest. `v`: towards the eye, unit.
 Surface measured_surface(float roughness, vec3 v) {
     Surface s;
     s.position_ws = vec3(0.0);
@@ -27,7 +27,7 @@ Surface measured_surface(float roughness, vec3 v) {
     return s;
 }
 
-// Roughness of a row and angle to the normal of a column: even steps from the first to the last, both included.
+// Roughness of a row and angle of a column: even steps from the first to the last value, both included.
 float roughness_of_row(uint row) {
     float part = float(row) / float(max(task.size.y, 2u) - 1u);
     return mix(task.roughness_first, task.roughness_last, part);
@@ -42,15 +42,15 @@ vec3 direction_at(float theta, float phi) {
     return vec3(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
 }
 
-// Density with which `integrate` meets l: half of the samples follow the facets that v sees, half the cosine.
+// Density of the samples in `integrate`: half are reflections at GGX's visible normals, half follow the cosine.
 float pdf_of_both(vec3 v, vec3 l, float alpha) {
     vec3 h = safe_normalize(l + v, vec3(0.0, 0.0, 1.0));
     float facets = pdf_reflected(pdf_ggx_vndf(v, h, vec2(alpha)), dot(v, h));
     return 0.5 * (facets + pdf_cosine(l.z));
 }
 
-// Albedo towards v: integral over the hemisphere of f(l, v) NoL dl, by 2 `task.samples` samples of two kinds, weighted by
-// the balance heuristic (Veach 1997, section 9.2.2). Samples below the horizon count as 0.
+// Albedo towards v: integral over the hemisphere of f(l, v) NoL dl, by 2 * task.samples samples from two densities,
+// weighted by the balance heuristic (Veach 1997, section 9.2.2). Samples below the horizon count as 0.
 vec3 integrate(Surface s, vec3 v) {
     float alpha = alpha_from_roughness(s.roughness);
     vec3 sum = vec3(0.0);

@@ -1,46 +1,46 @@
-//! Where the picture is taken from: framing and matrices.
+//! The camera: framing and matrices.
 
 use glam::{Mat4, Vec3};
 
 use super::model::{Bounds, Camera};
 use crate::settings::CameraSettings;
 
-/// Space around a framed model: its box fills this part of the picture's width or height.
+/// The framed model fills this fraction of the picture's width or height.
 const FILL: f32 = 1.0 / 1.08;
-/// Coordinates of eye and target beyond this overflow when they are squared.
+/// Larger coordinates of eye and target overflow when squared.
 const FARTHEST: f32 = 1e18;
-/// Field of view when the setting is not a number, degrees.
+/// Field of view if the setting is not finite, degrees.
 const DEFAULT_FOVY_DEG: f32 = 35.0;
 
-/// A perspective view in world space: right-handed, +Y up, meters. Made by [`CameraView::new`] or [`frame`], it is never
-/// degenerate.
+/// A perspective view in world space: right-handed, +Y up, meters. Create it with [`CameraView::new`] or [`frame`], which
+/// never return a degenerate view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraView {
     /// Position.
     pub eye: Vec3,
-    /// Looked-at point, apart from `eye`.
+    /// The point looked at; never equal to `eye`.
     pub target: Vec3,
-    /// Up in the picture: unit, orthogonal to the direction of view.
+    /// Up in the picture: unit, perpendicular to the viewing direction.
     pub up: Vec3,
     /// Vertical field of view, radians.
     pub fovy_rad: f32,
-    /// Width by height.
+    /// Width over height.
     pub aspect: f32,
     /// Near plane distance, meters.
     pub near: f32,
-    /// Distance behind which nothing of the model is, meters (the projection itself is infinite).
+    /// Distance beyond which the model has no point, meters. (The projection itself is infinite.)
     pub far: f32,
 }
 
 impl CameraView {
-    /// A view of a model of these bounds. What is not finite or has no direction is replaced by what shows the model;
-    /// the near plane is as far out as the bounds allow.
+    /// A view of a model with these bounds. Values that are not finite, or that give no direction, are replaced so that
+    /// the model is visible. The near plane is as far away as the bounds allow.
     pub fn new(eye: Vec3, target: Vec3, fovy_rad: f32, aspect: f32, bounds: &Bounds) -> Self {
         let radius = bounds.radius();
         let usable = |point: Vec3| point.abs().max_element() <= FARTHEST && point.is_finite();
         let target = if usable(target) { target } else { bounds.center() };
         let apart = usable(eye) && (target - eye).try_normalize().is_some();
-        // Far from the origin a radius may be less than a float's step.
+        // Far from the origin a radius can be smaller than the spacing of floats.
         let eye = if apart { eye } else { target + Vec3::Z * radius.max(target.length() * 1e-3) };
         let forward = (target - eye).normalize_or(Vec3::NEG_Z);
         let center_distance = (bounds.center() - eye).length();
@@ -57,8 +57,8 @@ impl CameraView {
         }
     }
 
-    /// The view of one of the model's cameras. Its target is at the depth of the model's center, where orbiting feels
-    /// right; a radius ahead when the center is behind the camera, or so close that orbiting would stand still.
+    /// The view of one of the model's cameras. The target is at the depth of the model's center, which suits orbiting.
+    /// If the center is behind the camera or too close to orbit around, the target is one radius ahead.
     pub fn of_camera(camera: &Camera, aspect: f32, bounds: &Bounds) -> Self {
         let depth = camera.forward.dot(bounds.center() - camera.eye);
         let depth = if depth > bounds.radius() * 1e-2 { depth } else { bounds.radius() };
@@ -67,7 +67,7 @@ impl CameraView {
         view
     }
 
-    /// Direction of view, unit.
+    /// Viewing direction, unit.
     pub fn forward(&self) -> Vec3 {
         (self.target - self.eye).normalize_or(Vec3::NEG_Z)
     }
@@ -85,8 +85,8 @@ impl CameraView {
     }
 }
 
-/// The view that the settings ask for. Without an eye, the model's outline (or the corners of its box) is fitted into the
-/// picture, with some space around it, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
+/// The view according to the settings. Without `eye`, this fits the model's outline (or its bounding box) into the
+/// picture with a margin, seen from `azimuth` (degrees from +Z towards +X) and `elevation`.
 pub fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspect: f32) -> CameraView {
     let corners = bounds.corners();
     let outline = if outline.is_empty() { &corners } else { outline };
@@ -103,14 +103,14 @@ pub fn frame(bounds: &Bounds, outline: &[Vec3], settings: &CameraSettings, aspec
     };
     let mut view = CameraView::new(eye, target, fovy_rad, aspect, bounds);
     if settings.eye.is_none() {
-        // Seen from right above, the azimuth still says where up is.
+        // When looking straight down, the azimuth still determines which direction is up.
         let (_, _, up) = basis(number(settings.azimuth), number(settings.elevation));
         view.up = up.reject_from_normalized(view.forward()).normalize_or(view.up);
     }
     view
 }
 
-/// Unit vectors towards the eye, to the right and up.
+/// Unit vectors back (towards the eye), right and up.
 fn basis(azimuth_rad: f32, elevation_rad: f32) -> (Vec3, Vec3, Vec3) {
     let (sin_a, cos_a) = azimuth_rad.sin_cos();
     let back = direction(azimuth_rad, elevation_rad);
@@ -125,9 +125,9 @@ pub(super) fn direction(azimuth_rad: f32, elevation_rad: f32) -> Vec3 {
     Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
 }
 
-/// Eye and target from which the points just fit. In the camera's frame, with t the tangent of half the usable angle, a
-/// point (x, z) is inside when |x - eye.x| <= t (eye.z - z): two linear bounds for each axis, which the closest eye
-/// meets both.
+/// Eye and target at which the points just fit. In camera space, with t the tangent of half the usable angle, a point
+/// (x, z) is inside if |x - eye.x| <= t (eye.z - z). These are two linear bounds per axis; the closest eye meets both
+/// with equality.
 fn fit(
     bounds: &Bounds,
     points: &[Vec3],
@@ -140,7 +140,7 @@ fn fit(
     let center = bounds.center();
     let tan_y = (fovy_rad * 0.5).tan() * FILL;
     let tan_x = tan_y * aspect;
-    // Nothing to fit, or a point: a sphere of radius 1 stands in.
+    // If there is nothing to fit, or a single point, this fits a sphere of radius 1.
     let solid = !bounds.is_empty() && (bounds.max - bounds.min).max_element() > 0.0;
     if !solid {
         return (center + back * (bounds.radius() / tan_y.min(tan_x)).max(1.0), center);
@@ -159,7 +159,7 @@ fn fit(
     (target + back * distance_x.max(distance_y), target)
 }
 
-/// Up in the picture for a direction of view: +Y as far as it goes, or a fixed one when looking straight up or down.
+/// Up in the picture for a viewing direction: +Y projected, or a fixed vector when looking straight up or down.
 fn upright(forward: Vec3) -> Vec3 {
     let fallback = if forward.y < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
     let up = Vec3::Y.reject_from_normalized(forward);

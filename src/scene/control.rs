@@ -1,4 +1,4 @@
-//! Moving the camera by hand. Pure math: the window turns input into these calls and keeps eye and target in the
+//! Camera controllers. Pure math: the window translates input into these calls and stores eye and target in the
 //! settings.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -7,15 +7,15 @@ use glam::{Vec2, Vec3};
 
 use super::camera::direction;
 
-/// Closest to straight up or down, radians: there, left and right lose their meaning.
+/// Largest elevation, radians. Straight up or down, left and right would be undefined.
 const STEEPEST: f32 = FRAC_PI_2 - 1e-3;
 
-/// A camera that circles its target.
+/// A camera that orbits its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrbitCamera {
     /// The center, world space.
     pub target: Vec3,
-    /// From the target to the eye, meters, above 0.
+    /// Distance from the target to the eye, meters, above 0.
     pub distance: f32,
     /// Around +Y, from +Z towards +X, radians.
     pub azimuth_rad: f32,
@@ -24,7 +24,7 @@ pub struct OrbitCamera {
 }
 
 impl OrbitCamera {
-    /// Takes over from an eye and a target.
+    /// Starts from an eye and a target.
     pub fn new(eye: Vec3, target: Vec3) -> Self {
         let (azimuth_rad, elevation_rad, distance) = angles(eye - target);
         Self { target, distance, azimuth_rad, elevation_rad }
@@ -35,12 +35,12 @@ impl OrbitCamera {
         self.target + direction(self.azimuth_rad, self.elevation_rad) * self.distance
     }
 
-    /// Circles the target: `delta_rad.x` turns the eye towards larger azimuths, `delta_rad.y` lifts it.
+    /// Orbits the target: `delta_rad.x` increases the azimuth, `delta_rad.y` the elevation.
     pub fn orbit(&mut self, delta_rad: Vec2) {
         turn(&mut self.azimuth_rad, &mut self.elevation_rad, delta_rad);
     }
 
-    /// Moves eye and target across the view: 1 is the height of the picture at the target; +x right, +y up.
+    /// Moves eye and target parallel to the picture: 1 is the picture's height at the target; +x right, +y up.
     pub fn pan(&mut self, delta: Vec2, fovy_rad: f32) {
         let height = 2.0 * self.distance * (fovy_rad * 0.5).tan();
         let back = direction(self.azimuth_rad, self.elevation_rad);
@@ -51,7 +51,7 @@ impl OrbitCamera {
         }
     }
 
-    /// Moves towards the target: each unit takes a tenth of the distance away, negative ones move back.
+    /// Moves towards the target: each step reduces the distance by a tenth; negative steps move back.
     pub fn dolly(&mut self, steps: f32) {
         let distance = self.distance * 0.9_f32.powf(steps);
         if distance.is_finite() && distance > f32::MIN_POSITIVE {
@@ -60,7 +60,7 @@ impl OrbitCamera {
     }
 }
 
-/// A camera that flies freely and keeps its horizon level.
+/// A camera that flies freely, with a level horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlyCamera {
     /// Position, world space.
@@ -69,18 +69,18 @@ pub struct FlyCamera {
     pub azimuth_rad: f32,
     /// Direction of view above the horizon, radians.
     pub elevation_rad: f32,
-    /// Distance to the target that it hands over, meters.
+    /// Distance to the point that [`Self::target`] returns, meters.
     pub distance: f32,
 }
 
 impl FlyCamera {
-    /// Takes over from an eye and a target.
+    /// Starts from an eye and a target.
     pub fn new(eye: Vec3, target: Vec3) -> Self {
         let (azimuth_rad, elevation_rad, distance) = angles(target - eye);
         Self { eye, azimuth_rad, elevation_rad, distance }
     }
 
-    /// Direction of view, unit.
+    /// Viewing direction, unit.
     pub fn forward(&self) -> Vec3 {
         direction(self.azimuth_rad, self.elevation_rad)
     }
@@ -90,13 +90,13 @@ impl FlyCamera {
         self.eye + self.forward() * self.distance
     }
 
-    /// Looks around: `delta_rad.x` to the right, `delta_rad.y` up.
+    /// Rotates the view: `delta_rad.x` to the right, `delta_rad.y` up.
     pub fn look(&mut self, delta_rad: Vec2) {
-        // From above, azimuths grow to the left of the direction of view.
+        // Azimuths increase counterclockwise seen from above, so turning right decreases the azimuth.
         turn(&mut self.azimuth_rad, &mut self.elevation_rad, Vec2::new(-delta_rad.x, delta_rad.y));
     }
 
-    /// Flies for `seconds`: `velocity` in meters a second, x right, y up in the world, z ahead.
+    /// Flies for `seconds`: `velocity` in meters a second, x right, y up in the world, z forward.
     pub fn fly(&mut self, velocity: Vec3, seconds: f32) {
         let right = direction(self.azimuth_rad - FRAC_PI_2, 0.0);
         let step = (right * velocity.x + Vec3::Y * velocity.y + self.forward() * velocity.z) * seconds;
@@ -106,7 +106,7 @@ impl FlyCamera {
     }
 }
 
-/// Azimuth, elevation and length of a vector; of one without direction those of +Z and a meter.
+/// Azimuth, elevation and length of a vector. A vector without direction counts as +Z with length 1.
 fn angles(vector: Vec3) -> (f32, f32, f32) {
     let (unit, length) = match vector.try_normalize() {
         Some(unit) => (unit, vector.length()),

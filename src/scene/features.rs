@@ -1,4 +1,5 @@
-//! Which features of the shaders a material needs: those that change the picture, so that the others cost nothing.
+//! Determines which shader features a material needs. Only features that change the picture count; the others cost
+//! nothing.
 
 use glam::{Affine2, Vec3};
 
@@ -12,8 +13,8 @@ use crate::interface::{
     TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SPECULAR, TEXTURE_SPECULAR_COLOR,
 };
 
-/// The `interface::FEATURE_*` bits of a material of `model` on a mesh with these `interface::ATTRIBUTE_*`. The bits
-/// that a whole frame shares are not among them.
+/// The `interface::FEATURE_*` bits of a material of `model`, on a mesh with these `interface::ATTRIBUTE_*` bits. Bits
+/// that depend on the frame (environment, rectangular lights) are not included.
 pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
     let has_frame = attributes & ATTRIBUTE_TANGENT_FRAME != 0;
     let has = |texture: u32| material.textures[texture as usize].is_some();
@@ -49,25 +50,26 @@ pub fn features(model: &Model, material: &Material, attributes: u32) -> u32 {
         (FEATURE_IRIDESCENCE, film.factor > 0.0 && has_film),
         (FEATURE_TRANSMISSION, transmission),
         (FEATURE_VOLUME, volume),
-        // Diffuse light has lost its direction, so dispersion does not show in it.
+        // Diffusely transmitted light has no direction left, so dispersion is invisible in it.
         (FEATURE_DISPERSION, volume && transmission && material.dispersion > 0.0),
         (FEATURE_DIFFUSE_TRANSMISSION, diffuse_transmission),
         (FEATURE_SPECULAR_GLOSSINESS, material.specular_glossiness),
         (FEATURE_CONDUCTOR, !material.specular_glossiness && material.conductor.is_some()),
-        // Without an occlusion texture its strength is 0, so what is read does not matter: then better no texture more.
+        // Without an occlusion texture the strength is 0, so the value does not matter; this saves a texture read.
         (FEATURE_PACKED_OCCLUSION, !has(TEXTURE_OCCLUSION) || packs_occlusion(model, material)),
     ];
     conditions.iter().filter(|(_, used)| *used).fold(normal | read, |bits, (bit, _)| bits | bit)
 }
 
-/// Whether occlusion can be the red channel of the metallic-roughness texture, which leaves it free: both are read
-/// alike, and are one image, or two of one size that an upload can merge.
+/// Whether the red channel of the metallic-roughness texture, which that texture does not use, can hold occlusion. Both
+/// textures must have the same coordinates and sampler, and the same image or two of equal size, which the upload
+/// merges.
 pub fn packs_occlusion(model: &Model, material: &Material) -> bool {
     let slot = |texture: u32| material.textures[texture as usize];
     let (Some(roughness), Some(occlusion)) = (slot(TEXTURE_METALLIC_ROUGHNESS), slot(TEXTURE_OCCLUSION)) else {
         return false;
     };
-    // Specular-glossiness has a color there; an unlit material reads neither.
+    // Specular-glossiness has a color in that slot; an unlit material reads neither.
     if material.specular_glossiness || material.unlit {
         return false;
     }

@@ -1,4 +1,4 @@
-//! From settings and model to the lights that shine.
+//! Builds the lights of a frame from the settings and the model.
 
 use glam::Vec3;
 
@@ -7,8 +7,8 @@ use super::model::{LightKind, Model};
 use crate::interface::{self, Light};
 use crate::settings::{LightSettings, LightSource, OrbitLight, RectLight};
 
-/// The lights of a frame in world space, the rectangle last. `time_s` turns the orbiting ones by `spin` degrees a
-/// second; the rectangle stands still.
+/// The lights of a frame in world space, the rectangle last. The orbiting lights have turned by `spin` (degrees a
+/// second) times `time_s`; the rectangle does not turn.
 pub fn lights(settings: &LightSettings, model: &Model, time_s: f32) -> Vec<Light> {
     let mut lights: Vec<Light> = match settings.source {
         LightSource::None => return Vec::new(),
@@ -21,7 +21,7 @@ pub fn lights(settings: &LightSettings, model: &Model, time_s: f32) -> Vec<Light
     lights
 }
 
-/// How many lights shine, of a model with `in_model` of its own.
+/// The number of lights that [`lights`] returns for a model with `in_model` lights of its own.
 pub fn light_count(settings: &LightSettings, in_model: usize) -> usize {
     let punctual = match settings.source {
         LightSource::None => return 0,
@@ -31,7 +31,7 @@ pub fn light_count(settings: &LightSettings, in_model: usize) -> usize {
     punctual + usize::from(settings.rect.enabled)
 }
 
-/// Distances and intensities grow with the model, so that every model is lit alike.
+/// Scales distance and intensity with the model, so that every model has the same lighting.
 fn orbit(light: &OrbitLight, turned_deg: f32, model: &Model) -> Light {
     let (center, radius) = (model.bounds.center(), model.bounds.radius());
     let azimuth_rad = (light.azimuth + turned_deg).to_radians();
@@ -46,12 +46,12 @@ fn orbit(light: &OrbitLight, turned_deg: f32, model: &Model) -> Light {
     }
 }
 
-/// Lengths grow with the model; radiance does not depend on them. `half_x_ws` x `half_y_ws` points where it shines to.
+/// Scales lengths with the model; radiance needs no scaling. `half_x_ws` x `half_y_ws` is the direction of emission.
 fn rectangle(light: &RectLight, model: &Model) -> Light {
     let (center, radius) = (model.bounds.center(), model.bounds.radius());
     let azimuth_rad = light.azimuth.to_radians();
     let outward = direction(azimuth_rad, (90.0 - light.polar).to_radians());
-    // Not a cross product with +Y, which has no direction above and below the model.
+    // A cross product with +Y would be zero directly above and below the model.
     let x = Vec3::new(azimuth_rad.cos(), 0.0, -azimuth_rad.sin());
     let y = (-outward).cross(x);
     Light {
@@ -89,8 +89,8 @@ fn punctual(light: &super::model::Light) -> Light {
     }
 }
 
-/// Scale and offset that bring the cosine of the angle to the axis to 0 at `outer` and 1 at `inner`, radians (the glTF
-/// extension KHR_lights_punctual). Where both are the same the ramp is a step; 1e-3, also from there, keeps it divisible.
+/// Scale and offset of a ramp in the cosine of the angle to the axis: 0 at `outer`, 1 at `inner`, radians
+/// (KHR_lights_punctual). With equal angles the ramp is a step; 1e-3, also from the extension, keeps the scale finite.
 fn cone(inner: f32, outer: f32) -> (f32, f32) {
     let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
     (scale, -outer.cos() * scale)
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     fn model() -> Model {
-        // Half the diagonal is 3.
+        // The bounding sphere's radius is 3.
         Model { bounds: Bounds { min: Vec3::new(0.0, 0.0, 0.0), max: Vec3::new(2.0, 4.0, 4.0) }, ..Model::default() }
     }
 
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn the_rectangle_faces_the_center_from_everywhere() {
-        // Straight above and below, a horizontal edge has to be chosen.
+        // Directly above and below, the horizontal edge needs a choice.
         for (azimuth, polar) in [(-40.0, 50.0), (0.0, 90.0), (77.0, 0.0), (200.0, 180.0), (0.0, 0.0)] {
             let rect = RectLight {
                 enabled: true,
@@ -192,7 +192,7 @@ mod tests {
         assert_eq!((spot.kind, spot.inverse_range, spot.position_ws), (interface::LIGHT_SPOT, 1.0 / 7.0, [1.0; 4]));
         let ramp = |cosine: f32| cosine * spot.angle_scale + spot.angle_offset;
         assert!(ramp(outer.cos()).abs() < 1e-6 && (ramp(0.3_f32.cos()) - 1.0).abs() < 1e-6, "{spot:?}");
-        // Straight above, infinitely far away, without an end, and the same in all directions.
+        // Directly above, infinitely far away, with unlimited range, and no cone.
         assert_eq!((sun.position_ws, sun.inverse_range), ([0.0, 1.0, 0.0, 0.0], 0.0));
         assert_eq!((sun.angle_scale, sun.angle_offset), (0.0, 1.0));
         assert!(from(LightSource::None).is_empty());

@@ -1,20 +1,21 @@
-//! Light from all around.
+//! Settings of the environment.
 
 use serde::{Deserialize, Serialize};
 
 use super::ViewSettings;
 
-/// The environment.
+/// Settings of the environment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct EnvironmentSettings {
-    /// A built-in name, a `.hdr` or `.exr` file, or `none`: then the flat ambient light of `lights.ambient_*` shines.
+    /// A built-in name, a `.hdr` or `.exr` file, or `none`, which selects the uniform ambient light of
+    /// `lights.ambient_*`.
     pub name: String,
-    /// Degrees around +Y; a positive angle turns what lay ahead (-Z) to the left (-X).
+    /// Degrees around +Y; a positive angle turns what is ahead (-Z) to the left (-X).
     pub rotation: f32,
-    /// Factor on its radiance.
+    /// Factor on the environment's radiance.
     pub intensity: f32,
-    /// Blur where it is seen behind the model: 0 sharp .. 1, as a roughness.
+    /// Blur of the background: 0 sharp .. 1, as a roughness.
     pub blur: f32,
 }
 
@@ -25,17 +26,17 @@ impl Default for EnvironmentSettings {
 }
 
 impl EnvironmentSettings {
-    /// Whether there is one.
+    /// Whether an environment is selected.
     pub fn is_lit(&self) -> bool {
         self.name != "none"
     }
 
-    /// Whether it is seen behind the model.
+    /// Whether the environment is visible behind the model.
     pub fn is_shown(&self, view: &ViewSettings) -> bool {
         self.is_lit() && view.background == "env"
     }
 
-    /// Name, value, and what the value can be.
+    /// Path, value, smallest and largest value.
     pub(super) fn numbers(&self) -> [(&'static str, f32, f32, f32); 3] {
         [
             ("environment.rotation", self.rotation, -1e6, 1e6),

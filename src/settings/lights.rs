@@ -1,39 +1,39 @@
-//! Lights: three that orbit, a rectangle, the model's own, ambient.
+//! Settings of the lights: three orbiting lights, a rectangle, the model's own lights, ambient light.
 
 use serde::{Deserialize, Serialize};
 
 use super::Range;
 
-/// Which lights shine.
+/// Which lights are on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum LightSource {
     /// The three orbiting lights.
     #[default]
     Orbit,
-    /// The model's own KHR_lights_punctual.
+    /// The model's own lights (KHR_lights_punctual).
     Model,
     /// None.
     None,
 }
 
-/// Lights.
+/// Settings of the lights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LightSettings {
-    /// Which lights shine.
+    /// Which lights are on.
     pub source: LightSource,
     /// The three orbiting lights.
     pub orbit: [OrbitLight; 3],
-    /// The rectangle, which shines beside those of any source but none.
+    /// The rectangular light, in addition to those of `source`, unless that is `none`.
     pub rect: RectLight,
-    /// Whether the orbiting ones move around the model in the window, and how fast: degrees a second.
+    /// Speed at which the orbiting lights turn around the model in the window, degrees a second; 0 stops them.
     pub spin: f32,
-    /// Which light the BRDF terms show: 0 all, else 1-based.
+    /// The light that BRDF term modes show: 0 all, else 1-based.
     pub chosen: u32,
-    /// Ambient light, linear RGB.
+    /// Color of the ambient light, linear RGB. It is off while there is an environment.
     pub ambient_color: [f32; 3],
-    /// Its strength (radiance at white).
+    /// Radiance of the ambient light if its color is white.
     pub ambient_strength: f32,
 }
 
@@ -55,8 +55,8 @@ impl Default for LightSettings {
     }
 }
 
-/// A point light that circles the model. Distances are in radii of the model's bounding sphere, so that every model is
-/// lit alike.
+/// A point light that orbits the model. Distances are in radii of the model's bounding sphere, so that every model has
+/// the same lighting.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OrbitLight {
@@ -72,21 +72,21 @@ pub struct OrbitLight {
     pub polar: f32,
 }
 
-/// A one-sided rectangle that faces the model's center. Lengths are in radii of the model's bounding sphere.
+/// A one-sided rectangular light that faces the model's center. Lengths are in radii of the model's bounding sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RectLight {
-    /// Whether it shines.
+    /// Whether it is on.
     pub enabled: bool,
     /// Linear RGB.
     pub color: [f32; 3],
-    /// Its radiance at white: it does not change with its size.
+    /// Radiance if its color is white. It does not change with the size.
     pub strength: f32,
     /// Length of its horizontal edges.
     pub width: f32,
-    /// Length of the others.
+    /// Length of the other edges.
     pub height: f32,
-    /// From the model's center to its own.
+    /// Distance from the model's center to the rectangle's.
     pub distance: f32,
     /// Degrees around +Y, from +Z towards +X.
     pub azimuth: f32,
@@ -110,7 +110,7 @@ impl Default for RectLight {
 }
 
 impl LightSettings {
-    /// Every number with its path and limits.
+    /// All numbers with their paths and limits.
     pub(super) fn ranges(&self) -> Vec<Range> {
         let mut ranges = vec![
             Range::new("lights.ambient_strength", self.ambient_strength, 0.0..=1e9),

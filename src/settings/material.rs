@@ -1,14 +1,15 @@
-//! One material in place of all of the model's.
+//! The material override.
 
 use serde::{Deserialize, Serialize};
 
 use super::Range;
 
-/// A material without textures that every mesh gets while it is enabled, to look at shapes and at the BRDF itself.
+/// A material without textures that replaces all materials of the model while it is enabled, to inspect shapes and the
+/// BRDF itself.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MaterialOverride {
-    /// Whether it stands in for the model's materials.
+    /// Whether it replaces the model's materials.
     pub enabled: bool,
     /// Linear RGB.
     pub base_color: [f32; 3],
@@ -16,7 +17,7 @@ pub struct MaterialOverride {
     pub metallic: f32,
     /// Perceptual roughness, 0..1.
     pub roughness: f32,
-    /// Anisotropy strength, 0..1; needs meshes with tangents or texture coordinates.
+    /// Anisotropy strength, 0..1. Needs meshes with tangents or texture coordinates.
     pub anisotropy: f32,
     /// Degrees from the tangent towards the bitangent.
     pub anisotropy_rotation: f32,
@@ -36,7 +37,7 @@ impl Default for MaterialOverride {
 }
 
 impl MaterialOverride {
-    /// Every number with its path and limits.
+    /// All numbers with their paths and limits.
     pub(super) fn ranges(&self) -> Vec<Range> {
         let mut ranges = Range::all("material.base_color", &self.base_color, 0.0..=1.0);
         ranges.extend([

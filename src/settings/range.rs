@@ -1,8 +1,8 @@
-//! Numbers and what they can be.
+//! Limits of numbers in the settings.
 
 use std::ops::RangeInclusive;
 
-/// A number of the settings with its path and limits.
+/// A number in the settings with its path and limits.
 pub(super) struct Range {
     path: String,
     value: f32,
@@ -15,13 +15,13 @@ impl Range {
         Self { path: path.into(), value, limits }
     }
 
-    /// The entries of a list.
+    /// One entry per element of a list.
     pub(super) fn all(path: &str, values: &[f32], limits: RangeInclusive<f32>) -> Vec<Self> {
         let entry = |(i, value): (usize, &f32)| Self::new(format!("{path}.{i}"), *value, limits.clone());
         values.iter().enumerate().map(entry).collect()
     }
 
-    /// Refuses a number outside, and NaN.
+    /// Returns a message if the number is out of range or NaN.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self { path, value, limits } = self;
         if limits.contains(value) {

@@ -1,4 +1,4 @@
-//! What went wrong, where, and what to do about it: printed as a line for editors and as an excerpt for people.
+//! Diagnostics: what is wrong, where, and what to do, formatted as one line for editors or as an excerpt for people.
 
 use std::fmt;
 use std::ops::Range;
@@ -8,13 +8,13 @@ use codespan_reporting::files::{Error as FilesError, Files};
 use codespan_reporting::term;
 use serde::Serialize;
 
-/// Whether the shader set may be used all the same.
+/// Whether the shader set can still be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// The edit is refused.
+    /// The edit is rejected.
     Error,
-    /// The edit is shown.
+    /// The edit is applied.
     Warning,
 }
 
@@ -27,31 +27,31 @@ impl fmt::Display for Severity {
     }
 }
 
-/// One message about one place.
+/// A message about one place in a file.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct Diagnostic {
     /// Error or warning.
     pub severity: Severity,
-    /// The file as printed, see `Source::display_path`.
+    /// The file as displayed, see `Source::display_path`.
     pub file: String,
-    /// 1-based; none when the message is about the file as a whole.
+    /// 1-based; `None` if the message is about the whole file.
     pub line: Option<u32>,
-    /// 1-based, in characters; none when only the line is known.
+    /// 1-based, in characters; `None` if only the line is known.
     pub column: Option<u32>,
-    /// How many characters the caret spans; 0 without a column.
+    /// Number of characters that the caret spans; 0 without a column.
     pub length: u32,
     /// What is wrong: expected and found.
     pub message: String,
-    /// The line of source, as written.
+    /// The source line as written.
     pub excerpt: Option<String>,
     /// What to do next.
     pub help: Option<String>,
-    /// Further facts: the other place of a conflict, the include chain.
+    /// Additional information, such as the other place of a conflict or the include chain.
     pub notes: Vec<String>,
 }
 
 impl Diagnostic {
-    /// An error about a file as a whole; [`Self::on_line`] and [`Self::under`] narrow it down.
+    /// An error about a whole file. [`Self::on_line`] and [`Self::under`] add a position.
     pub fn error(file: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -66,12 +66,12 @@ impl Diagnostic {
         }
     }
 
-    /// A warning about a file as a whole.
+    /// A warning about a whole file.
     pub fn warning(file: impl Into<String>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(file, message) }
     }
 
-    /// Sets the 1-based line and the source text found there.
+    /// Sets the 1-based line and its source text.
     #[must_use]
     pub fn on_line(mut self, line: u32, source: Option<&str>) -> Self {
         self.line = Some(line);
@@ -79,7 +79,7 @@ impl Diagnostic {
         self
     }
 
-    /// Puts the caret under a byte range of the excerpt. Without an excerpt, or outside it, nothing changes.
+    /// Sets the caret to a byte range of the excerpt. Does nothing without an excerpt or outside it.
     #[must_use]
     pub fn under(mut self, bytes: Range<usize>) -> Self {
         let Some(excerpt) = &self.excerpt else { return self };
@@ -90,21 +90,21 @@ impl Diagnostic {
         self
     }
 
-    /// Says what to do.
+    /// Sets the help text: what to do.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Adds a fact.
+    /// Adds a note.
     #[must_use]
     pub fn with_note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
-    /// `file:line:column: error: message`, leaving out what is not known. Editors parse this.
+    /// `file:line:column: error: message`, without the parts that are unknown. Editors parse this.
     pub fn one_line(&self) -> String {
         let place = match (self.line, self.column) {
             (Some(line), Some(column)) => format!("{}:{line}:{column}", self.file),
@@ -114,7 +114,7 @@ impl Diagnostic {
         format!("{place}: {}: {}", self.severity, self.message.replace('\n', " "))
     }
 
-    /// Several lines of plain text: the message, the place, the line of source with a caret, help and notes.
+    /// Several lines of plain text: message, place, source line with a caret, help and notes.
     pub fn render(&self) -> String {
         let severity = match self.severity {
             Severity::Error => RenderedSeverity::Error,
@@ -134,19 +134,19 @@ impl Diagnostic {
         let config = term::Config { chars: term::Chars::ascii(), ..term::Config::default() };
         match term::emit_into_string(&config, &excerpt, &rendered) {
             Ok(text) => text.trim_end().to_owned() + "\n",
-            // Only a range outside the excerpt could fail, and `under` lets none in; say the essential all the same.
+            // Cannot happen, since `under` admits no range outside the excerpt. Fall back to the essentials.
             Err(_) => self.one_line() + "\n",
         }
     }
 
-    /// For a terminal: the line that editors parse, then the source with its caret.
+    /// For a terminal: the line that editors parse, then the source line with its caret.
     pub fn full(&self) -> String {
         let rendered = self.render();
         let rest = rendered.split_once('\n').map_or("", |(_, rest)| rest.trim_end());
         format!("{}\n{rest}", self.one_line()).trim_end().to_owned()
     }
 
-    /// What the caret spans: the token, or the line without its indentation.
+    /// The bytes that the caret spans: the token, or the line without its indentation.
     fn caret_bytes(&self) -> Option<Range<usize>> {
         let excerpt = self.excerpt.as_deref()?;
         self.line?;
@@ -164,13 +164,13 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// Drops repetitions (several stages include the same broken file), keeping the order.
+/// Removes duplicates (several stages may include the same broken file) and keeps the order.
 pub fn unique(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let mut seen = std::collections::HashSet::new();
     diagnostics.into_iter().filter(|diagnostic| seen.insert(diagnostic.clone())).collect()
 }
 
-/// A file of which only one line is at hand.
+/// A file of which only one line is known.
 struct OneLine<'a> {
     file: &'a str,
     line: u32,

@@ -1,7 +1,7 @@
-//! The BRDF of glTF 2.0, appendix B, under the extensions that change it, from the texts of the specifications.
+//! The BRDF of glTF 2.0, appendix B, with the extensions that change it, implemented from the specifications.
 //!
 //! `l` is the direction towards the light, `v` towards the eye, `n` the normal, all unit and in world space. Every lobe
-//! comes multiplied by its cosine: radiance for an irradiance of 1 on a plane that faces the light.
+//! includes its cosine: it is the radiance for an irradiance of 1 on a plane perpendicular to `l`.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::{film, sheen};
 
-/// What the extensions' texts call the BRDF inputs, textures and factors multiplied.
+/// The BRDF inputs as the extensions name them: textures and factors multiplied.
 #[derive(Clone, Debug)]
 pub struct Surface {
     pub n: DVec3,
@@ -33,7 +33,7 @@ pub struct Surface {
     pub transmission: f64,
     pub diffuse_transmission: f64,
     pub diffuse_transmission_color: DVec3,
-    /// KHR_materials_volume: what is left of light that crossed it.
+    /// KHR_materials_volume: transmittance.
     pub attenuation: DVec3,
 }
 
@@ -45,28 +45,28 @@ pub struct Coat {
     pub roughness: f64,
 }
 
-/// How G is put together from the Lambda of both directions (Heitz 2014, eq. 98 and 99).
+/// How G combines the Lambda of both directions (Heitz 2014, eq. 98 and 99).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Masking {
     /// The specification's (B.3.2).
     Separable,
-    /// The program's own choice.
+    /// The renderer's default.
     HeightCorrelated,
 }
 
-/// Light by the part of the material that sends it to the eye.
+/// Reflected or transmitted light, by lobe.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lobes {
     pub diffuse: DVec3,
     pub specular: DVec3,
-    /// From the other side, straight or scattered.
+    /// From the other side, refracted or scattered.
     pub transmitted: DVec3,
     pub sheen: DVec3,
     pub coat: DVec3,
 }
 
 impl Lobes {
-    /// The material.
+    /// Their sum.
     pub fn all(&self) -> DVec3 {
         self.diffuse + self.specular + self.transmitted + self.sheen + self.coat
     }
@@ -83,8 +83,8 @@ impl Lobes {
     }
 }
 
-/// Widths of the lobe along `t` and `cross(n, t)`. The floor of 0.0025 is the program's: at 0 a point light has no
-/// reflection.
+/// alpha along `t` and `cross(n, t)`. The renderer has the minimum of 0.0025, since a punctual light would have no
+/// reflection at 0.
 struct Widths {
     t: DVec3,
     b: DVec3,
@@ -110,15 +110,15 @@ impl Widths {
         Self { t, b: s.n.cross(t), along_t: narrow * (1.0 - strength2) + strength2, along_b: narrow }
     }
 
-    /// D(h), the equation in KHR_materials_anisotropy; round, it is that in B.3.2.
+    /// D(h) from KHR_materials_anisotropy; with equal alphas it is that of B.3.2.
     fn d(&self, n: DVec3, h: DVec3) -> f64 {
         let (t, b) = (h.dot(self.t) / self.along_t, h.dot(self.b) / self.along_b);
         let sum = t * t + b * b + h.dot(n).powi(2);
         1.0 / (PI * self.along_t * self.along_b * sum * sum)
     }
 
-    /// Lambda(w) = (sqrt(1 + alpha^2 tan^2) - 1) / 2, alpha as wide as the lobe is in the direction of w (Heitz 2014,
-    /// eq. 72 and section 5.3).
+    /// Lambda(w) = (sqrt(1 + alpha^2 tan^2) - 1) / 2, with alpha in the direction of w (Heitz 2014, eq. 72 and section
+    /// 5.3).
     fn lambda(&self, n: DVec3, w: DVec3) -> f64 {
         let (t, b) = (w.dot(self.t) * self.along_t, w.dot(self.b) * self.along_b);
         ((1.0 + (t * t + b * b) / w.dot(n).powi(2)).sqrt() - 1.0) / 2.0
@@ -143,7 +143,7 @@ fn mix(a: DVec3, b: DVec3, part: f64) -> DVec3 {
     a * (1.0 - part) + b * part
 }
 
-/// `dielectric_fresnel` and `conductor_fresnel`, under a film where there is one (KHR_materials_iridescence).
+/// `dielectric_fresnel` and `conductor_fresnel`, with the thin film if there is one (KHR_materials_iridescence).
 fn fresnel(s: &Surface, v_dot_h: f64) -> (DVec3, DVec3) {
     let under_film = |f: DVec3, f0: DVec3| match s.film.strength {
         0.0 => f,
@@ -153,11 +153,11 @@ fn fresnel(s: &Surface, v_dot_h: f64) -> (DVec3, DVec3) {
     (dielectric, under_film(schlick(s.base_color, 1.0, v_dot_h), s.base_color))
 }
 
-/// `material` of B.2 below sheen and coat, with `specular_btdf` (KHR_materials_transmission) and `diffuse_btdf`
-/// (KHR_materials_diffuse_transmission) in the base of the dielectric.
+/// `material` of B.2, without sheen and coat. The dielectric's base includes `specular_btdf`
+/// (KHR_materials_transmission) and `diffuse_btdf` (KHR_materials_diffuse_transmission).
 fn material(s: &Surface, l: DVec3, v: DVec3, masking: Masking) -> Lobes {
     let cosine = s.n.dot(l);
-    // A light behind the surface is mirrored to the side of the eye; its half vector is H_T.
+    // A light behind the surface is mirrored to the eye's side; its half vector is H_T.
     let mirrored = l - 2.0 * cosine.min(0.0) * s.n;
     let (dielectric, metal) = fresnel(s, v.dot((mirrored + v).normalize()));
     let enters = (1.0 - s.metallic) * (1.0 - dielectric.max_element()) * cosine.abs();
@@ -167,15 +167,15 @@ fn material(s: &Surface, l: DVec3, v: DVec3, masking: Masking) -> Lobes {
         let diffuse = s.base_color / PI * scattered * (1.0 - s.diffuse_transmission);
         return Lobes { diffuse, specular: mix(dielectric, metal, s.metallic) * lobe * cosine, ..Lobes::default() };
     }
-    // "This effect will be modulated by the index of refraction": the program's line from index 1, where facets bend
-    // nothing, to 1.5, where the lobe is as wide as the reflected one.
+    // "This effect will be modulated by the index of refraction": the renderer's line from index 1, where facets do not
+    // deflect light, to 1.5, where the lobe is as wide as the reflected one.
     let width = Widths::round(s.n, s.roughness * (2.0 * s.ior - 2.0).clamp(0.0, 1.0));
     let straight = s.base_color * width.lobe(s.n, mirrored, v, masking) * enters * s.transmission;
     let diffuse = s.diffuse_transmission_color / PI * scattered * s.diffuse_transmission;
     Lobes { transmitted: (straight + diffuse) * s.attenuation, ..Lobes::default() }
 }
 
-/// Part of the light that the coat reflects: `weight * fr` of `fresnel_coat`.
+/// The fraction of light that the coat reflects: `weight * fr` of `fresnel_coat`.
 fn coat_weight(coat: &Coat, v: DVec3) -> f64 {
     coat.factor * schlick(DVec3::splat(0.04), 1.0, coat.n.dot(v).abs()).x
 }

@@ -14,7 +14,7 @@ pub struct Film {
     pub thickness: f64,
 }
 
-/// Reflectance of a smooth boundary along its normal, by the indices on its two sides.
+/// Reflectance of a smooth boundary at normal incidence, from the indices on both sides.
 fn r0(a: f64, b: f64) -> f64 {
     ((a - b) / (a + b)).powi(2)
 }
@@ -23,8 +23,8 @@ fn schlick(r0: f64, cosine: f64) -> f64 {
     r0 + (1.0 - r0) * (1.0 - cosine).powi(5)
 }
 
-/// What the sensors of X, Y and Z see of waves that are apart by `path` meters and shifted by a phase: Gaussians over
-/// the wave number, the second of X in the blue.
+/// The response of X, Y and Z to waves with a path difference of `path` meters and a phase shift: Gaussians over the
+/// wavenumber, with a second one for X in the blue.
 fn sensed(path: f64, phase: f64) -> DVec3 {
     let gaussian = |height: f64, center: f64, variance: f64| {
         let distance = TAU * path;
@@ -41,18 +41,18 @@ const RGB_FROM_XYZ: [[f64; 3]; 3] =
     [[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560], [0.0556434, -0.2040259, 1.0572252]];
 
 impl Film {
-    /// Reflectance where the base has the reflectance `f0` in air, under the angle of this cosine. The text guards the
-    /// index of the base from a reflectance of 1 by adding 1e-4 to all; that is left out here. Reflectance is not
-    /// negative (the text) and not above 1 (the program).
+    /// Reflectance at the angle with this cosine, for a base with the reflectance `f0` in air. The specification adds
+    /// 1e-4 to avoid a reflectance of 1; this does not. Clamps to 0 from below (the specification) and to 1 from above
+    /// (the renderer).
     pub fn fresnel(&self, f0: DVec3, cosine: f64) -> DVec3 {
-        // Snell.
+        // Snell's law.
         let cosine2 = 1.0 - (1.0 - cosine * cosine) / (self.ior * self.ior);
         if cosine2 < 0.0 {
             return DVec3::ONE;
         }
         let cosine2 = cosine2.sqrt();
         let path = 2.0 * self.ior * self.thickness * 1e-9 * cosine2;
-        // From air to the film and back out.
+        // The outer face: from air into the film, and back out.
         let r12 = schlick(r0(self.ior, 1.0), cosine);
         let t121 = 1.0 - r12;
         let phase21 = if self.ior < 1.0 { 0.0 } else { PI };

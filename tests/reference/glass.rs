@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// A pane or a body of glass. All vectors are unit, `v` towards the eye.
+/// A pane or a solid body of glass. All vectors are unit; `v` points towards the eye.
 pub struct Glass {
     pub base_color: DVec3,
     pub ior: f64,
@@ -21,7 +21,7 @@ impl Glass {
         [self.ior - half_spread, self.ior, self.ior + half_spread]
     }
 
-    /// Where the ray goes inside: Snell's law, n_air sin = n_glass sin, in the plane of v and n. Straight on through a pane.
+    /// The ray inside: Snell's law, n_air sin = n_glass sin, in the plane of v and n. A pane does not deflect it.
     pub fn refracted(&self, n: DVec3, v: DVec3, ior: f64) -> DVec3 {
         if self.thickness == 0.0 {
             return -v;
@@ -31,8 +31,8 @@ impl Glass {
         -along - n * (1.0 - sin2).sqrt()
     }
 
-    /// Part of the light that gets to the eye: what the boundary does not reflect (Schlick), and what `color^(d / distance)` of
-    /// the volume leaves.
+    /// The fraction of light that reaches the eye: 1 - F (Schlick) times the volume's transmittance,
+    /// `color^(d / distance)`.
     pub fn passes(&self, n: DVec3, v: DVec3) -> DVec3 {
         let f0 = ((1.0 - self.ior) / (1.0 + self.ior)).powi(2);
         let fresnel = f0 + (1.0 - f0) * (1.0 - n.dot(v)).powi(5);

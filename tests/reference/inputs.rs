@@ -1,4 +1,4 @@
-//! What is shaded at a pixel, from the renderer's modes of inputs; what no mode shows, from the model's file.
+//! The shading inputs at a pixel: from the renderer's debug modes, or from the model's file if no mode shows them.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::support::render;
 /// Modes that every material has.
 const COMMON: [&str; 5] = ["position", "shading-normal", "base-color", "metallic", "roughness"];
 
-/// The modes of inputs, rendered, and the materials by pixel.
+/// The rendered modes, and the materials by pixel.
 pub struct Inputs {
     modes: BTreeMap<&'static str, Vec<[f32; 4]>>,
     materials: Vec<Material>,
@@ -22,7 +22,7 @@ pub struct Inputs {
     numbers: Vec<usize>,
 }
 
-/// The model in opaque colors that say which of its materials is where.
+/// The model with opaque colors that identify its materials.
 fn numbered(model: &Model) -> Model {
     let mut model = model.clone();
     for (i, material) in model.materials.iter_mut().enumerate() {
@@ -61,7 +61,7 @@ impl Inputs {
         DVec3::new(r.into(), g.into(), b.into())
     }
 
-    /// The value of another mode; none where it was not rendered, or shows the checkerboard of what is absent.
+    /// The value of another mode; `None` if it was not rendered, or shows the checkerboard of missing data.
     pub fn extra(&self, pixel: usize, slug: &str) -> Option<DVec3> {
         self.modes.get(slug)?;
         let value = self.shown(pixel, slug);
@@ -103,7 +103,7 @@ impl Inputs {
         }
     }
 
-    /// KHR_materials_pbrSpecularGlossiness: `c_diff`, without textures worked out from the file.
+    /// KHR_materials_pbrSpecularGlossiness: `c_diff`, from the file if there is no texture.
     fn base_color(&self, pixel: usize) -> DVec3 {
         let material = self.material(pixel);
         if !material.specular_glossiness || material.textures.iter().any(Option::is_some) {
@@ -113,7 +113,7 @@ impl Inputs {
         material.base_color_factor.truncate().as_dvec3() * (1.0 - specular)
     }
 
-    /// F0 and F90 of the dielectric. Without textures they are worked out from the file, else the modes are believed.
+    /// F0 and F90 of the dielectric: from the file if there are no textures, else from the modes.
     fn dielectric(&self, pixel: usize, ior: f64) -> (DVec3, f64) {
         let material = self.material(pixel);
         let textures =

@@ -1,15 +1,15 @@
-//! KHR_materials_sheen: the lobe of Estevez & Kulla 2017, and how much light it takes from what lies below it.
+//! KHR_materials_sheen: the lobe of Estevez & Kulla 2017, and how it attenuates the layers below.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-/// `alphaG`. Below 0.005 the program's lobe gets no narrower.
+/// `alphaG`, with the renderer's minimum of 0.005.
 fn alpha(roughness: f64) -> f64 {
     (roughness * roughness).max(0.005)
 }
 
-/// l(x, alphaG) of the text.
+/// l(x, alphaG) of the specification.
 fn fit(x: f64, alpha: f64) -> f64 {
     let part = (1.0 - alpha).powi(2);
     let [a, b, c, d, e] =
@@ -34,9 +34,8 @@ pub fn lobe(roughness: f64, n_dot_l: f64, n_dot_v: f64, n_dot_h: f64) -> f64 {
     distribution(n_dot_h, alpha) / (hidden * 4.0 * n_dot_l * n_dot_v)
 }
 
-/// E: what a lobe of color 1 reflects of light from everywhere towards a direction. The midpoint rule over the azimuth
-/// and over u, the cosine being 3 u^2 - 2 u^3, which is dense where Lambda is steep; off by less than 2e-4 from a
-/// cosine of 0.02 on.
+/// E: the albedo of a lobe of color 1 in a direction. Midpoint rule over the azimuth and over u, where the cosine is
+/// 3 u^2 - 2 u^3, so that samples are dense where Lambda is steep. The error is below 2e-4 for cosines of 0.02 or more.
 pub fn albedo(roughness: f64, cosine: f64) -> f64 {
     const STEPS: usize = 48;
     let alpha = alpha(roughness);
@@ -57,7 +56,7 @@ pub fn albedo(roughness: f64, cosine: f64) -> f64 {
     TAU * middles().map(ring).sum::<f64>() / (STEPS * STEPS) as f64
 }
 
-/// `sheenAlbedoScaling`. E exceeds 1 at grazing angles, by the fit of Lambda: then nothing passes.
+/// `sheenAlbedoScaling`. The fit of Lambda lets E exceed 1 at grazing angles; the result is then 0.
 pub fn passes(color: DVec3, roughness: f64, n_dot_l: f64, n_dot_v: f64) -> f64 {
     let stopped = albedo(roughness, n_dot_l).max(albedo(roughness, n_dot_v));
     (1.0 - color.max_element() * stopped).max(0.0)

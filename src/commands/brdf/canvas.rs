@@ -1,4 +1,4 @@
-//! Lines, areas and words on a white page.
+//! A canvas for plots: lines, areas and text on white.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Shader, Stroke, StrokeDash, Transform,
 };
 
-/// A color of ink: sRGB and opacity, 0..255.
+/// An sRGB color with opacity, 0..255.
 #[derive(Clone, Copy, Debug)]
 pub struct Ink(pub u8, pub u8, pub u8, pub u8);
 
@@ -18,19 +18,19 @@ pub struct Pen {
     pub ink: Ink,
     /// Pixels.
     pub width: f32,
-    /// Whether it has gaps.
+    /// Whether the line is dashed.
     pub dashed: bool,
 }
 
-/// A line without gaps.
+/// A solid line.
 pub fn pen(ink: Ink, width: f32) -> Pen {
     Pen { ink, width, dashed: false }
 }
 
-/// Which part of a text stands at its place.
+/// Which part of a text is at the given position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its beginning.
+    /// Its start.
     Left,
     /// Its middle.
     Center,
@@ -38,28 +38,28 @@ pub enum Anchor {
     Right,
 }
 
-/// A picture in the making. Pixels from the upper left corner.
+/// A canvas. Coordinates are pixels from the upper left corner.
 pub struct Canvas {
     pixmap: Pixmap,
     font: FontVec,
 }
 
 impl Canvas {
-    /// A white page.
+    /// Creates a white canvas.
     ///
     /// # Errors
-    /// No memory, or no font in this build, in words.
+    /// A message if memory or a font is missing.
     pub fn new(width: u32, height: u32) -> Result<Self, String> {
         let mut pixmap = Pixmap::new(width, height).ok_or("no memory for the plot")?;
         pixmap.fill(Color::WHITE);
-        // The font of the window.
+        // The font that the window uses.
         let fonts = egui::FontDefinitions::default().font_data;
         let data = fonts.get("Ubuntu-Light").or_else(|| fonts.values().next()).ok_or("this build has no font")?;
         let font = FontVec::try_from_vec(data.font.to_vec()).map_err(|e| e.to_string())?;
         Ok(Self { pixmap, font })
     }
 
-    /// A line through points.
+    /// Draws a line through points.
     pub fn line(&mut self, points: &[(f32, f32)], pen: Pen) {
         let Some(path) = through(points, false) else { return };
         let dash = if pen.dashed { StrokeDash::new(vec![pen.width * 4.0, pen.width * 4.0], 0.0) } else { None };
@@ -68,13 +68,13 @@ impl Canvas {
         self.pixmap.stroke_path(&path, &paint(pen.ink), &stroke, Transform::identity(), None);
     }
 
-    /// The area within points.
+    /// Fills the polygon of these points.
     pub fn area(&mut self, points: &[(f32, f32)], ink: Ink) {
         let Some(path) = through(points, true) else { return };
         self.pixmap.fill_path(&path, &paint(ink), FillRule::Winding, Transform::identity(), None);
     }
 
-    /// A line with a head at its end.
+    /// Draws an arrow.
     pub fn arrow(&mut self, from: (f32, f32), to: (f32, f32), pen: Pen) {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.hypot(dy).max(1e-3);
@@ -86,7 +86,7 @@ impl Canvas {
         self.area(&[to, (base.0 - uy * half, base.1 + ux * half), (base.0 + uy * half, base.1 - ux * half)], pen.ink);
     }
 
-    /// A text on a base line; returns its width.
+    /// Draws text on a baseline and returns its width.
     pub fn text(&mut self, (x, y): (f32, f32), size: f32, anchor: Anchor, ink: Ink, text: &str) -> f32 {
         let width = self.width_of(text, size);
         let left = match anchor {
@@ -104,7 +104,7 @@ impl Canvas {
         width
     }
 
-    /// The width of a text.
+    /// The width of a text, pixels.
     pub fn width_of(&self, text: &str, size: f32) -> f32 {
         let end = self.placed(text, size).last().copied();
         end.map_or(0.0, |(glyph, at)| at + self.font.h_advance_unscaled(glyph) * self.scale(size))
@@ -113,10 +113,10 @@ impl Canvas {
     /// Writes a PNG.
     ///
     /// # Errors
-    /// A place that cannot be written, in words.
+    /// A message if the file cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), String> {
         let (width, height) = (self.pixmap.width(), self.pixmap.height());
-        // The page is opaque, so premultiplied colors are plain ones.
+        // The canvas is opaque, so premultiplied and straight colors are equal.
         let saved = image::save_buffer(path, self.pixmap.data(), width, height, image::ColorType::Rgba8);
         saved.map_err(|e| format!("cannot write {}: {e}", path.display()))
     }
@@ -125,7 +125,7 @@ impl Canvas {
         size / self.font.units_per_em().unwrap_or(1000.0)
     }
 
-    /// Each glyph with its distance from the beginning.
+    /// Each glyph with its offset from the start.
     fn placed(&self, text: &str, size: f32) -> Vec<(GlyphId, f32)> {
         let scale = self.scale(size);
         let mut before: Option<GlyphId> = None;

@@ -1,4 +1,4 @@
-//! `specula brdf furnace`: the albedo of a surface, by roughness and angle.
+//! `specula brdf furnace`: the albedo of a surface over roughness and angle.
 
 use serde_json::json;
 use specula::render::brdf::measure::{Claim, Grid, Surface};
@@ -8,10 +8,10 @@ use specula::shader::Constant;
 use super::{Opened, Options, SurfaceOptions, listed, short};
 use crate::commands::Failure;
 
-/// Light that is more than what arrives by this much is no error of the estimate.
+/// Largest albedo that counts as energy conserving. The tolerance of 0.005 covers the error of the estimate.
 const MOST: f64 = 1.005;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 18, theta: (0.0, 85.0), samples: 2048 };
-/// Enough to see whether a choice changes anything.
+/// A coarse grid, enough to tell whether a choice affects the albedo.
 const COARSE: Grid = Grid { rows: 4, roughness: (0.1, 1.0), columns: 4, theta: (0.0, 84.0), samples: 64 };
 
 /// Options of `brdf furnace`.
@@ -45,37 +45,39 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         print_table(&albedo, surface);
         out!("\nmin {min:.4}  max {max:.4}");
         match (without.as_slice(), conserves) {
-            ([], true) => out!("claims to conserve energy, and does: nothing is above {MOST}"),
-            ([], false) => out!("claims to conserve energy, and does not"),
-            (without, true) => out!("does not claim to conserve energy ({}); here it does", listed(without)),
+            ([], true) => out!("claims to conserve energy, and does: no albedo is above {MOST}"),
+            ([], false) => out!("claims to conserve energy, but does not"),
+            (without, true) => {
+                out!("does not claim to conserve energy ({}), but does for this surface", listed(without))
+            }
             (without, false) => out!("does not claim to conserve energy ({}), and does not", listed(without)),
         }
     }
     let broken = without.is_empty() && !conserves;
     opened.close()?;
     if broken {
-        let found = if max.is_nan() { "a value that is no number".to_owned() } else { format!("up to {max:.4}") };
+        let found = if max.is_nan() { "NaN".to_owned() } else { format!("{max:.4}") };
         return Err(Failure::Input(format!(
-            "the furnace: this combination claims to conserve energy, but reflects {found} of the light that arrives"
+            "furnace: this combination claims to conserve energy, but its largest albedo is {found}; at most {MOST} is \
+             expected. Correct the formula, or remove the choice from `conserves=` in brdf/models.glsl"
         )));
     }
     Ok(())
 }
 
-/// Whether a choice that claims nothing changes anything about this surface: how diffuse light is spread has no part in
-/// what a metal reflects.
+/// Whether a choice without the claim affects this surface. The diffuse model, for example, does not affect a metal.
 fn has_part(opened: &Opened, constant: &Constant, surface: Surface) -> Result<bool, Failure> {
     let Some(other) = Claim::Conserves.of(constant).and_then(|names| names.first()) else { return Ok(true) };
     let mut settings = opened.settings.clone();
     settings.shader.insert(constant.name.clone(), ShaderValue::Name(other.clone()));
     let chosen = opened.bench.furnace(surface, COARSE)?;
     let claiming = opened.bench.with(&settings)?.furnace(surface, COARSE)?;
-    // The drivers order sums of other code in other ways: 1e-4 is far above what that changes.
+    // 1e-4 is far above the rounding differences between two compilations of the same formula.
     let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-4 || a.is_nan() != b.is_nan();
     Ok(chosen.as_flattened().iter().zip(claiming.as_flattened()).any(differs))
 }
 
-/// Smallest and largest value; NaN when there is one.
+/// Smallest and largest value; NaN if any value is NaN.
 pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
     let values = || albedo.as_flattened().iter().copied();
     let with = |pick: fn(f64, f64) -> f64| {
@@ -96,8 +98,8 @@ fn print_json(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {
 
 fn print_table(albedo: &[[f64; 3]], surface: Surface) {
     let base_color = short(surface.base_color).map(|c| c.to_string()).join(" ");
-    out!("Albedo (the largest channel) of base color {base_color}, metallic {}", surface.metallic);
-    out!("Roughness downwards, angle to the normal in degrees across\n");
+    out!("Albedo (largest channel) of base color {base_color}, metallic {}", surface.metallic);
+    out!("Rows: roughness. Columns: angle to the normal in degrees\n");
     let angles = (0..GRID.columns).map(|column| format!("{:>6}", GRID.theta_of(column))).collect::<String>();
     out!("     {angles}");
     for (row, cells) in (0..).zip(albedo.chunks(GRID.columns as usize)) {

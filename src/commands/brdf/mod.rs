@@ -1,4 +1,4 @@
-//! `specula brdf`: measures the BRDF as the shader tree has it, holds it against what it claims, and plots it.
+//! `specula brdf`: measures the BRDF of the shader tree, checks it against its claims, and plots it.
 
 mod canvas;
 mod furnace;
@@ -30,15 +30,15 @@ pub struct Args {
 
 #[derive(Subcommand)]
 enum What {
-    /// How much light comes back, by roughness and angle: of a white surface never more than arrives
+    /// Albedo over roughness and angle: a white surface must not reflect more light than it receives
     Furnace(furnace::Args),
-    /// Whether light and eye can change places: f(l, v) = f(v, l)
+    /// Whether the BRDF is reciprocal: f(l, v) = f(v, l)
     Reciprocity(reciprocity::Args),
-    /// Whether the microfacets cover the surface: the integral of D NoH is 1
+    /// Whether D is normalized: the integral of D NoH is 1
     Normalization(normalization::Args),
-    /// How far image-based light is from the truth, by roughness
+    /// Error of the split sum against Monte Carlo, over roughness
     SplitSum(split_sum::Args),
-    /// Draw the lobes, and the albedo over the angle, to a PNG
+    /// Plot the lobes, and the albedo over the angle, as a PNG
     Plot(plot::Args),
 }
 
@@ -53,13 +53,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// What every measurement takes.
+/// Options of every measurement.
 #[derive(clap::Args)]
 struct Options {
-    /// Shader tree [default: ./shaders when it is Specula's, else the built-in one]
+    /// Shader tree [default: ./shaders if it is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
-    /// Choose a model or set a parameter of the shader tree, as NDF=Beckmann; may repeat
+    /// Select a model or set a parameter of the shader tree, such as NDF=Beckmann; may be repeated
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Device whose name contains this
@@ -71,7 +71,7 @@ struct Options {
 }
 
 impl Options {
-    /// The default settings with what `--set` says.
+    /// The default settings with all `--set` assignments.
     fn settings(&self) -> Result<Settings, Failure> {
         let mut settings = Settings::default();
         for assignment in &self.set {
@@ -79,7 +79,7 @@ impl Options {
         }
         let foreign = Settings { shader: Settings::default().shader, ..settings.clone() } != Settings::default();
         if foreign {
-            let message = "--set: here only the shader tree's own constants and parameters have a meaning, as \
+            let message = "--set: `specula brdf` takes only constants and parameters of the shader tree, such as \
                 NDF=Beckmann; `specula modes` lists them";
             return Err(Failure::Input(message.into()));
         }
@@ -87,7 +87,7 @@ impl Options {
     }
 }
 
-/// What is measured.
+/// The surface to measure.
 #[derive(clap::Args)]
 struct SurfaceOptions {
     /// 0 dielectric .. 1 metal
@@ -99,14 +99,14 @@ struct SurfaceOptions {
 }
 
 impl SurfaceOptions {
-    /// With the metallic that was asked for, or else each of these.
+    /// One surface with the requested metallic, or one for each of these values.
     fn surfaces(&self, metallic: &[f32]) -> Vec<Surface> {
         let chosen = self.metallic.map_or_else(|| metallic.to_vec(), |metallic| vec![metallic]);
         chosen.into_iter().map(|metallic| Surface { base_color: self.base_color, metallic }).collect()
     }
 }
 
-/// A tree that compiled, on a device.
+/// A compiled shader tree on a device.
 struct Opened {
     gpu: Arc<Gpu>,
     shaders: Arc<ShaderSet>,
@@ -136,7 +136,7 @@ impl Opened {
         unclaimed(claim, &self.settings, &self.shaders)
     }
 
-    /// What the layers find at the end counts too.
+    /// Destroys everything first, so that validation messages of destruction count too.
     fn close(self) -> Result<(), Failure> {
         let gpu = self.gpu.clone();
         drop(self);
@@ -144,17 +144,17 @@ impl Opened {
     }
 }
 
-/// Choices as they are typed: `NDF=GGX, DIFFUSE=Burley`.
+/// Choices as the user types them: `NDF=GGX, DIFFUSE=Burley`.
 fn listed(choices: &[(&Constant, String)]) -> String {
     choices.iter().map(|(constant, chosen)| format!("{}={chosen}", constant.name)).collect::<Vec<_>>().join(", ")
 }
 
-/// Floats as people write them: 0.3, not 0.30000001192092896.
+/// Rounds for display: 0.3, not 0.30000001192092896.
 fn short(numbers: [f32; 3]) -> [f64; 3] {
     numbers.map(|x| (f64::from(x) * 1e6).round() / 1e6)
 }
 
-/// A direction in words.
+/// A direction as text.
 fn direction(v: [f32; 3]) -> String {
     let [x, y, z] = v.map(f64::from);
     format!(
@@ -174,7 +174,7 @@ fn unit(text: &str) -> Result<f32, String> {
 }
 
 fn color(text: &str) -> Result<[f32; 3], String> {
-    let expected = |why: String| format!("expected three numbers, as 1,0.8,0.6: {why}");
+    let expected = |why: String| format!("expected three numbers, such as 1,0.8,0.6: {why}");
     let numbers = text.split(',').map(unit).collect::<Result<Vec<_>, _>>().map_err(expected)?;
     <[f32; 3]>::try_from(numbers).map_err(|found| expected(format!("found {}", found.len())))
 }

@@ -1,4 +1,4 @@
-//! `specula brdf normalization`: the integral of D NoH, which is 1 for every distribution of facets.
+//! `specula brdf normalization`: the integral of D NoH, which is 1 for every normal distribution function.
 
 use serde_json::json;
 use specula::render::brdf::measure::Grid;
@@ -37,13 +37,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             out!("{roughness:9.2}  {integral:.5}");
         }
         let verdict = if holds { "D is normalized" } else { "D is not normalized" };
-        out!("\n{verdict}: off by {:.3} % at most, at roughness {}", off(&worst) * 100.0, worst.0);
+        out!("\n{verdict}: largest error {:.3} %, at roughness {}", off(&worst) * 100.0, worst.0);
     }
     opened.close()?;
     if !holds {
         let (roughness, integral) = worst;
         return Err(Failure::Input(format!(
-            "normalization: the integral of D NoH is {integral:.4} at roughness {roughness}, and must be 1 to {} %",
+            "normalization: the integral of D NoH is {integral:.4} at roughness {roughness}, expected 1 within {} %. Check D in brdf/ndf.glsl",
             MOST * 100.0
         )));
     }

@@ -1,4 +1,4 @@
-//! `specula brdf plot`: the lobes of the chosen models, and the albedo over the angle, as a picture.
+//! `specula brdf plot`: plots the lobes of the selected models, and the albedo over the angle.
 
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ const MULTIPLE: Ink = Ink(34, 150, 92, 255);
 const SUM: Ink = Ink(40, 44, 52, 255);
 const SUM_FILL: Ink = Ink(40, 44, 52, 22);
 
-/// Every eighth of a degree: the lobe of the smallest roughness is half a degree wide.
+/// One column per eighth of a degree, since the lobe at the smallest roughness is half a degree wide.
 const LOBE_COLUMNS: u32 = 1441;
 const ALBEDO_COLUMNS: u32 = 90;
 const ALBEDO_SAMPLES: u32 = 1024;
@@ -34,7 +34,7 @@ pub struct Args {
     /// PNG to write
     #[arg(long, short, value_name = "FILE.png", default_value = "lobes.png")]
     out: PathBuf,
-    /// Where the light stands: degrees from the normal
+    /// Angle between light and normal, degrees
     #[arg(long, value_name = "DEG", default_value = "45", value_parser = |t: &str| number(t, 0.0, 89.0))]
     angle: f32,
     /// One to six values of roughness
@@ -46,12 +46,12 @@ pub struct Args {
     options: Options,
 }
 
-/// What one surface looks like.
+/// The measurements of one surface.
 struct Measured {
     surface: Surface,
-    /// By roughness; columns of [`LOBE_COLUMNS`].
+    /// For each roughness, [`LOBE_COLUMNS`] lobes.
     lobes: Vec<Vec<Lobe>>,
-    /// By roughness; the largest channel.
+    /// For each roughness, the albedo's largest channel over the angle.
     albedo: Vec<Vec<f32>>,
 }
 
@@ -59,13 +59,11 @@ struct Measured {
 pub fn run(args: &Args) -> Result<(), Failure> {
     picture::check_path(&args.out).map_err(Failure::Input)?;
     if args.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("png")) {
-        return Err(Failure::Input(format!("cannot write {}: a plot is a .png", args.out.display())));
+        return Err(Failure::Input(format!("cannot write {}: a plot is a PNG, so name it .png", args.out.display())));
     }
     if args.roughness.len() > 6 {
         let found = args.roughness.len();
-        return Err(Failure::Input(format!(
-            "--roughness takes at most 6 values, or the panels get too small; found {found}"
-        )));
+        return Err(Failure::Input(format!("--roughness takes at most 6 values, found {found}")));
     }
     let opened = Opened::new(&args.options)?;
     let surfaces = args.surface.surfaces(&[0.0, 1.0]);
@@ -203,7 +201,7 @@ fn lower(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
-/// From dark blue over red to amber.
+/// A color ramp from dark blue through red to amber.
 fn ramp(part: f32) -> Ink {
     let stops = [(46.0, 44.0, 130.0), (176.0, 50.0, 110.0), (236.0, 150.0, 30.0)];
     let at = part.clamp(0.0, 1.0) * 2.0;

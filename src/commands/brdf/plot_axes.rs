@@ -1,31 +1,30 @@
-//! The two kinds of axes of `specula brdf plot`: a half disk of directions, and albedo over the angle.
+//! The axes of `specula brdf plot`: a half disk of directions, and a chart of the albedo over the angle.
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
 
-/// Words and axes.
+/// Color of text and axes.
 pub const TEXT: Ink = Ink(40, 44, 52, 255);
 const FAINT: Ink = Ink(120, 126, 136, 255);
 const GRID: Ink = Ink(222, 225, 230, 255);
 const LIGHT: Ink = Ink(214, 158, 0, 255);
 const SMALL: f32 = 14.0;
 
-/// A half disk above a surface: directions in the plane of incidence. Values go outwards on a scale that is linear near
-/// 0 and logarithmic beyond.
+/// A polar plot of directions in the plane of incidence. The radial scale is linear near 0 and logarithmic beyond.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfDisk {
-    /// The point on the surface.
+    /// The point on the surface, pixels.
     pub center: (f32, f32),
     /// Pixels.
     pub radius: f32,
-    /// The value at the rim.
+    /// The value at the rim, 1/sr.
     pub most: f32,
 }
 
 impl HalfDisk {
-    /// Where the scale turns from linear to logarithmic, 1/sr.
+    /// Where the scale changes from linear to logarithmic, 1/sr.
     pub const BEND: f32 = 0.01;
 
-    /// The place of a value at an angle from the normal, radians; to the right is positive.
+    /// The position of a value at an angle from the normal (radians, positive to the right).
     pub fn at(&self, angle: f32, value: f32) -> (f32, f32) {
         let part = (value.max(0.0) / Self::BEND).ln_1p() / (self.most / Self::BEND).ln_1p();
         self.polar(angle, part.min(1.0))
@@ -36,7 +35,7 @@ impl HalfDisk {
         (self.center.0 + radius * angle.sin(), self.center.1 - radius * angle.cos())
     }
 
-    /// Rings at powers of ten, spokes every 30 degrees, and the surface.
+    /// Draws rings at powers of ten, spokes every 30 degrees, and the surface.
     pub fn draw_axes(&self, canvas: &mut Canvas) {
         let arc: Vec<f32> = (-90_i16..=90).step_by(2).map(|degrees| f32::from(degrees).to_radians()).collect();
         let mut ring = 0.1;
@@ -58,7 +57,7 @@ impl HalfDisk {
         canvas.line(&[left, right], pen(TEXT, 1.6));
     }
 
-    /// The light, at an angle on the left.
+    /// Draws the light as an arrow, at an angle to the left of the normal.
     pub fn draw_light(&self, canvas: &mut Canvas, angle_deg: f32) {
         canvas.arrow(self.polar(-angle_deg.to_radians(), 1.0), self.center, pen(LIGHT, 2.4));
     }
@@ -68,7 +67,7 @@ fn ring_label(ring: f32) -> String {
     if ring < 0.5 { "0.1".into() } else { format!("{ring:.0}") }
 }
 
-/// Albedo from 0 up over the angle to the normal, 0 to 90 degrees.
+/// A chart of the albedo over the angle to the normal, 0 to 90 degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Chart {
     /// Upper left corner.
@@ -80,14 +79,14 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// The place of an albedo at an angle, degrees.
+    /// The position of an albedo at an angle, degrees.
     pub fn at(&self, angle_deg: f32, albedo: f32) -> (f32, f32) {
         let (x, y) = self.origin;
         let part = (albedo / self.most).clamp(0.0, 1.0);
         (x + self.size.0 * angle_deg / 90.0, y + self.size.1 * (1.0 - part))
     }
 
-    /// Grid, numbers, and the line at 1, which no surface may exceed.
+    /// Draws the grid, the labels, and a dashed line at 1, which no surface may exceed.
     pub fn draw_axes(&self, canvas: &mut Canvas) {
         for degrees in (0_u8..=90).step_by(15) {
             let degrees = f32::from(degrees);
@@ -112,7 +111,7 @@ impl Chart {
     }
 }
 
-/// The key to the light's arrow and the inks of the lobes; returns nothing, since it stands in a line of its own.
+/// Draws the legend: the colors of the light's arrow and of the lobes.
 pub fn draw_legend(canvas: &mut Canvas, (x, y): (f32, f32), entries: &[(&str, Ink)]) {
     let mut at = x;
     for (name, ink) in [("light", LIGHT)].iter().chain(entries) {

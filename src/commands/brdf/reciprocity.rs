@@ -1,4 +1,4 @@
-//! `specula brdf reciprocity`: whether light and eye can change places.
+//! `specula brdf reciprocity`: checks f(l, v) = f(v, l).
 
 use serde_json::json;
 use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
@@ -6,7 +6,7 @@ use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
 use super::{Opened, Options, SurfaceOptions, direction, listed};
 use crate::commands::Failure;
 
-/// Relative; what is left of the rounding of floats.
+/// Largest relative difference that counts as rounding error.
 const MOST: f32 = 1e-4;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 16, theta: (0.0, 85.0), samples: 1024 };
 
@@ -50,8 +50,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         out!("  l  {}\n  v  {}", direction(pair.l), direction(pair.v));
         match (claims, holds) {
             (true, true) => out!("claims to be reciprocal, and is: less than {MOST:e}"),
-            (true, false) => out!("claims to be reciprocal, and is not: more than {MOST:e}"),
-            (false, true) => out!("does not claim to be reciprocal ({}); here it is", listed(&without)),
+            (true, false) => out!("claims to be reciprocal, but is not: at least {MOST:e}"),
+            (false, true) => out!("does not claim to be reciprocal ({}), but is for these surfaces", listed(&without)),
             (false, false) => out!("does not claim to be reciprocal ({}), and is not", listed(&without)),
         }
     }
@@ -59,7 +59,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if claims && !holds {
         let message = format!(
             "reciprocity: this combination claims f(l, v) = f(v, l), but they differ by {:.3e} of their mean at \
-             roughness {roughness}",
+             roughness {roughness}; expected less than {MOST:e}. Correct the formula, or remove the choice from \
+             `reciprocal=` in brdf/models.glsl",
             pair.error
         );
         return Err(Failure::Input(message));
@@ -67,7 +68,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The worst pair, its row and the surface's metallic.
+/// The pair with the largest difference, its row and the surface's metallic.
 fn worst_of(opened: &Opened, surface: Surface) -> Result<(Worst, u32, f32), Failure> {
     let cells = opened.bench.reciprocity(surface, GRID)?;
     let rows = (0..).flat_map(|row: u32| std::iter::repeat_n(row, GRID.columns as usize));

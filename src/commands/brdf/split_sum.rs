@@ -1,4 +1,4 @@
-//! `specula brdf split-sum`: image-based light as the picture has it, against the same integral by random paths.
+//! `specula brdf split-sum`: the error of image-based lighting by the split sum, against Monte Carlo.
 
 use std::path::Path;
 
@@ -12,11 +12,11 @@ use super::{Options, SurfaceOptions};
 use crate::commands::Failure;
 use crate::commands::common::{check_mode, check_validation, compiler, open_gpu, source};
 
-/// A sphere.
+/// A built-in model with a sphere.
 const MODEL: &str = "material-override";
 const SIDE: u32 = 64;
 const ROWS: u32 = 10;
-/// Where the surface is seen at a steeper angle than 84 degrees; beyond, a pixel shows the mesh's facets.
+/// Pixels seen at more than 84 degrees are skipped, since they show the facets of the mesh.
 const LEAST_N_DOT_V: f32 = 0.1;
 
 /// Options of `brdf split-sum`.
@@ -24,10 +24,10 @@ const LEAST_N_DOT_V: f32 = 0.1;
 pub struct Args {
     #[command(flatten)]
     surface: SurfaceOptions,
-    /// Light from all around: studio, sky, furnace, or a .hdr or .exr file
+    /// Environment: studio, sky, furnace, or a .hdr or .exr file
     #[arg(long, value_name = "WHAT", default_value = "studio")]
     env: String,
-    /// Frames of random paths that are averaged
+    /// Number of Monte Carlo frames to average
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     frames: u32,
     /// Print JSON
@@ -37,13 +37,13 @@ pub struct Args {
     options: Options,
 }
 
-/// The split sum minus the truth, over the truth's mean. In a picture this small a highlight of a sun on a smooth surface is a few
-/// pixels, and the figures are theirs.
+/// The difference between split sum and Monte Carlo, relative to the mean of Monte Carlo. At this resolution a sun's
+/// highlight on a smooth surface covers a few pixels, which then dominate both numbers.
 struct Row {
     roughness: f32,
-    /// Mean of the difference.
+    /// Mean difference.
     bias: f64,
-    /// Root of the mean of its square; the truth's noise is in it.
+    /// Root mean square of the difference, including the reference's noise.
     rms: f64,
 }
 
@@ -60,9 +60,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     settings.material = MaterialOverride { enabled: true, base_color, metallic, ..MaterialOverride::default() };
     settings.check().map_err(Failure::Input)?;
     if !settings.environment.is_lit() {
-        return Err(Failure::Input(
-            "split-sum needs light from all around: --env studio, sky, furnace or a file".into(),
-        ));
+        return Err(Failure::Input("split-sum needs an environment: --env studio, sky, furnace or a file".into()));
     }
 
     let gpu = open_gpu(args.options.device.as_deref(), args.options.validate)?;
@@ -81,7 +79,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let split_sum = capture(&mut headless, "final")?;
         let truth = capture(&mut headless, "monte-carlo")?;
         let row = compare(roughness, &split_sum, &truth, &n_dot_v);
-        rows.push(row.ok_or_else(|| Failure::Input(format!("{} is black: there is nothing to compare", args.env)))?);
+        rows.push(row.ok_or_else(|| {
+            Failure::Input(format!("the environment {} is black, so there is nothing to compare", args.env))
+        })?);
     }
     if args.json {
         let list = rows.iter().map(|r| json!({ "roughness": r.roughness, "bias": r.bias, "rms": r.rms }));
@@ -89,7 +89,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let options = json!({ "environment": args.env, "metallic": metallic, "frames": args.frames });
         out!("{:#}", json!({ "rows": list, "options": options }));
     } else {
-        out!("Split sum minus the mean of {} frames of random paths, over the mean, in {}", args.frames, args.env);
+        out!("(split sum - Monte Carlo) / mean of Monte Carlo, {} frames, environment {}", args.frames, args.env);
         out!("\nroughness     bias      rms");
         for row in &rows {
             out!("{:9.1}  {:+6.2} %  {:5.2} %", row.roughness, row.bias * 100.0, row.rms * 100.0);

@@ -1,8 +1,8 @@
-//! Why an environment image was not loaded, in words for the person who opened it.
+//! Errors of loading an environment image, as messages for the user.
 
 use std::path::PathBuf;
 
-/// An environment that could not be loaded. Its message is one paragraph: the file, what was found, what was expected,
+/// An environment that could not be loaded. The message is one paragraph: the file, what was found, what was expected,
 /// what to do.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {problem}", file.display())]
@@ -11,20 +11,20 @@ pub struct EnvironmentError {
     pub file: PathBuf,
     /// What is wrong with it.
     pub problem: EnvironmentProblem,
-    /// Absolute paths of the files that were read or looked for: whoever waits for the repair watches these.
+    /// Absolute paths of the files that were read or looked for. Watch these to retry once they change.
     pub files: Vec<PathBuf>,
 }
 
 /// What is wrong with an environment image.
 #[derive(Debug, thiserror::Error)]
 pub enum EnvironmentProblem {
-    /// Neither a file that can be read nor a built-in name.
+    /// Neither a readable file nor a built-in name.
     #[error(
         "cannot be read: {source}. Expected a .hdr or .exr file that may be read, or one of the built-in \
          environments: {built_in}."
     )]
     Read {
-        /// The operating system's words.
+        /// The operating system's message.
         source: std::io::Error,
         /// The built-in names, separated by commas.
         built_in: String,
@@ -32,7 +32,7 @@ pub enum EnvironmentProblem {
     /// The file has no bytes.
     #[error("is empty. Expected a Radiance HDR or OpenEXR image; copy or export it again.")]
     Empty,
-    /// An image format without radiance above white.
+    /// An image format of low dynamic range.
     #[error(
         "is a {found} image, of low dynamic range, and cannot light a scene: expected Radiance HDR or OpenEXR. \
          Use the .hdr or .exr that it was made from."
@@ -50,21 +50,21 @@ pub enum EnvironmentProblem {
         /// The first bytes.
         found: String,
     },
-    /// A size that is not read.
+    /// A size outside the limits.
     #[error(
         "has {width}x{height} pixels, expected 1x1 to {}x{}. Scale it to a size in between; 2048x1024 is plenty.",
         super::MAX_WIDTH,
         super::MAX_HEIGHT
     )]
     Size {
-        /// Columns, as the header has it.
+        /// Columns according to the header.
         width: u64,
-        /// Rows, as the header has it.
+        /// Rows according to the header.
         height: u64,
     },
-    /// The header promises more than the file can hold.
+    /// The header declares more pixels than the file can hold.
     #[error(
-        "is cut short: its header says {width}x{height} pixels, for which at least {expected} bytes are expected, \
+        "is cut short: its header says {width}x{height} pixels, which takes at least {expected} bytes, \
          found {found}. Copy or download it again."
     )]
     TooShort {
@@ -72,12 +72,12 @@ pub enum EnvironmentProblem {
         width: u32,
         /// Rows.
         height: u32,
-        /// Fewest bytes in which that many pixels can be written.
+        /// The smallest possible size of such an image in bytes.
         expected: u64,
-        /// Bytes there are.
+        /// The actual size in bytes.
         found: u64,
     },
-    /// A file that the decoder gave up on.
+    /// A file that the decoder rejects.
     #[error(
         "does not decode as {format}: expected a whole image, found: {found}. The file is damaged or cut short; copy \
          or export it again."
@@ -85,20 +85,20 @@ pub enum EnvironmentProblem {
     Damaged {
         /// The format.
         format: &'static str,
-        /// The decoder's words.
+        /// The decoder's message.
         found: String,
     },
-    /// A valid file of a kind that is not read.
+    /// A valid file with a feature that Specula does not read.
     #[error("is {found}, expected {expected}. {todo}")]
     Unsupported {
         /// What the file has.
         found: String,
-        /// What is read.
+        /// What Specula reads.
         expected: &'static str,
         /// What to do.
         todo: &'static str,
     },
-    /// Values that are no radiance.
+    /// Pixels that are NaN, infinite or negative.
     #[error(
         "has {count} {pixels} that cannot be light: the first is {value} in {channel} at x = {x}, y = {y}; expected \
          finite values of 0 and more everywhere. Repair the image, for example by clamping it to 0..60000 in an \
@@ -106,24 +106,24 @@ pub enum EnvironmentProblem {
         pixels = if *count == 1 { "pixel" } else { "pixels" }
     )]
     Values {
-        /// How many pixels have one.
+        /// The number of such pixels.
         count: usize,
         /// The first one's value: NaN, infinite or negative.
         value: f32,
         /// "red", "green" or "blue".
         channel: &'static str,
-        /// Column of the first, from the left.
+        /// Column of the first one, from the left.
         x: usize,
-        /// Row of the first, from the top.
+        /// Row of the first one, from the top.
         y: usize,
     },
     /// A panic in a decoder, caught.
     #[error(
-        "was refused: the decoder stopped at something it did not expect ({found}). The file is most likely damaged; \
-         please report it with the file."
+        "could not be decoded: the decoder panicked ({found}). The file is probably damaged; please report this and \
+         attach the file."
     )]
     Refused {
-        /// The panic's words.
+        /// The panic's message.
         found: String,
     },
 }

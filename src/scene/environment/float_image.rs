@@ -1,4 +1,4 @@
-//! From the bytes of an image file to an [`Environment`] that can be trusted.
+//! Decodes the bytes of an image file into a validated [`Environment`].
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::error::EnvironmentProblem as Problem;
 use super::{Environment, MAX_HEIGHT, MAX_WIDTH, open_exr, radiance};
 
-/// What a reader of a format hands over: rows from top to bottom, values not looked at.
+/// A decoded image, rows from top to bottom. Its values are not validated yet.
 pub struct Decoded {
     /// Columns.
     pub width: u32,
@@ -15,11 +15,11 @@ pub struct Decoded {
     pub height: u32,
     /// RGB and an alpha of 1.
     pub pixels: Vec<[f32; 4]>,
-    /// What was done that the author may not expect.
+    /// Conversions that the file's author may not expect.
     pub warnings: Vec<String>,
 }
 
-/// Decodes a file, told apart by its content. The result has no name yet.
+/// Decodes a file; its content determines the format. The caller sets the name.
 pub fn decode(bytes: &[u8]) -> Result<Environment, Problem> {
     let reader = match bytes {
         [] => return Err(Problem::Empty),
@@ -27,11 +27,11 @@ pub fn decode(bytes: &[u8]) -> Result<Environment, Problem> {
         [0x76, 0x2f, 0x31, 0x01, ..] => open_exr::decode,
         _ => return Err(another_format(bytes)),
     };
-    // A panic in here would be a decoder's bug; a file that provokes it must not cost the user the session.
+    // A panic here is a bug of the decoder. It must not end the user's session, so it becomes an error.
     let decoded = catch_unwind(AssertUnwindSafe(|| reader(bytes))).unwrap_or_else(|panic| {
         let words =
             panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-        Err(Problem::Refused { found: words.unwrap_or("a panic without words").to_owned() })
+        Err(Problem::Refused { found: words.unwrap_or("no message").to_owned() })
     })?;
     finish(decoded)
 }
@@ -46,8 +46,8 @@ fn another_format(bytes: &[u8]) -> Problem {
     }
 }
 
-/// Refuses a size out of bounds and one that `available` bytes cannot hold, before anything is allocated.
-/// `least_bytes` is the fewest bytes in which the format can write so many pixels.
+/// Refuses a size outside the limits, or one that `available` bytes cannot hold, before anything is allocated.
+/// `least_bytes` is the smallest possible size of such an image in this format.
 pub fn check_size(width: u64, height: u64, least_bytes: u64, available: usize) -> Result<(u32, u32), Problem> {
     let in_bounds = |size: u64, most: u32| u32::try_from(size).ok().filter(|size| (1..=most).contains(size));
     let (Some(columns), Some(rows)) = (in_bounds(width, MAX_WIDTH), in_bounds(height, MAX_HEIGHT)) else {
@@ -60,7 +60,7 @@ pub fn check_size(width: u64, height: u64, least_bytes: u64, available: usize) -
     Ok((columns, rows))
 }
 
-/// Looks at every value: later stages integrate, where a single NaN would be everywhere.
+/// Validates every value, since later stages integrate and would spread a single NaN everywhere.
 fn finish(decoded: Decoded) -> Result<Environment, Problem> {
     let Decoded { width, height, pixels, mut warnings } = decoded;
     let is_light = |value: &f32| value.is_finite() && *value >= 0.0;

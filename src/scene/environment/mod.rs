@@ -1,7 +1,7 @@
-//! Environment images: radiance from every direction, from a file or made by code.
+//! Environment images: radiance from every direction, read from a file or generated.
 //!
-//! [`EnvironmentFile::open`] reads bytes and takes their fingerprint; [`EnvironmentFile::decode`] makes pixels of them.
-//! Whoever has what it needs in a cache under the fingerprint skips the second.
+//! [`EnvironmentFile::open`] reads the bytes and computes their fingerprint; [`EnvironmentFile::decode`] decodes the
+//! pixels. A caller that finds the fingerprint in its cache skips decoding.
 
 mod built_in;
 mod direction;
@@ -22,20 +22,20 @@ pub use built_in::BUILT_IN;
 pub use direction::{direction_from_uv, uv_from_direction};
 pub use error::{EnvironmentError, EnvironmentProblem};
 
-/// Widest image that is read, pixels.
+/// Largest supported width, pixels.
 pub const MAX_WIDTH: u32 = 16384;
-/// Highest image that is read, pixels.
+/// Largest supported height, pixels.
 pub const MAX_HEIGHT: u32 = 8192;
-/// Largest file that is read: the largest image with four floats a pixel, and a header.
+/// Largest supported file: the largest image with four floats a pixel, and a header.
 const MAX_FILE_BYTES: u64 = MAX_WIDTH as u64 * MAX_HEIGHT as u64 * 16 + (1 << 20);
-/// Raise it when the same bytes decode to other pixels, so that caches under the old fingerprints are not used.
+/// Raise this when the same bytes decode to other pixels. It seeds the fingerprint, so old cache entries are not used.
 const DECODER_VERSION: u64 = 1;
 
-/// Linear RGB radiance from every direction, as an equirectangular image; see [`direction_from_uv`] for which texel is
-/// where.
+/// Linear RGB radiance from every direction, as an equirectangular image. [`direction_from_uv`] maps texels to
+/// directions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Environment {
-    /// The built-in name, or the file's without its ending.
+    /// The built-in name, or the file's name without its extension.
     pub name: String,
     /// Columns.
     pub width: u32,
@@ -46,19 +46,19 @@ pub struct Environment {
     pub pixels: Vec<[f32; 4]>,
     /// Largest value of any channel.
     pub peak: f32,
-    /// What the file's author may want to know: an odd aspect, no light at all.
+    /// Warnings for the user, such as an unusual aspect ratio or an all-black image.
     pub warnings: Vec<String>,
 }
 
-/// An environment that was read but not decoded.
+/// An environment that was read but not decoded yet.
 #[derive(Clone, Debug)]
 pub struct EnvironmentFile {
-    /// The built-in name, or the file's without its ending.
+    /// The built-in name, or the file's name without its extension.
     pub name: String,
-    /// Absolute paths of the files that it was read from, to be watched; none for a built-in one.
+    /// Absolute paths of the files it was read from, to watch. Empty for a built-in environment.
     pub files: Vec<PathBuf>,
-    /// Equal for equal content: XXH3 (128 bits) of the bytes, or of a built-in's name and version. The same on every
-    /// machine, so that it may name a file of a cache.
+    /// XXH3 (128 bits) of the bytes, or of a built-in environment's name and version. It is equal for equal content on
+    /// every machine, so it can name a cache file.
     pub fingerprint: u128,
     given: PathBuf,
     source: Source,
@@ -71,10 +71,10 @@ enum Source {
 }
 
 impl EnvironmentFile {
-    /// Reads what the user named: a file, or else the one of [`BUILT_IN`] with that name.
+    /// Opens `name`: a file, or else the environment of that name in [`BUILT_IN`].
     ///
     /// # Errors
-    /// When there is neither, or the file cannot be read. Its content is not looked at yet.
+    /// Fails if there is neither, or if the file cannot be read. The content is not examined yet.
     pub fn open(name: &str) -> Result<Self, EnvironmentError> {
         let given = PathBuf::from(name);
         let built_in = BUILT_IN.into_iter().find(|built_in| *built_in == name);
@@ -94,11 +94,11 @@ impl EnvironmentFile {
         Ok(Self { name, files: vec![path], fingerprint, given, source: Source::Bytes(bytes) })
     }
 
-    /// Makes the pixels.
+    /// Decodes the pixels.
     ///
     /// # Errors
-    /// When the file is no HDR or EXR image, is damaged, is larger than [`MAX_WIDTH`] times [`MAX_HEIGHT`], or has
-    /// values that are no radiance. Never panics on any content.
+    /// Fails if the file is not an HDR or EXR image, is damaged, is larger than [`MAX_WIDTH`] x [`MAX_HEIGHT`], or has
+    /// NaN, infinite or negative values. Never panics, whatever the content.
     pub fn decode(&self) -> Result<Environment, EnvironmentError> {
         let mut environment = match &self.source {
             Source::BuiltIn(name) => built_in::make(name),
@@ -117,14 +117,14 @@ fn fingerprint(bytes: &[u8]) -> u128 {
     xxh3_128_with_seed(bytes, DECODER_VERSION)
 }
 
-/// Reads a regular file; a device or pipe might never end.
+/// Reads a regular file. Reading a device or a pipe might never end.
 fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     let metadata = std::fs::metadata(path)?;
     if !metadata.is_file() {
         return Err(std::io::Error::other("it is not a regular file"));
     }
     if metadata.len() > MAX_FILE_BYTES {
-        let size = format!("it has {} bytes, of which at most {MAX_FILE_BYTES} are read", metadata.len());
+        let size = format!("it has {} bytes; Specula reads at most {MAX_FILE_BYTES}", metadata.len());
         return Err(std::io::Error::other(size));
     }
     std::fs::read(path)

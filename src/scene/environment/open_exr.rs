@@ -1,4 +1,4 @@
-//! OpenEXR, by the `exr` crate: one flat part with channels R, G and B, in scan lines or tiles.
+//! Reads OpenEXR with the `exr` crate: one flat part with channels R, G and B, in scan lines or tiles.
 
 use std::io::Cursor;
 
@@ -9,10 +9,10 @@ use exr::prelude::{ReadChannels, ReadLayers, Vec2};
 use super::error::EnvironmentProblem as Problem;
 use super::float_image::{Decoded, check_size};
 
-/// Bits of the version field: what the file is made of (OpenEXR file layout, "Version Field").
+/// Flags in the version field (OpenEXR file layout, "Version Field").
 const DEEP: u32 = 1 << 11;
 const MULTI_PART: u32 = 1 << 12;
-/// Rec. 709 primaries and white, CIE xy: the ones an EXR has when it names none.
+/// CIE xy of the Rec. 709 primaries and white point, which an EXR has by default.
 const REC_709: [(f32, f32); 4] = [(0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290)];
 
 /// Decodes a whole file.
@@ -39,7 +39,8 @@ pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
         )
         .first_valid_layer()
         .all_attributes()
-        // Its own threads end the process when the decoder panics, and damaged files make it panic; here it is caught.
+        // The crate's own threads abort the process if a damaged file makes the decoder panic. On this thread, the
+        // caller catches the panic.
         .non_parallel()
         .from_chunks(reader)
         .map_err(problem)?;
@@ -62,8 +63,8 @@ fn check_kind(bytes: &[u8]) -> Result<(), Problem> {
     }
 }
 
-/// Fewest bytes of an image: each chunk has 8 bytes in the offset table and 8 of its own, and only compression makes
-/// pixels smaller than they are.
+/// The smallest possible size: each chunk has 8 bytes in the offset table and 8 bytes of its own, and only compression
+/// makes the pixels smaller.
 fn least_bytes(header: &Header) -> u64 {
     let chunks = header.chunk_count as u64 * 16;
     let stored_whole = header.compression == exr::compression::Compression::Uncompressed;
@@ -88,7 +89,7 @@ fn check_channels(header: &Header) -> Result<(), Problem> {
     }
 }
 
-/// An environment that was cropped, or has a border, would be seen in wrong directions.
+/// Refuses crops and overscan, which would shift the directions of all texels.
 fn check_window(header: &Header) -> Result<(), Problem> {
     let display = header.shared_attributes.display_window;
     let position = header.own_attributes.layer_position;
@@ -117,7 +118,7 @@ fn other_primaries(found: &Chromaticities) -> Option<String> {
     let found = [found.red, found.green, found.blue, found.white].map(|Vec2(x, y)| (x, y));
     let far = |(a, b): (&(f32, f32), &(f32, f32))| (a.0 - b.0).abs().max((a.1 - b.1).abs()) > 0.005;
     found.iter().zip(&REC_709).any(far).then(|| {
-        "the EXR names other primaries than Rec. 709 (sRGB); its values are used as they are, so its colors are off. \
+        "the EXR declares primaries other than Rec. 709 (sRGB). Specula does not convert them, so colors are off. \
          Export it as linear sRGB"
             .to_owned()
     })

@@ -1,4 +1,4 @@
-//! Radiance HDR (RGBE), by the `image` crate: flat, old and new run lengths; the common orientation.
+//! Reads Radiance HDR (RGBE) with the `image` crate: flat pixels, old and new run lengths; rows from top to bottom.
 
 use image::ImageDecoder;
 use image::codecs::hdr::{HdrDecoder, HdrMetadata};
@@ -9,14 +9,14 @@ use super::float_image::{Decoded, check_size};
 
 /// Decodes a whole file.
 pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
-    // Not strict: the strict one refuses files that begin with `#?RGBE`, which are as common.
+    // Non-strict: the strict decoder refuses files that begin with `#?RGBE`, which are common.
     let decoder = HdrDecoder::new_nonstrict(bytes).map_err(problem)?;
     let metadata = decoder.metadata();
     let (columns, rows) = (u64::from(metadata.width), u64::from(metadata.height));
     let (width, height) = check_size(columns, rows, least_bytes(columns, rows), bytes.len())?;
 
-    // The decoder writes three floats a pixel. They go to the front of the final buffer and are spread in place from
-    // the back, since a second buffer of the largest image would be 1.5 GiB.
+    // The decoder writes three floats a pixel. They go to the front of the final buffer and are spread out in place
+    // from the back: a second buffer for the largest image would take 1.5 GiB.
     let count = width as usize * height as usize;
     let mut pixels = vec![[0.0_f32; 4]; count];
     let floats: &mut [f32] = pixels.as_flattened_mut();
@@ -34,20 +34,21 @@ pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
         }
         let [r, g, b] = factors;
         warnings.push(format!(
-            "the header says that the pixels were multiplied by {r} {g} {b} (EXPOSURE, COLORCORR); divided it out"
+            "the header says that the pixels were multiplied by {r} {g} {b} (EXPOSURE, COLORCORR); Specula divides by it"
         ));
     }
     Ok(Decoded { width, height, pixels, warnings })
 }
 
-/// Fewest bytes of an image: a row with new run lengths has 4 bytes and 2 for each run of 127 in each of 4 components;
-/// one with old run lengths may have a pixel and a marker. A row of one column is a pixel.
+/// The smallest possible size. A row with new run lengths takes 4 bytes, and 2 for each run of 127 in each of 4
+/// components. One with old run lengths takes as little as a pixel and a marker, or a single pixel if it has one
+/// column.
 fn least_bytes(width: u64, height: u64) -> u64 {
     let new = 4 + 4 * 2 * width.div_ceil(127);
     height * new.min(if width > 1 { 8 } else { 4 })
 }
 
-/// What radiances were multiplied by when the file was written, RGB; `None` when by nothing.
+/// The factors by which the writer multiplied the radiance, RGB; `None` if all are 1.
 fn recorded_factors(metadata: &HdrMetadata) -> Result<Option<[f32; 3]>, Problem> {
     let exposure = metadata.exposure.unwrap_or(1.0);
     let (r, g, b) = metadata.color_correction.unwrap_or((1.0, 1.0, 1.0));

@@ -1,9 +1,9 @@
-//! The built-in sun and clear sky: the analytic model of Preetham, Shirley & Smits 1999, "A Practical Analytic Model
-//! for Daylight" (below: P99), over gray ground.
+//! The built-in clear sky with a sun: the analytic model of Preetham, Shirley & Smits 1999, "A Practical Analytic Model
+//! for Daylight" (P99 below), over gray ground.
 //!
-//! Radiance is scaled so that the sky's mean is 0.5 (luminance). The sun's irradiance on a surface that faces it is 8
-//! times the sky's on the ground, which is what a clear day at this height of the sun has. Its disc of 0.53 degrees
-//! therefore has a radiance near 3e5, past the range of half floats: that is what the sun is.
+//! The sky's mean luminance is scaled to 0.5. The sun's irradiance on a surface that faces it is 8 times the sky's on
+//! the ground, as on a clear day at this elevation. Its disc of 0.53 degrees therefore has a radiance near 3e5, beyond
+//! the range of half floats.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -17,18 +17,18 @@ use super::float_image::peak;
 
 /// Haze: 2 is very clear air, 6 is hazy (P99, section 3).
 const TURBIDITY: f64 = 2.6;
-/// Where the sun stands: degrees from +Z towards +X, and above the horizon. Left of the default camera.
+/// Position of the sun: degrees from +Z towards +X, and above the horizon. It is left of the default camera.
 const SUN_AZIMUTH: f32 = -25.0;
 const SUN_ELEVATION: f32 = 40.0;
 /// Angular radius of the disc, radians: 0.53 degrees across.
 pub const SUN_RADIUS: f64 = 0.265 * PI / 180.0;
-/// Irradiance of the sun (surface facing it) over that of the sky (horizontal surface), luminance.
+/// Ratio of the sun's irradiance (surface facing it) to the sky's (horizontal surface), luminance.
 const SUN_OVER_SKY: f64 = 8.0;
-/// Mean luminance of the sky's half of the sphere.
+/// Mean luminance of the upper hemisphere.
 const MEAN_SKY: f64 = 0.5;
 /// Reflectance of the ground, linear RGB.
 const GROUND_ALBEDO: DVec3 = DVec3::new(0.13, 0.12, 0.105);
-/// The ground fades into the horizon's haze where it is seen at less than about this angle, radians.
+/// Below the horizon, the ground blends into the horizon's haze over about this angle, radians.
 const HAZE: f64 = 0.02;
 /// Luminance of linear RGB (Rec. 709).
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
@@ -38,7 +38,7 @@ pub fn sun_direction() -> Vec3 {
     super::super::camera::direction(SUN_AZIMUTH.to_radians(), SUN_ELEVATION.to_radians())
 }
 
-/// Sun, sky and ground, `width` columns and half as many rows.
+/// Generates sun, sky and ground, with `width` columns and half as many rows.
 pub fn make(width: u32) -> Environment {
     let sky = Sky::new();
     let scale = MEAN_SKY / sky.mean_luminance();
@@ -63,11 +63,11 @@ pub fn make(width: u32) -> Environment {
     environment
 }
 
-/// The clear sky for one position of the sun, in P99's units (kcd/m^2).
+/// The clear sky for one position of the sun, in P99's unit (kcd/m^2).
 struct Sky {
     sun: DVec3,
     sun_zenith_angle: f64,
-    /// For luminance Y and chromaticities x, y: the value at the zenith over F(0, theta_sun), and F's coefficients.
+    /// For luminance Y and chromaticities x, y: the zenith value over F(0, theta_sun), and the coefficients of F.
     perez: [(f64, [f64; 5]); 3],
 }
 
@@ -80,7 +80,7 @@ impl Sky {
         let luminance = linear([0.1787, -0.3554, -0.0227, 0.1206, -0.0670], [-1.4630, 0.4275, 5.3251, -2.5771, 0.3703]);
         let x = linear([-0.0193, -0.0665, -0.0004, -0.0641, -0.0033], [-0.2592, 0.0008, 0.2125, -0.8989, 0.0452]);
         let y = linear([-0.0167, -0.0950, -0.0079, -0.0441, -0.0109], [-0.2608, 0.0092, 0.2102, -1.6537, 0.0529]);
-        // P99, appendix A.2: the zenith.
+        // P99, appendix A.2: the zenith values.
         let chi = (4.0 / 9.0 - t / 120.0) * (PI - 2.0 * theta);
         let zenith_luminance = (4.0453 * t - 4.9710) * chi.tan() - 0.2155 * t + 2.4192;
         let chromaticity = |rows: [[f64; 4]; 3]| {
@@ -105,7 +105,7 @@ impl Sky {
     /// P99, eqs. 3 and 4: value = zenith * F(theta, gamma) / F(0, theta_sun). For `direction.y >= 0`.
     fn radiance(&self, direction: DVec3) -> DVec3 {
         let cos_gamma = direction.dot(self.sun).clamp(-1.0, 1.0);
-        // At the horizon exp(B / cos theta) goes to 0; the bound only keeps the division finite.
+        // exp(B / cos theta) tends to 0 at the horizon; the bound keeps the quotient finite.
         let cos_theta = direction.y.max(1e-3);
         let gamma = cos_gamma.acos();
         let value = |(scale, coefficients): &(f64, [f64; 5])| scale * perez(coefficients, cos_theta, gamma, cos_gamma);
@@ -123,7 +123,8 @@ fn perez(&[a, b, c, d, e]: &[f64; 5], cos_theta: f64, gamma: f64, cos_gamma: f64
     (1.0 + a * (b / cos_theta).exp()) * (1.0 + c * (d * gamma).exp() + e * cos_gamma * cos_gamma)
 }
 
-/// CIE xyY to linear RGB with Rec. 709 primaries (IEC 61966-2-1). Colors outside of them lose their negative part.
+/// CIE xyY to linear RGB with Rec. 709 primaries (IEC 61966-2-1). Negative components of colors outside the gamut
+/// become 0.
 fn rgb_from_xyy(x: f64, y: f64, luminance: f64) -> DVec3 {
     let xyz = DVec3::new(x / y, 1.0, (1.0 - x - y) / y) * luminance;
     DVec3::new(
@@ -134,10 +135,10 @@ fn rgb_from_xyy(x: f64, y: f64, luminance: f64) -> DVec3 {
     .max(DVec3::ZERO)
 }
 
-/// Color of sunlight at the ground, linear RGB: what is left of white after Rayleigh and aerosol scattering at 650, 550
-/// and 450 nm (P99, appendix A.1; the other absorptions there are small in comparison).
+/// Color of sunlight at the ground, linear RGB: transmittance of Rayleigh and aerosol scattering at 650, 550 and 450 nm
+/// (P99, appendix A.1, whose other absorptions are small in comparison).
 fn sun_color(zenith_angle: f64) -> DVec3 {
-    // Relative optical mass, with the angle in degrees.
+    // Relative optical mass; the formula takes the angle in degrees.
     let mass = 1.0 / (zenith_angle.cos() + 0.15 * (93.885 - zenith_angle.to_degrees()).powf(-1.253));
     let beta = 0.04608 * TURBIDITY - 0.04586;
     let transmittance = |micrometers: f64| {
@@ -148,7 +149,8 @@ fn sun_color(zenith_angle: f64) -> DVec3 {
     DVec3::new(transmittance(0.65), transmittance(0.55), transmittance(0.45))
 }
 
-/// Integral over the directions with y > 0, by midpoints of equal height and azimuth (so of equal solid angle).
+/// Integral over the hemisphere y > 0, by midpoints of equal steps in height and azimuth, which have equal solid
+/// angles.
 fn hemisphere(f: impl Fn(DVec3) -> DVec3) -> DVec3 {
     const HEIGHTS: usize = 64;
     const AZIMUTHS: usize = 128;
@@ -164,12 +166,12 @@ fn hemisphere(f: impl Fn(DVec3) -> DVec3) -> DVec3 {
     sum * (TAU / (HEIGHTS * AZIMUTHS) as f64)
 }
 
-/// Adds a disc of even radiance. Each texel gets the part of the disc that it covers, so the sum is the sun's
-/// irradiance at any resolution.
+/// Adds a disc of uniform radiance. Each texel receives the fraction of the disc that it covers, so the total is the
+/// sun's irradiance at any resolution.
 fn add_sun(environment: &mut Environment, sun: DVec3, irradiance: DVec3) {
     let (width, height) = (environment.width as usize, environment.height as usize);
     let covered = disc(sun, SUN_RADIUS, width, height);
-    // The sum differs from the disc's solid angle only by the quadrature over latitudes; dividing by it makes the
+    // The sum differs from the disc's solid angle by the quadrature error over latitudes. Dividing by the sum makes the
     // energy exact.
     let radiance = irradiance / covered.iter().map(|(_, solid_angle)| solid_angle).sum::<f64>();
     for (texel, solid_angle) in covered {
@@ -181,8 +183,8 @@ fn add_sun(environment: &mut Environment, sun: DVec3, irradiance: DVec3) {
     }
 }
 
-/// The texels that a disc around `center` covers, each with the solid angle of the covered part. Exact along rows;
-/// by midpoints of many thin latitudes within a row. The disc must not reach a pole or the left edge.
+/// The texels that a disc around `center` covers, each with the covered solid angle. Exact in azimuth; by midpoints of
+/// 64 latitudes within each row. The disc must not reach a pole or the left edge.
 fn disc(center: DVec3, radius: f64, width: usize, height: usize) -> Vec<(usize, f64)> {
     const LATITUDES: usize = 64;
     let theta = center.y.acos();
@@ -211,7 +213,7 @@ fn disc(center: DVec3, radius: f64, width: usize, height: usize) -> Vec<(usize, 
     covered
 }
 
-/// The texels that an interval of angles touches.
+/// The range of texels that an interval of angles touches.
 fn rows(from: f64, to: f64, texels_per_radian: f64) -> Range<usize> {
     (from.max(0.0) * texels_per_radian).floor() as usize..(to * texels_per_radian).ceil() as usize
 }

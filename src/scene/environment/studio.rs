@@ -1,23 +1,23 @@
 //! The built-in photo studio: soft boxes in a dark, slightly blue room.
 //!
-//! The key light stands left of the default camera (azimuth 30 degrees), the fill right of it; two strips behind the
-//! model draw its edges and stay out of the picture, so that its background is a plain gradient. Mean radiance is
-//! about 0.7, the key's 11, and a surface that faces up gets about seven times the irradiance of one that faces down.
+//! The key light is left of the default camera (azimuth 30 degrees), the fill right of it. Two strips behind the model
+//! light its edges; they stay outside the frame, so the background is a plain gradient. Mean radiance is about 0.7, the
+//! key light's is 11. A surface that faces up receives about seven times the irradiance of one that faces down.
 
 use glam::{Vec2, Vec3};
 
 use super::Environment;
 use super::built_in::render;
 
-/// A rectangular light, seen in the perspective of one who faces its center.
+/// A rectangular light, in the perspective projection around its center.
 struct SoftBox {
     /// Degrees around the model from +Z towards +X.
     azimuth: f32,
     /// Degrees above the horizon.
     elevation: f32,
-    /// Half of its width and height as tangents of the angles to the center.
+    /// Half of its width and height, as tangents of the angles to the center.
     half_size: Vec2,
-    /// Half of the width of its blurred edge, in the same unit.
+    /// Half of the width of its soft edge, in the same unit.
     softness: f32,
     /// Radiance at the center, linear RGB.
     radiance: Vec3,
@@ -65,22 +65,22 @@ const BOXES: [SoftBox; 5] = [
     },
 ];
 
-/// How much darker a soft box is at the middle of an edge than at its center.
+/// By which fraction a soft box is darker at the middle of an edge than at its center.
 const EDGE_FALLOFF: f32 = 0.17;
 const WALL_COLOR: Vec3 = Vec3::new(0.82, 0.94, 1.12);
-/// Radiance of the wall far above, and what a band of light just over the horizon adds to it.
+/// Radiance of the upper wall, and what a band just above the horizon adds to it.
 const WALL: (f32, f32) = (0.055, 0.15);
 /// Height and width of that band, as `direction.y`.
 const WALL_BAND: (f32, f32) = (0.06, 0.36);
 const FLOOR_COLOR: Vec3 = Vec3::new(0.92, 0.97, 1.05);
-/// Radiance of the floor at the horizon, and what is added towards the model's feet.
+/// Radiance of the floor at the horizon, and what is added towards straight down.
 const FLOOR: (f32, f32) = (0.11, 0.06);
-/// The floor's blurred mirror image of the boxes: how strong, and how much softer.
+/// The floor's blurred reflection of the boxes: its strength and additional softness.
 const FLOOR_MIRROR: (f32, f32) = (0.035, 0.30);
-/// Half of the height of the rounded seam between wall and floor, as `direction.y`.
+/// Half of the height of the rounded transition between wall and floor, as `direction.y`.
 const SEAM: f32 = 0.16;
 
-/// The studio, `width` columns and half as many rows.
+/// Generates the studio, with `width` columns and half as many rows.
 pub fn make(width: u32) -> Environment {
     let boxes = BOXES.map(|soft_box| (soft_box.frame(), soft_box));
     render(width, |direction| {
@@ -102,7 +102,7 @@ fn light(boxes: &[([Vec3; 3], SoftBox)], direction: Vec3, more_softness: f32) ->
 }
 
 impl SoftBox {
-    /// Facing, right and up.
+    /// Unit vectors towards the box, right and up.
     fn frame(&self) -> [Vec3; 3] {
         let facing = super::super::camera::direction(self.azimuth.to_radians(), self.elevation.to_radians());
         let right = Vec3::Y.cross(facing).normalize_or(Vec3::X);
@@ -116,7 +116,7 @@ impl SoftBox {
         }
         let at = (Vec2::new(direction.dot(right), direction.dot(up)) / distance).abs();
         let soft = self.softness + more_softness;
-        // A product of two edges, not the distance to the box, which would show creases where it is very soft.
+        // A product of two edges: the distance to the box would show creases where it is very soft.
         let edge = |at: f32, half: f32| 1.0 - smoothstep(half - soft, half + soft, at);
         let coverage = edge(at.x, self.half_size.x) * edge(at.y, self.half_size.y);
         if coverage <= 0.0 {

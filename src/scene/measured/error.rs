@@ -1,10 +1,10 @@
-//! Why a measured BRDF was not read, in words for the person who opened it.
+//! Errors of reading a measured BRDF, as messages for the user.
 
 use std::path::PathBuf;
 
 use super::{MeasuredKind, merl, utia};
 
-/// A measured BRDF that could not be read. Its message is one paragraph: the file, what was expected, what was found,
+/// A measured BRDF that could not be read. The message is one paragraph: the file, what was expected, what was found,
 /// what to do.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {problem}", file.display())]
@@ -27,13 +27,13 @@ pub enum MeasuredProblem {
     /// The file has no bytes.
     #[error("is empty. Expected {}; copy or download it again.", formats())]
     Empty,
-    /// Neither by its beginning nor by its size.
+    /// Neither the first bytes nor the size match a format.
     #[error("is not a measured BRDF that Specula reads: expected {}, found a file of {found} bytes.", formats())]
     Unknown {
         /// Its size in bytes.
         found: u64,
     },
-    /// The header of a MERL file with other numbers.
+    /// A MERL file with other dimensions.
     #[error(
         "has the dimensions {}, expected {} (MERL's theta_h x theta_d x phi_d). Specula reads files of the MERL \
          database's own resolution only: resample it, or take another file.",
@@ -44,7 +44,7 @@ pub enum MeasuredProblem {
         /// The header's three numbers.
         found: [i32; 3],
     },
-    /// Right beginning or name, wrong size.
+    /// The first bytes or the extension match a format, but the size does not.
     #[error(
         "has {found} bytes, expected {} of a {} file: {}. Copy or download it again.",
         kind.file_bytes(),
@@ -52,12 +52,12 @@ pub enum MeasuredProblem {
         if *found < kind.file_bytes() as u64 { "it looks cut short" } else { "it has more than the data" }
     )]
     Size {
-        /// What it seems to be.
+        /// The format that it seems to have.
         kind: MeasuredKind,
         /// Its size in bytes.
         found: u64,
     },
-    /// NaN, infinite, or larger than an `f32` holds.
+    /// A value that is NaN, infinite, or too large for an `f32`.
     #[error(
         "holds {found} at {channel} value {index}, expected a number below 1e38. The file is damaged: copy or download \
          it again."
@@ -65,12 +65,12 @@ pub enum MeasuredProblem {
     NotANumber {
         /// The color plane.
         channel: &'static str,
-        /// Where in the plane, counted from 0.
+        /// Index in the plane, from 0.
         index: usize,
         /// The value.
         found: f64,
     },
-    /// No value above 0.
+    /// No value is above 0.
     #[error(
         "is black: none of its values is above 0. The file is damaged or was never filled: copy or download it again."
     )]

@@ -1,13 +1,13 @@
-//! The format of the MERL database (Matusik et al. 2003): three `i32` 90, 90, 180, then doubles, little endian: all of
-//! red, of green, of blue. In a plane phi_d runs fastest, then theta_d, then theta_h.
+//! The format of the MERL database (Matusik et al. 2003), little endian: three `i32` (90, 90, 180), then doubles: the
+//! planes red, green and blue. In a plane phi_d varies fastest, then theta_d, then theta_h.
 //!
-//! The axes are the half and difference angles of Rusinkiewicz 1998: h halves the way from l to v, (theta_h, phi_h) is
-//! where it is; (theta_d, phi_d) is where l is when h is turned onto the normal. An isotropic BRDF does not depend on
-//! phi_h. Swapping l and v adds pi to phi_d, so by reciprocity phi_d from 0 to pi is enough.
+//! The axes are the half and difference angles of Rusinkiewicz 1998: h is the half vector, at (theta_h, phi_h). After
+//! the rotation that takes h to the normal, l is at (theta_d, phi_d). An isotropic BRDF does not depend on phi_h.
+//! Swapping l and v adds pi to phi_d, so by reciprocity phi_d from 0 to pi is enough.
 //!
-//! theta_d has 1 degree a bin, phi_d too; theta_h = 90 degrees (i / 90)^2, finest where the highlight is. The
-//! database's own reader truncates, so bin i lies between i and i + 1, and its value belongs to the middle, i + 0.5.
-//! Specula is linear between the middles, in i for theta_h.
+//! Bins of theta_d and phi_d are 1 degree wide. theta_h = 90 degrees (i / 90)^2, which is finest at the highlight. The
+//! database's own reader truncates, so bin i covers i to i + 1 and its value belongs to the center, i + 0.5. Specula
+//! interpolates linearly between the centers; in i for theta_h.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -21,18 +21,18 @@ const THETA_D: usize = 90;
 const PHI_D: usize = 180;
 const CELLS: usize = THETA_H * THETA_D * PHI_D;
 
-/// What the header says.
+/// The dimensions in the header.
 pub(super) const DIMENSIONS: [i32; 3] = [THETA_H as i32, THETA_D as i32, PHI_D as i32];
 pub(super) const HEADER_BYTES: usize = 12;
 pub(super) const FILE_BYTES: usize = HEADER_BYTES + 3 * CELLS * size_of::<f64>();
 
-/// From stored values to 1/sr: the exposure of each channel (the database's reader).
+/// Converts stored values to 1/sr: one factor per channel (from the database's reader).
 const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
 
-/// What the database stores where no light can be.
+/// What the database stores for directions below the horizon.
 const BELOW_HORIZON: f64 = -1.0;
 
-/// The header's three numbers, if that many bytes are there.
+/// The header's three numbers; `None` if it is too short.
 pub(super) fn dimensions(header: &[u8]) -> Option<[i32; 3]> {
     let (numbers, _) = header.as_chunks::<4>();
     let [a, b, c] = numbers.get(..3)? else { return None };
@@ -50,9 +50,10 @@ fn cell(theta_h: usize, theta_d: usize, phi_d: usize) -> usize {
     (theta_h * THETA_D + theta_d) * PHI_D + phi_d
 }
 
-/// Makes every value one that may be interpolated. A bin whose middle is below the horizon holds nothing (-1), yet the
-/// last bins above it are mixed with it: it gets the value of the bin before, so that no dark rim is made up. The bin
-/// theta_d = 0 has l = v = h and is never below. Other negative values are failed measurements: 0. Returns how many.
+/// Makes every value fit for interpolation and returns how many failed measurements there were. A bin whose center is
+/// below the horizon holds -1, but is interpolated with the last bins above it. It gets the value of the previous
+/// theta_d, so that interpolation adds no dark rim. The bin theta_d = 0 has l = v = h, which is never below. All other
+/// negative values are failed measurements and become 0.
 fn fill(values: &mut [f32]) -> usize {
     let mut negative = 0;
     for theta_h in 0..THETA_H {
@@ -79,7 +80,7 @@ fn fill(values: &mut [f32]) -> usize {
     negative
 }
 
-/// l and v in the middle of a bin, with phi_h = 0.
+/// l and v at the center of a bin, with phi_h = 0.
 fn directions(theta_h: usize, theta_d: usize, phi_d: usize) -> (Vec3, Vec3) {
     let middle = |i: usize, count: usize| (i as f32 + 0.5) / count as f32;
     let (sin_h, cos_h) = (FRAC_PI_2 * middle(theta_h, THETA_H).powi(2)).sin_cos();
@@ -90,17 +91,17 @@ fn directions(theta_h: usize, theta_d: usize, phi_d: usize) -> (Vec3, Vec3) {
     (cos_d * h + aside, cos_d * h - aside)
 }
 
-/// Both directions are above the horizon.
+/// Looks up l and v, both above the horizon.
 ///
-/// With l + v = 2 cos(theta_d) h and l - v = 2 sin(theta_d) (across h, towards phi_d) all angles come from arc
-/// tangents, which are exact where the arc cosine of a dot product is not: at the highlight's peak.
+/// With l + v = 2 cos(theta_d) h and l - v = 2 sin(theta_d) (across h, towards phi_d), all angles come from
+/// arctangents. They are exact at the highlight's peak, where the arccosine of a dot product is not.
 pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
     let (sum, difference) = (l + v, l - v);
     let aside = sum.truncate().length();
     let theta_h = aside.atan2(sum.z);
     let theta_d = difference.length().atan2(sum.length());
 
-    // Along the meridian through h and across it; h at the pole has every meridian, and x is as good as any.
+    // Components along the meridian through h and across it. At the pole any meridian will do: this takes x.
     let (cos_phi, sin_phi) = if aside > 0.0 { (sum.x / aside, sum.y / aside) } else { (1.0, 0.0) };
     let (sin_h, cos_h) = theta_h.sin_cos();
     let along = difference.dot(Vec3::new(cos_h * cos_phi, cos_h * sin_phi, -sin_h));
@@ -114,7 +115,7 @@ pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
     h.mix(|h| d.mix(|d| phi.mix(|phi| triple(values, cell(h, d, phi)))))
 }
 
-/// The file of `f`.
+/// Encodes `f` as a file.
 pub(super) fn encode(f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
     let mut bytes: Vec<u8> = DIMENSIONS.iter().flat_map(|n| n.to_le_bytes()).collect();
     bytes.resize(FILE_BYTES, 0);

@@ -1,14 +1,15 @@
-//! Measured BRDFs: tables of what light a real material was seen to reflect, to hold an analytic BRDF against.
+//! Measured BRDFs: tables of reflectance measured on real materials, as references for the analytic BRDF.
 //!
-//! Two databases are read, told apart by content and size:
+//! Reads the formats of two databases, recognized by content and size:
 //!
-//! - **MERL** (`.binary`): isotropic, half and difference angles. Matusik et al. 2003, "A Data-Driven Reflectance
+//! - **MERL** (`.binary`): isotropic, over half and difference angles. Matusik et al. 2003, "A Data-Driven Reflectance
 //!   Model".
-//! - **UTIA** (`.bin`): anisotropic, angles of light and view. Filip & Vávra 2014, "Template-Based Sampling of
+//! - **UTIA** (`.bin`): anisotropic, over the angles of light and view. Filip & Vávra 2014, "Template-Based Sampling of
 //!   Anisotropic BRDFs".
 //!
-//! [`Measured::values`] is what `shaders/brdf/measured.glsl` reads; [`Measured::evaluate`] is the same lookup on the
-//! CPU. All directions here are unit vectors in tangent space (x tangent, y bitangent, z normal) and leave the surface.
+//! `shaders/brdf/measured.glsl` reads [`Measured::values`]; [`Measured::evaluate`] does the same lookup on the CPU. All
+//! directions here are unit vectors in tangent space (x tangent, y bitangent, z normal) that point away from the
+//! surface.
 
 mod error;
 mod grid;
@@ -26,7 +27,7 @@ use glam::Vec3;
 
 pub use error::{MeasuredError, MeasuredProblem};
 
-/// A negative value is a measurement that failed. More than this part of all values is worth a warning.
+/// Negative values are failed measurements. If more than this fraction of all values is negative, the user is warned.
 const UNUSUAL: f64 = 0.05;
 
 /// The database whose format a file has.
@@ -34,7 +35,7 @@ const UNUSUAL: f64 = 0.05;
 pub enum MeasuredKind {
     /// Isotropic; theta_h x theta_d x phi_d = 90 x 90 x 180.
     Merl,
-    /// Anisotropic; (theta x phi) of the light by those of the view, (6 x 48) x (6 x 48).
+    /// Anisotropic; (theta x phi) of the light by (theta x phi) of the view, (6 x 48) x (6 x 48).
     Utia,
 }
 
@@ -47,7 +48,7 @@ impl MeasuredKind {
         }
     }
 
-    /// The size of a file, which is always the same.
+    /// The size of every file of this format, bytes.
     pub fn file_bytes(self) -> usize {
         match self {
             Self::Merl => merl::FILE_BYTES,
@@ -55,8 +56,8 @@ impl MeasuredKind {
         }
     }
 
-    /// The file that measuring `f(l, v)` would give, `f` in 1/sr for directions above the horizon: an analytic BRDF in
-    /// a form that other programs read, and what Specula's tests read back.
+    /// Encodes `f(l, v)`, in 1/sr for directions above the horizon, as a file of this format. Other programs can read
+    /// it, and the tests read it back.
     pub fn encode(self, f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
         match self {
             Self::Merl => merl::encode(f),
@@ -70,22 +71,22 @@ impl MeasuredKind {
 pub struct Measured {
     /// The file's name without its extension, which both databases use as the material's name.
     pub name: String,
-    /// Which lookup `values` is for.
+    /// The file's name without its extension. Both databases use it as the material's name.
     pub kind: MeasuredKind,
-    /// 1/sr, linear RGB triples, none negative: 1,458,000 (MERL) or 82,944 (UTIA) of them in the file's order.
+    /// 1/sr, linear RGB triples in the file's order, none negative: 1,458,000 (MERL) or 82,944 (UTIA) of them.
     pub values: Vec<f32>,
     /// Absolute paths of the files that were read.
     pub files: Vec<PathBuf>,
-    /// What is odd about the data, in sentences for the user.
+    /// Warnings about the data, in sentences for the user.
     pub warnings: Vec<String>,
 }
 
 impl Measured {
-    /// Reads a MERL `.binary` or a UTIA `.bin` file. Never holds more of it in memory than such a file is long.
+    /// Reads a MERL `.binary` or a UTIA `.bin` file. Never reads more bytes than such a file has.
     ///
     /// # Errors
-    /// When it cannot be read, is of neither format, of the wrong dimensions or size, has a value that is not a number,
-    /// or is black all over.
+    /// Fails if the file cannot be read, has neither format, the wrong dimensions or the wrong size, contains a value
+    /// that is not a finite number, or is entirely black.
     pub fn open(path: &Path) -> Result<Self, MeasuredError> {
         let open = || {
             let file = std::path::absolute(path).map_err(MeasuredProblem::Read)?;
@@ -100,7 +101,7 @@ impl Measured {
         open().map_err(|problem| MeasuredError { file: path.to_owned(), problem })
     }
 
-    /// f(l, v) in 1/sr, linear between the measured directions; black when either is below the horizon.
+    /// f(l, v) in 1/sr, linearly interpolated; black if either direction is below the horizon.
     pub fn evaluate(&self, l: Vec3, v: Vec3) -> Vec3 {
         if !(l.z > 0.0 && v.z > 0.0) {
             return Vec3::ZERO;
@@ -112,13 +113,14 @@ impl Measured {
     }
 }
 
-/// A file's values as triples, and what is odd about them.
+/// A file's values as RGB triples, and warnings about them.
 struct Decoded {
     values: Vec<f32>,
     warnings: Vec<String>,
 }
 
-/// The whole file, once its first bytes and its length say what it is. What the header claims is only compared.
+/// Reads the whole file once its first bytes and its length determine the format. The header's dimensions are only
+/// compared, never used as a size.
 fn read(path: &Path) -> Result<(MeasuredKind, Vec<u8>), MeasuredProblem> {
     let mut file = File::open(path).map_err(MeasuredProblem::Read)?;
     let metadata = file.metadata().map_err(MeasuredProblem::Read)?;
@@ -130,15 +132,15 @@ fn read(path: &Path) -> Result<(MeasuredKind, Vec<u8>), MeasuredProblem> {
     let kind = recognize(&bytes, metadata.len(), path.extension())?;
     let rest = (kind.file_bytes() - bytes.len()) as u64;
     file.take(rest).read_to_end(&mut bytes).map_err(MeasuredProblem::Read)?;
-    // Its length was right, so it shrank while it was read.
+    // The length was right before, so the file was truncated while it was read.
     if bytes.len() != kind.file_bytes() {
         return Err(MeasuredProblem::Size { kind, found: bytes.len() as u64 });
     }
     Ok((kind, bytes))
 }
 
-/// What a file of this beginning and length is. UTIA has no header, so there only the length tells; the extension
-/// serves to choose the message.
+/// Determines the format from the first bytes and the length. UTIA has no header, so only its length can tell. The
+/// extension only selects the error message.
 fn recognize(header: &[u8], length: u64, extension: Option<&OsStr>) -> Result<MeasuredKind, MeasuredProblem> {
     let is_called = |name| extension.is_some_and(|extension| extension.eq_ignore_ascii_case(name));
     let of_length = |kind: MeasuredKind| {
@@ -155,7 +157,7 @@ fn recognize(header: &[u8], length: u64, extension: Option<&OsStr>) -> Result<Me
     if length == MeasuredKind::Utia.file_bytes() as u64 {
         return Ok(MeasuredKind::Utia);
     }
-    // Small numbers are somebody's dimensions; the first bytes of a double or of a text are not small numbers.
+    // Small numbers are probably dimensions; the first bytes of a double or of text are not small numbers.
     let plausible = |found: &[i32; 3]| is_called("binary") || found.iter().all(|n| (1..=4096).contains(n));
     match dimensions.filter(plausible) {
         Some(found) => Err(MeasuredProblem::Dimensions { found }),
@@ -164,7 +166,7 @@ fn recognize(header: &[u8], length: u64, extension: Option<&OsStr>) -> Result<Me
     }
 }
 
-/// Three planes of doubles, red, green, blue, as triples of `f32` times `scale`. `planes` has all of them.
+/// Converts three planes of doubles (red, green, blue) to RGB triples of `f32`, multiplied by `scale`.
 fn interleave(planes: &[u8], scale: [f64; 3]) -> Result<Vec<f32>, MeasuredProblem> {
     let (doubles, _) = planes.as_chunks::<8>();
     let cells = doubles.len() / 3;
@@ -181,14 +183,14 @@ fn interleave(planes: &[u8], scale: [f64; 3]) -> Result<Vec<f32>, MeasuredProble
     if values.iter().any(|&value| value > 0.0) { Ok(values) } else { Err(MeasuredProblem::Black) }
 }
 
-/// A sentence about `negative` of `all` values having been set to 0, if that is unusual.
+/// A warning if unusually many values (`negative` of `all`) were negative and set to 0.
 fn warn_of_negative(negative: usize, all: usize) -> Option<String> {
     let part = negative as f64 / all as f64;
     (part > UNUSUAL).then(|| {
         format!(
             "{negative} of {all} values ({:.0} %) are negative where both directions are above the horizon, and are \
-             taken as 0. A few are usual; so many mean that the material was hardly measured, or that the file is not \
-             what it seems.",
+             treated as 0. A few are normal. This many mean that most of the measurement failed, or that the file is \
+             not what it seems.",
             100.0 * part
         )
     })

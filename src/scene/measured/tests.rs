@@ -1,4 +1,4 @@
-//! Files of both formats, good and bad, through `Measured::open`.
+//! Valid and invalid files of both formats, through `Measured::open`.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::{Measured, MeasuredKind};
 const MERL_PLANE: usize = 90 * 90 * 180;
 const UTIA_PLANE: usize = 288 * 288;
 
-/// Lambert under GGX of roughness 0.4 with height-correlated Smith and Schlick, as in shaders/brdf.
+/// Lambert plus GGX of roughness 0.4 with height-correlated Smith and Schlick's Fresnel, as in shaders/brdf.
 fn analytic(l: Vec3, v: Vec3) -> Vec3 {
     let alpha2 = 0.4f32.powi(4);
     let h = (l + v).normalize();
@@ -28,7 +28,7 @@ fn direction(theta_deg: f32, phi_deg: f32) -> Vec3 {
     Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 }
 
-/// Pairs of directions spread evenly in theta up to `largest_deg` and in phi: a Kronecker sequence of square roots.
+/// Pairs of directions, evenly spread in theta (up to `largest_deg`) and phi by a Kronecker sequence of square roots.
 fn pairs(count: usize, largest_deg: f32) -> impl Iterator<Item = (Vec3, Vec3)> {
     let fraction = |n: usize, root: f64| (n as f64 * root).fract() as f32;
     (1..=count).map(move |n| {
@@ -53,12 +53,12 @@ fn refusal(name: &str, bytes: &[u8]) -> String {
     Measured::open(&write(folder.path(), name, bytes)).unwrap_err().to_string()
 }
 
-/// Writes `value` over double number `index` of the file's data.
+/// Overwrites double number `index` of the file's data with `value`.
 fn poke(bytes: &mut [u8], header: usize, index: usize, value: f64) {
     bytes[header + 8 * index..][..8].copy_from_slice(&value.to_le_bytes());
 }
 
-/// Made once: 35 MB each.
+/// Encoded once, since each has 35 MB.
 static MERL_BYTES: LazyLock<Vec<u8>> = LazyLock::new(|| MeasuredKind::Merl.encode(analytic));
 static MERL: LazyLock<Measured> = LazyLock::new(|| open("plastic.binary", &MERL_BYTES));
 static UTIA: LazyLock<Measured> = LazyLock::new(|| open("plastic.bin", &MeasuredKind::Utia.encode(analytic)));
@@ -69,9 +69,9 @@ fn merl_gives_back_the_brdf_that_it_was_made_of() {
     assert!(MERL.files[0].is_absolute() && MERL.files[0].ends_with("plastic.binary"), "{:?}", MERL.files);
     assert_eq!(MERL.warnings, Vec::<String>::new());
 
-    // Linear interpolation errs by up to (step^2 / 8) |f''|. Over theta_h, most on the flank of the highlight at 15
-    // degrees: 0.26 % of f. Over theta_d, most where Fresnel and visibility rise together, in the mirror direction at
-    // 75 degrees: 0.61 %. Over phi_d 0.01 %. Together below 0.9 %; bins taken for their lower edges are off by 8 %.
+    // Linear interpolation errs by up to (step^2 / 8) |f''|: 0.26 % of f over theta_h (most on the highlight's flank,
+    // at 15 degrees), 0.61 % over theta_d (most where Fresnel and visibility rise together, in the mirror direction at
+    // 75 degrees), 0.01 % over phi_d. The sum is below 0.9 %; taking bins at their lower edges would err by 8 %.
     let mut worst = 0.0f32;
     for (l, v) in pairs(20_000, 75.0) {
         let expected = analytic(l, v);
@@ -79,7 +79,7 @@ fn merl_gives_back_the_brdf_that_it_was_made_of() {
     }
     assert!(worst < 0.009, "{worst}");
 
-    // On the peak itself, where theta_h's bins are hundredths of a degree.
+    // On the peak itself, where theta_h's bins are hundredths of a degree wide.
     for theta in [0.0, 20.0, 60.0] {
         let (l, v) = (direction(theta, 30.0), direction(theta, 210.0));
         let (found, expected) = (MERL.evaluate(l, v), analytic(l, v));
@@ -98,7 +98,7 @@ fn merl_is_reciprocal_and_isotropic() {
     }
 }
 
-/// The layout, redone from the database's description: the angles of one bin, and where its numbers are.
+/// The layout according to the database's description: the angles of one bin, and where its numbers are in the file.
 #[test]
 fn merl_values_are_where_the_format_has_them() {
     let (theta_h, theta_d, phi_d) = (30, 20, 45);
@@ -135,12 +135,12 @@ fn utia_gives_back_every_direction_that_it_holds() {
         let (l, v) = (n * 37 % 288, n * 101 % 288);
         let at = |n: usize| direction(15.0 * (n / 48) as f32, 7.5 * (n % 48) as f32);
         let (found, expected) = (UTIA.evaluate(at(l), at(v)), analytic(at(l), at(v)));
-        // Angles went through sine and arc tangent: off by some 1e-6 of a step, and next to a highlight f is steep.
+        // The angles went through sine and arctangent, which err by 1e-6 of a step, and f is steep beside a highlight.
         assert!(((found - expected) / expected).abs().max_element() < 1e-4, "{l} {v}: {found} {expected}");
     }
 }
 
-/// Smooth and different in all four angles, so that swapped or mirrored ones show.
+/// A smooth function that differs in all four angles, so that a swapped or mirrored angle changes the result.
 fn woven(l: Vec3, v: Vec3) -> Vec3 {
     Vec3::new(1.0 + 0.5 * l.x, 1.0 + 0.5 * v.y, 1.0 + 0.5 * l.y * v.x)
 }
@@ -175,7 +175,7 @@ fn utia_values_are_where_the_format_has_them() {
 
 #[test]
 fn warnings_tell_what_is_odd() {
-    // 1 in 100 is usual.
+    // 1 in 100 is normal.
     let few = |l: Vec3, v: Vec3| if l.z * v.z > 0.99 { Vec3::splat(-0.1) } else { analytic(l, v) };
     let few = open("few.binary", &MeasuredKind::Merl.encode(few));
     assert_eq!((few.warnings.len(), few.evaluate(Vec3::Z, Vec3::Z)), (0, Vec3::ZERO));
@@ -187,7 +187,7 @@ fn warnings_tell_what_is_odd() {
         assert!(many.values.iter().all(|&value| value >= 0.0));
     }
 
-    // Lambertian of albedo 2 in red; the first ring, 1.7 %, is not counted.
+    // Lambertian with an albedo of 2 in red. The first ring, 1.7 %, is not counted.
     let bright = open("bright.bin", &MeasuredKind::Utia.encode(|_, _| Vec3::new(2.0, 0.5, 0.5) / PI));
     assert!(bright.warnings.len() == 1 && bright.warnings[0].contains("reflects 2.0 times"), "{:?}", bright.warnings);
 }
@@ -234,7 +234,7 @@ fn bad_files_are_refused_with_what_was_found_and_expected() {
     let message = |path: &Path| Measured::open(path).unwrap_err().to_string();
     assert!(message(folder.path()).contains("is not a file"));
     assert!(message(&folder.path().join("absent.bin")).contains("cannot be read"));
-    // A header that is right and a terabyte behind it: refused by its length, not read.
+    // A correct header in a file of a terabyte: refused by its length, not read.
     let huge = write(folder.path(), "huge.binary", &header([90, 90, 180]));
     std::fs::File::options().write(true).open(&huge).unwrap().set_len(1 << 40).unwrap();
     assert!(message(&huge).contains("has 1099511627776 bytes, expected 34992012"));

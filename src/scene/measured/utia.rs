@@ -1,14 +1,14 @@
-//! The format of the UTIA database (Filip & Vávra 2014): doubles without a header, little endian: all of red, of green,
-//! of blue. A plane has 288 rows, one for each direction of the light, of 288 columns, one for each of the view; the
-//! direction (theta, phi) is number 48 theta / 15 + phi / 7.5 in degrees, theta from 0 to 75. phi is counted from the
-//! tangent towards the bitangent.
+//! The format of the UTIA database (Filip & Vávra 2014): doubles without a header, little endian: the planes red, green
+//! and blue. A plane has 288 rows, one per direction of the light, of 288 columns, one per direction of the view. The
+//! direction (theta, phi), in degrees, has the number 48 theta / 15 + phi / 7.5, with theta from 0 to 75. phi runs from
+//! the tangent towards the bitangent.
 //!
-//! Specula is linear in all four angles. Nothing was measured beyond 75 degrees: there the value at 75 holds. (The
-//! database's own reader goes on along the line through 60 and 75, which makes up negative light and doubles
-//! highlights.)
+//! Specula interpolates linearly in all four angles. Beyond 75 degrees, where nothing was measured, it uses the value
+//! at 75. (The database's own reader extrapolates the line through 60 and 75, which produces negative values and
+//! doubles highlights.)
 //!
-//! The values are taken as they are, linear and in 1/sr, as the database's own reader does. Others read them as sRGB
-//! encoded, and its files do not say; hence the warning when they reflect more light than there is.
+//! Specula takes the values as linear and in 1/sr, as the database's own reader does. Some programs read them as sRGB
+//! encoded, and the files do not say which is right; hence the warning if they reflect more light than they receive.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -25,7 +25,7 @@ const PHI_STEP: f32 = TAU / PHI as f32;
 
 pub(super) const FILE_BYTES: usize = 3 * DIRECTIONS * DIRECTIONS * size_of::<f64>();
 
-/// Albedos up to here are within what such a device measures.
+/// Albedos up to this are within the accuracy of such a measurement.
 const LARGEST_ALBEDO: f32 = 1.05;
 
 /// `bytes` is a whole file.
@@ -41,9 +41,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, MeasuredProblem> {
     Ok(Decoded { values, warnings })
 }
 
-/// The part of the light from all around that leaves along the normal: the integral of f cos over the hemisphere, where
-/// each sample stands for the ring of 15 degrees around it and the last one for all below. The first ring is left out
-/// (7.5 degrees, 1.7 % of the light): a highlight narrower than its sample would count far too much.
+/// The albedo along the normal: the integral of f cos over the hemisphere, where each sample represents the ring of 15
+/// degrees around it, and the last one also the rest down to the horizon. The first ring (7.5 degrees, 1.7 % of the
+/// light) is left out, since a highlight narrower than its sample would count far too much.
 fn albedo_seen_from_above(values: &[f32]) -> Vec3 {
     let mut albedo = Vec3::ZERO;
     for theta in 1..THETA {
@@ -66,7 +66,7 @@ fn warn_of_albedo(albedo: f32) -> Option<String> {
     })
 }
 
-/// The directions between which `direction`, above the horizon, lies.
+/// The samples between which `direction`, above the horizon, lies.
 fn between(direction: Vec3) -> (Between, Between) {
     let theta = direction.truncate().length().atan2(direction.z);
     let phi = direction.y.atan2(direction.x);
@@ -74,7 +74,7 @@ fn between(direction: Vec3) -> (Between, Between) {
     (Between::clamped(theta / THETA_STEP, THETA), Between::around(phi / PHI_STEP, PHI))
 }
 
-/// Both directions are above the horizon.
+/// Looks up l and v, both above the horizon.
 pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
     let (theta_l, phi_l) = between(l);
     let (theta_v, phi_v) = between(v);
@@ -82,7 +82,7 @@ pub(super) fn evaluate(values: &[f32], l: Vec3, v: Vec3) -> Vec3 {
     theta_l.mix(|theta| phi_l.mix(|phi| seen(theta * PHI + phi)))
 }
 
-/// The file of `f`.
+/// Encodes `f` as a file.
 pub(super) fn encode(f: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<u8> {
     let direction = |index: usize| {
         let (sin_theta, cos_theta) = (THETA_STEP * (index / PHI) as f32).sin_cos();

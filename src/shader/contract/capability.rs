@@ -1,7 +1,7 @@
-//! What a module may ask of the device: the SPIR-V capabilities that need no feature, or one that every device of ours
-//! has enabled. See the Vulkan specification, appendix "Vulkan Environment for SPIR-V".
+//! The SPIR-V capabilities that a module may use: those that need no device feature, and those whose feature Specula
+//! always enables. See the Vulkan specification, appendix "Vulkan Environment for SPIR-V".
 
-/// The capabilities that every shader may use. The features among them are those that `gpu::device` enables.
+/// The capabilities that every shader may use. `gpu::device` enables the features among them.
 const AVAILABLE: &[u32] = &[
     0,    // Matrix
     1,    // Shader
@@ -23,11 +23,11 @@ const AVAILABLE: &[u32] = &[
 pub struct Missing {
     /// Its name in SPIR-V, or its number.
     pub name: String,
-    /// What in GLSL may ask for it; the first of these words in the text is to blame.
+    /// GLSL words that may require it. The error points at the first one in the text.
     pub glsl: &'static [&'static str],
 }
 
-/// Those of a module's capabilities that no device of ours has enabled.
+/// The capabilities of a module that Specula does not enable.
 pub fn missing(capabilities: &[u32]) -> Vec<Missing> {
     let unavailable = capabilities.iter().filter(|number| !AVAILABLE.contains(number));
     let named = |number: &u32| match KNOWN.iter().find(|(known, ..)| known == number) {
@@ -37,7 +37,7 @@ pub fn missing(capabilities: &[u32]) -> Vec<Missing> {
     unavailable.map(named).collect()
 }
 
-/// Capabilities that GLSL for Vulkan can ask for, with what asks for them.
+/// Capabilities that GLSL for Vulkan may require, and the words that require them.
 const KNOWN: &[(u32, &str, &[&str])] = &[
     (9, "Float16", &["float16_t", "f16vec2", "f16vec3", "f16vec4", "f16mat3", "f16mat4"]),
     (10, "Float64", &["double", "dvec2", "dvec3", "dvec4", "dmat2", "dmat3", "dmat4", "float64_t"]),

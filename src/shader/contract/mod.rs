@@ -1,4 +1,5 @@
-//! Holds compiled stages against `interface.rs`, so that a live edit cannot misread memory. Every message names both sides.
+//! Checks compiled stages against `interface.rs`, so that a live edit cannot misread memory. Every message names both
+//! sides.
 
 mod capability;
 mod layout;
@@ -16,34 +17,34 @@ use crate::shader::source::text::{find_word, lines};
 use crate::shader::spirv::reflect::{Block, Descriptor, Location, Reflection, Scalar};
 use layout::{Layout, layout};
 
-/// The name of the contract's file in every tree.
+/// The file in every tree that holds the contract.
 pub const INTERFACE_FILE: &str = "interface.glsl";
 
-/// A stage's texts, to find the line that a message is about.
+/// The source text of a stage, to find the line that a message is about.
 #[derive(Clone, Copy, Debug)]
 pub struct Texts<'a> {
     /// The update's snapshot.
     pub snapshot: &'a Snapshot<'a>,
-    /// The outermost file.
+    /// The file with `main()`.
     pub stage: &'a TreePath,
     /// All files of the stage.
     pub dependencies: &'a BTreeSet<TreePath>,
 }
 
 impl Texts<'_> {
-    /// An error at the first line of code that holds all `words`, with the caret under the first word; at the stage's
-    /// file when there is none (a macro made the declaration).
+    /// An error at the first line of code that contains all `words`, with the caret under the first word. If there is
+    /// no such line (a macro made the declaration), the error is about the stage's file.
     fn error(&self, words: &[&str], message: String) -> Diagnostic {
         let all = |code: &str| {
             let found: Option<Vec<_>> = words.iter().map(|word| find_word(code, word)).collect();
             found?.into_iter().next()
         };
-        // The keywords beside a name may stand on another line than the name.
+        // The name may be on another line than its keywords.
         let name = |code: &str| find_word(code, words.first()?);
         self.error_at(all, &message).or_else(|| self.error_at(name, &message)).unwrap_or_else(|| self.on_file(message))
     }
 
-    /// An error at the first of `words` in the code; at the stage's file when none is there.
+    /// An error at the first line of code that contains any of `words`, or about the stage's file.
     fn error_at_any(&self, words: &[&str], message: String) -> Diagnostic {
         let any = |code: &str| words.iter().find_map(|word| find_word(code, word));
         self.error_at(any, &message).unwrap_or_else(|| self.on_file(message))
@@ -53,7 +54,7 @@ impl Texts<'_> {
         Diagnostic::error(self.snapshot.display_path(self.stage), message)
     }
 
-    /// An error at the first line of code in which `find` finds something, the stage's own file first.
+    /// An error at the first line of code in which `find` finds something. Searches the stage's own file first.
     fn error_at(&self, find: impl Fn(&str) -> Option<Range<usize>>, message: &str) -> Option<Diagnostic> {
         let included = self.dependencies.iter().filter(|path| *path != self.stage);
         std::iter::once(self.stage).chain(included).find_map(|path| {
@@ -81,7 +82,7 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
         }
         out.extend(layout("Draw").and_then(|layout| check_layout(block, layout, texts)));
     }
-    // Structs behind arrays and buffer references, which no descriptor shows.
+    // Structs that only arrays and buffer references use have no descriptor.
     for layout in ["Light", "Vertex"].into_iter().filter_map(layout) {
         let block = reflection.structs.get(layout.name);
         out.extend(block.and_then(|block| check_layout(block, layout, texts)));
@@ -117,8 +118,8 @@ fn check_vertex_inputs(inputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic>
     inputs.iter().map(refuse).collect()
 }
 
-/// One color image is drawn to. A component that is not written has no defined value, so `vec3` will not do, and nothing
-/// even less.
+/// There is one color attachment. It needs all four components, since components that a shader does not write are
+/// undefined.
 fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
     const EXPECTED: &str = "`layout(location = 0) out vec4`";
     if outputs.is_empty() {
@@ -135,7 +136,7 @@ fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Diagnos
     outputs.iter().filter_map(&mut refuse).collect()
 }
 
-/// `b` of `Block.b`: what the declaration's line holds.
+/// `b` of `Block.b`, as the declaration spells it.
 fn last_part(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
 }
@@ -205,7 +206,7 @@ fn check_lights(block: &Block, texts: Texts<'_>) -> Option<Diagnostic> {
     }
 }
 
-/// The first member that lies elsewhere than in Rust. A shader may leave out members at the end.
+/// Returns an error for the first member whose offset differs from Rust's. A shader may omit members at the end.
 fn check_layout(block: &Block, layout: &Layout, texts: Texts<'_>) -> Option<Diagnostic> {
     let name = layout.name;
     for (index, member) in block.members.iter().enumerate() {
@@ -224,14 +225,14 @@ fn check_layout(block: &Block, layout: &Layout, texts: Texts<'_>) -> Option<Diag
     None
 }
 
-/// `Light` of `Light[]`: what the declaration's line holds.
+/// `Light` of `Light[]`, as the declaration spells it.
 fn short_type(type_name: &str) -> &str {
     type_name.split('[').next().unwrap_or(type_name)
 }
 
 fn check_constants(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
-    // The first one says it: the same constant may be missing in many places.
+    // Report only the first: the same constant may lack a value in many places.
     if let Some(first) = reflection.without_value.first() {
         let named = reflection.without_value.iter().find(|name| !name.is_empty()).unwrap_or(first);
         let what = if named.is_empty() { "a global constant".into() } else { format!("`{named}`") };
@@ -260,7 +261,7 @@ fn check_constants(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic>
     out
 }
 
-/// Checks that a fragment stage reads what its vertex stage writes.
+/// Checks that a fragment stage's inputs match its vertex stage's outputs.
 pub fn check_pair(vertex: (&Reflection, Texts<'_>), fragment: (&Reflection, Texts<'_>)) -> Vec<Diagnostic> {
     let (vertex_texts, texts) = (vertex.1, fragment.1);
     let writer = vertex_texts.snapshot.display_path(vertex_texts.stage);
@@ -280,8 +281,9 @@ pub fn check_pair(vertex: (&Reflection, Texts<'_>), fragment: (&Reflection, Text
     out
 }
 
-/// Whether a tree's `interface.glsl` is the one this Specula prints: `None` when it is, or when the tree has none.
-/// Another version is an error; other text of the same version is a warning, for the checks above judge its meaning.
+/// Compares a tree's `interface.glsl` with the one that this Specula prints. Returns `None` if they are equal or the
+/// tree has none, an error if the version differs, and a warning if the text of the same version differs: whether
+/// memory is still read correctly is for [`check`] to find.
 pub fn interface_matches(snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
     let path = TreePath::from(INTERFACE_FILE);
     let text = snapshot.read(&path).ok()?;
@@ -317,6 +319,6 @@ pub fn interface_matches(snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
     })
 }
 
-// Run against the compiler; see `contract_tests.rs`.
+// These tests run the compiler.
 #[cfg(test)]
 mod tests;

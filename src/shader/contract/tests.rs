@@ -1,11 +1,11 @@
-//! The contract check against real modules.
+//! The contract check on compiled modules.
 
 use super::*;
 use crate::shader::compile::Compiler;
 use crate::shader::contract::layout::LAYOUTS;
 use crate::shader::source::Source;
 
-/// Compiles `text` after an include of `interface` and returns the stage's complaints.
+/// Compiles `text` after an include of `interface` and returns the diagnostics.
 fn complaints(interface: &str, text: &str) -> Vec<Diagnostic> {
     let text = format!(
         "#version 460\n#include \"interface.glsl\"\n{text}\n\
@@ -14,7 +14,7 @@ fn complaints(interface: &str, text: &str) -> Vec<Diagnostic> {
     complaints_of("m.frag", &[("m.frag", text.as_str()), ("interface.glsl", interface)])
 }
 
-/// Compiles a stage and returns its complaints.
+/// Compiles a stage and returns its diagnostics.
 fn complaints_of(stage: &str, files: &[(&str, &str)]) -> Vec<Diagnostic> {
     let source = Source::memory(files.iter().copied());
     let snapshot = Snapshot::new(&source);
@@ -87,7 +87,7 @@ fn a_condition_that_the_compiler_loses_is_told() {
     let expected =
         "m.frag:3:12: error: `BOTH` gets no value: the compiler cannot join comparisons of constants by && or ||";
     assert_eq!(found(text), [expected]);
-    // In two functions, without an operation: only the first has the value.
+    // Two functions use the constant, but glslang computes it in the first only.
     let head = "#version 460\nlayout(constant_id = 2) const uint FEATURES = 0u;\n";
     let functions = "layout(location = 0) out vec4 o;\nfloat a() { if (BOTH) return 1.0; return 2.0; }\n\
         float b() { if (BOTH) return 3.0; return 4.0; }\nvoid main() { o = vec4(a() + b()); }\n";

@@ -1,4 +1,4 @@
-//! `specula check`: everything that can be wrong with a tree, found without a device.
+//! `specula check`: finds all errors in a tree that can be found without a device.
 
 use std::collections::BTreeSet;
 
@@ -12,9 +12,9 @@ use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
 
-/// Updates the library and compiles what its entry points do not reach: stages it does not know and every `.glsl` alone
-/// (a library must include what it uses). Errors first, then warnings. Specialization constants choose no text, so their
-/// values are the pipelines' matter.
+/// Updates the library, then compiles everything that its entry points do not reach: unknown stages, and every `.glsl`
+/// on its own (a library must include what it uses). Returns errors first, then warnings. Specialization constants do
+/// not affect compilation, so their values are not checked here.
 pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let mut out = match library.update(&Change::All) {
         Update::Failed(diagnostics, _) => diagnostics,
@@ -28,7 +28,7 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let rest: Vec<TreePath> =
         library.source().list().into_iter().filter(|path| is_ours(path) && !known.contains(path)).collect();
     let compiler = library.compiler();
-    // What only compute stages include may use what only they have.
+    // A file that only compute stages include may use what only compute shaders have.
     let users = |path: &TreePath| {
         library.set().into_iter().flat_map(|set| set.stages.values()).filter({
             let path = path.clone();

@@ -1,4 +1,5 @@
-//! The shader tree as a transaction: changed paths go in; a whole new set, or diagnostics and the old set, come out.
+//! The shader tree as a transaction: takes changed paths, and returns either a complete new set or diagnostics. In the
+//! second case the old set remains.
 
 pub mod check;
 mod slot;
@@ -26,15 +27,15 @@ pub use slot::Stage;
 /// What may have changed since the last update.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Anything: the first update, and the reload key. Every stage compiles, whatever is known about its text; one whose
-    /// module comes out the same stays the same object.
+    /// Anything: the first update, and the reload key. Every stage is compiled. A stage whose module comes out
+    /// unchanged remains the same object.
     All,
     /// These files.
     Paths(BTreeSet<TreePath>),
 }
 
 impl Change {
-    /// Both changes.
+    /// Combines both changes.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -47,12 +48,12 @@ impl Change {
     }
 }
 
-/// Everything that one good state of the tree gives. Never changed: an edit makes a new one.
+/// The result of one successful update. It is immutable; an edit creates a new set.
 #[derive(Clone, Debug, Default)]
 pub struct ShaderSet {
-    /// Counts up with every new set, from 1.
+    /// Increments with every new set, from 1.
     pub generation: u64,
-    /// By path. A stage that an edit leaves alone is the same `Arc` in both sets.
+    /// The stages by path. A stage that an edit does not affect is the same `Arc` in both sets.
     pub stages: BTreeMap<String, Arc<Stage>>,
     /// Debug modes, ordered by id.
     pub modes: Vec<Mode>,
@@ -60,41 +61,42 @@ pub struct ShaderSet {
     pub constants: Vec<Constant>,
     /// The author's parameters, ordered by offset.
     pub parameters: Vec<Parameter>,
-    /// What the compiler warns of.
+    /// The compiler's warnings.
     pub warnings: Vec<Diagnostic>,
-    /// Whether a shader reads the time, so that its picture moves by itself.
+    /// Whether a shader reads the time, so that the picture changes without input.
     pub animated: bool,
 }
 
-/// What an update did.
+/// What an update compiled, and how long it took.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Changed files that some stage depends on, as printed.
+    /// Changed files that a stage depends on, as displayed.
     pub changed: Vec<String>,
-    /// Compiled stages and how long each took, in milliseconds.
+    /// Compiled stages and the time that each took, in milliseconds.
     pub stages: Vec<(String, f64)>,
-    /// Wall time of the whole update in milliseconds; stages compile in parallel.
+    /// Wall time of the whole update, in milliseconds. Stages compile in parallel.
     pub compile_ms: f64,
 }
 
 /// The outcome of an update.
 #[derive(Clone, Debug)]
 pub enum Update {
-    /// The last outcome stands. `cleared`: an edit that had failed was taken back, so its diagnostics are void.
+    /// The last set is still current. `cleared`: a failed edit was reverted, so its diagnostics no longer apply.
     Unchanged {
-        /// Whether diagnostics on screen go away.
+        /// Whether to clear the displayed diagnostics.
         cleared: bool,
     },
-    /// A new set.
+    /// There is a new set.
     Ready(Arc<ShaderSet>, Report),
-    /// The last good set stays.
+    /// The update failed; the last good set remains.
     Failed(Vec<Diagnostic>, Report),
 }
 
-/// Holds the stages of one tree, the last good set, and what failed since.
+/// The stages of one tree, the last good set, and the failures since.
 pub struct Library {
     source: Arc<Source>,
-    /// The tree's directory without symbolic links, as the watcher names it; still known while the directory is away.
+    /// The tree's directory with symbolic links resolved, as the watcher reports it. Kept while the directory is
+    /// missing.
     root: Option<PathBuf>,
     compiler: Arc<Compiler>,
     slots: Vec<Slot>,
@@ -104,7 +106,7 @@ pub struct Library {
 }
 
 impl Library {
-    /// A library of the entry points `stages`. `NAME.vert` feeds `NAME.frag`.
+    /// A library with the entry points `stages`. The outputs of `NAME.vert` are the inputs of `NAME.frag`.
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
         let paths: Vec<TreePath> = stages.iter().map(|path| TreePath::from(*path)).collect();
         let root = source.root().map(|root| root.canonicalize().unwrap_or_else(|_| root.to_owned()));
@@ -139,14 +141,14 @@ impl Library {
         self.slots.iter().map(|slot| &slot.path)
     }
 
-    /// Every path whose change can change the outcome, those looked for in vain included.
+    /// Every path whose change can affect the result, including paths where an include was not found.
     pub fn dependencies(&self) -> BTreeSet<TreePath> {
         let mut out = BTreeSet::from([TreePath::from(contract::INTERFACE_FILE)]);
         out.extend(self.slots.iter().flat_map(Slot::dependencies).cloned());
         out
     }
 
-    /// The watcher's absolute paths as a change of this tree.
+    /// Converts absolute paths from the watcher to a change of this tree.
     pub fn change_of<'p>(&self, paths: impl IntoIterator<Item = &'p PathBuf>) -> Change {
         let tree_path = |path: &Path| {
             let relative = path.strip_prefix(self.root.as_ref()?).ok()?;
@@ -155,7 +157,7 @@ impl Library {
         Change::Paths(paths.into_iter().filter_map(|path| tree_path(path)).collect())
     }
 
-    /// Brings the library up to date with the files. All or nothing: on any error the last good set stays.
+    /// Updates the library from the files, all or nothing: on any error the last good set remains.
     pub fn update(&mut self, change: &Change) -> Update {
         let start = Instant::now();
         let source = Arc::clone(&self.source);
@@ -200,7 +202,7 @@ impl Library {
         paths.iter().filter(|path| known.contains(path)).map(|path| self.source.display_path(path)).collect()
     }
 
-    /// Takes outcomes already known for the text at hand, and lists the stages to compile.
+    /// Restores results that are already known for the current text, and lists the stages to compile.
     fn stale(&mut self, change: &Change, snapshot: &Snapshot<'_>) -> Stale {
         let paths = match change {
             Change::All => {
@@ -209,11 +211,11 @@ impl Library {
             }
             Change::Paths(paths) => paths,
         };
-        // No stage may include it, and yet its version counts.
+        // The version counts even if no stage includes the file.
         let mut stale = Stale { moved: paths.contains(&TreePath::from(contract::INTERFACE_FILE)), compile: Vec::new() };
         for (index, slot) in self.slots.iter_mut().enumerate() {
             let hit = slot.dependencies().any(|dependency| paths.contains(dependency));
-            // A stage that failed is looked at again whatever changed: its dependencies end where it failed.
+            // Always check a failed stage again: its dependencies are known only up to the error.
             if matches!(slot.current, Some(Ok(_))) && !hit {
                 continue;
             }
@@ -225,7 +227,7 @@ impl Library {
         stale
     }
 
-    /// Joins the stages: all must have compiled, agree with each other, and their annotations must parse.
+    /// Links the stages: all must have compiled, interfaces must match, and annotations must parse.
     fn link(&self, snapshot: &Snapshot<'_>) -> Result<(Annotations, Vec<Diagnostic>), Vec<Diagnostic>> {
         let mut errors = Vec::new();
         let mut warnings = Vec::new();
@@ -261,7 +263,7 @@ impl Library {
         Ok((annotations, unique(warnings)))
     }
 
-    /// Whether the code of any file but the contract names the time.
+    /// Whether any file except the contract reads `frame.time_s`.
     fn reads_time(&self, snapshot: &Snapshot<'_>) -> bool {
         let in_code = |text: &str| lines(text).iter().any(|line| find_word(&line.code, "frame.time_s").is_some());
         let names_it = |path: &TreePath| snapshot.read(path).is_ok_and(|text| in_code(&text));
@@ -300,11 +302,11 @@ impl Library {
 }
 
 struct Stale {
-    /// Whether to join the stages again without a compile: an edit was taken back, say.
+    /// Whether to link again without compiling, for example after an edit was reverted.
     moved: bool,
     compile: Vec<(usize, TreePath)>,
 }
 
-// Run against the compiler; see `library_tests.rs`.
+// These tests run the compiler.
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! One stage of a library: how it comes to be, and what is known about it from one update to the next.
+//! One stage of a library: how it is built, and what is remembered about it between updates.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -17,16 +17,16 @@ pub struct Stage {
     pub path: TreePath,
     /// Vertex, fragment or compute.
     pub kind: StageKind,
-    /// The module, unoptimized.
+    /// The unoptimized module.
     pub spirv: Vec<u32>,
-    /// What it declares.
+    /// Its declarations.
     pub reflection: Reflection,
-    /// Its files, and the paths looked for in vain.
+    /// The stage's files, and the paths where an include was not found.
     pub dependencies: BTreeSet<TreePath>,
 }
 
 impl Stage {
-    /// Its texts, for messages.
+    /// The stage's source text, for messages.
     pub(super) fn texts<'a>(&'a self, snapshot: &'a Snapshot<'a>) -> Texts<'a> {
         Texts { snapshot, stage: &self.path, dependencies: &self.dependencies }
     }
@@ -36,47 +36,47 @@ impl Stage {
 #[derive(Clone)]
 pub(super) struct Built {
     pub stage: Arc<Stage>,
-    /// Of the texts it was made from.
+    /// Hash of the text that was compiled.
     pub hash: u64,
     pub warnings: Vec<Diagnostic>,
 }
 
-/// A failed one.
+/// A failed compilation.
 #[derive(Clone)]
 pub(super) struct Broken {
-    /// Of the texts it was made from.
+    /// Hash of the text that was compiled.
     pub hash: u64,
     pub dependencies: BTreeSet<TreePath>,
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// What compiling, reflecting and checking a stage gave.
+/// The result of compiling, reflecting and checking a stage.
 pub(super) type Outcome = Result<Built, Broken>;
 
-/// What is known about one stage.
+/// What is remembered about one stage.
 pub(super) struct Slot {
     pub path: TreePath,
-    /// The outcome for the files as last seen.
+    /// The result for the latest text.
     pub current: Option<Outcome>,
-    /// What the last good set holds.
+    /// The result in the last good set.
     pub good: Option<Built>,
 }
 
 impl Slot {
-    /// A stage about which nothing is known.
+    /// A stage that was not compiled yet.
     pub fn new(path: TreePath) -> Self {
         Self { path, current: None, good: None }
     }
 
-    /// Every path whose change can change the outcome.
+    /// Every path whose change can affect the result.
     pub fn dependencies(&self) -> impl Iterator<Item = &TreePath> {
         let current = self.current.as_ref().map(dependencies_of);
         let good = self.good.as_ref().map(|built| &built.stage.dependencies);
         std::iter::once(&self.path).chain([current, good].into_iter().flatten().flatten())
     }
 
-    /// Takes the outcome known for exactly the text of the snapshot: `None` when there is none, else whether it differs
-    /// from the current one.
+    /// Restores the result that is known for exactly the snapshot's text. Returns `None` if there is none, else whether
+    /// it differs from the current one.
     pub fn recall(&mut self, snapshot: &Snapshot<'_>) -> Option<bool> {
         let good = self.good.clone().map(Ok);
         let known = [self.current.clone(), good].into_iter().flatten().find(|outcome| {
@@ -88,8 +88,8 @@ impl Slot {
         Some(moved)
     }
 
-    /// Takes a new outcome. A comment changes no module, nor does compiling the same text again: then the stage stays
-    /// the same object, and no pipeline need be built.
+    /// Stores a new result. If the module is unchanged (an edit of a comment, or the same text compiled again), the
+    /// stage remains the same object, and no pipeline is rebuilt.
     pub fn accept(&mut self, outcome: Outcome) {
         self.current = Some(match (outcome, &self.good) {
             (Ok(built), Some(good)) if built.stage == good.stage => {
@@ -115,7 +115,7 @@ fn same(a: &Outcome, b: &Outcome) -> bool {
     }
 }
 
-/// Compiles, reflects and checks one stage; milliseconds of the compilation beside it.
+/// Compiles, reflects and checks one stage. Also returns the compilation's time in milliseconds.
 pub(super) fn build(compiler: &Compiler, snapshot: &Snapshot<'_>, path: &TreePath) -> (Outcome, f64) {
     let compiled = compiler.compile(snapshot, path);
     let (dependencies, ms) = (compiled.dependencies, compiled.ms);

@@ -1,4 +1,4 @@
-//! Whole updates on trees in memory.
+//! Updates of trees in memory.
 
 use super::*;
 
@@ -9,7 +9,7 @@ fn library(files: &[(&str, &str)], stages: &[&str]) -> Library {
     Library::new(source, Arc::new(Compiler::new().unwrap()), stages)
 }
 
-/// Writes (or with `None` removes) a file and updates with that path alone.
+/// Writes a file (or removes it, with `None`) and updates with that path only.
 fn edit(library: &mut Library, path: &str, text: Option<&str>) -> Update {
     let mut source = (*library.source).clone();
     let Source::Memory(files) = &mut source else { panic!("memory") };
@@ -105,7 +105,7 @@ fn a_comment_about_the_time_moves_nothing() {
 fn all_or_nothing_and_what_compiled_is_remembered() {
     let mut library = two_stages();
     failed(&edit(&mut library, "b.frag", Some("#version 460\nvoid main() { nope }\n")));
-    // A good edit beside a broken one is compiled, but not shown.
+    // A good edit next to a broken one is compiled, but does not give a new set.
     let update = edit(&mut library, "lib/color.glsl", Some("float color() { return 0.7; }\n"));
     assert_eq!(compiled(&update), ["a.frag"]);
     failed(&update);
@@ -135,7 +135,7 @@ fn a_missing_include_is_found_when_it_appears() {
     assert!(library.dependencies().contains(&"sub/lib/color.glsl".into()));
     let update = edit(&mut library, "lib/color.glsl", Some("float color() { return 0.5; }\n"));
     assert!(matches!(update, Update::Ready(..)), "{update:?}");
-    // A file that would be found first takes over.
+    // A new file at a path that is searched earlier takes precedence.
     let update = edit(&mut library, "sub/lib/color.glsl", Some("float color() { return 0.9; }\n"));
     assert!(matches!(update, Update::Ready(..)), "{update:?}");
     let update = edit(&mut library, "sub/a.frag", None);

@@ -1,5 +1,5 @@
-//! What conditions of a module's functions use without having it: the compiler computes a global constant of `&&` or `||` within
-//! the first function that needs it, where no other function has it.
+//! Finds conditions that use a constant glslang computed in another function. glslang computes a global constant of
+//! `&&` or `||` inside the first function that uses it; other functions then use an undefined id.
 
 use std::collections::HashSet;
 
@@ -7,10 +7,10 @@ use super::opcode as op;
 
 type Id = u32;
 
-/// OpLogicalEqual to OpSelect: operations that have nothing but ids.
+/// OpLogicalEqual to OpSelect, whose operands are all ids.
 const OF_IDS: std::ops::RangeInclusive<u32> = 164..=169;
 
-/// Ids that conditions in these functions use, and that neither their own function nor the `globals` define.
+/// Ids that conditions in these functions use, but that neither the same function nor `globals` define.
 pub fn missing_in_conditions(functions: &[u32], globals: &HashSet<Id>) -> Vec<Id> {
     let (mut known, mut used, mut missing) = (HashSet::<Id>::new(), Vec::<Id>::new(), Vec::new());
     let mut rest = functions;

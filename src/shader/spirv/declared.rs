@@ -1,5 +1,5 @@
-//! A SPIR-V module's declarations: types, names, decorations, variables. See the SPIR-V specification, sections 3.52.2
-//! to 3.52.9, for the numbers.
+//! Parses the declarations of a SPIR-V module: types, names, decorations, variables. The SPIR-V specification, sections
+//! 3.52.2 to 3.52.9, lists the opcodes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -32,7 +32,7 @@ mod storage {
     pub const STORAGE_BUFFER: u32 = 12;
 }
 
-/// SPIR-V's number of the image format Rgba16f.
+/// SPIR-V's value of the image format Rgba16f.
 const RGBA16F: u32 = 2;
 
 #[derive(Clone, Debug)]
@@ -69,7 +69,7 @@ pub struct Module {
 }
 
 impl Module {
-    /// Reads the words up to the first function; an empty module when they are no SPIR-V.
+    /// Parses the words up to the first function. Returns an empty module if they are not SPIR-V.
     pub fn parse(words: &[u32]) -> Self {
         const MAGIC: u32 = 0x0723_0203;
         const HEADER: usize = 5;
@@ -91,9 +91,9 @@ impl Module {
         module
     }
 
-    /// Notes a constant that has a value, and those that a condition is made of and that have none.
+    /// Records that a constant has a value, and any operand of a condition that has none.
     fn constant_result(&mut self, opcode: u32, operands: &[u32]) -> Option<()> {
-        /// SPIR-V's comparisons and logical operations: all operands are ids.
+        /// SPIR-V's comparisons and logical operations, whose operands are all ids.
         const CONDITIONS: std::ops::RangeInclusive<u32> = 164..=179;
         let (result, operation) = (*operands.get(1)?, operands.get(2));
         if opcode == op::SPEC_CONSTANT_OP && operation.is_some_and(|operation| CONDITIONS.contains(operation)) {
@@ -104,7 +104,7 @@ impl Module {
         Some(())
     }
 
-    /// `None` when operands are missing.
+    /// Records one declaration; `None` if operands are missing.
     fn instruction(&mut self, opcode: u32, operands: &[u32]) -> Option<()> {
         let at = |index: usize| operands.get(index).copied();
         if (op::CONSTANT_TRUE..=op::SPEC_CONSTANT_OP).contains(&opcode) {
@@ -145,12 +145,12 @@ impl Module {
     }
 
     fn specialize(&mut self, of: Id, result: Id, default: u32) {
-        // An array may be sized by it: then the default counts.
+        // It may size an array; the size then is the default.
         self.constants.insert(result, default);
         self.specialization.push((result, of, default));
     }
 
-    /// Everything at once.
+    /// Collects all declarations.
     pub fn reflect(&self) -> Reflection {
         let mut out = Reflection { capabilities: self.capabilities.clone(), ..Reflection::default() };
         for (pointer, variable, class) in &self.variables {
@@ -225,7 +225,7 @@ impl Module {
         Some(block)
     }
 
-    /// Bytes in memory; matrices within arrays share the member's matrix stride.
+    /// Size in bytes. Matrices in arrays share the member's matrix stride.
     fn size(&self, id: Id, matrix_stride: Option<u32>) -> u32 {
         match self.types.get(&id) {
             Some(Type::Bool) => 4,
@@ -239,7 +239,7 @@ impl Module {
                 stride.saturating_mul(self.constants.get(length).copied().unwrap_or(0))
             }
             Some(Type::Struct { .. }) => self.block(id).map_or(0, |block| block.size),
-            // Only a buffer reference can lie in memory: a 64-bit address.
+            // The only pointers stored in memory are buffer references, which are 64-bit addresses.
             Some(Type::Pointer { .. }) => 8,
             _ => 0,
         }
@@ -262,7 +262,7 @@ impl Module {
         Some(SpecConstant { id: self.decoration(id, decoration::SPEC_ID)?, name: self.name(id), scalar, default })
     }
 
-    /// Adds a variable's locations: one, or one for each member of a block.
+    /// Adds a variable's locations: one, or one per member of a block.
     fn locations(&self, variable: Id, to: Id, out: &mut Vec<Location>) {
         let Some(Type::Struct { members }) = self.types.get(&to) else {
             let Some(location) = self.decoration(variable, decoration::LOCATION) else { return };
@@ -293,7 +293,7 @@ impl Module {
         }
     }
 
-    /// GLSL's spelling of a type.
+    /// The type as GLSL spells it.
     fn type_name(&self, id: Id) -> String {
         let Some(declared) = self.types.get(&id) else { return "?".to_owned() };
         match declared {
@@ -323,7 +323,7 @@ impl Module {
                     _ => "?",
                 };
                 let kind = if *storage { "image" } else { "texture" };
-                // Storage images name their format; the contract has one.
+                // Only storage images have a format; the contract uses rgba16f only.
                 let format = if *format == RGBA16F { "rgba16f " } else { "" };
                 format!("{format}{}{kind}{dimension}{}", self.prefix(*sampled), if *arrayed { "Array" } else { "" })
             }
@@ -339,7 +339,7 @@ impl Module {
         }
     }
 
-    /// What GLSL puts before `vec`, `mat` and `sampler`.
+    /// The prefix of `vec`, `mat` and `sampler` in GLSL.
     fn prefix(&self, scalar: Id) -> &'static str {
         match self.types.get(&scalar) {
             Some(Type::Int { signed: true, .. }) => "i",
@@ -351,7 +351,7 @@ impl Module {
     }
 }
 
-/// The type that an instruction declares, if any; the outer `None` when operands are missing.
+/// The type that an instruction declares, or `Some(None)` if it declares none; `None` if operands are missing.
 fn type_of(opcode: u32, operands: &[u32]) -> Option<Option<Type>> {
     let at = |index: usize| operands.get(index).copied();
     Some(Some(match opcode {
@@ -373,7 +373,7 @@ fn type_of(opcode: u32, operands: &[u32]) -> Option<Option<Type>> {
     }))
 }
 
-/// A literal string and how many words it takes.
+/// A literal string and its length in words.
 fn string(words: &[u32]) -> (String, usize) {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     let length = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());

@@ -1,4 +1,5 @@
-//! Reads and rewrites SPIR-V modules: declarations for the contract, and specialization before the driver sees a module.
+//! Reads and rewrites SPIR-V modules: reflection for the contract check, and specialization before the driver sees a
+//! module.
 
 mod conditions;
 mod declared;

@@ -1,4 +1,4 @@
-//! SPIR-V's numbers of instructions, as far as we read them (SPIR-V specification, section 3.52).
+//! Opcodes of the SPIR-V instructions that Specula reads (SPIR-V specification, section 3.52).
 
 pub const NAME: u32 = 5;
 pub const MEMBER_NAME: u32 = 6;
@@ -39,5 +39,5 @@ pub const SWITCH: u32 = 251;
 pub const RETURN_VALUE: u32 = 254;
 pub const UNREACHABLE: u32 = 255;
 
-/// Instructions of a function that have no result: stores, merges, branches, barriers.
+/// Opcodes within functions that have no result id: stores, merges, branches, barriers.
 pub const WITHOUT_RESULT: [u32; 17] = [0, 8, 62, 63, 99, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 317, 4416];

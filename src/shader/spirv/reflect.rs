@@ -1,7 +1,7 @@
-//! Reads from a SPIR-V module what the contract and the annotations need: descriptors, blocks, constants, locations.
+//! Reflects a SPIR-V module for the contract check and the annotations: descriptors, blocks, constants, locations.
 //!
-//! Written for modules as glslang leaves them at -O0, with names and with every declared global, used or not.
-//! Malformed words are skipped, never a panic: what is missing then fails the contract check.
+//! Expects modules compiled by glslang at -O0, with names and with every declared global, used or not. Skips malformed
+//! words instead of panicking; the contract check then reports what is missing.
 
 use std::collections::BTreeMap;
 
@@ -14,11 +14,11 @@ use super::declared::Module;
 pub struct Member {
     /// Name in GLSL.
     pub name: String,
-    /// Bytes from the start of the block.
+    /// Offset from the start of the block, bytes.
     pub offset: u32,
-    /// Type in GLSL's spelling: `vec3`, `mat4x3`, `Light[]`.
+    /// Type as GLSL spells it: `vec3`, `mat4x3`, `Light[]`.
     pub type_name: String,
-    /// For arrays: bytes from element to element, else 0.
+    /// For arrays, the stride in bytes; else 0.
     pub stride: u32,
 }
 
@@ -27,9 +27,9 @@ pub struct Member {
 pub struct Block {
     /// Name of the struct or block in GLSL.
     pub name: String,
-    /// Bytes up to the end of the last member; a runtime array counts as empty.
+    /// Size in bytes up to the end of the last member. A runtime array counts as empty.
     pub size: u32,
-    /// In the order of the declaration.
+    /// Members in declaration order.
     pub members: Vec<Member>,
 }
 
@@ -40,13 +40,13 @@ pub struct Descriptor {
     pub set: u32,
     /// Binding within the set.
     pub binding: u32,
-    /// `None` when it is of a kind that the contract does not know; then `glsl` says which.
+    /// `None` for a kind that the contract does not have; `glsl` then names it.
     pub kind: Option<BindingKind>,
-    /// The declaration's type in GLSL's spelling.
+    /// The declaration's type as GLSL spells it.
     pub glsl: String,
-    /// The block's name, or the variable's.
+    /// The name of the block or the variable.
     pub name: String,
-    /// The content of blocks.
+    /// The layout, if it is a block.
     pub block: Option<Block>,
 }
 
@@ -83,38 +83,38 @@ pub struct Location {
     pub location: u32,
     /// Name in GLSL.
     pub name: String,
-    /// Type in GLSL's spelling.
+    /// Type as GLSL spells it.
     pub type_name: String,
 }
 
-/// What one module declares.
+/// The declarations of a module.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reflection {
-    /// Ordered by set and binding.
+    /// Descriptors, ordered by set and binding.
     pub descriptors: Vec<Descriptor>,
     /// The push constant block.
     pub push_constants: Option<Block>,
-    /// Ordered by id.
+    /// Specialization constants, ordered by id.
     pub constants: Vec<SpecConstant>,
     /// Inputs that the stage uses, ordered by location.
     pub inputs: Vec<Location>,
     /// Outputs that the stage uses, ordered by location.
     pub outputs: Vec<Location>,
-    /// Every struct with member offsets, by name: also those behind arrays and buffer references.
+    /// Every struct with member offsets, by name, including elements of arrays and targets of buffer references.
     pub structs: BTreeMap<String, Block>,
-    /// Constants that the compiler left without a value: it makes no code for `&&` and `||` of specialization constants.
+    /// Constants that glslang left without a value: it generates no code for `&&` and `||` of specialization constants.
     pub without_value: Vec<String>,
-    /// SPIR-V's numbers of the capabilities that it asks for.
+    /// The SPIR-V capabilities that the module declares.
     pub capabilities: Vec<u32>,
 }
 
 impl Reflection {
-    /// Reads a module.
+    /// Reflects a module.
     pub fn of(spirv: &[u32]) -> Self {
         Module::parse(spirv).reflect()
     }
 
-    /// The descriptor at a place.
+    /// The descriptor with this set and binding.
     pub fn descriptor(&self, set: u32, binding: u32) -> Option<&Descriptor> {
         self.descriptors.iter().find(|found| (found.set, found.binding) == (set, binding))
     }

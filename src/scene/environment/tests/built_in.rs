@@ -1,4 +1,4 @@
-//! The environments that are made by code.
+//! The built-in environments.
 
 use std::f32::consts::PI;
 
@@ -26,7 +26,7 @@ fn all_are_whole() {
         let peak = environment.pixels.iter().fold(0.0, |peak: f32, [r, g, b, _]| peak.max(*r).max(*g).max(*b));
         assert_eq!(environment.peak, peak, "{name}");
         assert!(environment.pixels.iter().all(|pixel| pixel[3] == 1.0));
-        // The same on every run, however the rows are shared among threads.
+        // Every run gives the same bits, however the rows are distributed over threads.
         assert_eq!(environment, open(name));
     }
 }
@@ -52,7 +52,7 @@ fn the_studio_is_balanced() {
     assert!(up > 4.0 * down && up < 12.0 * down, "{up} {down}");
 }
 
-/// Splits the sky's light into the sun's texels, which are far brighter than any sky, and the rest.
+/// Splits the sky's light into the sun's texels, which are far brighter than any other, and the rest.
 fn split(environment: &Environment) -> (Environment, Environment) {
     let (mut sun, mut rest) = (environment.clone(), environment.clone());
     for (sun, rest) in sun.pixels.iter_mut().zip(&mut rest.pixels) {
@@ -61,7 +61,7 @@ fn split(environment: &Environment) -> (Environment, Environment) {
     (sun, rest)
 }
 
-/// Sunlight has the same energy at any resolution: it is spread over the texels by the area that the disc covers.
+/// The sun's energy is the same at any resolution, since each texel receives the area that the disc covers.
 #[test]
 fn the_suns_energy_does_not_depend_on_resolution() {
     let [small, medium, large] = [256, 1024, 2048].map(|width| {
@@ -75,7 +75,7 @@ fn the_suns_energy_does_not_depend_on_resolution() {
     });
     assert!((medium.0 / small.0 - 1.0).abs() < 2e-3, "{small:?} {medium:?}");
     assert!((medium.0 / large.0 - 1.0).abs() < 2e-3, "{large:?} {medium:?}");
-    // Where texels are smaller than the disc, some lie inside of it and show its true radiance.
+    // At this resolution some texels lie inside the disc and have its true radiance.
     let solid_angle = 2.0 * PI * (1.0 - sky::SUN_RADIUS.cos()) as f32;
     assert!((large.1 * solid_angle / large.0 - 1.0).abs() < 0.01, "{large:?}");
     assert!(small.1 < 0.5 * medium.1 && medium.1 < large.1, "{small:?} {medium:?} {large:?}");

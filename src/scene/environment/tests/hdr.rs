@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// An HDR file of flat RGBE pixels, row by row.
+/// An HDR file with flat RGBE pixels, row by row.
 fn flat(width: usize, rgbe: &[[u8; 4]]) -> Vec<u8> {
     let size = format!("-Y {} +X {width}\n", rgbe.len() / width);
     with_header("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n", &size, rgbe.as_flattened())
@@ -12,7 +12,7 @@ fn with_header(header: &str, size: &str, pixels: &[u8]) -> Vec<u8> {
     [header.as_bytes(), size.as_bytes(), pixels].concat()
 }
 
-/// 16x2 pixels with new run lengths: a run of red 128, a count of green 0..16, no blue, exponent 129 (so 128 is 1.0).
+/// 16x2 pixels with new run lengths: red constantly 128, green 0 to 15, blue 0, exponent 129 (so that 128 is 1.0).
 fn run_lengths() -> Vec<u8> {
     let row = |exponent: u8| {
         let literal: Vec<u8> = (0..16).collect();
@@ -34,7 +34,7 @@ fn known_values() {
         let scale = if i < 16 { 1.0 } else { 2.0 };
         assert_eq!(*pixel, [scale, scale * (i % 16) as f32 / 128.0, 0.0, 1.0], "{i}");
     }
-    // Old run lengths: the pixel before, 3 + 1 * 256 times again; and the other name in the first line.
+    // Old run lengths: repeats the previous pixel 3 + 1 * 256 times. The first line has the other common form.
     let old = [[128, 128, 128, 129], [1, 1, 1, 3], [1, 1, 1, 1]];
     let old = with_header("#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n", "-Y 1 +X 260\n", old.as_flattened());
     assert_eq!(load("a.hdr", &old).unwrap().pixels, [[1.0; 4]; 260]);

@@ -7,7 +7,7 @@ use super::{error, float_image, load};
 
 type Value = (f32, f32, f32);
 
-/// A 4x2 image whose pixel (x, y) is (x, y, 0.5), but for the given ones.
+/// A 4x2 image whose pixel (x, y) is (x, y, 0.5), except for the given ones.
 fn value(replaced: &[(usize, usize, Value)], at: Vec2<usize>) -> Value {
     let found = replaced.iter().find(|(x, y, _)| (*x, *y) == (at.x(), at.y()));
     found.map_or((at.x() as f32, at.y() as f32, 0.5), |(_, _, value)| *value)
@@ -97,15 +97,15 @@ fn other_primaries_are_told() {
         blue: Vec2(0.128, 0.044),
         white: Vec2(0.32168, 0.33767),
     });
-    assert!(load("a.exr", &write(image)).unwrap().warnings[0].contains("other primaries than Rec. 709"));
+    assert!(load("a.exr", &write(image)).unwrap().warnings[0].contains("primaries other than Rec. 709"));
 }
 
-/// The data window is four i32 (the last included) behind the attribute's name, type and size.
+/// The data window is four i32 (inclusive bounds) after the attribute's name, type and size.
 #[test]
 fn sizes_that_the_file_cannot_hold() {
     let with_size = |compression, width: i32, height: i32| {
         let mut bytes = encode(compression, Blocks::ScanLines, &[]);
-        // Most writers leave this attribute out; here it would contradict the new size.
+        // Most writers omit this attribute; here it would contradict the new size.
         let count = bytes.windows(11).position(|window| window == b"chunkCount\0").unwrap();
         bytes[count] = b'x';
         for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
@@ -137,7 +137,7 @@ fn cut_short_at_every_byte() {
     }
 }
 
-/// The decoder panics on some of these: that is caught, on whatever thread it works, and the process goes on.
+/// The decoder panics on some of these. The panic is caught on the calling thread, and the process continues.
 #[test]
 fn every_byte_changed() {
     for compression in [Compression::ZIP16, Compression::B44] {

@@ -1,17 +1,17 @@
-//! A function's blocks: branches that known values decide are taken, and blocks that nobody reaches go.
+//! The blocks of a function: takes branches on known values and drops unreachable blocks.
 
 use std::collections::{HashMap, HashSet};
 
 use super::{Id, Instruction, Known, evaluate, instruction, op, opcode};
 
-/// A block: its label and what follows, the branch at the end included.
+/// A basic block: its label and its instructions, including the branch at its end.
 struct Block {
     label: Id,
     body: Vec<Instruction>,
 }
 
 impl Block {
-    /// The merge and continue blocks that its last instructions name.
+    /// The merge and continue blocks that the block's merge instruction names.
     fn structure(&self) -> (Option<Id>, Option<Id>) {
         let merge = self.body.iter().rev().nth(1);
         match merge.map(|i| (opcode(i), i)) {
@@ -32,7 +32,7 @@ impl Block {
     }
 }
 
-/// A function: what stands before its first block, and the blocks.
+/// A function: the instructions before its first block, and its blocks.
 pub(super) struct Function {
     pub(super) id: Id,
     head: Vec<Instruction>,
@@ -53,7 +53,7 @@ impl Function {
         Some(function)
     }
 
-    /// What it always returns, when it does nothing else.
+    /// The value that the function always returns, if its body is nothing but a return.
     pub(super) fn constant(&self, known: &Known) -> Option<u32> {
         match (self.blocks.as_slice(), self.blocks.first()?.body.as_slice()) {
             ([_], [only]) if opcode(only) == op::RETURN_VALUE => known.values.get(only.get(1)?).copied(),
@@ -61,8 +61,8 @@ impl Function {
         }
     }
 
-    /// Takes the branches that are decided and drops the blocks that are not reached, until nothing changes: a dropped block
-    /// can decide the next branch.
+    /// Takes decided branches and drops unreachable blocks until nothing changes: dropping a block can decide another
+    /// branch.
     pub(super) fn fold(&mut self, known: &Known, removed: &mut HashSet<Id>) {
         let mut any = false;
         while self.take_branches(known) {
@@ -74,8 +74,8 @@ impl Function {
         }
     }
 
-    /// Brings each block behind those that every way to it goes through (SPIR-V specification, section 2.4): where a case of a
-    /// switch falls through, that may be another since a branch was taken. Blocks that nobody reaches come last.
+    /// Reorders blocks so that each follows its dominators (SPIR-V specification, section 2.4). Taking a branch can
+    /// change the dominators where a switch case falls through. Unreachable blocks come last.
     fn sort(&mut self) {
         let at: HashMap<Id, usize> = self.blocks.iter().enumerate().map(|(index, b)| (b.label, index)).collect();
         let ways = |index: usize| self.blocks[index].targets().into_iter().filter_map(|id| at.get(&id).copied());
@@ -95,11 +95,12 @@ impl Function {
         self.blocks = order.into_iter().filter_map(|index| blocks[index].take()).collect();
     }
 
-    /// Whether there was one to take.
+    /// Takes all branches that known values decide; returns whether there was one.
     fn take_branches(&mut self, known: &Known) -> bool {
         let mut local: HashMap<Id, u32> = HashMap::new();
         let mut any = false;
-        // The end of a loop must stay a choice even if it is always made: a loop has a way back and a way out.
+        // Keep the conditional branch that exits a loop, even if it is decided: a loop construct needs both a back edge
+        // and an exit.
         let loops = self.blocks.iter().map(Block::structure).filter(|(_, next)| next.is_some());
         let loop_ends: HashSet<Id> = loops.filter_map(|(merge, _)| merge).collect();
         for block in &mut self.blocks {
@@ -113,7 +114,7 @@ impl Function {
                         let first = values.next().flatten();
                         first.filter(|_| values.all(|value| value == first))
                     }
-                    // What follows in the same block sees values of the blocks before.
+                    // Within the same block, an instruction sees only values from earlier blocks.
                     operation => evaluate(operation, &i[3..], &lookup),
                 };
                 found.extend(value.map(|value| (i[2], value)));
@@ -145,7 +146,8 @@ impl Function {
                 open.extend(block(&label).into_iter().flat_map(Block::targets));
             }
         }
-        // A merge or continue block must be there even when nobody gets to it: then it is empty.
+        // Structured control flow requires the merge and continue blocks even if they are unreachable; they become
+        // empty.
         let (mut merges, mut continues) = (HashSet::new(), HashMap::new());
         for header in self.blocks.iter().filter(|b| reached.contains(&b.label)) {
             let (merge, next) = header.structure();
@@ -170,7 +172,7 @@ impl Function {
             }
         }
         self.blocks.retain(|b| !removed.contains(&b.label));
-        // A phi has one value for each block that branches to it.
+        // A phi must have one value per predecessor.
         for block in &mut self.blocks {
             let from = sources.get(&block.label);
             for phi in block.body.iter_mut().filter(|i| opcode(i) == op::PHI) {
@@ -187,7 +189,7 @@ impl Function {
         all.filter(|i| opcode(i) == op::FUNCTION_CALL).filter_map(|i| i.get(3).copied())
     }
 
-    /// Adds every id that it defines.
+    /// Adds every id that the function defines.
     pub(super) fn results(&self, out: &mut HashSet<Id>) {
         results(&self.head, out);
         for block in &self.blocks {
@@ -206,7 +208,8 @@ impl Function {
     }
 }
 
-/// Leaves a switch whose value is known with the case that it takes, as its default: breaks within need the switch itself.
+/// Reduces a switch on a known value to its default target, the case that is taken. The switch itself remains, since
+/// breaks inside need it.
 fn take_case(block: &mut Block, lookup: &dyn Fn(Id) -> Option<u32>) -> bool {
     let Some(last) = block.body.last_mut().filter(|i| opcode(i) == op::SWITCH && i.len() > 3) else { return false };
     let Some(value) = lookup(last[1]) else { return false };
