@@ -60,11 +60,13 @@ pub enum Raster {
     Solid,
     /// Premultiplied alpha blending, without depth writes.
     Blended,
+    /// They replace what is there, without depth writes.
+    Replaced,
     /// The edges of triangles alone, where the device can; else as [`Raster::Solid`].
     Lines,
     /// They add up, without depth test; alpha is the largest.
     Added,
-    /// They are mixed with what is there, by a weight that is set while recording.
+    /// Their color is mixed with what is there, by a weight that is set while recording; alpha is the largest.
     Averaged,
 }
 
@@ -200,7 +202,7 @@ impl Drop for ComputePipeline {
 fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     let state = vk::PipelineColorBlendAttachmentState::default();
     match raster {
-        Raster::Solid | Raster::Lines => state,
+        Raster::Solid | Raster::Replaced | Raster::Lines => state,
         Raster::Blended => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)
@@ -211,8 +213,9 @@ fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::CONSTANT_COLOR)
             .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_CONSTANT_COLOR)
-            .src_alpha_blend_factor(vk::BlendFactor::CONSTANT_ALPHA)
-            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_CONSTANT_ALPHA),
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE)
+            .alpha_blend_op(vk::BlendOp::MAX),
         Raster::Added => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, one_shot, vk};
+use crate::render::pixel::PixelValue;
 
 /// A frame in memory.
 #[derive(Clone, Debug)]
@@ -15,6 +16,10 @@ pub struct Capture {
     pub rgba8: Vec<u8>,
     /// The values before exposure, tone map and encoding: RGBA, premultiplied alpha, rows from the top.
     pub raw: Vec<[f32; 4]>,
+    /// Whether the mode has no data at a pixel, as [`PixelValue::no_data`]; in the order of `raw`.
+    pub no_data: Vec<bool>,
+    /// Whether the value of a pixel is NaN or infinite, as [`PixelValue::not_finite`]; in the order of `raw`.
+    pub not_finite: Vec<bool>,
 }
 
 impl Capture {
@@ -62,12 +67,20 @@ impl Readback {
     pub(super) fn finish(self) -> Capture {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
-        let raw = floats(&self.raw.read(), self.half);
-        Capture { width: self.width, height: self.height, rgba8, raw }
+        let texels = floats(&self.raw.read(), self.half);
+        let pixels: Vec<PixelValue> = texels.into_iter().map(PixelValue::decode).collect();
+        Capture {
+            width: self.width,
+            height: self.height,
+            rgba8,
+            raw: pixels.iter().map(|pixel| pixel.value).collect(),
+            no_data: pixels.iter().map(|pixel| pixel.no_data).collect(),
+            not_finite: pixels.iter().map(|pixel| pixel.not_finite).collect(),
+        }
     }
 }
 
-/// One pixel of an HDR image in `Use::Sampled`.
+/// One texel of an HDR image in `Use::Sampled`, which [`PixelValue::decode`] takes apart; `None` outside of the image.
 pub(super) fn raw_at(gpu: &Arc<Gpu>, hdr: &Arc<Image>, x: u32, y: u32) -> Result<Option<[f32; 4]>, GpuError> {
     let desc = hdr.desc();
     if x >= desc.width || y >= desc.height {

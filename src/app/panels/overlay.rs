@@ -6,7 +6,7 @@ use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichTe
 
 use super::{ERROR, QUIET, WARNING, plural};
 use crate::app::document::Document;
-use crate::render::is_absent;
+use crate::render::PixelValue;
 use crate::shader::{Diagnostic, Severity};
 
 const NOTICE: Duration = Duration::from_secs(6);
@@ -38,8 +38,9 @@ pub(super) fn show(egui: &egui::Context, document: &mut Document, picture: egui:
     if document.show_ui {
         let title = document.title();
         let value = document.hover.map(|hover| {
-            let [r, g, b, _] = hover.value.map(number);
-            let numbers = if is_absent(hover.value) { "none".into() } else { format!("{r} {g} {b}") };
+            let pixel = PixelValue::decode(hover.value);
+            let [r, g, b, _] = pixel.value.map(number);
+            let numbers = if pixel.no_data { "no data".into() } else { format!("{r} {g} {b}") };
             format!("{numbers}   at {}, {}", hover.x, hover.y)
         });
         if title.is_some() || value.is_some() {
