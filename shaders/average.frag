@@ -1,8 +1,8 @@
 #version 460
 #include "interface.glsl"
 
-// One frame of those that add up. The blend unit mixes it into their mean with weight 1 / n: the running mean (Welford
-// 1962) m_n = m_(n-1) + (x_n - m_(n-1)) / n.
+// One frame of an accumulating mode. The blend unit mixes its color into the mean of all frames with weight 1 / n: the running
+// mean (Welford 1962) m_n = m_(n-1) + (x_n - m_(n-1)) / n. Of alpha it keeps the largest, so that a flag of one frame stays.
 
 layout(set = SET_PASS, binding = BINDING_SCENE_COLOR) uniform sampler2D scene_color;
 

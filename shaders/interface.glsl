@@ -25,6 +25,14 @@ const int BINDING_MEASURED = 9;
 const int BINDING_SHEEN_ALBEDO = 10;
 const int BINDING_UNUSED = 11;
 const int BINDING_MATERIAL = 0;
+const int BINDING_SCENE_COLOR = 0;
+const int BINDING_BEHIND = 1;
+const int BINDING_TASK = 0;
+const int BINDING_SOURCE = 1;
+const int BINDING_SOURCE_CUBE = 2;
+const int BINDING_TARGET = 3;
+const int BINDING_LEVEL_ABOVE = 4;
+const int BINDING_RESULTS = 5;
 const int BINDING_BASE_COLOR_TEXTURE = 1;
 const int BINDING_METALLIC_ROUGHNESS_TEXTURE = 2;
 const int BINDING_NORMAL_TEXTURE = 3;
@@ -44,14 +52,6 @@ const int BINDING_TRANSMISSION_TEXTURE = 16;
 const int BINDING_THICKNESS_TEXTURE = 17;
 const int BINDING_DIFFUSE_TRANSMISSION_TEXTURE = 18;
 const int BINDING_DIFFUSE_TRANSMISSION_COLOR_TEXTURE = 19;
-const int BINDING_SCENE_COLOR = 0;
-const int BINDING_BEHIND = 1;
-const int BINDING_TASK = 0;
-const int BINDING_SOURCE = 1;
-const int BINDING_SOURCE_CUBE = 2;
-const int BINDING_TARGET = 3;
-const int BINDING_LEVEL_ABOVE = 4;
-const int BINDING_RESULTS = 5;
 const int USER_CONSTANTS = 32;
 const uint ALPHA_OPAQUE = 0u;
 const uint ALPHA_MASK = 1u;
@@ -76,6 +76,25 @@ const uint FEATURE_RECT_LIGHTS = 0x10000u;
 const uint FEATURE_TEXTURE_COORDINATES = 0x20000u;
 const uint FEATURE_UV1 = 0x40000u;
 const uint FEATURE_VERTEX_COLOR = 0x80000u;
+const uint ATTRIBUTE_NORMAL = 1u;
+const uint ATTRIBUTE_TANGENT = 2u;
+const uint ATTRIBUTE_UV0 = 4u;
+const uint ATTRIBUTE_UV1 = 8u;
+const uint ATTRIBUTE_COLOR = 16u;
+const uint ATTRIBUTE_TANGENT_FRAME = 32u;
+const uint LIGHT_DIRECTIONAL = 0u;
+const uint LIGHT_POINT = 1u;
+const uint LIGHT_SPOT = 2u;
+const uint LIGHT_RECT = 3u;
+const uint MEASURED_NONE = 0u;
+const uint MEASURED_MERL = 1u;
+const uint MEASURED_UTIA = 2u;
+const uint ENCODE_COLOR = 0u;
+const uint ENCODE_DATA = 1u;
+const uint ENCODE_VECTOR = 2u;
+const uint FLAG_NO_DATA = 16u;
+const uint FLAG_NOT_FINITE = 256u;
+const uint TONEMAP_OFF = 0xffffffffu;
 const uint TEXTURE_BASE_COLOR = 0u;
 const uint TEXTURE_METALLIC_ROUGHNESS = 1u;
 const uint TEXTURE_NORMAL = 2u;
@@ -95,23 +114,6 @@ const uint TEXTURE_TRANSMISSION = 15u;
 const uint TEXTURE_THICKNESS = 16u;
 const uint TEXTURE_DIFFUSE_TRANSMISSION = 17u;
 const uint TEXTURE_DIFFUSE_TRANSMISSION_COLOR = 18u;
-const uint ATTRIBUTE_NORMAL = 1u;
-const uint ATTRIBUTE_TANGENT = 2u;
-const uint ATTRIBUTE_UV0 = 4u;
-const uint ATTRIBUTE_UV1 = 8u;
-const uint ATTRIBUTE_COLOR = 16u;
-const uint ATTRIBUTE_TANGENT_FRAME = 32u;
-const uint LIGHT_DIRECTIONAL = 0u;
-const uint LIGHT_POINT = 1u;
-const uint LIGHT_SPOT = 2u;
-const uint LIGHT_RECT = 3u;
-const uint MEASURED_NONE = 0u;
-const uint MEASURED_MERL = 1u;
-const uint MEASURED_UTIA = 2u;
-const uint ENCODE_COLOR = 0u;
-const uint ENCODE_DATA = 1u;
-const uint ENCODE_VECTOR = 2u;
-const uint TONEMAP_OFF = 0xffffffffu;
 const int TEXTURE_COUNT = 19;
 const int MAX_LIGHTS = 204;
 
@@ -123,41 +125,41 @@ layout(constant_id = 4) const uint ENCODE = 0u; // how the picture stores values
 layout(constant_id = 5) const uint LIGHT_COUNT = 0u; // lights, if they are few; 0: see frame.light_count
 
 layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
-    mat4 clip_from_world;      // reversed depth: 1 near, 0 at infinity
-    mat4 world_from_clip;
-    mat4 view_from_world;
-    vec3 eye_ws;
-    float exposure;            // 1 / (1.2 * 2^EV100)
-    vec3 ambient;              // radiance from everywhere
-    float time_s;
-    vec4 background;           // linear RGB, alpha
-    vec3 scene_center_ws;
-    float scene_radius;
-    vec2 viewport_px;
-    vec2 viewport_origin_px;
-    float near;
-    float far;
-    uint light_count;
-    uint chosen_light;         // 0 all, else 1-based
-    uint mode;
-    float largest_value;       // of the HDR target: 65504 for half floats
-    vec2 environment_rotation; // cos, sin of the turn around +Y
-    float environment_intensity; // from the environment's images to radiance
-    float environment_blur;    // behind the model: 0 sharp .. 1, as a roughness
-    uint sample_index;         // accumulating modes: frames since the picture changed
-    uint sample_count;         // accumulating modes: paths a pixel in each frame
+    mat4 clip_from_world;              // World (meters, +Y up) to clip space (+Y down); depth is reversed: 1 near, 0 at infinity.
+    mat4 world_from_clip;              // Inverse of clip_from_world.
+    mat4 view_from_world;              // World to view space; the camera looks along -Z.
+    vec3 eye_ws;                       // Camera position, world space.
+    float exposure;                    // Factor from luminance (cd/m^2) to the display's 0..1: 1 / (1.2 * 2^EV100).
+    vec3 ambient;                      // Radiance that arrives from everywhere, linear RGB.
+    float time_s;                      // Seconds since the start; 0 in headless renderings.
+    vec4 background;                   // Linear RGB behind the model, and its alpha.
+    vec3 scene_center_ws;              // Center of the model's bounds, world space.
+    float scene_radius;                // Radius of the model's bounds, meters.
+    vec2 viewport_px;                  // Width and height of the picture, pixels.
+    vec2 viewport_origin_px;           // Upper left corner of the picture in the output image, pixels.
+    float near;                        // Near plane distance, meters.
+    float far;                         // Far plane distance for debug modes, meters; the projection is infinite.
+    uint light_count;                  // Number of lights in BINDING_LIGHTS.
+    uint chosen_light;                 // The light that the BRDF term modes show: 0 all, else 1-based.
+    uint mode;                         // Debug mode on screen, for passes that are not specialized by mode.
+    float largest_value;               // Largest value that the HDR target holds: 65504 for half floats.
+    vec2 environment_rotation;         // Cosine and sine of the environment's rotation around +Y; at 0 the map's center column is seen looking down -Z.
+    float environment_intensity;       // Factor from the values of the environment's images to radiance.
+    float environment_blur;            // Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
+    uint sample_index;                 // Accumulating modes: frames since the picture changed.
+    uint sample_count;                 // Accumulating modes: random paths a pixel in each frame.
 } frame;
 
 struct Light {
-    vec4 position_ws;          // w 1; directional: towards it, unit, w 0
-    vec3 direction_ws;         // where it shines to
-    uint kind;                 // LIGHT_*
-    vec3 intensity;            // linear RGB times candela (point, spot), lux (directional), radiance (rectangle)
-    float inverse_range;       // 1/m, 0 without end
-    float angle_scale;         // falloff: square of scale times cosine plus offset, within 0..1; no spot: 0
-    float angle_offset;         // no spot: 1
-    vec3 half_x_ws;            // rectangle: from the center to an edge, meters
-    vec3 half_y_ws;
+    vec4 position_ws;                  // Position and 1; directional: unit vector towards the light and 0.
+    vec3 direction_ws;                 // Direction in which the light shines, unit.
+    uint kind;                         // LIGHT_*.
+    vec3 intensity;                    // Linear RGB times candela (point, spot), lux (directional) or radiance (rectangle).
+    float inverse_range;               // 1 / the distance at which the light ends, 1/m; 0: no end.
+    float angle_scale;                 // Spot: falloff is the square of scale * cosine + offset, clamped to 0..1; other kinds: 0.
+    float angle_offset;                // The offset in that falloff; other kinds: 1.
+    vec3 half_x_ws;                    // Rectangle: from its center to the middle of an edge, meters.
+    vec3 half_y_ws;                    // Rectangle: from its center to the middle of a neighboring edge, meters.
 };
 
 layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
@@ -165,62 +167,62 @@ layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
 };
 
 layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {
-    vec4 base_color_factor;
-    vec3 emissive_factor;
-    float metallic_factor;
-    float roughness_factor;
-    float normal_scale;
-    float occlusion_strength;
-    float alpha_cutoff;
-    uint texture_mask;         // bit TEXTURE_*: it exists
-    uint uv1_mask;             // bit TEXTURE_*: it reads TEXCOORD_1
-    uint id;
-    float clearcoat_factor;
-    float clearcoat_roughness;
-    float clearcoat_normal_scale;
-    float anisotropy_strength;
-    vec2 anisotropy_rotation;  // cos, sin
-    float sheen_roughness;
-    vec3 sheen_color;
-    float specular_factor;
-    vec3 specular_color;       // specular-glossiness: F0
-    float ior;                 // 0: infinite
-    float iridescence_factor;
-    float iridescence_ior;
-    vec2 iridescence_thickness_nm; // where the texture is 0 and 1
-    float transmission_factor;
-    float thickness;           // meters in object space, 0: thin wall
-    vec3 attenuation_color;
-    float attenuation_distance; // meters
-    float dispersion;          // 20 / Abbe number
-    float diffuse_transmission_factor;
-    vec3 diffuse_transmission_color;
-    vec3 conductor_n;          // index of refraction of the metal, n + i k
-    vec3 conductor_k;
-    mat3x2 uv_from_texture[TEXTURE_COUNT];
+    vec4 base_color_factor;            // Linear RGBA.
+    vec3 emissive_factor;              // Linear RGB, KHR_materials_emissive_strength included.
+    float metallic_factor;             // 0 dielectric .. 1 metal.
+    float roughness_factor;            // Perceptual roughness 0..1.
+    float normal_scale;                // Scale of the normal texture's x and y.
+    float occlusion_strength;          // 0 no occlusion .. 1 as in the texture.
+    float alpha_cutoff;                // ALPHA_MASK: a fragment with less coverage is discarded.
+    uint texture_mask;                 // Bit TEXTURE_*: the material has this texture; else a default one is bound.
+    uint uv1_mask;                     // Bit TEXTURE_*: the texture is read at TEXCOORD_1.
+    uint id;                           // Index of the material, for the id mode.
+    float clearcoat_factor;            // Clear coat factor 0..1.
+    float clearcoat_roughness;         // Perceptual roughness of the clear coat.
+    float clearcoat_normal_scale;      // Scale of the clear coat normal texture's x and y.
+    float anisotropy_strength;         // Anisotropy strength 0..1.
+    vec2 anisotropy_rotation;          // Cosine and sine of the rotation from the tangent towards the bitangent.
+    float sheen_roughness;             // Perceptual roughness of the sheen.
+    vec3 sheen_color;                  // Linear RGB.
+    float specular_factor;             // Weight of the dielectric's specular reflection 0..1 (KHR_materials_specular).
+    vec3 specular_color;               // Linear RGB, tints the dielectric's F0; specular-glossiness: F0 itself.
+    float ior;                         // Index of refraction, at least 1; 0 stands for infinity.
+    float iridescence_factor;          // Iridescence factor 0..1.
+    float iridescence_ior;             // Index of refraction of the thin film.
+    vec2 iridescence_thickness_nm;     // Thickness of the film where its texture is 0 and where it is 1, nanometers.
+    float transmission_factor;         // Transmission factor 0..1.
+    float thickness;                   // Thickness of the volume below the surface, meters in object space; 0: thin wall.
+    vec3 attenuation_color;            // Color of white light after attenuation_distance.
+    float attenuation_distance;        // Meters; infinite without attenuation.
+    float dispersion;                  // 20 / Abbe number (KHR_materials_dispersion).
+    float diffuse_transmission_factor; // Part of the diffuse light that is transmitted, 0..1.
+    vec3 diffuse_transmission_color;   // Linear RGB.
+    vec3 conductor_n;                  // Real part of the metal's index of refraction at about 650, 550 and 450 nm.
+    vec3 conductor_k;                  // Imaginary part (extinction coefficient), positive.
+    mat3x2 uv_from_texture[TEXTURE_COUNT]; // KHR_texture_transform of each texture, applied to (u, v, 1).
 } material;
 
 layout(set = SET_TASK, binding = BINDING_TASK, scalar) uniform Task {
-    uvec2 size;                // texels, or columns and rows of results
-    uint level;                // mip level that is written
-    uint levels;
-    uint samples;              // for each texel or result
-    float radiance_scale;      // fits radiance into half floats
-    float roughness_first;     // of the first row
-    float roughness_last;
-    float theta_first;         // angle to the normal of the first column, degrees
-    float theta_last;
-    vec3 base_color;           // of the measured surface
-    float metallic;
+    uvec2 size;                        // Width and height of the output: texels, or columns and rows of BINDING_RESULTS.
+    uint level;                        // Mip level that is written.
+    uint levels;                       // Number of mip levels of the image.
+    uint samples;                      // Samples for each texel or result.
+    float radiance_scale;              // Factor that fits radiance into half floats.
+    float roughness_first;             // Roughness of the first row.
+    float roughness_last;              // Roughness of the last row.
+    float theta_first;                 // Angle to the normal of the first column, degrees.
+    float theta_last;                  // Angle to the normal of the last column, degrees.
+    vec3 base_color;                   // Linear RGB of the measured surface.
+    float metallic;                    // 0 dielectric .. 1 metal.
 } task;
 
 struct Vertex {
-    vec3 position;
-    vec3 normal;
-    vec4 tangent;
-    vec2 uv0;
-    vec2 uv1;
-    vec4 color;
+    vec3 position;                     // Object space, meters.
+    vec3 normal;                       // Object space, unit.
+    vec4 tangent;                      // Object space, unit; w is the sign of the bitangent.
+    vec2 uv0;                          // TEXCOORD_0, or 0.
+    vec2 uv1;                          // TEXCOORD_1, or uv0.
+    vec4 color;                        // COLOR_0, linear RGBA, or 1.
 };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vertices {
@@ -228,12 +230,12 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Ver
 };
 
 layout(push_constant, scalar) uniform Draw {
-    Vertices vertices;
-    mat4x3 world_from_object;
-    mat3 normal_ws_from_object;
-    uint attributes;           // ATTRIBUTE_* bits
-    uint primitive_id;
-    uint node_id;
+    Vertices vertices;                 // Device address of the first vertex.
+    mat4x3 world_from_object;          // Object to world space, without the matrix's last row.
+    mat3 normal_ws_from_object;        // Inverse transpose of its upper 3x3.
+    uint attributes;                   // ATTRIBUTE_* bits of the mesh.
+    uint primitive_id;                 // Index of the primitive, for the id modes.
+    uint node_id;                      // Index of the node, for the id modes.
 } draw;
 
 #endif

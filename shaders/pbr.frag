@@ -2,13 +2,15 @@
 #include "interface.glsl"
 #include "brdf/multiscatter.glsl"
 #include "common/fragment.glsl"
+#include "common/pixel.glsl"
+#include "debug/absent.glsl"
 #include "debug/debug.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
 #include "material.glsl"
 #include "user.glsl"
 
-// One fragment of the model, or one debug mode of it. Scene-referred linear RGB; alpha is coverage, premultiplied.
+// One fragment of the model, or one debug mode of it: scene-referred linear RGB as common/pixel.glsl stores it.
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;
@@ -31,7 +33,7 @@ void main() {
         value = radiance;
         if (ALPHA_MODE == ALPHA_BLEND) coverage = surface.coverage;
     }
-    // Beyond what the target holds lies infinity, and the mean of a pixel's samples with it.
-    value = clamp(value, -frame.largest_value, frame.largest_value);
-    out_color = vec4(value * coverage, coverage);
+    out_color = hdr_pixel(value, coverage, no_data);
+    // The blend unit takes alpha for coverage, so a blended fragment of the picture has no flags.
+    if (ALPHA_MODE == ALPHA_BLEND && MODE == MODE_FINAL) out_color.a = coverage;
 }

@@ -1,5 +1,6 @@
 #version 460
 #include "interface.glsl"
+#include "common/pixel.glsl"
 #include "lighting/environment.glsl"
 
 // Draws the environment behind the model: scene-referred linear RGB, opaque.
@@ -15,6 +16,5 @@ vec3 direction_ws() {
 }
 
 void main() {
-    // As in pbr.frag: the clamp keeps values finite that the target's format cannot hold.
-    out_color = vec4(min(background_radiance(direction_ws()), frame.largest_value), 1.0);
+    out_color = hdr_pixel(background_radiance(direction_ws()), 1.0, false);
 }

@@ -1,6 +1,7 @@
 #version 460
 #include "interface.glsl"
 #include "common/color.glsl"
+#include "common/pixel.glsl"
 #include "common/tonemap.glsl"
 
 // From scene color to the picture: exposure, tone map, background, encoding. The target stores numbers as they are
@@ -19,6 +20,7 @@ vec3 display_value(vec3 value) {
 
 void main() {
     vec4 scene = texelFetch(scene_color, ivec2(gl_FragCoord.xy - frame.viewport_origin_px), 0);
+    scene.a = coverage_of(scene.a);
     // The curves are not linear, so they want the color of the surface, not the color times how much of it there is.
     vec3 front = display_value(scene.a > 0.0 ? scene.rgb / scene.a : vec3(0.0));
 

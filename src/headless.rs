@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use};
 use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError,
-    Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
+    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PixelValue,
+    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
 };
 use crate::scene::{self, Model};
 use crate::session::Session;
@@ -264,15 +264,14 @@ impl Headless {
         self.draw_frame(&frame, Redraw::Always)
     }
 
-    /// The raw values of one pixel, counted from the upper left corner, in some modes: RGB premultiplied by alpha, which is
-    /// coverage, as in [`Capture::raw`]; zero where nothing is.
+    /// The values of one pixel, counted from the upper left corner, in some modes; zero where nothing is.
     ///
     /// Only the instances near the pixel are drawn, and only their pipelines are made; all of them if one of those near is
     /// transmissive, since that one shows what lies behind it from around the pixel.
     ///
     /// # Errors
     /// As [`Headless::render`].
-    pub fn pixel(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<[f32; 4]>, HeadlessError> {
+    pub fn pixel(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<PixelValue>, HeadlessError> {
         self.provide()?;
         let whole = self.frame_state()?;
         let Some(scene) = whole.scene.clone() else { return Ok(Vec::new()) };

@@ -1,15 +1,19 @@
 //! The contract between Rust and GLSL: descriptor sets, bindings, specialization ids and the structs that both sides read.
 //!
 //! Rust writes this memory, so Rust owns its meaning. [`glsl`] prints the whole contract as `shaders/interface.glsl`;
-//! `shader::contract` holds every compiled stage against [`BINDINGS`], [`SPECIALIZATION`] and the struct sizes below.
+//! `shader::contract` compares every compiled stage with [`BINDINGS`], [`SPECIALIZATION`] and [`BLOCKS`].
 //!
 //! All blocks use `scalar` layout, so a Rust `#[repr(C)]` struct of 4-byte fields and its GLSL twin agree byte for byte.
 
 mod blocks;
+mod constants;
 mod print;
+mod textures;
 
-pub use blocks::{Draw, Frame, Light, Material, Task, Vertex};
+pub use blocks::{BLOCKS, Block, Draw, Frame, Light, Material, Member, Task, Vertex, block};
+pub use constants::*;
 pub use print::glsl;
+pub use textures::*;
 
 /// Raised whenever a shader tree written for the previous contract would misread memory.
 pub const VERSION: u32 = 3;
@@ -84,8 +88,19 @@ const fn binding(set: u32, binding: u32, name: &'static str, kind: BindingKind, 
     Binding { set, binding, name, kind, size: size as u32 }
 }
 
-/// Every descriptor of the contract, ordered by set and binding.
-pub const BINDINGS: &[Binding] = &[
+/// Every descriptor of the contract.
+pub const BINDINGS: &[Binding] = &{
+    let mut all = [OTHERS[0]; OTHERS.len() + TEXTURE_COUNT];
+    let mut at = 0;
+    while at < all.len() {
+        all[at] = if at < OTHERS.len() { OTHERS[at] } else { TEXTURES[at - OTHERS.len()].binding };
+        at += 1;
+    }
+    all
+};
+
+/// Every descriptor that is not a material's texture.
+const OTHERS: &[Binding] = &[
     binding(SET_FRAME, 0, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
     // Uniform blocks where a storage buffer would do: a software device reads those for each pixel of a group apart.
     binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::UniformBuffer, MAX_LIGHTS * size_of::<Light>()),
@@ -102,25 +117,6 @@ pub const BINDINGS: &[Binding] = &[
     // uniforms branches depend on, and those of the fourth over its own counters, which ends the process.
     binding(SET_FRAME, 11, "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
-    binding(SET_MATERIAL, 1, "BINDING_BASE_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 2, "BINDING_METALLIC_ROUGHNESS_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 3, "BINDING_NORMAL_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 4, "BINDING_OCCLUSION_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 5, "BINDING_EMISSIVE_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 6, "BINDING_CLEARCOAT_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 7, "BINDING_CLEARCOAT_ROUGHNESS_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 8, "BINDING_CLEARCOAT_NORMAL_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 9, "BINDING_ANISOTROPY_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 10, "BINDING_SHEEN_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 11, "BINDING_SHEEN_ROUGHNESS_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 12, "BINDING_SPECULAR_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 13, "BINDING_SPECULAR_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 14, "BINDING_IRIDESCENCE_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 15, "BINDING_IRIDESCENCE_THICKNESS_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 16, "BINDING_TRANSMISSION_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 17, "BINDING_THICKNESS_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 18, "BINDING_DIFFUSE_TRANSMISSION_TEXTURE", BindingKind::Sampler2D, 0),
-    binding(SET_MATERIAL, 19, "BINDING_DIFFUSE_TRANSMISSION_COLOR_TEXTURE", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),
     binding(SET_TASK, 0, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
@@ -174,133 +170,3 @@ pub const SPECIALIZATION: &[Specialization] = &[
         doc: "lights, if they are few; 0: see frame.light_count",
     },
 ];
-
-/// glTF `alphaMode` OPAQUE.
-pub const ALPHA_OPAQUE: u32 = 0;
-/// glTF `alphaMode` MASK.
-pub const ALPHA_MASK: u32 = 1;
-/// glTF `alphaMode` BLEND.
-pub const ALPHA_BLEND: u32 = 2;
-
-/// KHR_materials_unlit.
-pub const FEATURE_UNLIT: u32 = 1;
-/// The material has a normal texture and the mesh a tangent frame for it.
-pub const FEATURE_NORMAL_TEXTURE: u32 = 2;
-/// KHR_materials_clearcoat.
-pub const FEATURE_CLEARCOAT: u32 = 1 << 2;
-/// The clear coat has a normal texture of its own.
-pub const FEATURE_CLEARCOAT_NORMAL: u32 = 1 << 3;
-/// KHR_materials_anisotropy.
-pub const FEATURE_ANISOTROPY: u32 = 1 << 4;
-/// KHR_materials_sheen.
-pub const FEATURE_SHEEN: u32 = 1 << 5;
-/// KHR_materials_specular.
-pub const FEATURE_SPECULAR: u32 = 1 << 6;
-/// KHR_materials_iridescence.
-pub const FEATURE_IRIDESCENCE: u32 = 1 << 7;
-/// KHR_materials_transmission.
-pub const FEATURE_TRANSMISSION: u32 = 1 << 8;
-/// KHR_materials_volume.
-pub const FEATURE_VOLUME: u32 = 1 << 9;
-/// KHR_materials_dispersion.
-pub const FEATURE_DISPERSION: u32 = 1 << 10;
-/// KHR_materials_diffuse_transmission.
-pub const FEATURE_DIFFUSE_TRANSMISSION: u32 = 1 << 11;
-/// KHR_materials_pbrSpecularGlossiness: diffuse color, F0 and glossiness in place of metallic-roughness.
-pub const FEATURE_SPECULAR_GLOSSINESS: u32 = 1 << 12;
-/// The metal's complex index of refraction is given.
-pub const FEATURE_CONDUCTOR: u32 = 1 << 13;
-/// Occlusion is the red channel of the metallic-roughness texture, read once for both.
-pub const FEATURE_PACKED_OCCLUSION: u32 = 1 << 14;
-/// There is an environment: image-based light in place of `Frame::ambient`. The same for all materials of a frame.
-pub const FEATURE_ENVIRONMENT: u32 = 1 << 15;
-/// There are rectangular lights. The same for all materials of a frame.
-pub const FEATURE_RECT_LIGHTS: u32 = 1 << 16;
-/// Some texture is not read at TEXCOORD_0 as it is: at TEXCOORD_1, or moved by KHR_texture_transform.
-pub const FEATURE_TEXTURE_COORDINATES: u32 = 1 << 17;
-/// The mesh has TEXCOORD_1.
-pub const FEATURE_UV1: u32 = 1 << 18;
-/// The mesh has COLOR_0, and the material does not replace it.
-pub const FEATURE_VERTEX_COLOR: u32 = 1 << LAST_FEATURE;
-/// Number of the highest of these bits; all below it are features.
-pub const LAST_FEATURE: u32 = 19;
-
-/// Index of the base color texture in `Material::uv_from_texture` and in the bit masks. sRGB; glTF specular-glossiness: the diffuse texture.
-pub const TEXTURE_BASE_COLOR: u32 = 0;
-/// Index of the metallic-roughness texture (B, G). glTF specular-glossiness: specular color (sRGB) and glossiness (A).
-pub const TEXTURE_METALLIC_ROUGHNESS: u32 = 1;
-/// Index of the normal texture.
-pub const TEXTURE_NORMAL: u32 = 2;
-/// Index of the occlusion texture (R).
-pub const TEXTURE_OCCLUSION: u32 = 3;
-/// Index of the emissive texture (sRGB).
-pub const TEXTURE_EMISSIVE: u32 = 4;
-/// Index of the clear coat factor texture (R).
-pub const TEXTURE_CLEARCOAT: u32 = 5;
-/// Index of the clear coat roughness texture (G).
-pub const TEXTURE_CLEARCOAT_ROUGHNESS: u32 = 6;
-/// Index of the clear coat normal texture.
-pub const TEXTURE_CLEARCOAT_NORMAL: u32 = 7;
-/// Index of the anisotropy texture (RG direction, B strength).
-pub const TEXTURE_ANISOTROPY: u32 = 8;
-/// Index of the sheen color texture (sRGB).
-pub const TEXTURE_SHEEN_COLOR: u32 = 9;
-/// Index of the sheen roughness texture (A).
-pub const TEXTURE_SHEEN_ROUGHNESS: u32 = 10;
-/// Index of the specular factor texture (A).
-pub const TEXTURE_SPECULAR: u32 = 11;
-/// Index of the specular color texture (sRGB).
-pub const TEXTURE_SPECULAR_COLOR: u32 = 12;
-/// Index of the iridescence factor texture (R).
-pub const TEXTURE_IRIDESCENCE: u32 = 13;
-/// Index of the iridescence thickness texture (G).
-pub const TEXTURE_IRIDESCENCE_THICKNESS: u32 = 14;
-/// Index of the transmission texture (R).
-pub const TEXTURE_TRANSMISSION: u32 = 15;
-/// Index of the volume thickness texture (G).
-pub const TEXTURE_THICKNESS: u32 = 16;
-/// Index of the diffuse transmission factor texture (A).
-pub const TEXTURE_DIFFUSE_TRANSMISSION: u32 = 17;
-/// Index of the diffuse transmission color texture (sRGB).
-pub const TEXTURE_DIFFUSE_TRANSMISSION_COLOR: u32 = 18;
-/// How many textures a material has.
-pub const TEXTURE_COUNT: usize = 19;
-
-/// `Draw::attributes`: the mesh came with normals (else flat ones were made).
-pub const ATTRIBUTE_NORMAL: u32 = 1;
-/// `Draw::attributes`: the mesh came with tangents (else MikkTSpace made them).
-pub const ATTRIBUTE_TANGENT: u32 = 2;
-/// `Draw::attributes`: the mesh has TEXCOORD_0.
-pub const ATTRIBUTE_UV0: u32 = 4;
-/// `Draw::attributes`: the mesh has TEXCOORD_1.
-pub const ATTRIBUTE_UV1: u32 = 8;
-/// `Draw::attributes`: the mesh has COLOR_0.
-pub const ATTRIBUTE_COLOR: u32 = 16;
-/// `Draw::attributes`: a usable tangent frame exists, from the file or made.
-pub const ATTRIBUTE_TANGENT_FRAME: u32 = 32;
-
-/// `Light::kind`: parallel light, intensity in lux.
-pub const LIGHT_DIRECTIONAL: u32 = 0;
-/// `Light::kind`: point light, intensity in candela.
-pub const LIGHT_POINT: u32 = 1;
-/// `Light::kind`: spot light, intensity in candela.
-pub const LIGHT_SPOT: u32 = 2;
-/// `Light::kind`: one-sided rectangle, intensity is its radiance.
-pub const LIGHT_RECT: u32 = 3;
-
-/// First word of the measured BRDF's buffer: there is none.
-pub const MEASURED_NONE: u32 = 0;
-/// First word of the measured BRDF's buffer: MERL's grid follows.
-pub const MEASURED_MERL: u32 = 1;
-/// First word of the measured BRDF's buffer: UTIA's grid follows.
-pub const MEASURED_UTIA: u32 = 2;
-
-/// [`SPEC_ENCODE`]: colors, sRGB-encoded on output.
-pub const ENCODE_COLOR: u32 = 0;
-/// [`SPEC_ENCODE`]: numbers, stored as they are.
-pub const ENCODE_DATA: u32 = 1;
-/// [`SPEC_ENCODE`]: vectors, stored as v * 0.5 + 0.5.
-pub const ENCODE_VECTOR: u32 = 2;
-
-/// [`SPEC_TONEMAP`]: values that are not light (debug modes) skip exposure and tone mapping.
-pub const TONEMAP_OFF: u32 = 0xffff_ffff;

@@ -79,7 +79,7 @@ fn validation_messages_name_buffers() {
     let gpu = validated_gpu();
     let from = Buffer::new(&gpu, "unreadable", 16, vk::BufferUsageFlags::TRANSFER_DST, Memory::Upload).unwrap();
     let to = readback(&gpu, "copied");
-    record(&gpu, |encoder| encoder.copy_buffer(&from, 0, &to, 16));
+    record(&gpu, |encoder| encoder.copy_buffer(&from, 0, &to, 0, 16));
     assert_message(&gpu, &["unreadable"]);
 }
 
@@ -227,7 +227,7 @@ fn a_finished_frame_can_be_read_without_a_wait() {
     let bulk = [0, 1].map(|_| Buffer::new(gpu, "bulk", 32 * MIB, usage, Memory::Device).unwrap());
     let mut encoder = frames.begin().unwrap();
     for _ in 0..4 {
-        encoder.copy_buffer(&bulk[0], 0, &bulk[1], 32 * MIB);
+        encoder.copy_buffer(&bulk[0], 0, &bulk[1], 0, 32 * MIB);
         encoder.copies_done();
     }
     clear(&mut encoder, &target, [1.0, 0.0, 1.0, 1.0]);

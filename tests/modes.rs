@@ -61,9 +61,9 @@ fn covered(capture: &Capture) -> Vec<[f32; 3]> {
     values
 }
 
-/// One of the two grays that stand for "no such data".
-fn is_absent(value: &[f32; 3]) -> bool {
-    [[0.180017_f32; 3], [0.260017; 3]].contains(value)
+/// Whether each pixel on the model has the flag for "no such data"; in the order of [`covered`].
+fn no_data(capture: &Capture) -> Vec<bool> {
+    capture.raw.iter().zip(&capture.no_data).filter(|(value, _)| value[3] == 1.0).map(|(_, flag)| *flag).collect()
 }
 
 #[test]
@@ -84,10 +84,11 @@ fn the_fixed_slugs_exist() {
 fn fault(headless: &mut Headless, slug: &str) -> Option<String> {
     let capture = render(headless, slug);
     let values = covered(&capture);
-    let shown: Vec<_> = values.iter().filter(|value| !is_absent(value)).collect();
+    let shown: Vec<_> =
+        values.iter().zip(no_data(&capture)).filter(|(_, flag)| !flag).map(|(value, _)| value).collect();
     let black = shown.iter().all(|value| value.iter().all(|c| *c == 0.0));
     let uniform = shown.iter().all(|value| *value == shown[0]);
-    let bad = values.iter().flatten().any(|c| !c.is_finite());
+    let bad = capture.not_finite.contains(&true);
     let is_wrong = bad || shown.len() < 20 || black || (uniform && !SAME_ALL_OVER.contains(&slug));
     let count = shown.len();
     is_wrong.then(|| format!("{slug}: {count} pixels with data, black {black}, uniform {uniform}, not finite {bad}"))
@@ -132,7 +133,7 @@ fn the_measured_modes_show_the_file() {
         glb::model_with_light(&glb::quad(1.0), &glb::gray(), &light, &json!({ "translation": [0.5, 0.5, 2.0] }));
     let mut headless =
         sharp(load(&bytes), &["lights.source=model", "camera.azimuth=0", "camera.elevation=0", "MULTI_SCATTER=None"]);
-    assert!(MEASURED.iter().all(|slug| covered(&render(&mut headless, slug)).iter().all(is_absent)), "no file");
+    assert!(MEASURED.iter().all(|slug| !no_data(&render(&mut headless, slug)).contains(&false)), "no file");
     headless.settings_mut().measured = path.display().to_string();
     let mut raw = |slug: &str| covered(&render(&mut headless, slug));
     // base color / pi times irradiance, without the cosine: the file's albedo is the material's, 0.5.
@@ -187,8 +188,9 @@ fn absent_data_is_a_checkerboard() {
         "area-light",
     ];
     let check = |headless: &mut Headless, slug: &str| {
-        let values = covered(&render(headless, slug));
-        assert!(values.iter().all(is_absent), "{slug} shows more than the checkerboard");
+        let capture = render(headless, slug);
+        let values = covered(&capture);
+        assert!(!no_data(&capture).contains(&false), "{slug} has data");
         assert!(
             values.iter().any(|v| v[0] == 0.180017) && values.iter().any(|v| v[0] == 0.260017),
             "{slug} has no squares"
@@ -207,14 +209,81 @@ fn absent_data_is_a_checkerboard() {
     check(&mut headless, "specular-lobe");
 }
 
+/// Blended surfaces are opaque in a debug mode, so the flag is there too, and what is behind them stays hidden.
+#[test]
+fn blended_surfaces_without_data_have_the_flag() {
+    let mut material = glb::gray();
+    material["alphaMode"] = json!("BLEND");
+    let mut headless = sharp(load(&glb::model(&glb::quad(1.0), &material)), &["camera.azimuth=0"]);
+    assert!(!no_data(&render(&mut headless, "clearcoat")).contains(&false));
+    assert!(!no_data(&render(&mut headless, "roughness")).contains(&true));
+}
+
+/// A gray that a material has by chance is data.
+#[test]
+fn the_gray_of_the_checkerboard_is_not_a_flag() {
+    let mut material = glb::gray();
+    material["pbrMetallicRoughness"]["baseColorFactor"] = json!([0.180017, 0.180017, 0.180017, 1.0]);
+    let mut headless = sharp(load(&glb::model(&glb::quad(1.0), &material)), &["camera.azimuth=0"]);
+    let capture = render(&mut headless, "base-color");
+    assert_eq!(covered(&capture)[0], [0.180017; 3]);
+    assert!(!capture.no_data.contains(&true));
+}
+
+/// The flag of one sample passes the mean of four, and neither coverage nor the samples around it change.
+#[test]
+fn flags_survive_multisampling() {
+    let mut session = Session::new(model("shader-ball"), settings(&["environment.name=none", "view.background=none"]));
+    let before = session.mode("final");
+    assert!(before.raw.iter().any(|value| value[3] > 0.0 && value[3] < 1.0), "no edge");
+    assert!(!before.not_finite.contains(&true) && !before.no_data.contains(&true));
+    // The compiler cannot fold what depends on a parameter.
+    let nan = "if (s.position_ws.x > 0.0) radiance.g = sqrt(-1.0 - rim_strength);\n    return radiance;\n}\n\n#endif";
+    ready(&session.edit("user.glsl", "return radiance;\n}\n\n#endif", nan));
+    let after = session.mode("final");
+    let mut counts = [0, 0];
+    for i in 0..before.raw.len() {
+        let ([r, g, b, a], [r0, g0, b0, a0]) = (after.raw[i], before.raw[i]);
+        counts[usize::from(after.not_finite[i])] += usize::from(a0 > 0.0);
+        assert_eq!(a, a0, "coverage of pixel {i}");
+        // NaN counts as 0, and the other channels are as they were.
+        assert!((r, b) == (r0, b0) && (0.0..=g0).contains(&g), "{:?} was {:?}", after.raw[i], before.raw[i]);
+        assert!(after.not_finite[i] || g == g0, "pixel {i} changed without a flag");
+    }
+    assert!(counts.iter().all(|count| *count > 300), "finite and not: {counts:?}");
+    let clearcoat = session.mode("clearcoat");
+    for (value, flag) in clearcoat.raw.iter().zip(&clearcoat.no_data) {
+        assert_eq!(*flag, value[3] > 0.0, "{value:?}");
+    }
+    assert!(clearcoat.raw.iter().zip(&before.raw).all(|(a, b)| a[3] == b[3]), "coverage");
+}
+
+/// One frame of many that is NaN is told, and the mean of the frames is not NaN.
+#[test]
+fn a_frame_that_is_not_finite_is_remembered_by_the_mean() {
+    let view = ["environment.name=studio", "view.msaa=1", "view.frames=4", "view.background=none"];
+    let mut session = Session::new(model("sphere-grid"), settings(&view));
+    let before = session.mode("monte-carlo");
+    let nan =
+        "if (frame.sample_index == 1u) radiance = vec3(sqrt(-1.0 - rim_strength));\n    return radiance;\n}\n\n#endif";
+    ready(&session.edit("user.glsl", "return radiance;\n}\n\n#endif", nan));
+    let after = session.mode("monte-carlo");
+    for i in (0..before.raw.len()).filter(|i| before.raw[*i][3] == 1.0) {
+        assert!(after.not_finite[i] && !before.not_finite[i], "pixel {i}");
+        assert_eq!(after.raw[i][3], 1.0);
+        assert!((0..3).all(|c| after.raw[i][c] <= before.raw[i][c]), "{:?} {:?}", after.raw[i], before.raw[i]);
+    }
+}
+
 #[test]
 fn a_light_that_is_missing_leaves_the_others() {
     let light = json!({ "type": "point", "intensity": 20.0 });
     let node = json!({ "translation": [0.5, 0.5, 2.0] });
     let bytes = glb::model_with_light(&glb::quad(1.0), &glb::gray(), &light, &node);
     let mut headless = sharp(load(&bytes), &["lights.source=model", "camera.azimuth=0"]);
-    assert!(covered(&render(&mut headless, "light-1")).iter().all(|value| !is_absent(value) && value[0] > 0.1));
-    assert!(covered(&render(&mut headless, "light-2")).iter().all(is_absent));
+    let first = render(&mut headless, "light-1");
+    assert!(covered(&first).iter().all(|value| value[0] > 0.1) && !no_data(&first).contains(&true));
+    assert!(!no_data(&render(&mut headless, "light-2")).contains(&false));
 }
 
 #[test]
@@ -319,7 +388,7 @@ fn a_second_set_of_coordinates_that_is_not_there_is_the_first() {
     let mut session = Session::new(model("sphere-grid"), settings(&["environment.name=none"]));
     let first = session.mode("uv0");
     let show = "out_color = vec4(fragment.uv1, 0.0, 1.0);";
-    ready(&session.edit("pbr.frag", "out_color = vec4(value * coverage, coverage);", show));
+    ready(&session.edit("pbr.frag", "out_color = hdr_pixel(value, coverage, no_data);", show));
     let second = session.mode("uv0");
     let spread = first.raw.iter().map(|value| value[0]).fold(0.0, f32::max);
     assert!(spread > 0.5 && first.raw == second.raw, "{spread}");

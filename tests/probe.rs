@@ -44,6 +44,37 @@ fn values_are_those_of_the_raw_picture() {
     assert!(numbers(&found["modes"]["final"])[0] > 0.01 && numbers(&found["modes"]["d"])[0] > 0.0, "{found}");
 }
 
+/// NaN is no number in JSON, and null says that there is no data.
+#[test]
+fn nan_and_missing_data_are_told_apart() {
+    let directory = tempfile::tempdir().unwrap();
+    let tree = directory.path().join("tree");
+    specula::shader::embedded::write_to(&tree).unwrap();
+    let user = std::fs::read_to_string(tree.join("user.glsl")).unwrap();
+    let nan = user.replace("radiance += rim_color", "radiance += sqrt(-1.0 - rim_strength) * rim_color");
+    assert_ne!(user, nan);
+    std::fs::write(tree.join("user.glsl"), nan).unwrap();
+    let modes = ["final", "luminance", "clearcoat", "depth", "d", "uv0"];
+    let args: Vec<&str> = modes.iter().flat_map(|mode| ["--mode", mode]).chain(["--at", "50,30"]).collect();
+    let args = [&["--shaders", "tree"], args.as_slice()].concat();
+    let found = probe(directory.path(), &[args.as_slice(), &["--json"]].concat()).expect(0, &[]).json();
+    let modes = &found["modes"];
+    assert_eq!((&modes["final"], &modes["clearcoat"]), (&json!("NaN"), &Value::Null));
+    let depth = numbers(&modes["depth"])[0];
+    // The table: one number for a scalar, the unit behind it.
+    let table = probe(directory.path(), &args).expect(0, &[]).stdout;
+    let row = |slug: &str| {
+        let row = table.lines().find(|line| line.trim_start().starts_with(&format!("{slug} ")));
+        row.unwrap_or_else(|| panic!("no {slug} in {table}")).split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!([row("final"), row("luminance"), row("clearcoat")], ["NaN", "NaN", "no data"]);
+    assert!(row("depth").ends_with(" m") && row("d").ends_with(" 1/sr"), "{table}");
+    assert!((row("depth").split(' ').next().unwrap().parse::<f64>().unwrap() - depth).abs() < 1e-4, "{table}");
+    assert_eq!([row("depth"), row("uv0")].map(|row| row.split(' ').count()), [2, 2], "{table}");
+    let good = probe(directory.path(), &["--at", "50,30", "--mode", "final"]).expect(0, &[]).stdout;
+    assert!(good.contains(" cd/m^2 before exposure"), "{good}");
+}
+
 #[test]
 fn camera_and_lights_are_told_in_world_space() {
     let directory = tempfile::tempdir().unwrap();

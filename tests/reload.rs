@@ -223,8 +223,8 @@ fn interface_glsl_is_held_against_this_program() {
 
     // A member moved, and push constants that do not fit.
     for (from, to, parts) in [
-        ("    vec3 eye_ws;\n    float exposure;", "    float exposure;\n    vec3 eye_ws;", ["exposure", "Specula"]),
-        ("    uint node_id;", "    uint node_id;\n    mat4 more[2];", ["push constants `Draw`", "at most 128"]),
+        ("    vec3 eye_ws;", "    float nearer; vec3 eye_ws;", ["Frame.nearer", "Specula has `eye_ws`"]),
+        ("    uint node_id;", "    uint node_id; mat4 more[2];", ["push constants `Draw`", "at most 128"]),
     ] {
         session.tree.write("interface.glsl", &original);
         let reload = session.edit("interface.glsl", from, to);
@@ -239,6 +239,38 @@ fn interface_glsl_is_held_against_this_program() {
     assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(&reload)));
     let warnings = lines(&session.headless.shaders().warnings);
     assert!(warnings.iter().any(|line| line.starts_with(&file) && line.contains("differs")), "{warnings:#?}");
+}
+
+/// glslang skips the files after an open conditional and reports errors in these; the user gets the cause alone.
+#[test]
+fn an_unbalanced_conditional_is_one_error_at_its_line() {
+    let mut session = sphere();
+    let before = session.render();
+    let original = session.tree.read(NDF);
+    let (body, end) = original.rsplit_once("#endif").unwrap();
+    let inside = |text: &str| original.replacen("float d_ggx", &format!("{text}\nfloat d_ggx"), 1);
+    let cases = [
+        (format!("{body}{end}"), "#ifndef BRDF_NDF_GLSL", "has no `#endif`"),
+        (inside("#ifdef NEVER"), "#ifdef NEVER", "has no `#endif`"),
+        (inside("#if 1 == 2"), "#if 1 == 2", "has no `#endif`"),
+        (inside("#endif // extra"), "#endif // extra", "has no `#if`"),
+        (inside("#else // extra"), "#else // extra", "has no `#if`"),
+    ];
+    for (text, at, message) in cases {
+        assert_ne!(text, original, "{at}");
+        let reload = session.save(NDF, &text);
+        let errors = failed(&reload);
+        assert_eq!(errors.len(), 1, "{at}: {:#?}", lines(errors));
+        assert_eq!(errors[0].file, session.tree.path(NDF).display().to_string(), "{}", errors[0]);
+        assert_eq!(errors[0].line, Some(line_of(&text, at)), "{}", errors[0]);
+        assert!(errors[0].message.contains(message) && errors[0].help.is_some(), "{:?}", errors[0]);
+        assert_same(&before, &session.render(), "refused");
+    }
+    ready_or_unchanged(&session.save(NDF, &original));
+}
+
+fn ready_or_unchanged(reload: &specula::render::Reload) {
+    assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(reload)));
 }
 
 #[test]

@@ -4,6 +4,13 @@
 
 #include "common/color.glsl"
 
-vec3 if_present(bool present, vec3 value) { return present ? value : checkerboard(gl_FragCoord.xy); }
+// Whether the mode has no data at this fragment. pbr.frag stores it as a flag beside the value.
+bool no_data = false;
+
+// `value`, or a checkerboard and the flag where the data does not exist.
+vec3 if_present(bool present, vec3 value) {
+    if (!present) no_data = true;
+    return present ? value : checkerboard(gl_FragCoord.xy);
+}
 
 #endif

@@ -14,7 +14,8 @@
 #include "common/math.glsl"
 #include "lighting/environment.glsl"
 
-// The opaque scene: premultiplied radiance and coverage, with mips.
+// The opaque scene with mip levels, as common/pixel.glsl stores it. A level is a mean of many pixels, from which flags and
+// coverage cannot be told apart, so a texel with a flag counts as covered.
 layout(set = SET_PASS, binding = BINDING_BEHIND) uniform sampler2D behind;
 
 // Transmittance after `path` meters: exp(-sigma path), sigma = -log(color) / distance (Beer-Lambert;
@@ -53,7 +54,7 @@ vec3 radiance_behind(Surface s, vec3 v, float ior) {
     vec2 uv = picture_uv(thin ? s.position_ws : s.position_ws + direction * s.thickness);
     float roughness = transmission_roughness(s.roughness, ior);
     vec4 scene = textureLod(behind, uv, log2(float(textureSize(behind, 0).x)) * roughness);
-    vec3 radiance = scene.rgb + (1.0 - scene.a) * surroundings(direction, roughness);
+    vec3 radiance = scene.rgb + (1.0 - min(scene.a, 1.0)) * surroundings(direction, roughness);
     return radiance * attenuation(s, s.thickness);
 }
 

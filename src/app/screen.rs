@@ -191,7 +191,7 @@ impl Screen {
         let readings = Readings {
             device_ms: self.frames.last_device_ms(),
             passes: self.frames.pass_times().to_vec(),
-            pixel: self.pixel.filter(|_| self.mouse.over),
+            value: self.pixel.filter(|_| self.mouse.over).and_then(|pixel| viewer.value_text(&pixel)),
             title: viewer.title(self.view.accumulated()),
         };
         let input = self.input.take_egui_input(window);

@@ -16,7 +16,7 @@ use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::render::{
-    BoundFrame, FrameInputs, FrameState, Outcome, Reload, Resources, Revisions, Scene, TargetFormat, View,
+    BoundFrame, FrameInputs, FrameState, Outcome, PixelAt, Reload, Resources, Revisions, Scene, TargetFormat, View,
     environment_files,
 };
 use crate::scene::LoadOptions;
@@ -192,6 +192,14 @@ impl Viewer {
     pub(super) fn title(&self, frames: u32) -> Option<String> {
         let shown = self.shown()?;
         title(shown.mode()?, self.session.mode(), shown.pipelines.accumulates.then_some(frames))
+    }
+
+    /// The value of a pixel of the picture in words; `None` where nothing is.
+    pub(super) fn value_text(&self, pixel: &PixelAt) -> Option<String> {
+        let PixelAt { at: (x, y), value } = pixel;
+        let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
+        let mode = self.shown().filter(|_| covered)?.mode()?;
+        Some(format!("{}   at {x}, {y}", value.text(mode)))
     }
 
     /// Whether the picture is the mean of frames, so that each one more makes it better.

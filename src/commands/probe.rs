@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 use specula::headless::Headless;
 use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
-use specula::render::{FrameState, is_absent};
+use specula::render::{FrameState, PixelValue};
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::Failure;
@@ -14,10 +14,13 @@ use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasu
 /// Options of `probe`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Values are in world space, before exposure, tone map and encoding, color multiplied by coverage.\n\
-    One sample in the middle of the pixel: view.msaa is 1, so that no edge mixes two surfaces.\n\
-    Modes that accumulate are the mean of view.frames frames. Angles are in degrees. --mode may repeat; without, all.\n\
-    A spot falls off by the square of angle_scale times cosine plus angle_offset, within 0..1 (KHR_lights_punctual)."
+    after_help = "Values are in world space, before exposure, tone map and encoding. Color is multiplied by coverage.\n\
+    A mode without data at the pixel is null in JSON. A mode whose value is NaN or infinite is the string \"NaN\".\n\
+    The pixel has one sample, in its middle: view.msaa is 1, so that no edge mixes two surfaces.\n\
+    The value of an accumulating mode is the mean of view.frames frames. Angles are in degrees.\n\
+    --mode may repeat; without it, all modes are printed.\n\
+    The falloff of a spot light is the square of angle_scale * cosine + angle_offset, clamped to 0..1 \
+    (KHR_lights_punctual)."
 )]
 pub struct Args {
     /// glTF model, .gltf or .glb [default: the built-in shader ball]
@@ -58,17 +61,25 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let shown = if hit { modes.as_slice() } else { &[] };
     let values: Vec<_> = shown.iter().zip(headless.pixel(args.at, shown)?).collect();
     if args.json {
-        let known = |value: &[f32; 4]| if is_absent(*value) { Value::Null } else { json!(value) };
-        let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), known(value))).collect();
+        let modes: Map<String, Value> = values.iter().map(|(mode, pixel)| (mode.slug.clone(), value(pixel))).collect();
         let lights: Vec<Value> = state.lights.iter().map(light).collect();
-        let value = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state), "lights": lights });
-        out!("{value:#}");
+        let found = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state), "lights": lights });
+        out!("{found:#}");
     } else {
         print_table(args.at, &values, &state);
     }
-    // What the layers find at the end counts too.
+    // The validation layers also report at the end of the device.
     drop(headless);
     check_validation(&gpu)
+}
+
+/// The value of a mode in JSON.
+fn value(pixel: &PixelValue) -> Value {
+    match pixel {
+        PixelValue { not_finite: true, .. } => json!("NaN"),
+        PixelValue { no_data: true, .. } => Value::Null,
+        PixelValue { value, .. } => json!(value),
+    }
 }
 
 /// The modes of these slugs, or all.
@@ -78,7 +89,7 @@ fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
     Ok(shaders.modes.iter().filter(|mode| all || slugs.contains(&mode.slug)).cloned().collect())
 }
 
-/// Whether anything of the model is at the pixel: a mode that shows surfaces, but no light and so no sky, covers it.
+/// Whether the model covers the pixel, seen in a mode that draws surfaces but not the sky.
 fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
     let modes = &headless.shaders().modes;
     let plain = |mode: &&Mode| !mode.tonemap && !mode.accumulate && mode.draw == DrawAs::Surfaces;
@@ -86,7 +97,7 @@ fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
     let before = std::mem::replace(&mut headless.settings_mut().view.background, "none".into());
     let values = headless.pixel(at, &mode)?;
     headless.settings_mut().view.background = before;
-    Ok(values.iter().any(|value| value[3] > 0.0))
+    Ok(values.iter().any(|pixel| pixel.value[3] > 0.0))
 }
 
 fn camera(state: &FrameState) -> Value {
@@ -109,7 +120,8 @@ fn position(light: &Light) -> [f32; 3] {
     [x, y, z]
 }
 
-/// With what its kind needs to be redone: no position at infinity, `range` where it ends.
+/// A light with everything that a program needs to redo the shading. A directional light has no position; `range` is there only
+/// if the light has an end.
 fn light(light: &Light) -> Value {
     let placed = (light.kind != LIGHT_DIRECTIONAL).then(|| position(light));
     let mut value = json!({ "kind": kind(light), "position": placed, "direction": light.direction_ws,
@@ -128,7 +140,7 @@ fn light(light: &Light) -> Value {
     value
 }
 
-fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], state: &FrameState) {
+fn print_table((x, y): (u32, u32), values: &[(&Mode, PixelValue)], state: &FrameState) {
     let camera = &state.camera;
     out!("pixel      {x} {y}");
     out!(
@@ -155,8 +167,7 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], state: &FrameSt
             out!("\n{}", mode.group);
             group = &mode.group;
         }
-        let shown = if is_absent(*value) { format!("{:>12}", "none") } else { row(value) };
-        out!("  {:width$}  {shown}", mode.slug);
+        out!("  {:width$}  {}", mode.slug, value.text(mode).trim_end());
     }
 }
 
@@ -164,7 +175,7 @@ fn row(numbers: &[f32]) -> String {
     numbers.iter().map(|x| shown(*x)).collect::<Vec<_>>().join(" ")
 }
 
-/// In a column: six digits, in powers of ten where these say too little.
+/// A number in a column: six digits, in powers of ten where fewer than three would be left.
 fn shown(x: f32) -> String {
     let plain = x == 0.0 || !x.is_finite() || (1e-3..1e6).contains(&x.abs());
     if plain { format!("{x:>12.5}") } else { format!("{x:>12.4e}") }

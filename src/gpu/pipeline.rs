@@ -63,11 +63,14 @@ pub enum Raster {
     Solid,
     /// Premultiplied alpha blending, without depth writes.
     Blended,
+    /// No blending and no depth writes.
+    Replaced,
     /// As [`Raster::Solid`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
     Lines,
     /// Additive blending without depth test; alpha becomes the maximum.
     Added,
-    /// Linear interpolation from the target to the fragment, by the weight of [`super::Encoder::set_weight`].
+    /// Linear interpolation from the target to the fragment, by the weight of [`super::Encoder::set_weight`]; alpha
+    /// becomes the maximum.
     Averaged,
 }
 
@@ -215,7 +218,7 @@ impl Drop for ComputePipeline {
 fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     let state = vk::PipelineColorBlendAttachmentState::default();
     match raster {
-        Raster::Solid | Raster::Lines => state,
+        Raster::Solid | Raster::Replaced | Raster::Lines => state,
         Raster::Blended => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)
@@ -226,8 +229,9 @@ fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::CONSTANT_COLOR)
             .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_CONSTANT_COLOR)
-            .src_alpha_blend_factor(vk::BlendFactor::CONSTANT_ALPHA)
-            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_CONSTANT_ALPHA),
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE)
+            .alpha_blend_op(vk::BlendOp::MAX),
         Raster::Added => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)

@@ -1,219 +1,292 @@
-//! The structs that both sides read, in the order of their sets.
+//! The structs that Rust writes and GLSL reads, in the order of their sets.
+//!
+//! Each member is declared once. The declaration makes a field of the Rust struct, a line of `shaders/interface.glsl` with the
+//! doc as its comment, and the offset that the contract check compares with every compiled shader.
+
+use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 
 use super::{PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
 
-/// What a frame shares: camera, output, counts. `SET_FRAME`, `BINDING_FRAME`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Frame {
-    /// World (meters, +Y up) to Vulkan clip space (+Y down, depth 0 far to 1 near: reversed).
-    pub clip_from_world: [[f32; 4]; 4],
-    /// Inverse of `clip_from_world`.
-    pub world_from_clip: [[f32; 4]; 4],
-    /// World to view space (camera looks along -Z).
-    pub view_from_world: [[f32; 4]; 4],
-    /// Camera position, world space.
-    pub eye_ws: [f32; 3],
-    /// Factor from luminance (cd/m^2) to the display's 0..1: 1 / (1.2 * 2^EV100).
-    pub exposure: f32,
-    /// Radiance that arrives from everywhere, linear RGB.
-    pub ambient: [f32; 3],
-    /// Seconds since the start; 0 in headless renderings.
-    pub time_s: f32,
-    /// Linear RGB behind the model, and its alpha.
-    pub background: [f32; 4],
-    /// Center of the model's bounds, world space.
-    pub scene_center_ws: [f32; 3],
-    /// Radius of the model's bounds, meters.
-    pub scene_radius: f32,
-    /// Width and height of the picture in pixels.
-    pub viewport_px: [f32; 2],
-    /// Upper left corner of the picture in the output image, pixels.
-    pub viewport_origin_px: [f32; 2],
-    /// Near plane distance, meters.
-    pub near: f32,
-    /// Far plane distance, meters (debug views only: the projection is infinite).
-    pub far: f32,
-    /// Lights in `BINDING_LIGHTS`.
-    pub light_count: u32,
-    /// Which light the BRDF term modes show: 0 all, else 1-based.
-    pub chosen_light: u32,
-    /// Debug mode on screen, for passes that are not specialized by mode.
-    pub mode: u32,
-    /// Largest value that the HDR target holds: 65504 for half floats.
-    pub largest_value: f32,
-    /// Cosine and sine of the environment's rotation around +Y: its map's center column is seen looking down -Z turned by it.
-    pub environment_rotation: [f32; 2],
-    /// Factor from what the environment's images hold to radiance.
-    pub environment_intensity: f32,
-    /// Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
-    pub environment_blur: f32,
-    /// For modes that accumulate: number of this frame since the picture changed.
-    pub sample_index: u32,
-    /// For modes that accumulate: paths a pixel in each frame.
-    pub sample_count: u32,
+/// A struct of the contract.
+#[derive(Debug)]
+pub struct Block {
+    /// Its name, the same in Rust and GLSL.
+    pub name: &'static str,
+    /// GLSL before the opening brace, and after the closing one.
+    pub around: [&'static str; 2],
+    /// Bytes.
+    pub size: u32,
+    /// In order.
+    pub members: &'static [Member],
 }
 
-/// A light, in world space. `SET_FRAME`, `BINDING_LIGHTS`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Light {
-    /// World position, and 1. Of a directional light the direction towards it, unit, and 0: a place at infinity.
-    pub position_ws: [f32; 4],
-    /// Where the light shines to, unit.
-    pub direction_ws: [f32; 3],
-    /// `LIGHT_*`.
-    pub kind: u32,
-    /// Linear RGB times candela (point, spot), lux (directional) or radiance (rectangle).
-    pub intensity: [f32; 3],
-    /// 1 / the distance at which it ends, 1/m; 0 is without end.
-    pub inverse_range: f32,
-    /// Spot: the falloff is the square of scale x cosine + offset, held within 0..1. Scale; 0 for what is no spot.
-    pub angle_scale: f32,
-    /// Offset; 1 for what is no spot.
-    pub angle_offset: f32,
-    /// Rectangle: from its center to the middle of one edge, meters.
-    pub half_x_ws: [f32; 3],
-    /// Rectangle: from its center to the middle of a neighboring edge, meters.
-    pub half_y_ws: [f32; 3],
+/// A member of a [`Block`].
+#[derive(Debug)]
+pub struct Member {
+    /// Its name, the same in Rust and GLSL.
+    pub name: &'static str,
+    /// Its type: a GLSL type, or an array of one as Rust writes it.
+    pub type_name: &'static str,
+    /// What it holds: unit, space, range.
+    pub doc: &'static str,
+    /// Bytes from the start of the struct.
+    pub offset: u32,
 }
 
-/// A material's numbers. `SET_MATERIAL`, `BINDING_MATERIAL`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Material {
-    /// Linear RGBA factor.
-    pub base_color_factor: [f32; 4],
-    /// Linear RGB factor, KHR_materials_emissive_strength multiplied in.
-    pub emissive_factor: [f32; 3],
-    /// 0 dielectric .. 1 metal.
-    pub metallic_factor: f32,
-    /// Perceptual roughness 0..1.
-    pub roughness_factor: f32,
-    /// Scale of the normal texture's x and y.
-    pub normal_scale: f32,
-    /// 0 no occlusion .. 1 as in the texture.
-    pub occlusion_strength: f32,
-    /// ALPHA_MASK: below this a fragment is discarded.
-    pub alpha_cutoff: f32,
-    /// Bit `TEXTURE_*`: the texture exists (else a default one is bound).
-    pub texture_mask: u32,
-    /// Bit `TEXTURE_*`: the texture reads TEXCOORD_1.
-    pub uv1_mask: u32,
-    /// Index of the material, for the id view.
-    pub id: u32,
-    /// Clear coat factor 0..1.
-    pub clearcoat_factor: f32,
-    /// Perceptual roughness of the clear coat.
-    pub clearcoat_roughness: f32,
-    /// Scale of the clear coat normal texture's x and y.
-    pub clearcoat_normal_scale: f32,
-    /// Anisotropy strength 0..1.
-    pub anisotropy_strength: f32,
-    /// Cosine and sine of the anisotropy's rotation from the tangent towards the bitangent.
-    pub anisotropy_rotation: [f32; 2],
-    /// Perceptual roughness of the sheen.
-    pub sheen_roughness: f32,
-    /// Linear RGB.
-    pub sheen_color: [f32; 3],
-    /// KHR_materials_specular: weight of the dielectric's specular reflection, 0..1.
-    pub specular_factor: f32,
-    /// Linear RGB, tints the dielectric's F0; specular-glossiness: F0 itself.
-    pub specular_color: [f32; 3],
-    /// Index of refraction, at least 1; 0 stands for infinity.
-    pub ior: f32,
-    /// Iridescence factor 0..1.
-    pub iridescence_factor: f32,
-    /// Index of refraction of the thin film.
-    pub iridescence_ior: f32,
-    /// Thickness of the film where its texture is 0 and 1, nanometers.
-    pub iridescence_thickness_nm: [f32; 2],
-    /// Transmission factor 0..1.
-    pub transmission_factor: f32,
-    /// Thickness of the volume beneath the surface, meters in object space; 0 is a thin wall.
-    pub thickness: f32,
-    /// Color that white light has after `attenuation_distance`.
-    pub attenuation_color: [f32; 3],
-    /// Meters; infinite without attenuation.
-    pub attenuation_distance: f32,
-    /// KHR_materials_dispersion: 20 / Abbe number.
-    pub dispersion: f32,
-    /// Part of the diffuse light that is transmitted, 0..1.
-    pub diffuse_transmission_factor: f32,
-    /// Linear RGB.
-    pub diffuse_transmission_color: [f32; 3],
-    /// Real part of the metal's index of refraction at about 650, 550 and 450 nm.
-    pub conductor_n: [f32; 3],
-    /// Imaginary part (extinction), positive.
-    pub conductor_k: [f32; 3],
-    /// KHR_texture_transform of each texture: columns of a mat3x2 applied to (u, v, 1).
-    pub uv_from_texture: [[[f32; 2]; 3]; TEXTURE_COUNT],
+/// The struct of this name.
+pub fn block(name: &str) -> Option<&'static Block> {
+    BLOCKS.iter().find(|block| block.name == name)
 }
 
-/// Push constants of one draw. Vertices are read by address (`buffer_reference`).
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Draw {
-    /// Device address of the first [`Vertex`].
-    pub vertices: u64,
-    /// Columns of the object-to-world matrix, without the last row.
-    pub world_from_object: [[f32; 3]; 4],
-    /// Inverse transpose of its upper 3x3.
-    pub normal_ws_from_object: [[f32; 3]; 3],
-    /// `ATTRIBUTE_*` bits of the mesh.
-    pub attributes: u32,
-    /// Index of the primitive, for the id views.
-    pub primitive_id: u32,
-    /// Index of the node, for the id views.
-    pub node_id: u32,
+/// GLSL's types as Rust writes them in scalar layout. Matrices are arrays of columns.
+#[allow(non_camel_case_types)]
+mod types {
+    pub type float = f32;
+    pub type uint = u32;
+    pub type vec2 = [f32; 2];
+    pub type vec3 = [f32; 3];
+    pub type vec4 = [f32; 4];
+    pub type uvec2 = [u32; 2];
+    pub type mat3 = [[f32; 3]; 3];
+    pub type mat4 = [[f32; 4]; 4];
+    pub type mat3x2 = [[f32; 2]; 3];
+    pub type mat4x3 = [[f32; 3]; 4];
+    /// A `buffer_reference`: a device address.
+    pub type Vertices = u64;
+}
+use types::*;
+
+macro_rules! blocks {
+    ($($(#[$attribute:meta])* $name:ident: $before:literal, $after:literal {
+        $(#[doc = $doc:literal] $member:ident: $type:ty,)+
+    })+) => {
+        $(
+            $(#[$attribute])*
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+            pub struct $name {
+                $(#[doc = $doc] pub $member: $type,)+
+            }
+        )+
+
+        /// Every struct of the contract, in the order in which GLSL needs them.
+        pub const BLOCKS: &[Block] = &[$(Block {
+            name: stringify!($name),
+            around: [$before, $after],
+            size: size_of::<$name>() as u32,
+            members: &[$(Member {
+                name: stringify!($member),
+                type_name: stringify!($type),
+                doc: $doc.trim_ascii(),
+                offset: offset_of!($name, $member) as u32,
+            },)+],
+        },)+];
+    };
 }
 
-/// What one compute dispatch works on. `SET_TASK`, `BINDING_TASK`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Task {
-    /// Width and height of what is written: texels, or columns and rows of `BINDING_RESULTS`.
-    pub size: [u32; 2],
-    /// Mip level that is written.
-    pub level: u32,
-    /// How many levels the image has.
-    pub levels: u32,
-    /// Samples for each texel or result.
-    pub samples: u32,
-    /// What radiance is multiplied by to fit into half floats.
-    pub radiance_scale: f32,
-    /// Roughness of the first row.
-    pub roughness_first: f32,
-    /// Roughness of the last row.
-    pub roughness_last: f32,
-    /// Angle to the normal of the first column, degrees.
-    pub theta_first: f32,
-    /// Angle to the normal of the last column, degrees.
-    pub theta_last: f32,
-    /// Linear RGB of the measured surface.
-    pub base_color: [f32; 3],
-    /// 0 dielectric .. 1 metal.
-    pub metallic: f32,
-}
+blocks! {
+    /// What a frame shares: camera, output, counts.
+    Frame: "layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame", "frame" {
+        /// World (meters, +Y up) to clip space (+Y down); depth is reversed: 1 near, 0 at infinity.
+        clip_from_world: mat4,
+        /// Inverse of clip_from_world.
+        world_from_clip: mat4,
+        /// World to view space; the camera looks along -Z.
+        view_from_world: mat4,
+        /// Camera position, world space.
+        eye_ws: vec3,
+        /// Factor from luminance (cd/m^2) to the display's 0..1: 1 / (1.2 * 2^EV100).
+        exposure: float,
+        /// Radiance that arrives from everywhere, linear RGB.
+        ambient: vec3,
+        /// Seconds since the start; 0 in headless renderings.
+        time_s: float,
+        /// Linear RGB behind the model, and its alpha.
+        background: vec4,
+        /// Center of the model's bounds, world space.
+        scene_center_ws: vec3,
+        /// Radius of the model's bounds, meters.
+        scene_radius: float,
+        /// Width and height of the picture, pixels.
+        viewport_px: vec2,
+        /// Upper left corner of the picture in the output image, pixels.
+        viewport_origin_px: vec2,
+        /// Near plane distance, meters.
+        near: float,
+        /// Far plane distance for debug modes, meters; the projection is infinite.
+        far: float,
+        /// Number of lights in BINDING_LIGHTS.
+        light_count: uint,
+        /// The light that the BRDF term modes show: 0 all, else 1-based.
+        chosen_light: uint,
+        /// Debug mode on screen, for passes that are not specialized by mode.
+        mode: uint,
+        /// Largest value that the HDR target holds: 65504 for half floats.
+        largest_value: float,
+        /// Cosine and sine of the environment's rotation around +Y; at 0 the map's center column is seen looking down -Z.
+        environment_rotation: vec2,
+        /// Factor from the values of the environment's images to radiance.
+        environment_intensity: float,
+        /// Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
+        environment_blur: float,
+        /// Accumulating modes: frames since the picture changed.
+        sample_index: uint,
+        /// Accumulating modes: random paths a pixel in each frame.
+        sample_count: uint,
+    }
 
-/// A vertex as the shader reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
-pub struct Vertex {
-    /// Object space, meters.
-    pub position: [f32; 3],
-    /// Object space, unit.
-    pub normal: [f32; 3],
-    /// Object space, unit; w is the bitangent's sign.
-    pub tangent: [f32; 4],
-    /// TEXCOORD_0, or 0.
-    pub uv0: [f32; 2],
-    /// TEXCOORD_1, or `uv0`.
-    pub uv1: [f32; 2],
-    /// COLOR_0, linear RGBA, or 1.
-    pub color: [f32; 4],
+    /// A light, in world space. `BINDING_LIGHTS` holds an array of them.
+    Light: "struct Light", "" {
+        /// Position and 1; directional: unit vector towards the light and 0.
+        position_ws: vec4,
+        /// Direction in which the light shines, unit.
+        direction_ws: vec3,
+        /// LIGHT_*.
+        kind: uint,
+        /// Linear RGB times candela (point, spot), lux (directional) or radiance (rectangle).
+        intensity: vec3,
+        /// 1 / the distance at which the light ends, 1/m; 0: no end.
+        inverse_range: float,
+        /// Spot: falloff is the square of scale * cosine + offset, clamped to 0..1; other kinds: 0.
+        angle_scale: float,
+        /// The offset in that falloff; other kinds: 1.
+        angle_offset: float,
+        /// Rectangle: from its center to the middle of an edge, meters.
+        half_x_ws: vec3,
+        /// Rectangle: from its center to the middle of a neighboring edge, meters.
+        half_y_ws: vec3,
+    }
+
+    /// A material's numbers.
+    Material: "layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material", "material" {
+        /// Linear RGBA.
+        base_color_factor: vec4,
+        /// Linear RGB, KHR_materials_emissive_strength included.
+        emissive_factor: vec3,
+        /// 0 dielectric .. 1 metal.
+        metallic_factor: float,
+        /// Perceptual roughness 0..1.
+        roughness_factor: float,
+        /// Scale of the normal texture's x and y.
+        normal_scale: float,
+        /// 0 no occlusion .. 1 as in the texture.
+        occlusion_strength: float,
+        /// ALPHA_MASK: a fragment with less coverage is discarded.
+        alpha_cutoff: float,
+        /// Bit TEXTURE_*: the material has this texture; else a default one is bound.
+        texture_mask: uint,
+        /// Bit TEXTURE_*: the texture is read at TEXCOORD_1.
+        uv1_mask: uint,
+        /// Index of the material, for the id mode.
+        id: uint,
+        /// Clear coat factor 0..1.
+        clearcoat_factor: float,
+        /// Perceptual roughness of the clear coat.
+        clearcoat_roughness: float,
+        /// Scale of the clear coat normal texture's x and y.
+        clearcoat_normal_scale: float,
+        /// Anisotropy strength 0..1.
+        anisotropy_strength: float,
+        /// Cosine and sine of the rotation from the tangent towards the bitangent.
+        anisotropy_rotation: vec2,
+        /// Perceptual roughness of the sheen.
+        sheen_roughness: float,
+        /// Linear RGB.
+        sheen_color: vec3,
+        /// Weight of the dielectric's specular reflection 0..1 (KHR_materials_specular).
+        specular_factor: float,
+        /// Linear RGB, tints the dielectric's F0; specular-glossiness: F0 itself.
+        specular_color: vec3,
+        /// Index of refraction, at least 1; 0 stands for infinity.
+        ior: float,
+        /// Iridescence factor 0..1.
+        iridescence_factor: float,
+        /// Index of refraction of the thin film.
+        iridescence_ior: float,
+        /// Thickness of the film where its texture is 0 and where it is 1, nanometers.
+        iridescence_thickness_nm: vec2,
+        /// Transmission factor 0..1.
+        transmission_factor: float,
+        /// Thickness of the volume below the surface, meters in object space; 0: thin wall.
+        thickness: float,
+        /// Color of white light after attenuation_distance.
+        attenuation_color: vec3,
+        /// Meters; infinite without attenuation.
+        attenuation_distance: float,
+        /// 20 / Abbe number (KHR_materials_dispersion).
+        dispersion: float,
+        /// Part of the diffuse light that is transmitted, 0..1.
+        diffuse_transmission_factor: float,
+        /// Linear RGB.
+        diffuse_transmission_color: vec3,
+        /// Real part of the metal's index of refraction at about 650, 550 and 450 nm.
+        conductor_n: vec3,
+        /// Imaginary part (extinction coefficient), positive.
+        conductor_k: vec3,
+        /// KHR_texture_transform of each texture, applied to (u, v, 1).
+        uv_from_texture: [mat3x2; TEXTURE_COUNT],
+    }
+
+    /// What one compute dispatch works on.
+    Task: "layout(set = SET_TASK, binding = BINDING_TASK, scalar) uniform Task", "task" {
+        /// Width and height of the output: texels, or columns and rows of BINDING_RESULTS.
+        size: uvec2,
+        /// Mip level that is written.
+        level: uint,
+        /// Number of mip levels of the image.
+        levels: uint,
+        /// Samples for each texel or result.
+        samples: uint,
+        /// Factor that fits radiance into half floats.
+        radiance_scale: float,
+        /// Roughness of the first row.
+        roughness_first: float,
+        /// Roughness of the last row.
+        roughness_last: float,
+        /// Angle to the normal of the first column, degrees.
+        theta_first: float,
+        /// Angle to the normal of the last column, degrees.
+        theta_last: float,
+        /// Linear RGB of the measured surface.
+        base_color: vec3,
+        /// 0 dielectric .. 1 metal.
+        metallic: float,
+    }
+
+    /// A vertex. Shaders read vertices by address.
+    #[derive(PartialEq)]
+    Vertex: "struct Vertex", "" {
+        /// Object space, meters.
+        position: vec3,
+        /// Object space, unit.
+        normal: vec3,
+        /// Object space, unit; w is the sign of the bitangent.
+        tangent: vec4,
+        /// TEXCOORD_0, or 0.
+        uv0: vec2,
+        /// TEXCOORD_1, or uv0.
+        uv1: vec2,
+        /// COLOR_0, linear RGBA, or 1.
+        color: vec4,
+    }
+
+    /// Push constants of one draw.
+    Draw: "layout(push_constant, scalar) uniform Draw", "draw" {
+        /// Device address of the first vertex.
+        vertices: Vertices,
+        /// Object to world space, without the matrix's last row.
+        world_from_object: mat4x3,
+        /// Inverse transpose of its upper 3x3.
+        normal_ws_from_object: mat3,
+        /// ATTRIBUTE_* bits of the mesh.
+        attributes: uint,
+        /// Index of the primitive, for the id modes.
+        primitive_id: uint,
+        /// Index of the node, for the id modes.
+        node_id: uint,
+    }
 }
 
 const _: () = assert!(size_of::<Draw>() <= PUSH_CONSTANT_SIZE as usize);

@@ -9,6 +9,7 @@ mod compute;
 mod disk_cache;
 mod environment;
 mod pipeline;
+mod pixel;
 mod resources;
 mod scene;
 mod state;
@@ -17,9 +18,10 @@ mod view;
 pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
 pub use environment::bake_named;
 pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages, tree_name};
+pub use pixel::PixelValue;
 pub use resources::{BoundFrame, Missing, ProvideError, Resources, environment_files, read_measured};
 pub use scene::{GpuModel, UploadError};
-pub use state::parameters::{is_absent, misfits, number, unknown_names};
+pub use state::parameters::{misfits, number, unknown_names};
 pub use state::{
     EnvironmentKey, FrameInputs, FrameState, MaterialVariant, MeasuredKey, PipelineRequest, Revisions, Scene,
     TargetFormat,

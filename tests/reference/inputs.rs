@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec3, Vec4};
 use specula::headless::Headless;
 use specula::interface;
+use specula::render::Capture;
 use specula::scene::{Material, Model};
 
 use super::brdf::{Coat, Surface};
@@ -16,7 +17,7 @@ const COMMON: [&str; 5] = ["position", "shading-normal", "base-color", "metallic
 
 /// The rendered modes, and the materials by pixel.
 pub struct Inputs {
-    modes: BTreeMap<&'static str, Vec<[f32; 4]>>,
+    modes: BTreeMap<&'static str, Capture>,
     materials: Vec<Material>,
     /// Index into `materials`.
     numbers: Vec<usize>,
@@ -35,7 +36,7 @@ fn numbered(model: &Model) -> Model {
 impl Inputs {
     /// Renders them. `model`: the one that is shown, with its pixels; `extensions`: the modes that its extensions have.
     pub fn render(headless: &mut Headless, model: &Model, extensions: &[&'static str]) -> Self {
-        let mut shown = |slug: &'static str| (slug, render(headless, slug).raw);
+        let mut shown = |slug: &'static str| (slug, render(headless, slug));
         let modes = COMMON.iter().chain(extensions).map(|slug| shown(slug)).collect();
         headless.set_model(numbered(model)).unwrap();
         let numbers = render(headless, "base-color").raw.iter().map(|value| value[0].round() as usize).collect();
@@ -46,7 +47,7 @@ impl Inputs {
 
     /// The pixels on the model.
     pub fn covered(&self) -> impl Iterator<Item = usize> + '_ {
-        let position = &self.modes["position"];
+        let position = &self.modes["position"].raw;
         (0..position.len()).filter(|i| position[*i][3] == 1.0)
     }
 
@@ -57,16 +58,13 @@ impl Inputs {
 
     /// The value of a mode that every material has.
     pub fn shown(&self, pixel: usize, slug: &str) -> DVec3 {
-        let [r, g, b, _] = self.modes[slug][pixel];
+        let [r, g, b, _] = self.modes[slug].raw[pixel];
         DVec3::new(r.into(), g.into(), b.into())
     }
 
-    /// The value of another mode; `None` if it was not rendered, or shows the checkerboard of missing data.
+    /// The value of another mode; none if it was not rendered, or has no data at the pixel.
     pub fn extra(&self, pixel: usize, slug: &str) -> Option<DVec3> {
-        self.modes.get(slug)?;
-        let value = self.shown(pixel, slug);
-        let checkerboard = [0.180017_f32, 0.260017].map(|gray| DVec3::splat(gray.into()));
-        (!checkerboard.contains(&value)).then_some(value)
+        (!self.modes.get(slug)?.no_data[pixel]).then(|| self.shown(pixel, slug))
     }
 
     /// The BRDF's inputs.

@@ -17,7 +17,6 @@ use egui::{Color32, FontId, Margin, TextStyle, Ui};
 use super::command::Command;
 use super::viewer::Viewer;
 use crate::gpu::PassTime;
-use crate::render::PixelAt;
 
 /// Behind the panels.
 const PANEL: Color32 = Color32::from_rgb(24, 25, 28);
@@ -70,8 +69,8 @@ pub(super) struct Readings {
     pub(super) device_ms: Option<f64>,
     /// The same for each of its passes.
     pub(super) passes: Vec<PassTime>,
-    /// The value under the mouse.
-    pub(super) pixel: Option<PixelAt>,
+    /// The value under the mouse, in words.
+    pub(super) value: Option<String>,
     /// What stands over the picture.
     pub(super) title: Option<String>,
 }

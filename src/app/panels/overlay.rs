@@ -4,7 +4,6 @@ use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichTe
 
 use super::{ERROR, QUIET, Readings, WARNING, plural};
 use crate::app::viewer::Viewer;
-use crate::render::is_absent;
 use crate::shader::{Diagnostic, Severity};
 
 /// More warnings of a model than these are counted only.
@@ -73,19 +72,14 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: egui::Rect) {
 
 /// The mode of the picture, and the value under the mouse.
 fn label(egui: &egui::Context, readings: &Readings, picture: egui::Rect) {
-    let value = readings.pixel.filter(|pixel| pixel.value[3] > 0.0).map(|pixel| {
-        let [r, g, b, _] = pixel.value.map(number);
-        let numbers = if is_absent(pixel.value) { "none".into() } else { format!("{r} {g} {b}") };
-        format!("{numbers}   at {}, {}", pixel.at.0, pixel.at.1)
-    });
-    if readings.title.is_none() && value.is_none() {
+    if readings.title.is_none() && readings.value.is_none() {
         return;
     }
     area(Id::new("mode"), Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
         card(Color32::from_gray(60)).show(ui, |ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             readings.title.iter().for_each(|title| drop(ui.label(RichText::new(title).strong())));
-            value.iter().for_each(|value| drop(ui.label(RichText::new(value).monospace())));
+            readings.value.iter().for_each(|value| drop(ui.label(RichText::new(value).monospace())));
         });
     });
 }
@@ -145,16 +139,6 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
         ui.add(egui::Label::new(RichText::new(rest).monospace().color(Color32::from_gray(215))).extend());
     }
     ui.add_space(6.0);
-}
-
-/// Five digits that count, and room for a sign, so that the numbers do not dance.
-fn number(value: f32) -> String {
-    let magnitude = value.abs();
-    match magnitude {
-        _ if !value.is_finite() => format!("{value:>8}"),
-        m if m != 0.0 && !(1e-3..1e5).contains(&m) => format!("{value:>8.2e}"),
-        m => format!("{value:>8.*}", 4 - (m.max(1.0).log10() as usize).min(4)),
-    }
 }
 
 fn area(id: Id, corner: Align2, picture: egui::Rect) -> Area {

@@ -127,13 +127,6 @@ pub fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
     }
 }
 
-/// Whether a mode's value says that it has no data there: the grays of `checkerboard` in shaders/common/color.glsl, or
-/// their mean over frames.
-pub fn is_absent([r, g, b, _]: [f32; 4]) -> bool {
-    let is_gray = |gray: f32| (r - gray).abs() <= 1e-6 * gray;
-    r == g && g == b && [0.180_017, 0.260_017].into_iter().any(is_gray)
-}
-
 fn names(choices: &[(String, i64)]) -> String {
     choices.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
 }

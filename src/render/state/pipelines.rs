@@ -146,7 +146,11 @@ impl PipelineRequest {
         let raster = match self.draw {
             DrawAs::Lines => Raster::Lines,
             DrawAs::Layers => Raster::Added,
-            DrawAs::Surfaces if material.alpha == interface::ALPHA_BLEND => Raster::Blended,
+            DrawAs::Surfaces if material.alpha == interface::ALPHA_BLEND => match self.mode {
+                interface::MODE_FINAL => Raster::Blended,
+                // A debug mode has coverage 1, and its flags in alpha must not blend.
+                _ => Raster::Replaced,
+            },
             DrawAs::Surfaces => Raster::Solid,
         };
         PipelineKey {

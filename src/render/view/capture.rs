@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::PixelAt;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, vk};
+use crate::render::pixel::PixelValue;
 
 /// A frame in memory.
 #[derive(Clone, Debug)]
@@ -16,6 +17,10 @@ pub struct Capture {
     pub rgba8: Vec<u8>,
     /// The values before exposure, tone map and encoding: RGBA, premultiplied alpha, rows from the top.
     pub raw: Vec<[f32; 4]>,
+    /// Whether the mode has no data at a pixel, as [`PixelValue::no_data`]; in the order of `raw`.
+    pub no_data: Vec<bool>,
+    /// Whether the value of a pixel is NaN or infinite, as [`PixelValue::not_finite`]; in the order of `raw`.
+    pub not_finite: Vec<bool>,
 }
 
 impl Capture {
@@ -63,8 +68,16 @@ impl Readback {
     pub fn finish(self) -> Capture {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
-        let raw = floats(&self.raw.read(), self.half);
-        Capture { width: self.width, height: self.height, rgba8, raw }
+        let texels = floats(&self.raw.read(), self.half);
+        let pixels: Vec<PixelValue> = texels.into_iter().map(PixelValue::decode).collect();
+        Capture {
+            width: self.width,
+            height: self.height,
+            rgba8,
+            raw: pixels.iter().map(|pixel| pixel.value).collect(),
+            no_data: pixels.iter().map(|pixel| pixel.no_data).collect(),
+            not_finite: pixels.iter().map(|pixel| pixel.not_finite).collect(),
+        }
     }
 }
 
@@ -96,7 +109,7 @@ impl PixelReadback {
     /// The pixel of the last frame that recorded one. SYNC: after that frame's fence.
     pub(super) fn read(&self) -> Option<PixelAt> {
         let (at, half) = self.copied?;
-        floats(&self.buffer.read(), half).first().map(|value| PixelAt { at, value: *value })
+        floats(&self.buffer.read(), half).first().map(|texel| PixelAt { at, value: PixelValue::decode(*texel) })
     }
 }
 

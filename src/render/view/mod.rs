@@ -15,6 +15,7 @@ pub(super) use uniforms::{SharedImages, Sources, Uniforms};
 
 use super::brdf::ltc;
 use super::compute;
+use super::pixel::PixelValue;
 use super::resources::BoundFrame;
 use super::state::TargetFormat;
 use crate::gpu::{
@@ -47,8 +48,8 @@ pub enum Redraw {
 pub struct PixelAt {
     /// Pixels from the left and upper edge of the picture.
     pub at: (u32, u32),
-    /// RGB before exposure, tone map and encoding, premultiplied by alpha, which is coverage.
-    pub value: [f32; 4],
+    /// Its value.
+    pub value: PixelValue,
 }
 
 /// What the HDR target holds.

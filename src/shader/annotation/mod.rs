@@ -30,10 +30,11 @@ use crate::shader::spirv::reflect::{Reflection, Scalar};
 use parse::{Declared, Found, Ui, outside_of_choices, parse_file};
 
 /// How a mode's values become 8-bit pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Encode {
     /// Linear color, sRGB-encoded.
+    #[default]
     Color,
     /// Numbers, stored as they are.
     Data,
@@ -66,7 +67,7 @@ pub enum DrawAs {
 }
 
 /// A debug mode.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Mode {
     /// Value of the specialization constant `MODE`.
     pub id: u32,
@@ -78,6 +79,12 @@ pub struct Mode {
     pub group: String,
     /// How its values are stored.
     pub encode: Encode,
+    /// How many numbers a value has, 1 to 3. The shader repeats a scalar in all channels.
+    #[serde(skip)]
+    pub components: u8,
+    /// Unit of the value before exposure; empty where it has none.
+    #[serde(skip)]
+    pub unit: String,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
     /// Whether frames add up to a mean: each is a noisy sample of the picture.

@@ -102,16 +102,10 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         id: mode_id(cursor, declaration)?,
         slug: slug.to_owned(),
         name,
-        group: String::new(),
-        encode: Encode::Color,
-        tonemap: false,
-        accumulate: false,
-        through: false,
-        draw: DrawAs::Surfaces,
-        key: None,
-        doc: String::new(),
+        components: 3,
         file: cursor.place().file.clone(),
         line: cursor.place().line,
+        ..Mode::default()
     };
     let mut given: Vec<&str> = Vec::new();
     while !cursor.at_end() {
@@ -126,6 +120,13 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
             "through" => mode.through = true,
             "group" => mode.group = cursor.value(key)?.1,
             "doc" => mode.doc = cursor.value(key)?.1,
+            "unit" => mode.unit = cursor.value(key)?.1,
+            "components" => {
+                let (bytes, value) = cursor.value(key)?;
+                let count = value.parse().ok().filter(|count| (1..=3).contains(count));
+                let message = || format!("expected components=1, components=2 or components=3, found `{value}`");
+                mode.components = count.ok_or_else(|| cursor.error(bytes, message()))?;
+            }
             "encode" => {
                 let (bytes, value) = cursor.value(key)?;
                 mode.encode = match value.as_str() {
@@ -160,7 +161,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 mode.key = Some(one);
             }
             other => {
-                let known = "group=, encode=, tonemap, accumulate, through, draw=, key= or doc=";
+                let known = "group=, encode=, components=, unit=, tonemap, accumulate, through, draw=, key= or doc=";
                 let message = format!("expected {known}, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }

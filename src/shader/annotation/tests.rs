@@ -43,6 +43,25 @@ fn modes_in_the_order_of_their_ids() {
 }
 
 #[test]
+fn units_and_components_of_modes() {
+    let modes = read_text(
+        "const uint MODE_A = 1u; //@mode a \"A\" unit=\"cd/m^2\"\n\
+         const uint MODE_B = 2u; //@mode b \"B\" components=1 unit=m",
+    )
+    .unwrap()
+    .modes;
+    let rows: Vec<_> = modes.iter().map(|mode| (mode.components, mode.unit.as_str())).collect();
+    assert_eq!(rows, [(3, "cd/m^2"), (1, "m")]);
+    // Programs outside rely on the fields of the JSON.
+    let json = serde_json::to_value(&modes[0]).unwrap();
+    assert!(json.get("unit").is_none() && json.get("components").is_none(), "{json}");
+    refused(
+        "const uint MODE_A = 1u; //@mode a \"A\" components=4",
+        "m.frag:3:50: error: expected components=1, components=2 or components=3, found `4`",
+    );
+}
+
+#[test]
 fn constants_and_parameters() {
     let found = read_text(&format!(
         "layout(constant_id = USER_CONSTANTS + 1) const uint NDF_MODEL = 1u; //@ui \"NDF\" choice GGX=0 Beckmann=1\n\
@@ -107,7 +126,7 @@ fn what_does_not_parse_says_what_was_expected() {
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
-        "m.frag:3:34: error: expected group=, encode=, tonemap, accumulate, through, draw=, key= or doc=, found `colour`",
+        "m.frag:3:34: error: expected group=, encode=, components=, unit=, tonemap, accumulate, through, draw=, key= or doc=, found `colour`",
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" accumulate accumulate",

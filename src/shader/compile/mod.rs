@@ -1,5 +1,6 @@
 //! One stage to SPIR-V, with shaderc.
 
+mod balance;
 pub mod include;
 pub mod log;
 
@@ -137,8 +138,13 @@ impl Compiler {
             Err(text) => (Err(()), text),
         };
         let (mut errors, warnings) = log::parse(&text, path, snapshot, &dependencies);
-        if result.is_err() && errors.is_empty() {
-            errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
+        if result.is_err() {
+            let causes = unbalanced(snapshot, &dependencies);
+            if !causes.is_empty() {
+                errors = causes;
+            } else if errors.is_empty() {
+                errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
+            }
         }
         Compiled { result: result.map_err(|()| errors), warnings, dependencies, ms }
     }
@@ -162,6 +168,13 @@ impl Compiler {
             Err(error) => Err(error.to_string()),
         }
     }
+}
+
+/// The conditionals without a partner in these files: one error for each file that has any. All other errors of the stage may
+/// follow from them.
+fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>) -> Vec<Diagnostic> {
+    let check = |path: &TreePath| balance::unbalanced(&snapshot.display_path(path), &snapshot.read(path).ok()?);
+    files.iter().filter_map(check).collect()
 }
 
 /// Unoptimized: five times faster to compile, and the names that reflection needs stay in.

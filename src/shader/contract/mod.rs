@@ -2,12 +2,11 @@
 //! sides.
 
 mod capability;
-mod layout;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::interface::{self, BindingKind};
+use crate::interface::{self, BindingKind, block};
 
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
@@ -15,7 +14,6 @@ use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::text::{find_word, lines};
 use crate::shader::spirv::reflect::{Block, Descriptor, Location, Reflection, Scalar};
-use layout::{Layout, layout};
 
 /// The file in every tree that holds the contract.
 pub const INTERFACE_FILE: &str = "interface.glsl";
@@ -80,20 +78,20 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
                 format!("shader says push constants `{name}` have {size} bytes, Specula says at most {limit}");
             out.push(texts.error(&[name.as_str(), "push_constant"], message));
         }
-        out.extend(layout("Draw").and_then(|layout| check_layout(block, layout, texts)));
+        out.extend(check_block(block, "Draw", texts));
     }
-    // Structs that only arrays and buffer references use have no descriptor.
-    for layout in ["Light", "Vertex"].into_iter().filter_map(layout) {
-        let block = reflection.structs.get(layout.name);
-        out.extend(block.and_then(|block| check_layout(block, layout, texts)));
+    // Structs behind arrays and buffer references, which no descriptor shows.
+    for known in ["Light", "Vertex"].into_iter().filter_map(block) {
+        let found = reflection.structs.get(known.name);
+        out.extend(found.and_then(|found| check_block(found, known.name, texts)));
         let arrays = reflection.structs.values().flat_map(|block| &block.members);
-        let element = format!("{}[]", layout.name);
-        for member in arrays.filter(|member| member.type_name == element && member.stride != layout.size) {
+        let element = format!("{}[]", known.name);
+        for member in arrays.filter(|member| member.type_name == element && member.stride != known.size) {
             let message = format!(
                 "shader says `{}` lie {} bytes apart in `{}`, Specula says {}; use scalar layout",
-                layout.name, member.stride, member.name, layout.size
+                known.name, member.stride, member.name, known.size
             );
-            out.push(texts.error(&[member.name.as_str(), layout.name], message));
+            out.push(texts.error(&[member.name.as_str(), known.name], message));
         }
     }
     out.extend(check_constants(reflection, texts));
@@ -177,9 +175,9 @@ fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> 
     let block = found.block.as_ref()?;
     let misplaced = match known.name {
         "BINDING_LIGHTS" => check_lights(block, texts),
-        "BINDING_FRAME" => layout("Frame").and_then(|layout| check_layout(block, layout, texts)),
-        "BINDING_MATERIAL" => layout("Material").and_then(|layout| check_layout(block, layout, texts)),
-        "BINDING_TASK" => layout("Task").and_then(|layout| check_layout(block, layout, texts)),
+        "BINDING_FRAME" => check_block(block, "Frame", texts),
+        "BINDING_MATERIAL" => check_block(block, "Material", texts),
+        "BINDING_TASK" => check_block(block, "Task", texts),
         _ => None,
     };
     if misplaced.is_none() && block.size > known.size && known.kind == BindingKind::UniformBuffer {
@@ -206,17 +204,17 @@ fn check_lights(block: &Block, texts: Texts<'_>) -> Option<Diagnostic> {
     }
 }
 
-/// Returns an error for the first member whose offset differs from Rust's. A shader may omit members at the end.
-fn check_layout(block: &Block, layout: &Layout, texts: Texts<'_>) -> Option<Diagnostic> {
-    let name = layout.name;
-    for (index, member) in block.members.iter().enumerate() {
+/// Reports the first member whose offset is not the one that Rust writes to. A shader may leave out members at the end.
+fn check_block(found: &Block, name: &str, texts: Texts<'_>) -> Option<Diagnostic> {
+    let known = block(name)?;
+    for (index, member) in found.members.iter().enumerate() {
         let found = format!("shader says `{name}.{}` is at byte {}", member.name, member.offset);
-        let message = match layout.fields.iter().find(|(field, _)| *field == member.name) {
-            Some((_, offset)) if *offset == member.offset => continue,
-            Some((_, offset)) => format!("{found}, Specula says {offset}"),
-            None => match layout.fields.get(index) {
-                Some((field, offset)) => format!("{found}, Specula has `{field}` at {offset} there"),
-                None => format!("{found}, Specula says `{name}` ends at {}", layout.size),
+        let message = match known.members.iter().find(|known| known.name == member.name) {
+            Some(known) if known.offset == member.offset => continue,
+            Some(known) => format!("{found}, Specula says {}", known.offset),
+            None => match known.members.get(index) {
+                Some(known) => format!("{found}, Specula has `{}` at {} there", known.name, known.offset),
+                None => format!("{found}, Specula says `{name}` ends at {}", known.size),
             },
         };
         let error = texts.error(&[member.name.as_str(), short_type(&member.type_name)], message);
@@ -319,6 +317,5 @@ pub fn interface_matches(snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
     })
 }
 
-// These tests run the compiler.
 #[cfg(test)]
 mod tests;

@@ -1,0 +1,155 @@
+//! The value of one pixel as the HDR target holds it: color, coverage and flags. `shaders/common/pixel.glsl` writes it.
+
+use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE};
+use crate::shader::Mode;
+
+/// The most samples of a pixel whose mean keeps coverage and flags apart.
+const MOST_SAMPLES: f32 = 8.0;
+/// The smallest part of a flag in such a mean: that of one sample.
+const ONE_NO_DATA: f32 = FLAG_NO_DATA as f32 / MOST_SAMPLES;
+const ONE_NOT_FINITE: f32 = FLAG_NOT_FINITE as f32 / MOST_SAMPLES;
+/// Characters of a number in [`PixelValue::text`].
+const NUMBER_WIDTH: usize = 10;
+
+/// What a debug mode, or the picture, has at one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelValue {
+    /// Linear RGB times coverage, before exposure; and coverage, 0..1. NaN counts as 0 here, and infinity as the largest value
+    /// that the HDR target holds.
+    pub value: [f32; 4],
+    /// The mode has no data at one of the pixel's samples at least; the sample shows a checkerboard.
+    pub no_data: bool,
+    /// The value is NaN or infinite at one of the pixel's samples at least.
+    pub not_finite: bool,
+}
+
+impl PixelValue {
+    /// Takes a texel of the HDR target apart: one sample, or the mean of up to 8.
+    ///
+    /// Coverage of the picture is exact unless something transparent is blended over a flag.
+    pub fn decode([r, g, b, alpha]: [f32; 4]) -> Self {
+        // A tree that stores no flags may store NaN itself.
+        if ![r, g, b, alpha].iter().all(|number| number.is_finite()) {
+            return Self { value: [r, g, b, alpha.clamp(0.0, 1.0)], no_data: false, not_finite: true };
+        }
+        let not_finite = alpha >= ONE_NOT_FINITE;
+        Self {
+            value: [r, g, b, (alpha % ONE_NO_DATA).min(1.0)],
+            no_data: alpha % ONE_NOT_FINITE >= ONE_NO_DATA && !not_finite,
+            not_finite,
+        }
+    }
+
+    /// The value in words, padded to a width that depends on the mode alone: as many numbers as the mode has components, their
+    /// unit, and whether they are from before exposure; or `no data`; or `NaN`, which stands for infinity too.
+    pub fn text(&self, mode: &Mode) -> String {
+        let count = usize::from(mode.components).clamp(1, 3);
+        let width = count * (NUMBER_WIDTH + 1) - 1;
+        let mut unit = String::new();
+        if !mode.unit.is_empty() {
+            unit = format!(" {}", mode.unit);
+        }
+        if mode.tonemap {
+            unit += " before exposure";
+        }
+        let total = width + unit.chars().count();
+        let words = match self {
+            Self { not_finite: true, .. } => Some("NaN"),
+            Self { no_data: true, .. } => Some("no data"),
+            _ => None,
+        };
+        let text = match words {
+            Some(words) => format!("{words:>width$}"),
+            None => {
+                let numbers: Vec<String> = self.value[..count].iter().map(|number| text_of(*number)).collect();
+                numbers.join(" ") + &unit
+            }
+        };
+        format!("{text:<total$}")
+    }
+}
+
+/// Six significant digits in [`NUMBER_WIDTH`] characters; in powers of ten where fewer than three would be left.
+fn text_of(number: f32) -> String {
+    let magnitude = number.abs();
+    if magnitude != 0.0 && !(1e-3..1e6).contains(&magnitude) {
+        return format!("{number:>NUMBER_WIDTH$.3e}");
+    }
+    let digits_before = magnitude.max(1.0).log10() as usize;
+    format!("{number:>NUMBER_WIDTH$.0$}", 5_usize.saturating_sub(digits_before))
+}
+
+#[cfg(test)]
+mod tests {
+    use half::f16;
+
+    use super::*;
+    use crate::shader::Encode;
+
+    const NO_DATA: f32 = FLAG_NO_DATA as f32;
+    const NOT_FINITE: f32 = FLAG_NOT_FINITE as f32;
+
+    /// The mean of samples as a half-float target resolves them.
+    fn resolved(samples: &[f32]) -> f32 {
+        let sum: f32 = samples.iter().map(|alpha| f16::from_f32(*alpha).to_f32()).sum();
+        f16::from_f32(sum / samples.len() as f32).to_f32()
+    }
+
+    #[test]
+    fn coverage_and_flags_are_read_from_any_mix_of_samples() {
+        let kinds = [0.0, 1.0, 1.0 + NO_DATA, 1.0 + NOT_FINITE];
+        for samples in [1_usize, 4] {
+            for mix in 0..4_usize.pow(samples as u32) {
+                let alphas: Vec<f32> = (0..samples).map(|i| kinds[mix / 4_usize.pow(i as u32) % 4]).collect();
+                let found = PixelValue::decode([0.5, 0.25, 0.125, resolved(&alphas)]);
+                let covered = alphas.iter().filter(|alpha| **alpha >= 1.0).count() as f32 / samples as f32;
+                let not_finite = alphas.contains(&(1.0 + NOT_FINITE));
+                let no_data = alphas.contains(&(1.0 + NO_DATA)) && !not_finite;
+                let expected = PixelValue { value: [0.5, 0.25, 0.125, covered], no_data, not_finite };
+                assert_eq!(found, expected, "{alphas:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_transparent_surface_over_a_flag_keeps_it() {
+        for coverage in [0.1, 0.5, 0.85] {
+            let over = |alpha: f32| PixelValue::decode([0.0, 0.0, 0.0, coverage + (1.0 - coverage) * alpha]);
+            assert!(over(1.0 + NO_DATA).no_data && over(1.0 + NOT_FINITE).not_finite, "{coverage}");
+            assert!(!over(1.0).no_data && !over(1.0).not_finite);
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_stored_as_nan_are_not_finite() {
+        assert!(PixelValue::decode([f32::NAN, 0.0, 0.0, 1.0]).not_finite);
+        assert!(PixelValue::decode([0.0, f32::INFINITY, 0.0, 1.0]).not_finite);
+    }
+
+    fn mode(components: u8, unit: &str, tonemap: bool) -> Mode {
+        Mode { components, unit: unit.to_owned(), tonemap, encode: Encode::Data, ..Mode::default() }
+    }
+
+    #[test]
+    fn text_has_the_mode_s_components_and_unit() {
+        let value = PixelValue { value: [0.5, -1.25, 12345.678, 1.0], ..PixelValue::default() };
+        assert_eq!(value.text(&mode(1, "m", false)), "   0.50000 m");
+        assert_eq!(value.text(&mode(2, "", false)), "   0.50000   -1.25000");
+        let light = "   0.50000   -1.25000    12345.7 cd/m^2 before exposure";
+        assert_eq!(value.text(&mode(3, "cd/m^2", true)), light);
+        let absent = PixelValue { no_data: true, ..value };
+        assert_eq!(absent.text(&mode(1, "m", false)), "   no data  ");
+        let broken = PixelValue { not_finite: true, ..value };
+        assert_eq!(broken.text(&mode(1, "", false)), "       NaN");
+    }
+
+    #[test]
+    fn text_is_as_wide_for_every_value() {
+        let mode = mode(1, "1/sr", true);
+        let of = |number: f32| PixelValue { value: [number; 4], ..PixelValue::default() }.text(&mode);
+        let numbers = [0.0, -0.001, 999_999.9, -123_456.7, 1e6, -65504.0, 1e-38, -f32::MAX, 1.0 / 3.0];
+        let mut widths: Vec<usize> = numbers.map(|number| of(number).chars().count()).to_vec();
+        widths.push(PixelValue { no_data: true, ..PixelValue::default() }.text(&mode).chars().count());
+        assert!(widths.iter().all(|width| *width == widths[0]), "{widths:?} {:?}", numbers.map(of));
+    }
+}
