@@ -386,7 +386,7 @@ impl Document {
             return;
         };
         let send = self.worker.changes();
-        let base = root.canonicalize().unwrap_or_else(|_| root.clone());
+        let base = root.clone();
         let on_batch = move |batch: Batch| {
             let relative = batch.paths.iter().filter_map(|p| p.strip_prefix(&base).ok());
             let paths = relative.filter_map(|p| TreePath::parse(&p.to_string_lossy())).collect();

@@ -1,4 +1,4 @@
-//! Waiting for saves, for `render --watch`.
+//! Waits for saves, for `render --watch`.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use specula::shader::{Batch, Source, Watcher};
 
 use super::Failure;
 
-/// Watches a shader tree and a model's files.
+/// Watches a shader tree, and the files of a model and an environment.
 pub struct Watch {
     watcher: Watcher,
     batches: Receiver<Batch>,
@@ -20,18 +20,18 @@ pub struct Watch {
 
 /// What changed together.
 pub struct Changes {
-    /// Changed files, absolute.
+    /// Changed files, as the tree, the model and the environment name them.
     pub paths: BTreeSet<PathBuf>,
-    /// Whether one of them is the model's.
+    /// Whether the model has one of the files.
     pub model: bool,
-    /// Whether one of them is the environment's.
+    /// Whether the environment has one of the files.
     pub environment: bool,
-    /// When the first event came.
+    /// When the first event arrived.
     pub first_event: Instant,
 }
 
 impl Watch {
-    /// Starts watching.
+    /// Starts to watch a tree.
     pub fn new(source: &Source) -> Result<Self, Failure> {
         let (sender, batches) = unbounded();
         let on_batch = move |batch| {
@@ -41,25 +41,19 @@ impl Watch {
         Ok(Self { watcher, batches, model_files: BTreeSet::new(), environment_files: BTreeSet::new() })
     }
 
-    /// Watches these files of a model and of an environment too, in place of those before.
+    /// Watches these files of a model and of an environment, too, in place of those before.
     pub fn follow(&mut self, model: &Model, environment: &[PathBuf]) {
-        let files: Vec<PathBuf> = model.files.iter().chain(environment).cloned().collect();
+        self.model_files = model.files.iter().cloned().collect();
+        self.environment_files = environment.iter().cloned().collect();
+        let files: Vec<PathBuf> = self.model_files.union(&self.environment_files).cloned().collect();
         self.watcher.set_files(&files);
-        self.model_files = both_names(&model.files);
-        self.environment_files = both_names(environment);
     }
 
     /// Waits for the next changes; `None` when watching has ended.
     pub fn next(&mut self) -> Option<Changes> {
         let batch = self.batches.recv().ok()?;
-        let model = batch.paths.iter().any(|path| self.model_files.contains(path));
-        let environment = batch.paths.iter().any(|path| self.environment_files.contains(path));
+        let model = !batch.paths.is_disjoint(&self.model_files);
+        let environment = !batch.paths.is_disjoint(&self.environment_files);
         Some(Changes { paths: batch.paths, model, environment, first_event: batch.first_event })
     }
-}
-
-/// Each file as it was named and without symbolic links.
-fn both_names(files: &[PathBuf]) -> BTreeSet<PathBuf> {
-    let resolved = files.iter().map(|file| file.canonicalize().unwrap_or_else(|_| file.clone()));
-    files.iter().cloned().chain(resolved).collect()
 }
