@@ -1,65 +1,100 @@
 //! Captured frames as files: PNG for the picture, EXR for the raw values behind it.
 
+mod part;
+
+use std::fs::OpenOptions;
+use std::io::{self, Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
-use image::{ImageBuffer, ImageFormat, Rgba};
+use image::{DynamicImage, ImageBuffer, ImageFormat};
 
 use crate::render::Capture;
+pub use part::{Halt, remove_unfinished};
 
-/// Fails before any work when `path` can hold no picture.
+/// Linux gives up after this many symbolic links, too.
+const MAX_LINKS: usize = 40;
+
+/// Fails before any work when no picture can be written to `path`.
 ///
 /// # Errors
-/// An ending other than .png or .exr, or a folder that is not there, in words.
+/// The file extension is neither .png nor .exr, the folder does not exist, or `path` is a folder.
 pub fn check_path(path: &Path) -> Result<(), String> {
     format_of(path)?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-    match folder {
-        Some(folder) if !folder.is_dir() => {
-            Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()))
+    let cannot = |why: String| Err(format!("cannot write {}: {why}", path.display()));
+    if path.is_dir() {
+        return cannot("it is a folder".to_owned());
+    }
+    let target = match follow_links(path) {
+        Ok(target) => target,
+        Err(error) => return cannot(error.to_string()),
+    };
+    match target.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        Some(folder) if !is_stream(path) && !folder.is_dir() => {
+            cannot(format!("there is no folder {}", folder.display()))
         }
-        _ if path.is_dir() => Err(format!("cannot write {}: it is a folder", path.display())),
         _ => Ok(()),
     }
 }
 
-/// `out` with the mode's name before the ending: `helmet.png` gives `helmet.metallic.png`.
+/// `out` with the mode's name before the extension: `helmet.png` becomes `helmet.metallic.png`.
 pub fn path_of_mode(out: &Path, slug: &str) -> PathBuf {
     let ending = out.extension().unwrap_or_default().to_string_lossy();
     out.with_extension(format!("{slug}.{ending}"))
 }
 
-/// Writes a capture whole: into a file beside it, which then takes its name, so no reader ever sees half a picture.
+/// Writes a capture to a file, as [`write_image`] does: 8-bit color to a PNG, the raw values to an EXR.
 ///
 /// # Errors
-/// A place that cannot be written, in words.
+/// As [`write_image`].
 pub fn write(capture: &Capture, path: &Path) -> Result<(), String> {
-    let format = format_of(path)?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let part = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let written = save(capture, &part, format).and_then(|()| std::fs::rename(&part, path).map_err(|e| e.to_string()));
-    written.map_err(|e| {
-        let _ = std::fs::remove_file(&part);
-        format!("cannot write {}: {e}", path.display())
-    })
-}
-
-fn save(capture: &Capture, path: &Path, format: ImageFormat) -> Result<(), String> {
     let (width, height) = (capture.width, capture.height);
-    let size = || "the picture's size does not match its pixels".to_owned();
-    let saved = match format {
+    let image = match format_of(path)? {
         ImageFormat::OpenExr => {
             let floats = capture.raw.iter().flatten().copied().collect();
-            let image: ImageBuffer<Rgba<f32>, Vec<f32>> =
-                ImageBuffer::from_raw(width, height, floats).ok_or_else(size)?;
-            image.save_with_format(path, format)
+            ImageBuffer::from_raw(width, height, floats).map(DynamicImage::ImageRgba32F)
         }
-        _ => {
-            let image: ImageBuffer<Rgba<u8>, Vec<u8>> =
-                ImageBuffer::from_raw(width, height, capture.rgba8.clone()).ok_or_else(size)?;
-            image.save_with_format(path, format)
-        }
+        _ => ImageBuffer::from_raw(width, height, capture.rgba8.clone()).map(DynamicImage::ImageRgba8),
     };
-    saved.map_err(|e| e.to_string())
+    let size = || format!("cannot write {}: the picture's size does not match its pixels", path.display());
+    write_image(&image.ok_or_else(size)?, path)
+}
+
+/// Writes an image whole: to a temporary file beside `path`, which then takes the name, so that no reader ever sees half a
+/// picture, and the old file stays when anything fails. Through a symbolic link, the file that it leads to is replaced. A
+/// pipe or a device is written to directly.
+///
+/// # Errors
+/// The file extension is neither .png nor .exr, the format cannot hold the image, or the system cannot write it.
+pub fn write_image(image: &DynamicImage, path: &Path) -> Result<(), String> {
+    let cannot = |why: String| format!("cannot write {}: {why}", path.display());
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, format_of(path)?).map_err(|e| cannot(e.to_string()))?;
+    write_bytes(bytes.get_ref(), path).map_err(|e| cannot(e.to_string()))
+}
+
+fn write_bytes(bytes: &[u8], path: &Path) -> io::Result<()> {
+    if is_stream(path) {
+        return OpenOptions::new().write(true).open(path)?.write_all(bytes);
+    }
+    part::replace(&follow_links(path)?, bytes)
+}
+
+/// Whether `path` leads to a pipe, a device or a socket.
+fn is_stream(path: &Path) -> bool {
+    path.metadata().is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+}
+
+/// The file to which `path` leads, which need not exist.
+fn follow_links(path: &Path) -> io::Result<PathBuf> {
+    let mut target = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        if !target.is_symlink() {
+            return Ok(target);
+        }
+        let link = target.read_link()?;
+        target = target.parent().unwrap_or(Path::new("")).join(link);
+    }
+    Err(io::Error::other(format!("more than {MAX_LINKS} symbolic links lead to each other")))
 }
 
 fn format_of(path: &Path) -> Result<ImageFormat, String> {

@@ -3,16 +3,19 @@
 mod support;
 
 use std::fs;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
 use notify::{RecursiveMode, Watcher as _};
 use support::process::{PATIENCE, Running, specula};
-use support::{Tree, glb, line_of, srgb};
+use support::{Tree, glb, hdr, line_of, srgb};
 
 const USER: &str = "user.glsl";
+const MODEL: &str = "model/quad.glb";
 
 /// `specula render --watch` on a tree of its own, with a square that fills the picture.
 struct Watched {
@@ -25,9 +28,17 @@ struct Watched {
 
 impl Watched {
     fn new() -> Self {
+        Self::with(|_, command| {
+            command.args(["--env", "none"]);
+        })
+    }
+
+    /// `prepare` adds files beside the tree and options of its own.
+    fn with(prepare: impl FnOnce(&Tree, &mut Command)) -> Self {
         let tree = Tree::new();
         let original = tree.read(USER);
-        fs::write(tree.beside("quad.glb"), glb::model(&glb::quad(9.0), &glb::gray())).unwrap();
+        fs::create_dir(tree.beside("model")).unwrap();
+        fs::write(tree.beside(MODEL), glb::model(&glb::quad(9.0), &glb::gray())).unwrap();
         fs::create_dir(tree.beside("out")).unwrap();
         let (sender, pictures) = channel();
         let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
@@ -39,9 +50,10 @@ impl Watched {
         .unwrap();
         watcher.watch(&tree.beside("out"), RecursiveMode::NonRecursive).unwrap();
         let mut command = specula(&tree.beside(""));
-        command.args(["render", "quad.glb", "--shaders", "shaders", "--out", "out/picture.png", "--size", "32x24"]);
+        command.args(["render", MODEL, "--shaders", "shaders", "--out", "out/picture.png", "--size", "32x24"]);
         command.args(["--watch", "--events", "json", "--validate", "--tonemap", "none", "--set", "view.msaa=1"]);
-        command.args(["--env", "none", "--eye", "0,0,3", "--target", "0,0,0"]);
+        command.args(["--eye", "0,0,3", "--target", "0,0,0"]);
+        prepare(&tree, &mut command);
         let mut running = Running::start(&mut command);
         running.event("ready");
         Self { tree, running, original, pictures, _watcher: watcher }
@@ -89,6 +101,13 @@ fn center(path: &Path) -> [u8; 3] {
     let png = support::open_image(path).into_rgb8();
     assert_eq!(png.dimensions(), (32, 24));
     png.get_pixel(16, 12).0
+}
+
+/// The model in another color.
+fn colored([r, g, b]: [f32; 3]) -> Vec<u8> {
+    let mut material = glb::gray();
+    material["pbrMetallicRoughness"]["baseColorFactor"] = serde_json::json!([r, g, b, 1.0]);
+    glb::model(&glb::quad(9.0), &material)
 }
 
 fn rename_over(path: &Path, text: &str) {
@@ -239,22 +258,17 @@ fn the_tree_may_go_away_and_come_back() {
 #[test]
 fn the_model_is_watched_too() {
     let watched = Watched::new();
-    let path = watched.tree.beside("quad.glb");
+    let path = watched.tree.beside(MODEL);
     let replace = |bytes: &[u8]| {
         let new = watched.tree.beside("new.glb");
         fs::write(&new, bytes).unwrap();
         fs::rename(&new, &path).unwrap();
     };
-    let colored = |r: f32, g: f32, b: f32| {
-        let mut material = glb::gray();
-        material["pbrMetallicRoughness"]["baseColorFactor"] = serde_json::json!([r, g, b, 1.0]);
-        glb::model(&glb::quad(9.0), &material)
-    };
-    replace(&colored(1.0, 0.0, 0.0));
+    replace(&colored([1.0, 0.0, 0.0]));
     watched.until("red after the model was replaced", |[r, g, _]| r > 60 && g < r / 2);
     // A model that is wrong keeps the last good one, and is read again when it is whole.
     replace(b"glTF");
-    replace(&colored(0.0, 1.0, 0.0));
+    replace(&colored([0.0, 1.0, 0.0]));
     watched.until("green after a damaged file", |[r, g, _]| g > 60 && r < g / 2);
 }
 
@@ -271,4 +285,74 @@ fn shaders_that_are_broken_from_the_start_are_waited_for() {
     tree.write(USER, &original);
     running.event("ready");
     assert!(tree.beside("late.png").exists());
+}
+
+#[test]
+fn a_models_folder_may_be_removed_and_written_again() {
+    let watched = Watched::new();
+    let (path, away) = (watched.tree.beside(MODEL), watched.tree.beside("away"));
+    let folder = path.parent().unwrap();
+    fs::remove_dir_all(folder).unwrap();
+    fs::create_dir(folder).unwrap();
+    fs::write(&path, colored([1.0, 0.0, 0.0])).unwrap();
+    watched.until("red after the folder was written again", |[r, g, _]| r > 60 && g < r / 2);
+    fs::rename(folder, away).unwrap();
+    fs::create_dir(folder).unwrap();
+    fs::write(&path, colored([0.0, 1.0, 0.0])).unwrap();
+    watched.until("green after the folder was moved and written again", |[r, g, _]| g > 60 && r < g / 2);
+}
+
+#[test]
+fn an_environment_behind_links_is_baked_again() {
+    let mut watched = Watched::with(|tree, command| {
+        for folder in ["skies", "elsewhere"] {
+            fs::create_dir(tree.beside(folder)).unwrap();
+        }
+        fs::write(tree.beside("elsewhere/sky.hdr"), hdr::uniform([128, 0, 0, 129])).unwrap();
+        symlink("../elsewhere/sky.hdr", tree.beside("skies/sky.hdr")).unwrap();
+        symlink("skies", tree.beside("folder")).unwrap();
+        command.args(["--env", "folder/sky.hdr"]);
+    });
+    fs::write(watched.tree.beside("elsewhere/sky.hdr"), hdr::uniform([0, 128, 0, 129])).unwrap();
+    watched.running.event("bake");
+    fs::write(watched.tree.beside("elsewhere/new.hdr"), hdr::uniform([0, 0, 128, 129])).unwrap();
+    fs::rename(watched.tree.beside("elsewhere/new.hdr"), watched.tree.beside("skies/sky.hdr")).unwrap();
+    watched.running.event("bake");
+}
+
+#[test]
+fn a_swapped_link_to_the_tree_is_another_tree() {
+    let mut watched = Watched::with(|tree, command| {
+        fs::rename(tree.root(), tree.beside("v1")).unwrap();
+        symlink("v1", tree.root()).unwrap();
+        command.args(["--env", "none"]);
+    });
+    let v2 = watched.tree.beside("v2");
+    specula::shader::source::embedded::write_to(&v2).unwrap();
+    fs::write(v2.join(USER), watched.text(130)).unwrap();
+    symlink("v2", watched.tree.beside("new")).unwrap();
+    fs::rename(watched.tree.beside("new"), watched.tree.root()).unwrap();
+    watched.running.reload(true);
+    watched.shows(130, "another tree behind the link");
+    fs::write(v2.join(USER), watched.text(140)).unwrap();
+    watched.shows(140, "an edit of the tree behind the link");
+}
+
+#[test]
+fn without_notifications_changes_are_found_by_looking() {
+    let mut watched = Watched::with(|_, command| {
+        command.args(["--env", "none"]).env("SPECULA_POLL", "1");
+    });
+    let told = "specula: no change notifications for shaders (SPECULA_POLL is set); looking every 500 ms instead";
+    for gray in [150, 160] {
+        watched.tree.write(USER, &watched.text(gray));
+        watched.running.reload(true);
+        watched.shows(gray, "a save without notifications");
+    }
+    fs::write(watched.tree.beside(MODEL), colored([1.0, 0.0, 0.0])).unwrap();
+    watched.tree.write(USER, &watched.original);
+    watched.until("red after the model was saved", |[r, g, _]| r > 60 && g < r / 2);
+    let stderr = watched.running.stderr();
+    assert_eq!(stderr.matches(told).count(), 1, "{stderr}");
+    assert_eq!(stderr.matches("no change notifications").count(), 1, "{stderr}");
 }

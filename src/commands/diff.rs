@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use specula::comparison::{Comparison, Measure, Picture};
+use specula::picture;
 
 use super::Failure;
 
@@ -120,16 +121,13 @@ fn pictures_in(folder: &Path) -> Result<BTreeSet<String>, Failure> {
 
 /// Maps of raw pictures are raw too, so the file's ending must fit.
 fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(), String> {
-    let save = |map: &image::DynamicImage, path: &Path| {
-        map.save(path).map_err(|e| format!("cannot write {}: {e}", path.display()))
-    };
     if !folders {
         return pairs.iter().flat_map(|pair| &pair.compared).try_for_each(|found| {
             let ending = if found.measure == Measure::Flip { "png" } else { "exr" };
             if !out.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
                 return Err(format!("cannot write {}: a map of these pictures ends in .{ending}", out.display()));
             }
-            save(found.map(), out)
+            picture::write_image(found.map(), out)
         });
     }
     if out.is_file() {
@@ -138,7 +136,7 @@ fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(),
     std::fs::create_dir_all(out).map_err(|e| format!("cannot make {}: {e}", out.display()))?;
     for pair in pairs.iter().filter(|pair| !pair.passes(max)) {
         if let Ok(found) = &pair.compared {
-            save(found.map(), &out.join(&pair.name))?;
+            picture::write_image(found.map(), &out.join(&pair.name))?;
         }
     }
     Ok(())

@@ -18,6 +18,7 @@ mod modes;
 mod new;
 mod probe;
 mod render;
+mod signals;
 mod view;
 mod watch;
 
@@ -109,6 +110,7 @@ pub fn main(start: Instant) -> ExitCode {
         .without_time()
         .init();
     let cli = Cli::parse();
+    signals::clean_up_on_end();
     let result = match cli.command {
         None => view::run(cli.view, start),
         Some(Command::View(args)) => view::run(args, start),

@@ -1,4 +1,4 @@
-//! Waiting for saves, for `render --watch`.
+//! Waits for saves, for `render --watch`.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use specula::shader::{Batch, Source, Watcher};
 
 use super::Failure;
 
-/// Watches a shader tree and a model's files.
+/// Watches a shader tree, and the files of a model and an environment.
 pub struct Watch {
     watcher: Watcher,
     batches: Receiver<Batch>,
@@ -21,11 +21,11 @@ pub struct Watch {
 
 /// What changed together.
 pub struct Changes {
-    /// Changed files, absolute.
+    /// Changed files, as the tree, the model and the environment name them.
     pub paths: BTreeSet<PathBuf>,
-    /// Whether one of them is the model's.
+    /// Whether the model has one of the files.
     pub model: bool,
-    /// Whether one of them is the environment's.
+    /// Whether the environment has one of the files.
     pub environment: bool,
     /// Whether one of them is the measured BRDF's.
     pub measured: bool,
@@ -34,7 +34,7 @@ pub struct Changes {
 }
 
 impl Watch {
-    /// Starts watching.
+    /// Starts to watch a tree.
     pub fn new(source: &Source) -> Result<Self, Failure> {
         let (sender, batches) = unbounded();
         let on_batch = move |batch| {
@@ -51,23 +51,17 @@ impl Watch {
         let (environment, measured) = (headless.environment_files(), headless.measured_files());
         let files: Vec<PathBuf> = model.files.iter().chain(&environment).chain(&measured).cloned().collect();
         self.watcher.set_files(&files);
-        self.model_files = both_names(&model.files);
-        self.environment_files = both_names(&environment);
-        self.measured_files = both_names(&measured);
+        self.model_files = model.files.iter().cloned().collect();
+        self.environment_files = environment.into_iter().collect();
+        self.measured_files = measured.into_iter().collect();
     }
 
     /// Waits for the next changes; `None` when watching has ended.
     pub fn next(&mut self) -> Option<Changes> {
         let batch = self.batches.recv().ok()?;
-        let model = batch.paths.iter().any(|path| self.model_files.contains(path));
-        let environment = batch.paths.iter().any(|path| self.environment_files.contains(path));
-        let measured = batch.paths.iter().any(|path| self.measured_files.contains(path));
+        let changed = |files: &BTreeSet<PathBuf>| !batch.paths.is_disjoint(files);
+        let (model, environment) = (changed(&self.model_files), changed(&self.environment_files));
+        let measured = changed(&self.measured_files);
         Some(Changes { paths: batch.paths, model, environment, measured, first_event: batch.first_event })
     }
-}
-
-/// Each file as it was named and without symbolic links.
-fn both_names(files: &[PathBuf]) -> BTreeSet<PathBuf> {
-    let resolved = files.iter().map(|file| file.canonicalize().unwrap_or_else(|_| file.clone()));
-    files.iter().cloned().chain(resolved).collect()
 }

@@ -159,6 +159,13 @@ impl Running {
         status
     }
 
+    /// Sends a signal, named without SIG.
+    #[track_caller]
+    pub fn signal(&self, name: &str) {
+        let status = Command::new("kill").args(["-s", name, &self.child.id().to_string()]).status().unwrap();
+        assert!(status.success(), "kill -s {name}: {status}");
+    }
+
     /// Processor time that the program took so far, all threads, in ticks of 10 ms (proc(5)).
     pub fn ticks(&self) -> u64 {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();

@@ -115,7 +115,7 @@ impl Threads {
         self.tree_watcher = None;
         let Some(root) = source.root().map(Path::to_owned) else { return Ok(()) };
         let changes = self.worker.changes();
-        let base = root.canonicalize().unwrap_or_else(|_| root.clone());
+        let base = root.clone();
         let on_batch = move |batch: Batch| {
             let relative = batch.paths.iter().filter_map(|path| path.strip_prefix(&base).ok());
             let paths = relative.filter_map(|path| TreePath::parse(&path.to_string_lossy())).collect();

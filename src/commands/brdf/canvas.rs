@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use ab_glyph::{Font as _, FontVec, GlyphId, OutlineCurve, Point};
+use specula::picture;
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Shader, Stroke, StrokeDash, Transform,
 };
@@ -116,9 +117,10 @@ impl Canvas {
     /// A message if the file cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), String> {
         let (width, height) = (self.pixmap.width(), self.pixmap.height());
-        // The canvas is opaque, so premultiplied and straight colors are equal.
-        let saved = image::save_buffer(path, self.pixmap.data(), width, height, image::ColorType::Rgba8);
-        saved.map_err(|e| format!("cannot write {}: {e}", path.display()))
+        // The page is opaque, so premultiplied colors are plain ones.
+        let image = image::ImageBuffer::from_raw(width, height, self.pixmap.data().to_vec());
+        let image = image.ok_or_else(|| format!("cannot write {}: the page has no size", path.display()))?;
+        picture::write_image(&image::DynamicImage::ImageRgba8(image), path)
     }
 
     fn scale(&self, size: f32) -> f32 {

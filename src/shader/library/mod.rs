@@ -95,9 +95,6 @@ pub enum Update {
 /// The stages of one tree, the last good set, and the failures since.
 pub struct Library {
     source: Arc<Source>,
-    /// The tree's directory with symbolic links resolved, as the watcher reports it. Kept while the directory is
-    /// missing.
-    root: Option<PathBuf>,
     compiler: Arc<Compiler>,
     slots: Vec<Slot>,
     pairs: Vec<(TreePath, TreePath)>,
@@ -109,7 +106,6 @@ impl Library {
     /// A library with the entry points `stages`. The outputs of `NAME.vert` are the inputs of `NAME.frag`.
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
         let paths: Vec<TreePath> = stages.iter().map(|path| TreePath::from(*path)).collect();
-        let root = source.root().map(|root| root.canonicalize().unwrap_or_else(|_| root.to_owned()));
         let of = |kind| paths.iter().filter(move |path| StageKind::of(path) == Some(kind));
         let pairs = of(StageKind::Vertex)
             .flat_map(|vertex| {
@@ -118,7 +114,7 @@ impl Library {
             })
             .collect();
         let slots = paths.iter().cloned().map(Slot::new).collect();
-        Self { source: Arc::new(source), root, compiler, slots, pairs, set: None, failed: false }
+        Self { source: Arc::new(source), compiler, slots, pairs, set: None, failed: false }
     }
 
     /// The tree.
@@ -148,10 +144,10 @@ impl Library {
         out
     }
 
-    /// Converts absolute paths from the watcher to a change of this tree.
+    /// The paths of a watcher that was given [`Source::root`], as a change of this tree.
     pub fn change_of<'p>(&self, paths: impl IntoIterator<Item = &'p PathBuf>) -> Change {
         let tree_path = |path: &Path| {
-            let relative = path.strip_prefix(self.root.as_ref()?).ok()?;
+            let relative = path.strip_prefix(self.source.root()?).ok()?;
             TreePath::parse(&relative.to_string_lossy())
         };
         Change::Paths(paths.into_iter().filter_map(|path| tree_path(path)).collect())

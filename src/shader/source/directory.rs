@@ -1,57 +1,95 @@
-//! The files below a directory, symbolic links followed, without walking in circles.
+//! Walks the files below a directory. The walk follows symbolic links, but never in circles.
 
 use std::path::{Path, PathBuf};
 
 /// Deep enough for any tree.
 const MAX_DEPTH: usize = 16;
-/// A link within a linked directory is followed, one within that is not: directories that link to each other crosswise
-/// have exponentially many paths, though none of them is a circle.
+/// A link inside a linked directory is followed; a link inside that one is not. Directories that link to each other
+/// crosswise have exponentially many paths, although none of the paths is a circle.
 const MAX_NESTED_LINKS: usize = 2;
 
-/// All files below a directory whose names, and those of the directories above them, `keep` takes; unsorted. A link to
-/// a directory is followed unless it leads back to one that it lies in.
+/// What [`walk`] meets. `path` is the walk's directory joined with the names on the way.
+#[derive(Clone, Copy, Debug)]
+pub enum Entry<'a> {
+    /// A directory, before its entries are read. The walk's own directory comes first.
+    Directory {
+        /// The name under which the walk reached it.
+        path: &'a Path,
+        /// The same directory without symbolic links.
+        real: &'a Path,
+    },
+    /// A symbolic link, whether or not it leads anywhere. If the walk follows it, the directory or file comes next.
+    Link {
+        /// The name under which the walk reached it.
+        path: &'a Path,
+        /// The directory that holds the link, without symbolic links.
+        folder: &'a Path,
+    },
+    /// A regular file, or a link to a regular file.
+    File {
+        /// The name under which the walk reached it.
+        path: &'a Path,
+    },
+}
+
+/// Visits everything below `directory`, in no particular order. `keep` decides by the name of an entry whether the walk
+/// visits the entry. A link to a directory is followed unless it leads back to a directory that contains the link.
+pub fn walk(directory: &Path, keep: impl Fn(&str) -> bool, visit: &mut dyn FnMut(Entry<'_>)) {
+    let Ok(real) = directory.canonicalize() else { return };
+    visit(Entry::Directory { path: directory, real: &real });
+    Walk { keep, above: vec![real], links: 0 }.descend(directory, visit);
+}
+
+/// The files that [`walk`] meets.
 pub fn files(directory: &Path, keep: impl Fn(&str) -> bool) -> Vec<PathBuf> {
     let mut out = Vec::new();
-    let above = directory.canonicalize().into_iter().collect();
-    Walk { keep, above, links: 0 }.descend(directory, &mut out);
+    walk(directory, keep, &mut |entry| {
+        if let Entry::File { path } = entry {
+            out.push(path.to_owned());
+        }
+    });
     out
 }
 
 struct Walk<F> {
     keep: F,
-    /// Where the directory at hand and those it was reached through really are.
+    /// The current directory and the directories that the walk came through, without symbolic links.
     above: Vec<PathBuf>,
-    /// Links on the way.
+    /// Number of links on the way to the current directory.
     links: usize,
 }
 
 impl<F: Fn(&str) -> bool> Walk<F> {
-    fn descend(&mut self, directory: &Path, out: &mut Vec<PathBuf>) {
+    fn descend(&mut self, directory: &Path, visit: &mut dyn FnMut(Entry<'_>)) {
         let Ok(entries) = std::fs::read_dir(directory) else { return };
         for entry in entries.flatten() {
             let path = entry.path();
             if !(self.keep)(&entry.file_name().to_string_lossy()) {
                 continue;
             }
+            let is_link = entry.file_type().is_ok_and(|kind| kind.is_symlink());
+            if is_link && let Some(folder) = self.above.last() {
+                visit(Entry::Link { path: &path, folder });
+            }
             if path.is_file() {
-                out.push(path);
+                visit(Entry::File { path: &path });
             } else if path.is_dir() && self.above.len() < MAX_DEPTH {
-                let is_link = entry.file_type().is_ok_and(|kind| kind.is_symlink());
-                self.enter(&path, is_link, out);
+                self.enter(&path, is_link, visit);
             }
         }
     }
 
-    fn enter(&mut self, directory: &Path, is_link: bool, out: &mut Vec<PathBuf>) {
+    fn enter(&mut self, directory: &Path, is_link: bool, visit: &mut dyn FnMut(Entry<'_>)) {
         let Ok(real) = directory.canonicalize() else { return };
-        // A linked directory may lie above one that was reached, without having been passed through.
+        // A link may lead to a parent of the directory that the walk started from, so comparing for equality is not enough.
         let is_circle = self.above.iter().any(|above| above.starts_with(&real));
         if is_link && (is_circle || self.links >= MAX_NESTED_LINKS) {
             return;
         }
+        visit(Entry::Directory { path: directory, real: &real });
         self.links += usize::from(is_link);
         self.above.push(real);
-        self.descend(directory, out);
+        self.descend(directory, visit);
         self.above.pop();
         self.links -= usize::from(is_link);
     }

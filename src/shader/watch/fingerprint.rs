@@ -1,9 +1,9 @@
-//! Tells a file's content from another's, cheaply.
+//! A cheap test whether a file's content differs from what it was.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
-/// Larger files (models, images) are told apart by size and time instead of content.
+/// For larger files (models, images), size and modification time stand for the content.
 const MAX_HASHED_BYTES: u64 = 4 << 20;
 
 /// Equal for equal content.
@@ -18,7 +18,7 @@ pub fn fingerprint(path: &Path) -> Option<Fingerprint> {
     if metadata.len() > MAX_HASHED_BYTES {
         metadata.modified().ok().hash(&mut hasher);
     } else {
-        // A file that cannot be read still exists; when it can be read again, that is a change.
+        // A file that cannot be read still exists. When it can be read again, that is a change.
         std::fs::read(path).ok().hash(&mut hasher);
     }
     Some(Fingerprint(hasher.finish()))

@@ -1,4 +1,9 @@
-//! The ways in which editors and git write, on a real directory.
+//! Tests on real directories. This file covers the ways in which editors and git write; `folders` covers directories that
+//! go away and come back, `links` symbolic links, `poll` watching without notifications.
+
+mod folders;
+mod links;
+mod poll;
 
 use std::fs;
 
@@ -8,6 +13,34 @@ use super::*;
 
 /// Long enough for a loaded machine; an event ends the wait.
 const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A watcher whose batches a test receives, without a tree of its own.
+struct Told {
+    batches: Receiver<Batch>,
+    watcher: Watcher,
+}
+
+impl Told {
+    fn new(root: Option<&Path>, files: &[PathBuf]) -> Self {
+        let (sender, batches) = unbounded();
+        let watcher = Watcher::new(root, files, move |batch| sender.send(batch).unwrap()).unwrap();
+        Self { batches, watcher }
+    }
+
+    /// Waits until the watcher has reported each of `paths`. It may report them in several batches, but nothing else.
+    #[track_caller]
+    fn expect(&self, paths: &[&Path]) {
+        let mut wanted: BTreeSet<&Path> = paths.iter().copied().collect();
+        while !wanted.is_empty() {
+            let batch = self.batches.recv_timeout(PATIENCE);
+            let batch = batch.unwrap_or_else(|_| panic!("the watcher never reported {wanted:?}"));
+            for path in &batch.paths {
+                assert!(paths.contains(&path.as_path()), "{} was reported, expected {paths:?}", path.display());
+                wanted.remove(path.as_path());
+            }
+        }
+    }
+}
 
 struct Tree {
     directory: TempDir,
@@ -28,7 +61,7 @@ impl Tree {
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.directory.path().canonicalize().unwrap().join("tree").join(name)
+        self.directory.path().join("tree").join(name)
     }
 
     /// Waits until all `names` were told, and returns how many batches that took. Nothing else may be told.

@@ -1,0 +1,97 @@
+//! Temporary files that take the name of a finished file, and their removal when a signal ends the program.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Temporary files of this process that exist at the moment. A signal has no other way to learn about them.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// While this value lives, no thread of the process creates another temporary file.
+pub struct Halt {
+    _unfinished: MutexGuard<'static, BTreeSet<PathBuf>>,
+}
+
+/// Removes all temporary files. For a program that a signal is about to end: keep the returned value until then.
+pub fn remove_unfinished() -> Halt {
+    let mut unfinished = lock();
+    for path in std::mem::take(&mut *unfinished) {
+        // Its writer may have finished the file just now.
+        let _ = fs::remove_file(path);
+    }
+    Halt { _unfinished: unfinished }
+}
+
+/// Gives the file `path` this content, all or nothing. The content is on the disk before the old file goes.
+pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (part, mut file) = Part::create(path)?;
+    file.write_all(bytes)?;
+    match file.sync_all() {
+        // Some file systems cannot sync. Others report only now that the disk is full.
+        Err(error) if !matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Err(error),
+        _ => fs::rename(&part.0, path),
+    }
+}
+
+/// A temporary file, removed on drop unless it was renamed.
+struct Part(PathBuf);
+
+impl Part {
+    fn create(path: &Path) -> io::Result<(Self, File)> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let part = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+        // The lock is held while the file is created, so that a signal comes before that or finds the file.
+        let mut unfinished = lock();
+        // An earlier process with the same number may have been killed. In a container, numbers repeat.
+        let _ = fs::remove_file(&part);
+        let file = OpenOptions::new().write(true).create_new(true).open(&part)?;
+        unfinished.insert(part.clone());
+        Ok((Self(part), file))
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        let mut unfinished = lock();
+        let _ = fs::remove_file(&self.0);
+        unfinished.remove(&self.0);
+    }
+}
+
+fn lock() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unfinished_files_are_removed() {
+        let directory = tempfile::tempdir().unwrap();
+        let target = directory.path().join("picture.png");
+        replace(&target, b"old").unwrap();
+        let (part, mut file) = Part::create(&target).unwrap();
+        file.write_all(b"new").unwrap();
+        drop(remove_unfinished());
+        assert!(!part.0.exists());
+        assert_eq!(fs::read(&target).unwrap(), b"old");
+        drop(part);
+        replace(&target, b"newer").unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"newer");
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn the_file_of_a_killed_process_is_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let target = directory.path().join("picture.png");
+        let left = directory.path().join(format!(".picture.png.{}.part", std::process::id()));
+        fs::write(&left, b"half").unwrap();
+        replace(&target, b"whole").unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"whole");
+        assert!(!left.exists());
+    }
+}
