@@ -10,7 +10,7 @@ use crate::render::{
     BakeControl, BakeError, BakeReport, Baked, Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload,
     Reloader, Renderer, Shot, Target, UploadError, Wanted, measured_buffer, misfits, unknown_names,
 };
-use crate::scene::{self, Measured, Model};
+use crate::scene::{self, Measured, MeasuredError, Model};
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, Diagnostic, Mode, Source};
 
@@ -23,6 +23,9 @@ pub enum HeadlessError {
     /// A setting does not fit.
     #[error("{0}")]
     Settings(String),
+    /// The file of a measured BRDF cannot be read.
+    #[error(transparent)]
+    Measured(#[from] MeasuredError),
     /// The environment cannot be read or baked.
     #[error(transparent)]
     Bake(#[from] BakeError),
@@ -126,7 +129,7 @@ impl Headless {
             let name = self.settings.measured.clone();
             let measured = match name.as_str() {
                 "" => None,
-                path => Some(Measured::open(path.as_ref()).map_err(|e| HeadlessError::Settings(e.to_string()))?),
+                path => Some(Measured::open(path.as_ref())?),
             };
             self.measured = (name, measured_buffer(&self.gpu, measured.as_ref())?);
         }

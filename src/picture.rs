@@ -6,10 +6,18 @@ use image::{ImageBuffer, ImageFormat, Rgba};
 
 use crate::render::Capture;
 
-/// Fails before any work when `path` can hold no picture.
+/// Fails when the ending of a path is that of no picture format.
 ///
 /// # Errors
-/// An ending other than .png or .exr, or a folder that is not there, in words.
+/// An ending other than .png or .exr.
+pub fn check_ending(path: &Path) -> Result<(), String> {
+    format_of(path).map(|_| ())
+}
+
+/// Fails before any work when no picture can be written to `path`.
+///
+/// # Errors
+/// An ending other than .png or .exr, a folder that does not exist, or a path that is a folder.
 pub fn check_path(path: &Path) -> Result<(), String> {
     format_of(path)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());

@@ -1,8 +1,10 @@
-//! Everything a user can set, as one serde struct. The window, `--set`, look files and the tests all speak it.
+//! Everything a user can set, as one serde struct. The window, `--set`, look files and the tests all use it.
 
 mod assign;
+mod catalog;
 mod environment;
 mod lights;
+mod look;
 mod material;
 mod range;
 
@@ -10,8 +12,13 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::did_you_mean;
+
+pub use assign::unknown_setting;
+pub use catalog::{Setting, catalog, limits, told};
 pub use environment::EnvironmentSettings;
 pub use lights::{LightSettings, LightSource, OrbitLight, RectLight};
+pub use look::LookError;
 pub use material::MaterialOverride;
 use range::Range;
 
@@ -153,7 +160,10 @@ impl ViewSettings {
         if text == "none" {
             return Ok([0.0; 4]);
         }
-        let expected = || format!("background '{text}' is neither none, env nor #rrggbb (as #1b1d21)");
+        let expected = || {
+            let hint = did_you_mean(text, ["none", "env"]);
+            format!("view.background is '{text}'.{hint} It can be none, env or a color as #1b1d21 (#rrggbb)")
+        };
         let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii()).ok_or_else(expected)?;
         let rgb = u32::from_str_radix(digits, 16).map_err(|_| expected())?;
         let channel = |shift: u32| linear_from_srgb(((rgb >> shift) & 255) as f32 / 255.0);
@@ -167,24 +177,8 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
 }
 
 impl Settings {
-    /// Reads a look file.
-    ///
-    /// # Errors
-    /// TOML that does not parse or names that do not exist, in words with line and column.
-    pub fn from_toml(text: &str) -> Result<Self, String> {
-        toml::from_str(text).map_err(|e| e.to_string())
-    }
-
-    /// The settings as a look file.
-    pub fn to_toml(&self) -> String {
-        toml::to_string_pretty(self).unwrap_or_default()
-    }
-
-    /// Refuses values that no picture can be made of.
-    ///
-    /// # Errors
-    /// The setting, what it is and what it can be, in words.
-    pub fn check(&self) -> Result<(), String> {
+    /// All numbers that have limits, each with its path.
+    fn ranges(&self) -> Vec<Range> {
         let camera = &self.camera;
         let mut ranges = vec![
             Range::new("camera.fovy", camera.fovy, 1.0..=170.0),
@@ -196,16 +190,26 @@ impl Settings {
         ranges.extend(self.material.ranges());
         let environment = self.environment.numbers();
         ranges.extend(environment.map(|(name, value, low, high)| Range::new(name, value, low..=high)));
-        ranges.iter().try_for_each(Range::check)?;
-        let vectors = [("camera.eye", camera.eye), ("camera.target", camera.target)];
+        ranges
+    }
+
+    /// Refuses values that no picture can be drawn with.
+    ///
+    /// # Errors
+    /// The setting, its value and what it can be.
+    pub fn check(&self) -> Result<(), String> {
+        self.ranges().iter().try_for_each(Range::check)?;
+        let vectors = [("camera.eye", self.camera.eye), ("camera.target", self.camera.target)];
         for (name, vector) in vectors {
             if vector.is_some_and(|v| !v.iter().all(|c| c.is_finite())) {
-                return Err(format!("{name} must have finite numbers"));
+                return Err(format!("{name} has a number that is not finite; it takes three numbers, as 0,1.5,3"));
             }
         }
         self.view.background_linear()?;
         if self.view.background == "env" && !self.environment.is_lit() {
-            return Err("view.background is env, but environment.name is none: there is nothing to show".into());
+            return Err("view.background is env, but environment.name is none, so there is no environment to show. \
+                Choose another background or an environment"
+                .into());
         }
         if !(1..=100_000).contains(&self.view.frames) {
             return Err(format!("view.frames is {}; it can be 1 to 100000", self.view.frames));

@@ -8,22 +8,22 @@ use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT,
 use specula::render::{Shot, is_absent};
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
-use super::Failure;
 use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
+use super::{Failure, print_json};
 
 /// Options of `probe`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Values are in world space, before exposure, tone map and encoding, color multiplied by coverage.\n\
-    One sample in the middle of the pixel: view.msaa is 1, so that no edge mixes two surfaces.\n\
-    Modes that accumulate are the mean of view.frames frames. Angles are in degrees. --mode may repeat; without, all.\n\
-    A spot falls off by the square of angle_scale times cosine plus angle_offset, within 0..1 (KHR_lights_punctual)."
+    after_help = "Values are in world space, before exposure, tone map and encoding. Color is multiplied by coverage.\n\
+    There is one sample, at the center of the pixel (view.msaa is 1), so that no edge mixes two surfaces.\n\
+    Modes that accumulate average view.frames frames. Angles are in degrees. --mode may repeat; without it, all modes.\n\
+    The intensity of a spot is multiplied by clamp(angle_scale * cosine + angle_offset, 0, 1)^2 (KHR_lights_punctual)."
 )]
 pub struct Args {
-    /// glTF model, .gltf or .glb [default: the built-in shader ball]
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// The pixel, from the upper left corner
-    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    /// The pixel, counted from the upper left corner
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     at: (u32, u32),
     /// Print JSON
     #[arg(long)]
@@ -39,11 +39,11 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let (width, height) = args.common.size;
     if x >= width || y >= height {
         let message = format!(
-            "--at {x},{y} is outside of the picture of {width}x{height}; it can be 0,0 to {},{}",
+            "--at {x},{y} is outside of the picture ({width}x{height}); it can be 0,0 to {},{}",
             width - 1,
             height - 1
         );
-        return Err(Failure::Input(message));
+        return Err(Failure::Usage(message));
     }
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;
@@ -62,11 +62,11 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         let modes: Map<String, Value> = values.iter().map(|(mode, value)| (mode.slug.clone(), known(value))).collect();
         let lights: Vec<Value> = shot.lights.iter().map(light).collect();
         let value = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&shot), "lights": lights });
-        out!("{value:#}");
+        print_json(&value);
     } else {
         print_table(args.at, &values, &shot);
     }
-    // What the layers find at the end counts too.
+    // The layers also report what is found when objects are destroyed.
     drop(headless);
     check_validation(&gpu)
 }
@@ -78,7 +78,7 @@ fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
     Ok(shaders.modes.iter().filter(|mode| all || slugs.contains(&mode.slug)).cloned().collect())
 }
 
-/// Whether anything of the model is at the pixel: a mode that shows surfaces, but no light and so no sky, covers it.
+/// Whether the model covers the pixel, in a mode that draws surfaces and no environment.
 fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
     let modes = &headless.pipelines().shaders.modes;
     let plain = |mode: &&Mode| !mode.tonemap && !mode.accumulate && mode.draw == DrawAs::Surfaces;
@@ -109,7 +109,7 @@ fn position(light: &Light) -> [f32; 3] {
     [x, y, z]
 }
 
-/// With what its kind needs to be redone: no position at infinity, `range` where it ends.
+/// A light with all that a program needs to evaluate it. A directional light has no position; `range` is there when it is finite.
 fn light(light: &Light) -> Value {
     let placed = (light.kind != LIGHT_DIRECTIONAL).then(|| position(light));
     let mut value = json!({ "kind": kind(light), "position": placed, "direction": light.direction_ws,
@@ -146,7 +146,7 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, [f32; 4])], shot: &Shot) {
         out!("light      {:11} {place}  intensity {}", kind(light), row(&light.intensity));
     }
     if values.is_empty() {
-        out!("\nnothing of the model is at this pixel");
+        out!("\nthe model does not cover this pixel");
     }
     let width = values.iter().map(|(mode, _)| mode.slug.len()).max().unwrap_or(0);
     let mut group = "";
@@ -164,7 +164,7 @@ fn row(numbers: &[f32]) -> String {
     numbers.iter().map(|x| shown(*x)).collect::<Vec<_>>().join(" ")
 }
 
-/// In a column: six digits, in powers of ten where these say too little.
+/// A number for a column: five digits after the point, or scientific notation for very small and very large numbers.
 fn shown(x: f32) -> String {
     let plain = x == 0.0 || !x.is_finite() || (1e-3..1e6).contains(&x.abs());
     if plain { format!("{x:>12.5}") } else { format!("{x:>12.4e}") }
@@ -172,5 +172,5 @@ fn shown(x: f32) -> String {
 
 fn pixel(text: &str) -> Result<(u32, u32), String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, as 640,360".to_owned())
+    numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, for example 640,360".to_owned())
 }

@@ -10,6 +10,7 @@ use raw_window_handle::RawDisplayHandle;
 
 use super::error::{Context, GpuError};
 use super::validation::{Messages, messenger_info};
+use crate::message::did_you_mean;
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
@@ -264,6 +265,7 @@ fn choose(
         None => format!("\n  {} ({})", i.name, i.kind),
     });
     let list = list.collect::<String>();
+    let names: Vec<String> = all.iter().map(|(_, info)| info.name.clone()).collect();
     let rank = |kind: &str| ["discrete", "integrated", "virtual", "other", "cpu"].iter().position(|k| *k == kind);
     all.sort_by_key(|(_, info)| rank(info.kind));
     let named = |info: &AdapterInfo| wanted.is_none_or(|w| info.name.to_lowercase().contains(&w.to_lowercase()));
@@ -275,7 +277,10 @@ fn choose(
                 .into(),
         )),
         None => Err(GpuError::NoDevice(match wanted {
-            Some(name) => format!("none whose name contains '{name}' can be used; there are:{list}"),
+            Some(name) => {
+                let hint = did_you_mean(name, names.iter().flat_map(|name| name.split_whitespace()));
+                format!("no device whose name contains '{name}' can be used.{hint} There are:{list}")
+            }
             None => format!("none of these can be used:{list}"),
         })),
     }

@@ -6,7 +6,7 @@ use specula::settings::ShaderValue;
 use specula::shader::Constant;
 
 use super::{Opened, Options, SurfaceOptions, listed, short};
-use crate::commands::Failure;
+use crate::commands::{Failure, print_json};
 
 /// Light that is more than what arrives by this much is no error of the estimate.
 const MOST: f64 = 1.005;
@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (min, max) = extremes(&albedo);
     let conserves = max <= MOST;
     if args.json {
-        print_json(&albedo, min, max, without.is_empty());
+        print_rows(&albedo, min, max, without.is_empty());
     } else {
         print_table(&albedo, surface);
         out!("\nmin {min:.4}  max {max:.4}");
@@ -84,14 +84,14 @@ pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
     (with(f64::min), with(f64::max))
 }
 
-fn print_json(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {
+fn print_rows(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {
     let cells = (0..GRID.rows).flat_map(|row| (0..GRID.columns).map(move |column| (row, column)));
     let row = |((row, column), albedo): ((u32, u32), &[f64; 3])| {
         json!({ "roughness": GRID.roughness_of(row), "cos_theta": GRID.theta_of(column).to_radians().cos(),
             "albedo": albedo })
     };
     let rows: Vec<_> = cells.zip(albedo).map(row).collect();
-    out!("{:#}", json!({ "rows": rows, "min": min, "max": max, "claims_conservation": claims }));
+    print_json(&json!({ "rows": rows, "min": min, "max": max, "claims_conservation": claims }));
 }
 
 fn print_table(albedo: &[[f64; 3]], surface: Surface) {

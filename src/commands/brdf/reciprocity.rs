@@ -4,7 +4,7 @@ use serde_json::json;
 use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
 
 use super::{Opened, Options, SurfaceOptions, direction, listed};
-use crate::commands::Failure;
+use crate::commands::{Failure, print_json};
 
 /// Relative; what is left of the rounding of floats.
 const MOST: f32 = 1e-4;
@@ -39,10 +39,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let claims = without.is_empty();
     let holds = pair.error < MOST;
     if args.json {
-        out!(
-            "{:#}",
-            json!({ "error": pair.error, "roughness": roughness, "metallic": metallic, "l": pair.l, "v": pair.v,
-                "limit": MOST, "claims_reciprocity": claims, "reciprocal": holds })
+        print_json(
+            &json!({ "error": pair.error, "roughness": roughness, "metallic": metallic, "l": pair.l, "v": pair.v,
+                "limit": MOST, "claims_reciprocity": claims, "reciprocal": holds }),
         );
     } else {
         out!("largest difference of f(l, v) and f(v, l): {:.3e} of their mean", pair.error);
