@@ -26,17 +26,17 @@ use range::Range;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Slug of the debug mode on screen.
+    /// Slug of the debug mode.
     pub mode: String,
     /// Camera.
     pub camera: CameraSettings,
     /// Lights.
     pub lights: LightSettings,
-    /// KHR_materials_variants: name of the model's variant; empty is the model as it comes.
+    /// KHR_materials_variants: name of the model's variant; empty for the model's own materials.
     pub variant: String,
-    /// One material in place of all of the model's.
+    /// Material override: one material replaces all of the model's.
     pub material: MaterialOverride,
-    /// Light from all around.
+    /// Environment.
     pub environment: EnvironmentSettings,
     /// File of a measured BRDF for the modes of the group Measured; empty for none.
     pub measured: String,
@@ -62,7 +62,7 @@ impl Default for Settings {
     }
 }
 
-/// A value for a shader constant or parameter.
+/// A value of a shader constant or parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ShaderValue {
@@ -110,14 +110,14 @@ pub enum Tonemap {
     None,
     /// x / (1 + x) on each channel.
     Reinhard,
-    /// The same on luminance.
+    /// x / (1 + x) on luminance.
     ReinhardLuminance,
     /// Hable's filmic curve.
     Uncharted2,
-    /// Narkowicz's fit of ACES.
+    /// Narkowicz's approximation of ACES.
     #[default]
     Aces,
-    /// Hill's fit of ACES RRT + ODT.
+    /// Hill's approximation of ACES RRT + ODT.
     AcesHill,
     /// AgX.
     Agx,
@@ -125,7 +125,7 @@ pub enum Tonemap {
     Neutral,
 }
 
-/// From radiance to the picture.
+/// How radiance becomes a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ViewSettings {
@@ -135,13 +135,13 @@ pub struct ViewSettings {
     pub ev: f32,
     /// `none`, `env` or `#rrggbb`.
     pub background: String,
-    /// Samples a pixel, 1 or 4.
+    /// Samples per pixel, 1 or 4.
     pub msaa: u32,
-    /// Frames that a picture without a window is the mean of, in modes that accumulate.
+    /// Number of frames that rendering without a window averages, in modes that accumulate.
     pub frames: u32,
 }
 
-/// Behind the model when nothing else is set, and behind modes that show no light when the environment is.
+/// The default background. It is also used when the background is `env` and the mode shows data instead of light.
 const BACKGROUND: &str = "#1b1d21";
 
 impl Default for ViewSettings {
@@ -151,10 +151,10 @@ impl Default for ViewSettings {
 }
 
 impl ViewSettings {
-    /// Linear color and alpha behind the model. With `env` this is what lies behind modes that show no light.
+    /// Linear RGB and alpha of the background. With `env` it is the background of modes that show data instead of light.
     ///
     /// # Errors
-    /// A text that is neither `none` nor a color, in words.
+    /// A text that is neither `none`, `env` nor a color.
     pub fn background_linear(&self) -> Result<[f32; 4], String> {
         let text = if self.background == "env" { BACKGROUND } else { self.background.as_str() };
         if text == "none" {

@@ -12,6 +12,8 @@ use super::{Cli, Failure, print};
 
 /// Topic that is not a command.
 const SETTINGS: &str = "set";
+/// Width of the last column of the list of settings.
+const MEANING: usize = 60;
 
 /// Options of `help`.
 #[derive(clap::Args)]
@@ -59,6 +61,18 @@ fn names(command: &Command) -> impl Iterator<Item = String> + '_ {
     command.get_subcommands().map(|command| command.get_name().to_owned())
 }
 
+/// The words of a text in lines of at most [`MEANING`] characters.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut().filter(|line| line.len() + 1 + word.len() <= MEANING) {
+            Some(line) => *line += &format!(" {word}"),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 fn print_settings(settings: &[Setting]) {
     out!("Settings, for --set PATH=VALUE and for look files (--look FILE.toml).");
     out!("Several numbers are joined by commas, as --set lights.ambient_color=1,0.8,0.6.");
@@ -78,6 +92,8 @@ fn print_settings(settings: &[Setting]) {
             group = own.to_owned();
         }
         let [a, b, c, d, e] = widths;
+        let indent = widths.iter().sum::<usize>() + 2 * widths.len();
+        let doc = wrapped(doc).join(&format!("\n{:indent$}", ""));
         out!("{path:a$}  {takes:b$}  {default:c$}  {range:d$}  {unit:e$}  {doc}");
     }
     out!("\nThe constants and parameters of the shader tree are set by their names, as --set NDF=Beckmann.");

@@ -27,8 +27,8 @@ pub struct Setting {
 /// Path, unit and meaning of every setting. A `*` in a path stands for the number of an orbiting light.
 const DESCRIBED: [(&str, &str, &str); 38] = [
     ("mode", "", "Debug mode; `specula modes` lists them"),
-    ("variant", "", "Variant of the model (KHR_materials_variants); empty: its own materials"),
-    ("measured", "", "File of a measured BRDF for the modes measured, measured-split and measured-error; or empty"),
+    ("variant", "", "Variant of the model; without one its own materials"),
+    ("measured", "", "File of a measured BRDF, for the modes `measured...`"),
     ("camera.eye", "meters", "Position of the camera; without it the model is framed"),
     ("camera.target", "meters", "Point that the camera looks at; without it the center of the model"),
     ("camera.fovy", "degrees", "Vertical field of view"),
@@ -83,6 +83,11 @@ pub fn catalog() -> Vec<Setting> {
         let lights = if path.contains('*') { 3 } else { 1 };
         (0..lights).map(move |light| (path.replace('*', &light.to_string()), unit, range, doc))
     });
+    let mut rows: Vec<_> = rows.collect();
+    // The lights one after the other, all else in place.
+    let group = |path: &str| path.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
+    let groups: Vec<String> = rows.iter().map(|(path, ..)| group(path)).collect();
+    rows.sort_by_key(|(path, ..)| groups.iter().position(|known| *known == group(path)));
     let row = |(path, unit, range, doc): (String, &'static str, &str, &str)| {
         let default = defaults.as_ref().and_then(|root| at(root, &path)).map(shown).unwrap_or_default();
         let takes = known.as_ref().and_then(|root| at(root, &path)).map(kind).unwrap_or_default();
@@ -91,7 +96,7 @@ pub fn catalog() -> Vec<Setting> {
         let doc = if names.is_empty() { doc.to_owned() } else { format!("{doc}: {}", names.join(", ")) };
         Setting { takes: if names.is_empty() { takes } else { "name" }, path, default, range, unit, doc }
     };
-    rows.map(row).collect()
+    rows.into_iter().map(row).collect()
 }
 
 /// Paths of all settings.

@@ -40,7 +40,8 @@ fn a_misspelled_environment_gets_the_nearest() {
     run(here, &["view", "--env", "studo"]).expect(2, &told);
     run(here, &["brdf", "split-sum", "--env", "studo"]).expect(2, &told);
     with(here, &["--set", "environment.name=Studio"]).expect(2, &["'Studio'", "Did you mean 'studio'?"]);
-    run(here, &["render", "--env", "nowhere.hdr", SMALL[0], SMALL[1]]).expect(1, &["nowhere.hdr", "studio, furnace, sky"]);
+    run(here, &["render", "--env", "nowhere.hdr", SMALL[0], SMALL[1]])
+        .expect(1, &["nowhere.hdr", "studio, furnace, sky"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `specula brdf furnace`: the albedo of a surface, by roughness and angle.
+//! `specula brdf furnace`: the directional albedo of a surface by roughness and angle.
 
 use serde_json::json;
 use specula::render::brdf::measure::{Claim, Grid, Surface};
@@ -8,10 +8,10 @@ use specula::shader::Constant;
 use super::{Opened, Options, SurfaceOptions, listed, short};
 use crate::commands::{Failure, print_json};
 
-/// Light that is more than what arrives by this much is no error of the estimate.
+/// Largest albedo that counts as energy-conserving: the estimate has an error of up to 0.005.
 const MOST: f64 = 1.005;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 18, theta: (0.0, 85.0), samples: 2048 };
-/// Enough to see whether a choice changes anything.
+/// A grid that is just fine enough to find out whether a choice changes the albedo.
 const COARSE: Grid = Grid { rows: 4, roughness: (0.1, 1.0), columns: 4, theta: (0.0, 84.0), samples: 64 };
 
 /// Options of `brdf furnace`.
@@ -54,7 +54,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let broken = without.is_empty() && !conserves;
     opened.close()?;
     if broken {
-        let found = if max.is_nan() { "a value that is no number".to_owned() } else { format!("up to {max:.4}") };
+        let found = if max.is_nan() { "a value that is not a number".to_owned() } else { format!("up to {max:.4}") };
         return Err(Failure::Input(format!(
             "the furnace: this combination claims to conserve energy, but reflects {found} of the light that arrives"
         )));
@@ -62,20 +62,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether a choice that claims nothing changes anything about this surface: how diffuse light is spread has no part in
-/// what a metal reflects.
+/// Whether an unclaimed choice changes the albedo of this surface. The diffuse model, for example, does not change that of
+/// a metal.
 fn has_part(opened: &Opened, constant: &Constant, surface: Surface) -> Result<bool, Failure> {
     let Some(other) = Claim::Conserves.of(constant).and_then(|names| names.first()) else { return Ok(true) };
     let mut settings = opened.settings.clone();
     settings.shader.insert(constant.name.clone(), ShaderValue::Name(other.clone()));
     let chosen = opened.bench.furnace(surface, COARSE)?;
     let claiming = opened.bench.with(&settings)?.furnace(surface, COARSE)?;
-    // The drivers order sums of other code in other ways: 1e-4 is far above what that changes.
+    // Drivers may reorder sums when other code changes. 1e-4 is far above the rounding errors of that.
     let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-4 || a.is_nan() != b.is_nan();
     Ok(chosen.as_flattened().iter().zip(claiming.as_flattened()).any(differs))
 }
 
-/// Smallest and largest value; NaN when there is one.
+/// Smallest and largest value; NaN when any value is NaN.
 pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
     let values = || albedo.as_flattened().iter().copied();
     let with = |pick: fn(f64, f64) -> f64| {

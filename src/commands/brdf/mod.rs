@@ -170,7 +170,8 @@ fn unit(text: &str) -> Result<f32, String> {
 }
 
 fn color(text: &str) -> Result<[f32; 3], String> {
-    let expected = |why: String| format!("expected three numbers, as 1,0.8,0.6: {why}");
-    let numbers = text.split(',').map(unit).collect::<Result<Vec<_>, _>>().map_err(expected)?;
-    <[f32; 3]>::try_from(numbers).map_err(|found| expected(format!("found {}", found.len())))
+    let expected = |found: String| format!("expected three numbers, each 0 to 1, as 1,0.8,0.6; found {found}");
+    let numbers: Option<Vec<f32>> = text.split(',').map(|number| unit(number).ok()).collect();
+    let numbers = numbers.ok_or_else(|| expected(text.to_owned()))?;
+    <[f32; 3]>::try_from(numbers).map_err(|numbers| expected(numbers.len().to_string()))
 }

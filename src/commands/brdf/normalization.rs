@@ -1,4 +1,4 @@
-//! `specula brdf normalization`: the integral of D NoH, which is 1 for every distribution of facets.
+//! `specula brdf normalization`: checks that the integral of D NoH is 1, as for every distribution of microfacets.
 
 use serde_json::json;
 use specula::render::brdf::measure::Grid;

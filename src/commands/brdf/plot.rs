@@ -1,4 +1,4 @@
-//! `specula brdf plot`: the lobes of the chosen models, and the albedo over the angle, as a picture.
+//! `specula brdf plot`: plots the lobes of the chosen models, and the albedo over the angle.
 
 use std::path::PathBuf;
 
@@ -47,7 +47,7 @@ pub struct Args {
     options: Options,
 }
 
-/// What one surface looks like.
+/// The measured lobes and albedo of one surface.
 struct Measured {
     surface: Surface,
     /// By roughness; columns of [`LOBE_COLUMNS`].

@@ -1,4 +1,4 @@
-//! `specula brdf reciprocity`: whether light and eye can change places.
+//! `specula brdf reciprocity`: checks that f(l, v) = f(v, l).
 
 use serde_json::json;
 use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
@@ -6,7 +6,7 @@ use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
 use super::{Opened, Options, SurfaceOptions, direction, listed};
 use crate::commands::{Failure, print_json};
 
-/// Relative; what is left of the rounding of floats.
+/// Largest relative difference that rounding explains.
 const MOST: f32 = 1e-4;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 16, theta: (0.0, 85.0), samples: 1024 };
 
@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The worst pair, its row and the surface's metallic.
+/// The pair of directions with the largest difference, its row in the grid, and the metallic of the surface.
 fn worst_of(opened: &Opened, surface: Surface) -> Result<(Worst, u32, f32), Failure> {
     let cells = opened.bench.reciprocity(surface, GRID)?;
     let rows = (0..).flat_map(|row: u32| std::iter::repeat_n(row, GRID.columns as usize));

@@ -13,11 +13,11 @@ use crate::commands::common::{check_mode, check_validation, compiler, open_gpu, 
 use crate::commands::names::check_environment;
 use crate::commands::{Failure, print_json};
 
-/// A sphere.
+/// The sphere of this model is measured.
 const MODEL: &str = "material-override";
 const SIDE: u32 = 64;
 const ROWS: u32 = 10;
-/// Where the surface is seen at a steeper angle than 84 degrees; beyond, a pixel shows the mesh's facets.
+/// Least NoV of the compared pixels, at an angle of 84 degrees. At larger angles the triangles of the mesh are visible.
 const LEAST_N_DOT_V: f32 = 0.1;
 
 /// Options of `brdf split-sum`.
@@ -38,8 +38,8 @@ pub struct Args {
     options: Options,
 }
 
-/// The split sum minus the truth, over the truth's mean. In a picture this small a highlight of a sun on a smooth surface is a few
-/// pixels, and the figures are theirs.
+/// Difference between the split sum and the reference, relative to the mean of the reference. The picture is small: with a sun and a
+/// smooth surface, the result depends on the few pixels of the highlight.
 struct Row {
     roughness: f32,
     /// Mean of the difference.
