@@ -9,7 +9,7 @@ use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PixelValue,
     ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
 };
-use crate::scene::{self, Model};
+use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, Diagnostic, Mode, ShaderSet, Source};
@@ -23,6 +23,9 @@ pub enum HeadlessError {
     /// A setting does not fit the shaders, the model or the device.
     #[error("{0}")]
     Settings(String),
+    /// The file of a measured BRDF cannot be read.
+    #[error(transparent)]
+    Measured(#[from] MeasuredError),
     /// The environment cannot be read or baked.
     #[error(transparent)]
     Bake(#[from] BakeError),
@@ -39,7 +42,8 @@ impl From<ProvideError> for HeadlessError {
         match error {
             ProvideError::Bake(error) => error.into(),
             ProvideError::Gpu(error) => error.into(),
-            ProvideError::Measured(_) | ProvideError::Stale => Self::Settings(error.to_string()),
+            ProvideError::Measured(error) => error.into(),
+            ProvideError::Stale => Self::Settings(error.to_string()),
         }
     }
 }

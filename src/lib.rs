@@ -3,6 +3,7 @@
 //!
 //! The modules, from the ground up; each imports only from those above it in this list:
 //!
+//! - [`message`]: escapes and nearest names for messages.
 //! - [`interface`]: the contract between Rust and GLSL.
 //! - [`settings`]: everything a user can set.
 //! - [`shader`]: files to SPIR-V. Knows no device and no scene.
@@ -24,6 +25,7 @@ pub mod events;
 pub mod gpu;
 pub mod headless;
 pub mod interface;
+pub mod message;
 pub mod picture;
 pub mod render;
 pub mod scene;

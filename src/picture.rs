@@ -14,6 +14,14 @@ pub use part::{Halt, remove_unfinished};
 /// Linux gives up after this many symbolic links, too.
 const MAX_LINKS: usize = 40;
 
+/// Fails if the extension of `path` is that of no picture format.
+///
+/// # Errors
+/// The file extension is neither .png nor .exr.
+pub fn check_ending(path: &Path) -> Result<(), String> {
+    format_of(path).map(|_| ())
+}
+
 /// Fails before any work when no picture can be written to `path`.
 ///
 /// # Errors

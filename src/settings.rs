@@ -1,8 +1,10 @@
-//! Everything a user can set, as one serde struct. The window, `--set`, look files and the tests all speak it.
+//! Everything a user can set, as one serde struct. The window, `--set`, look files and the tests all use it.
 
 mod assign;
+mod catalog;
 mod environment;
 mod lights;
+mod look;
 mod material;
 mod range;
 
@@ -10,8 +12,13 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::did_you_mean;
+
+pub use assign::unknown_setting;
+pub use catalog::{Setting, catalog, limits, told};
 pub use environment::EnvironmentSettings;
 pub use lights::{LightSettings, LightSource, OrbitLight, RectLight};
+pub use look::LookError;
 pub use material::MaterialOverride;
 use range::Range;
 
@@ -19,17 +26,17 @@ use range::Range;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Slug of the debug mode on screen.
+    /// Slug of the debug mode.
     pub mode: String,
     /// Camera.
     pub camera: CameraSettings,
     /// Lights.
     pub lights: LightSettings,
-    /// KHR_materials_variants: name of the model's variant; empty is the model as it comes.
+    /// KHR_materials_variants: name of the model's variant; empty for the model's own materials.
     pub variant: String,
-    /// One material in place of all of the model's.
+    /// Material override: one material replaces all of the model's.
     pub material: MaterialOverride,
-    /// Light from all around.
+    /// Environment.
     pub environment: EnvironmentSettings,
     /// File of a measured BRDF for the modes of the group Measured; empty for none.
     pub measured: String,
@@ -55,7 +62,7 @@ impl Default for Settings {
     }
 }
 
-/// A value for a shader constant or parameter.
+/// A value of a shader constant or parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ShaderValue {
@@ -103,14 +110,14 @@ pub enum Tonemap {
     None,
     /// x / (1 + x) on each channel.
     Reinhard,
-    /// The same on luminance.
+    /// x / (1 + x) on luminance.
     ReinhardLuminance,
     /// Hable's filmic curve.
     Uncharted2,
-    /// Narkowicz's fit of ACES.
+    /// Narkowicz's approximation of ACES.
     #[default]
     Aces,
-    /// Hill's fit of ACES RRT + ODT.
+    /// Hill's approximation of ACES RRT + ODT.
     AcesHill,
     /// AgX.
     Agx,
@@ -118,7 +125,7 @@ pub enum Tonemap {
     Neutral,
 }
 
-/// From radiance to the picture.
+/// How radiance becomes a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ViewSettings {
@@ -128,13 +135,13 @@ pub struct ViewSettings {
     pub ev: f32,
     /// `none`, `env` or `#rrggbb`.
     pub background: String,
-    /// Samples a pixel, 1 or 4.
+    /// Samples per pixel, 1 or 4.
     pub msaa: u32,
-    /// Frames that a picture without a window is the mean of, in modes that accumulate.
+    /// Number of frames that rendering without a window averages, in modes that accumulate.
     pub frames: u32,
 }
 
-/// Behind the model when nothing else is set, and behind modes that show no light when the environment is.
+/// The default background. It is also used when the background is `env` and the mode shows data instead of light.
 const BACKGROUND: &str = "#1b1d21";
 
 impl Default for ViewSettings {
@@ -144,16 +151,19 @@ impl Default for ViewSettings {
 }
 
 impl ViewSettings {
-    /// Linear color and alpha behind the model. With `env` this is what lies behind modes that show no light.
+    /// Linear RGB and alpha of the background. With `env` it is the background of modes that show data instead of light.
     ///
     /// # Errors
-    /// A text that is neither `none` nor a color, in words.
+    /// A text that is neither `none`, `env` nor a color.
     pub fn background_linear(&self) -> Result<[f32; 4], String> {
         let text = if self.background == "env" { BACKGROUND } else { self.background.as_str() };
         if text == "none" {
             return Ok([0.0; 4]);
         }
-        let expected = || format!("background '{text}' is neither none, env nor #rrggbb (as #1b1d21)");
+        let expected = || {
+            let hint = did_you_mean(text, ["none", "env"]);
+            format!("view.background is '{text}'.{hint} It can be none, env or a color as #1b1d21 (#rrggbb)")
+        };
         let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii()).ok_or_else(expected)?;
         let rgb = u32::from_str_radix(digits, 16).map_err(|_| expected())?;
         let channel = |shift: u32| linear_from_srgb(((rgb >> shift) & 255) as f32 / 255.0);
@@ -167,24 +177,8 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
 }
 
 impl Settings {
-    /// Reads a look file.
-    ///
-    /// # Errors
-    /// TOML that does not parse or names that do not exist, in words with line and column.
-    pub fn from_toml(text: &str) -> Result<Self, String> {
-        toml::from_str(text).map_err(|e| e.to_string())
-    }
-
-    /// The settings as a look file.
-    pub fn to_toml(&self) -> String {
-        toml::to_string_pretty(self).unwrap_or_default()
-    }
-
-    /// Refuses values that no picture can be made of.
-    ///
-    /// # Errors
-    /// The setting, what it is and what it can be, in words.
-    pub fn check(&self) -> Result<(), String> {
+    /// All numbers that have limits, each with its path.
+    fn ranges(&self) -> Vec<Range> {
         let camera = &self.camera;
         let mut ranges = vec![
             Range::new("camera.fovy", camera.fovy, 1.0..=170.0),
@@ -196,16 +190,26 @@ impl Settings {
         ranges.extend(self.material.ranges());
         let environment = self.environment.numbers();
         ranges.extend(environment.map(|(name, value, low, high)| Range::new(name, value, low..=high)));
-        ranges.iter().try_for_each(Range::check)?;
-        let vectors = [("camera.eye", camera.eye), ("camera.target", camera.target)];
+        ranges
+    }
+
+    /// Refuses values that no picture can be drawn with.
+    ///
+    /// # Errors
+    /// The setting, its value and what it can be.
+    pub fn check(&self) -> Result<(), String> {
+        self.ranges().iter().try_for_each(Range::check)?;
+        let vectors = [("camera.eye", self.camera.eye), ("camera.target", self.camera.target)];
         for (name, vector) in vectors {
             if vector.is_some_and(|v| !v.iter().all(|c| c.is_finite())) {
-                return Err(format!("{name} must have finite numbers"));
+                return Err(format!("{name} has a number that is not finite; it takes three numbers, as 0,1.5,3"));
             }
         }
         self.view.background_linear()?;
         if self.view.background == "env" && !self.environment.is_lit() {
-            return Err("view.background is env, but environment.name is none: there is nothing to show".into());
+            return Err("view.background is env, but environment.name is none, so there is no environment to show. \
+                Choose another background or an environment"
+                .into());
         }
         if !(1..=100_000).contains(&self.view.frames) {
             return Err(format!("view.frames is {}; it can be 1 to 100000", self.view.frames));

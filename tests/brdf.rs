@@ -152,9 +152,9 @@ fn numbers_out_of_range_are_usage_errors() {
     ] {
         brdf(directory.path(), &args).expect(2, &[args[1], said]);
     }
-    brdf(directory.path(), &["furnace", "--set", "view.ev=2"]).expect(1, &["--set", "specula modes"]);
-    brdf(directory.path(), &["furnace", "--set", "NDF=Phong"]).expect(1, &["NDF", "GGX, Beckmann"]);
-    brdf(directory.path(), &["plot", "--out", "lobes.exr"]).expect(1, &["lobes.exr", ".png"]);
+    brdf(directory.path(), &["furnace", "--set", "view.ev=2"]).expect(2, &["--set", "specula modes"]);
+    brdf(directory.path(), &["furnace", "--set", "NDF=Phong"]).expect(2, &["NDF", "GGX or Beckmann"]);
+    brdf(directory.path(), &["plot", "--out", "lobes.exr"]).expect(2, &["lobes.exr", ".png"]);
 }
 
 #[test]

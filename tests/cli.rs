@@ -1,5 +1,9 @@
 //! The commands from outside: exit codes, messages, files and JSON.
 
+mod cli {
+    mod terminal;
+    mod usage;
+}
 mod support;
 
 use std::fs;
@@ -156,7 +160,6 @@ fn usage_errors_have_code_2() {
         assert!(finished.stderr.contains("error"), "{finished:#?}");
     }
     run(directory.path(), &["render", "--size", "0x0"]).expect(2, &["at least 1"]);
-    run(directory.path(), &["render", "--size", "99999999x1"]).expect(1, &["99999999x1", "at most"]);
 }
 
 #[test]
@@ -185,7 +188,7 @@ fn an_out_that_cannot_be_written() {
         run(directory.path(), &["render", "sphere-grid", "--env", "none", "--out", path, SMALL[0], SMALL[1]])
     };
     out("no/such/folder/x.png").expect(1, &["no/such/folder/x.png", "no folder"]);
-    out("x.bmp").expect(1, &["x.bmp", ".png or .exr"]);
+    out("x.bmp").expect(2, &["x.bmp", ".png or .exr"]);
     fs::create_dir(directory.path().join("folder.png")).unwrap();
     out("folder.png").expect(1, &["folder.png", "is a folder"]);
     // Not even root writes there, and only after the rendering it shows.
@@ -196,13 +199,13 @@ fn an_out_that_cannot_be_written() {
 fn unknown_names_are_told_with_those_that_exist() {
     let directory = directory();
     let render = |more: &[&str]| render(directory.path(), "sphere-grid", more);
-    render(&["--mode", "metal-ness"]).expect(1, &["metal-ness", "Did you mean metal", "specula modes"]);
-    render(&["--set", "no_such_name=1"]).expect(1, &["no_such_name", "rim_strength", "TOON_BANDS"]);
-    render(&["--set", "view.exposure=1"]).expect(1, &["view.exposure", "ev"]);
-    render(&["--set", "TOON_BANDS=Nine"]).expect(1, &["TOON_BANDS", "Nine", "Two"]);
-    render(&["--set", "rim_strength=8"]).expect(1, &["rim_strength is 8; it can be 0 to 1"]);
-    render(&["--background", "blue"]).expect(1, &["blue", "#rrggbb"]);
-    render(&["--set", "view.msaa=3"]).expect(1, &["view.msaa", "1 or 4"]);
+    render(&["--mode", "metal-ness"]).expect(2, &["metal-ness", "Did you mean `metal", "specula modes"]);
+    render(&["--set", "no_such_name=1"]).expect(2, &["no_such_name", "rim_strength", "TOON_BANDS"]);
+    render(&["--set", "view.exposure=1"]).expect(2, &["view.exposure", "ev"]);
+    render(&["--set", "TOON_BANDS=Nine"]).expect(2, &["TOON_BANDS", "Nine", "Two"]);
+    render(&["--set", "rim_strength=8"]).expect(2, &["rim_strength is 8; it can be 0 to 1"]);
+    render(&["--background", "blue"]).expect(2, &["blue", "#rrggbb"]);
+    render(&["--set", "view.msaa=3"]).expect(2, &["view.msaa", "1 or 4"]);
     render(&["--look", "nowhere.toml"]).expect(1, &["nowhere.toml"]);
     render(&["--shaders", "nowhere"]).expect(1, &["nowhere", "specula new"]);
     assert!(!directory.path().join("out.png").exists());

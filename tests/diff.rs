@@ -149,19 +149,19 @@ fn what_cannot_be_compared_is_told() {
     RgbaImage::new(SIDE, SIDE + 1).save(here.join("tall.png")).unwrap();
     fs::write(here.join("text.png"), "no picture").unwrap();
     fs::create_dir(here.join("empty")).unwrap();
-    for (args, part) in [
-        (&["a.png", "tall.png"][..], "32x32 and 32x33 pixels"),
-        (&["a.png", "a.exr"], "cannot be compared"),
-        (&["a.png", "text.png"], "cannot read text.png"),
-        (&["a.png", "none.png"], "none.png: there is no such file"),
-        (&["a.png", "a.png", "--max", "-1"], "expected 0 or more"),
-        (&["a.png", "a.png", "--out", "./a.png"], "it is what is compared"),
-        (&["a.png", "empty"], "a folder and a file"),
-        (&["empty", "empty"], "no .png or .exr in empty"),
-        (&["a.png", "a.png", "--max", "nan"], "expected 0 or more"),
-        (&["a.png", "a.png", "--out", "map.exr"], "ends in .png"),
-        (&["a.png", "a.png", "--out", "nowhere/map.png"], "cannot write nowhere/map.png"),
+    for (code, args, part) in [
+        (1, &["a.png", "tall.png"][..], "32x32 and 32x33 pixels"),
+        (1, &["a.png", "a.exr"], "cannot be compared"),
+        (1, &["a.png", "text.png"], "cannot read text.png"),
+        (1, &["a.png", "none.png"], "none.png: there is no such file"),
+        (2, &["a.png", "a.png", "--max", "-1"], "expected 0 or more"),
+        (2, &["a.png", "a.png", "--out", "./a.png"], "would overwrite"),
+        (2, &["a.png", "empty"], "a folder and a file"),
+        (1, &["empty", "empty"], "no .png or .exr in empty"),
+        (2, &["a.png", "a.png", "--max", "nan"], "expected 0 or more"),
+        (2, &["a.png", "a.png", "--out", "map.exr"], "ends in .png"),
+        (1, &["a.png", "a.png", "--out", "nowhere/map.png"], "cannot write nowhere/map.png"),
     ] {
-        diff(here, args).expect(1, &[part]);
+        diff(here, args).expect(code, &[part]);
     }
 }

@@ -66,7 +66,7 @@ fn a_bad_file_is_named_with_the_reason() {
         lit_by(directory.path(), name, &[]).expect(1, &[&[name], &parts[..]].concat());
     }
     lit_by(directory.path(), "nowhere.hdr", &[]).expect(1, &["nowhere.hdr", "studio, furnace, sky"]);
-    lit_by(directory.path(), "none", &["--background", "env"]).expect(1, &["view.background", "environment.name"]);
+    lit_by(directory.path(), "none", &["--background", "env"]).expect(2, &["view.background", "environment.name"]);
     assert!(!directory.path().join("out.exr").exists(), "a picture in a refused environment");
 }
 

@@ -42,8 +42,8 @@ fn an_unknown_variant_is_told_with_those_that_exist() {
         let args = ["render", model, "--env", "none", "--size", "48x32", "--set", "variant=Gold", "--out", "out.png"];
         run(directory.path(), &args)
     };
-    render("variants").expect(1, &["Gold", "Porcelain, Bronze, Lacquer"]);
-    render("material-override").expect(1, &["Gold", "it has none"]);
+    render("variants").expect(2, &["Gold", "Porcelain, Bronze, Lacquer"]);
+    render("material-override").expect(2, &["Gold", "it has none"]);
     assert!(!directory.path().join("out.png").exists());
 }
 

@@ -281,7 +281,7 @@ fn names_that_do_not_exist_are_told() {
 #[test]
 fn a_window_too_large_is_refused() {
     let (tree, display) = (Tree::new(), Display::new());
-    finish(view(&tree, &display).args(["--size", "99999x99999"])).expect(1, &["99999x99999"]);
+    finish(view(&tree, &display).args(["--size", "99999x99999"])).expect(2, &["99999x99999"]);
 }
 
 #[test]

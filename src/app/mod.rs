@@ -105,7 +105,7 @@ impl Early {
         // Watched before it is read, so that no save falls between.
         let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
         let watcher = watch_files(&files, outbox).unwrap_or_else(|message| {
-            eprintln!("specula: {message}");
+            crate::message::tell(message);
             None
         });
         let compiler = options.compiler.clone();

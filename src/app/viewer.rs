@@ -15,6 +15,7 @@ use super::threads::{Message, Outbox, Threads};
 use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
+use crate::message;
 use crate::render::{
     BoundFrame, FrameInputs, FrameState, Outcome, PixelAt, Reload, Resources, Revisions, Scene, TargetFormat, View,
     environment_files,
@@ -248,7 +249,7 @@ impl Viewer {
     /// Tells the user something for a few seconds.
     pub(super) fn say(&mut self, text: impl Into<String>) {
         let text = text.into();
-        eprintln!("specula: {text}");
+        message::tell(&text);
         self.notices.say(text);
     }
 
@@ -362,7 +363,7 @@ impl Viewer {
             Ok(uploaded) => {
                 let model = uploaded.model();
                 for warning in &model.warnings {
-                    eprintln!("specula: warning: {}: {warning}", model.name);
+                    message::warn(format_args!("{}: {warning}", model.name));
                 }
                 if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
                     self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
@@ -436,7 +437,7 @@ impl Viewer {
         let then = if restarts { "; it was started again" } else { "" };
         self.notices
             .keep(format!("Specula's {thread} thread failed ({text}){then}. Please report this; your files are safe."));
-        eprintln!("specula: the {thread} thread failed ({text}){then}");
+        message::tell(format_args!("the {thread} thread failed ({text}){then}"));
         match thread {
             "worker" if restarts => {
                 self.worker_restarts += 1;

@@ -1,4 +1,4 @@
-//! `specula bench reload|frame|load|bake`: medians on this machine, with its name.
+//! `specula bench reload|frame|load|bake`: times on this machine, with the name of the device.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,19 +14,19 @@ use specula::render::Outcome;
 use specula::scene::Model;
 use specula::shader::{Batch, Compiler, Source, Watcher};
 
-use super::Failure;
 use super::common::{Common, check_validation, compiler};
+use super::{Failure, print_json};
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum What {
-    /// From a save to the end of the first frame with the new shader
+    /// Time from a save to the end of the first frame with the new shader
     Reload,
-    /// A frame, and the first frame in each debug mode
+    /// Time of a frame, and of the first frame in each debug mode
     Frame,
-    /// From the model's file to its first frame
+    /// Time from the model's file to its first frame
     Load,
-    /// An environment to image-based light, pass by pass, and the same from the disk
+    /// Time to bake an environment, pass by pass, and to read it from the disk cache
     Bake,
 }
 
@@ -36,10 +36,10 @@ pub struct Args {
     /// What to measure
     #[arg(value_enum)]
     what: What,
-    /// glTF model [default: the built-in shader ball]
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// How often
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    /// Number of samples, 1 to 1000
+    #[arg(long, value_name = "N", default_value_t = 20, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     samples: u32,
     /// Print JSON
     #[arg(long)]
@@ -62,7 +62,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);
     if args.json {
-        out!("{result:#}");
+        print_json(&result);
     } else {
         print_table(&result);
     }
@@ -89,7 +89,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     let names = ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms", "total_ms", "overhead_ms"];
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for sample in 0..args.samples {
-        // Real code that changes nothing: no fragment lies left of the picture.
+        // This code changes the shader but not the picture, since no fragment lies left of it.
         let edit = format!("void main() {{\n    if (gl_FragCoord.x < -{}.0) discard;", sample + 1);
         let text = original.replacen("void main() {", &edit, 1);
         let begin = Instant::now();
@@ -115,7 +115,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     Ok(Value::Object(table.collect()))
 }
 
-/// Frames of the mode that is set, and for every mode the first frame and a later one.
+/// Times frames of the chosen mode, and for every mode the first frame and the second.
 fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
@@ -161,7 +161,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
     }))
 }
 
-/// Loads the model again and again; the first time's total counts from the start of the program.
+/// Loads the model repeatedly. The first load is also timed from the start of the program.
 fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -> Result<Value, Failure> {
     let device_ms = ms(start);
     let names = [
@@ -209,12 +209,14 @@ fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -
     Ok(result)
 }
 
-/// Bakes the environment that is set; the first bake also makes the pipelines.
+/// Bakes the chosen environment repeatedly. The first bake includes the creation of its pipelines.
 fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
     if !settings.environment.is_lit() {
-        return Err(Failure::Input("there is no environment to bake: --env is none".into()));
+        return Err(Failure::Usage(
+            "--env none leaves no environment to bake; use --env studio, sky, furnace or a file".into(),
+        ));
     }
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     let (mut table, mut from_disk) = (BTreeMap::<String, Vec<f64>>::new(), Vec::new());
@@ -241,8 +243,8 @@ fn round(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }
 
-/// Smallest value, median and 95th percentile; null without samples. On a shared machine the smallest is the one to
-/// compare: other work can only add time.
+/// Smallest value, median and 95th percentile; null without samples. On a shared machine, compare the smallest values: other
+/// work can only add time.
 fn summary(mut values: Vec<f64>) -> Value {
     values.sort_by(f64::total_cmp);
     let at = |part: f64| values.get(((values.len() as f64 - 1.0).max(0.0) * part).round() as usize).copied();
@@ -282,7 +284,7 @@ fn copy_tree(source: &Source, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A folder of our own, removed with everything in it.
+/// A temporary folder, which is removed with everything in it when this is dropped.
 struct TempFolder(PathBuf);
 
 impl TempFolder {

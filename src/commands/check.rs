@@ -6,13 +6,14 @@ use std::sync::Arc;
 use specula::events::{Event, emit};
 use specula::gpu::{PrimitiveClass, SetLayouts};
 use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
+use specula::message::tell;
 use specula::render::{MaterialVariant, PipelineRequest, PipelineSet, TargetFormat, tree_name};
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
 
 use super::common::{Common, check_validation, compiler};
-use super::{Failure, print_diagnostics};
+use super::{Failure, print_diagnostics, print_json};
 
 /// Options of `check`.
 #[derive(clap::Args)]
@@ -24,7 +25,7 @@ pub struct Args {
     common: Common,
 }
 
-/// Runs the command. Compiling needs no device; where there is one, every mode and choice is built on it too.
+/// Runs the command. Compiling needs no device. If there is a device, the pipelines of every mode and choice are built too.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let source = args.common.source()?;
     let mut library = Library::new(source, compiler()?, &specula::render::all_stages());
@@ -41,25 +42,26 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         emit(args.common.emits(), &Event::Diagnostic(diagnostic));
     }
     if args.json {
-        out!("{}", serde_json::to_string_pretty(&diagnostics).unwrap_or_default());
+        print_json(&diagnostics);
     }
     print_diagnostics(&diagnostics);
     if errors > 0 {
-        eprintln!("specula: {errors} error{}", if errors == 1 { "" } else { "s" });
+        tell(format_args!("{errors} error{}", if errors == 1 { "" } else { "s" }));
         return Err(Failure::Printed);
     }
     if !args.json && !args.common.emits() {
         let files = library.source().list().len();
         let modes = library.set().map_or(0, |set| set.modes.len());
-        let built = built.map_or("no device, so no pipelines built".to_owned(), |n| format!("{n} pipelines built"));
+        let built =
+            built.map_or("no pipelines, since there is no device".to_owned(), |n| format!("{n} pipelines built"));
         let seconds = start.elapsed().as_secs_f64();
         out!("checked {files} files, {modes} modes, {built}: no errors ({seconds:.1} s)");
     }
     Ok(())
 }
 
-/// Builds the pipelines of every mode, and of the picture with every declared choice: a specialization can be wrong where the
-/// text is right. Returns how many, or `None` without a device.
+/// Builds the pipelines of every mode, and of the picture with every declared choice, since a shader that compiles can still fail for
+/// one value of a specialization constant. Returns the number of pipelines, or `None` without a device.
 fn build_choices(
     args: &Args,
     shaders: &Arc<ShaderSet>,
@@ -74,7 +76,7 @@ fn build_choices(
     let settings = args.common.settings()?;
     let materials =
         BTreeSet::from([MaterialVariant { features: interface::FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
-    // Each feature alone, those of a whole frame too.
+    // Each feature alone, including those that belong to a whole frame.
     let features = std::iter::once(0).chain((0..=interface::LAST_FEATURE).map(|bit| 1 << bit));
     let all_materials: BTreeSet<_> =
         [ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND]
@@ -101,8 +103,9 @@ fn build_choices(
     let mut build = |request: &PipelineRequest, file: &str, line: u32, what: String| {
         count += request.materials.len();
         if let Err(error) = set.build(request) {
-            diagnostics
-                .push(Diagnostic::error(file, format!("{what} builds no pipeline: {error}")).on_line(line, None));
+            diagnostics.push(
+                Diagnostic::error(file, format!("the pipeline of {what} cannot be built: {error}")).on_line(line, None),
+            );
         }
     };
     // With lights that the frame counts; those of a known number are in all others.

@@ -1,15 +1,19 @@
-//! The options that every command takes, and what they come to.
+//! The options that every command takes: settings, shader tree, model, device.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use clap::ValueEnum;
 use specula::gpu::{Gpu, GpuOptions};
-use specula::scene::{self, BUILT_IN, LoadOptions, Model};
+use specula::message::{self, did_you_mean};
+use specula::picture;
+use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::{Compiler, ShaderSet, Source, is_specula_tree};
 
 use super::Failure;
+use super::names::{check_environment, check_model_path};
+use super::parse::{ev, fovy, size, vector};
 
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]
@@ -17,55 +21,55 @@ pub struct Common {
     /// Shader tree [default: ./shaders when it is Specula's, else the built-in one]
     #[arg(long, value_name = "DIR")]
     pub shaders: Option<PathBuf>,
-    /// Light from all around: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
-    #[arg(long, value_name = "WHAT")]
+    /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
+    #[arg(long, value_name = "NAME|FILE")]
     env: Option<String>,
-    /// File of a measured BRDF (MERL or UTIA) for the modes measured, measured-split and measured-error
+    /// File of a measured BRDF (MERL or UTIA), for the modes measured, measured-split and measured-error
     #[arg(long, value_name = "FILE")]
     measured: Option<PathBuf>,
     /// Which lights shine
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME")]
     lights: Option<LightSource>,
-    /// Camera position in meters, as 0,1,3 [default: the model is framed]
+    /// Position of the camera in meters, as 0,1,3 [default: the model is framed]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     eye: Option<[f32; 3]>,
-    /// Point the camera looks at
+    /// Point that the camera looks at, in meters
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     target: Option<[f32; 3]>,
-    /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG")]
+    /// Vertical field of view in degrees, 1 to 170 [default: 35]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = fovy)]
     fovy: Option<f32>,
     /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    #[arg(long, value_name = "WxH", default_value = "1280x720", allow_hyphen_values = true, value_parser = size)]
     pub size: (u32, u32),
     /// Tone map
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME")]
     tonemap: Option<Tonemap>,
-    /// Exposure value (EV100): exposure is 1 / (1.2 * 2^N)
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    /// Exposure value (EV100), -30 to 30: exposure is 1 / (1.2 * 2^N) [default: 0]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = ev)]
     ev: Option<f32>,
-    /// Behind the model: none (transparent), env or #rrggbb
-    #[arg(long, value_name = "WHAT")]
+    /// Background: none (transparent), env (the environment) or #rrggbb
+    #[arg(long, value_name = "NAME|COLOR")]
     background: Option<String>,
     /// Debug mode; `specula modes` lists them
     #[arg(long, value_name = "NAME")]
     pub mode: Vec<String>,
-    /// Set anything, as view.msaa=1 or a shader parameter's name=value; may repeat
+    /// Change any setting, as view.msaa=1, or a shader parameter, as NDF=Beckmann; may repeat. `specula help set` lists all
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Look file (TOML) with settings to start from
+    /// Look file (TOML) with settings; other options come on top
     #[arg(long, value_name = "FILE.toml")]
     look: Option<PathBuf>,
-    /// Device whose name contains this
+    /// Use the device whose name contains this text; `specula info` lists the devices
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
-    /// Print what happens as JSON lines on stdout
-    #[arg(long, value_enum, value_name = "FORMAT")]
+    /// Print events as JSON, one object a line, on stdout
+    #[arg(long, value_enum, ignore_case = true, value_name = "FORMAT")]
     pub events: Option<EventFormat>,
     /// Let a model read files outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
-    /// Turn the Vulkan validation layers on; their messages fail the command
+    /// Turn the Vulkan validation layers on; each of their messages fails the command
     #[arg(long)]
     pub validate: bool,
 }
@@ -78,7 +82,7 @@ pub enum EventFormat {
 }
 
 impl Common {
-    /// The settings: defaults, then the look file, then options, then `--set` in order. Warns of those that change nothing.
+    /// The settings: defaults, then the look file, then options, then `--set` in order. Warns about options without effect.
     pub fn settings(&self) -> Result<Settings, Failure> {
         let settings = self.settings_silently()?;
         warn_unmeasured(&settings.mode, &settings);
@@ -94,14 +98,8 @@ impl Common {
 
     /// The same without the warnings.
     fn settings_silently(&self) -> Result<Settings, Failure> {
-        let mut settings = match &self.look {
-            None => Settings::default(),
-            Some(path) => {
-                let text = std::fs::read_to_string(path)
-                    .map_err(|e| Failure::Input(format!("{}: cannot read the look file: {e}", path.display())))?;
-                Settings::from_toml(&text).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))?
-            }
-        };
+        let look = self.look.as_deref().map(read_look).transpose()?.unwrap_or_default();
+        let mut settings = look.clone();
         let put = |to: &mut f32, from: Option<f32>| *to = from.unwrap_or(*to);
         settings.camera.eye = self.eye.or(settings.camera.eye);
         settings.camera.target = self.target.or(settings.camera.target);
@@ -121,12 +119,18 @@ impl Common {
         match self.mode.as_slice() {
             [] => {}
             [mode] => settings.mode.clone_from(mode),
-            _ => return Err(Failure::Input("--mode is given more than once; here it takes one mode".into())),
+            _ => return Err(Failure::Usage("--mode is given more than once; this command takes one mode".into())),
         }
         for assignment in &self.set {
-            settings.assign(assignment).map_err(|e| Failure::Input(format!("--set: {e}")))?;
+            settings.assign(assignment).map_err(|e| Failure::Usage(format!("--set: {e}")))?;
         }
-        settings.check().map_err(Failure::Input)?;
+        settings.check().map_err(|problem| match &self.look {
+            Some(path) if look.check().as_ref() == Err(&problem) => {
+                Failure::Usage(format!("{}: {problem}", path.display()))
+            }
+            _ => Failure::Usage(problem),
+        })?;
+        check_environment(&settings.environment.name)?;
         Ok(settings)
     }
 
@@ -135,16 +139,16 @@ impl Common {
         source(self.shaders.as_deref())
     }
 
-    /// The model at `path`, or the built-in shader ball; prints its warnings.
+    /// The model at `path`, or the built-in shader ball. Prints the model's warnings.
     pub fn model(&self, path: Option<&Path>) -> Result<Model, Failure> {
         let model = self.model_silently(path)?;
         for warning in &model.warnings {
-            eprintln!("specula: warning: {}: {warning}", model.name);
+            message::warn(format_args!("{}: {warning}", model.name));
         }
         Ok(model)
     }
 
-    /// The same without printing its warnings, but for that of `--lights model`.
+    /// The same without the model's warnings. Only `--lights model` without lights is warned about.
     pub fn model_silently(&self, path: Option<&Path>) -> Result<Model, Failure> {
         check_model_path(path)?;
         let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
@@ -167,30 +171,33 @@ impl Common {
     }
 }
 
-/// Warns of a mode that needs a measured BRDF when there is none.
+/// Warns when a mode needs a measured BRDF and none is given.
 pub fn warn_unmeasured(slug: &str, settings: &Settings) {
     if slug.starts_with("measured") && settings.measured.is_empty() {
         warn_once(&format!("mode {slug} shows nothing without --measured FILE"));
     }
 }
 
-/// Prints a warning, but never twice: settings and models may be read again and again.
+/// Prints a warning the first time only, since settings and models may be read again and again.
 fn warn_once(message: &str) {
     static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
     let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
     if !told.iter().any(|old| old == message) {
-        eprintln!("specula: warning: {message}");
+        message::warn(message);
         told.push(message.to_owned());
     }
 }
 
-/// The shader tree in a folder; without one the tree in ./shaders, or the built-in one.
+/// The shader tree in a folder. Without a folder, the tree in ./shaders or else the built-in one.
 pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
     match directory {
         Some(directory) if is_specula_tree(directory) => disk(directory),
+        Some(directory) if !directory.exists() => Err(Failure::Input(format!(
+            "{0}: there is no such folder. `specula new {0}` writes a shader tree there",
+            directory.display()
+        ))),
         Some(directory) => Err(Failure::Input(format!(
-            "{} is no Specula shader tree: it has no interface.glsl. `specula new {}` writes one",
-            directory.display(),
+            "{} is not a Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
             directory.display()
         ))),
         None if is_specula_tree(Path::new("shaders")) => disk(Path::new("shaders")),
@@ -203,16 +210,10 @@ pub fn open_gpu(name: Option<&str>, validation: bool) -> Result<Arc<Gpu>, Failur
     Ok(Gpu::new(&GpuOptions { device: name.map(str::to_owned), validation, display: None })?)
 }
 
-/// Fails when there is neither such a file nor a built-in model of that name.
-pub fn check_model_path(path: Option<&Path>) -> Result<(), Failure> {
-    let Some(path) = path.filter(|path| !path.exists()) else { return Ok(()) };
-    let name = path.to_string_lossy();
-    if BUILT_IN.contains(&&*name) {
-        return Ok(());
-    }
-    let hint = closest(&name, BUILT_IN.into_iter()).map(|c| format!(" Did you mean {c}?")).unwrap_or_default();
-    let list = BUILT_IN.join(", ");
-    Err(Failure::Input(format!("{name}: there is no such file, and the built-in models are {list}.{hint}")))
+/// Fails before any work when no picture can be written to `path`.
+pub fn check_out(path: &Path) -> Result<(), Failure> {
+    picture::check_ending(path).map_err(Failure::Usage)?;
+    picture::check_path(path).map_err(Failure::Input)
 }
 
 /// The shader compiler.
@@ -220,29 +221,21 @@ pub fn compiler() -> Result<Arc<Compiler>, Failure> {
     Compiler::new().map(Arc::new).map_err(Failure::Input)
 }
 
-/// Fails when the tree has no such mode, and names the closest.
+/// Fails when the shader tree has no such mode.
 pub fn check_mode(shaders: &ShaderSet, slug: &str) -> Result<(), Failure> {
-    if shaders.modes.iter().any(|m| m.slug == slug) {
+    let slugs = || shaders.modes.iter().map(|mode| mode.slug.as_str());
+    if slugs().any(|known| known == slug) {
         return Ok(());
     }
-    let hint = match closest(slug, shaders.modes.iter().map(|m| m.slug.as_str())) {
-        Some(close) => format!(" Did you mean {close}?"),
-        None => String::new(),
-    };
-    Err(Failure::Input(format!("there is no mode '{slug}'.{hint} `specula modes` lists them all")))
+    let hint = did_you_mean(slug, slugs());
+    Err(Failure::Usage(format!("there is no mode '{slug}'.{hint} `specula modes` lists them all")))
 }
 
-/// The candidate that is most like what was typed, if one is.
-fn closest<'a>(typed: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let likeness = |candidate: &str| strsim::normalized_damerau_levenshtein(typed, candidate);
-    let best = candidates.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
-    (likeness(best) > 0.4).then_some(best)
-}
-
-/// Fails when the validation layers said something.
+/// Fails when the validation layers reported a message.
 pub fn check_validation(gpu: &Gpu) -> Result<(), Failure> {
     match gpu.validation_messages().len() {
         0 => Ok(()),
+        1 => Err(Failure::Input("the validation layers reported a message (above)".into())),
         count => Err(Failure::Input(format!("the validation layers reported {count} messages (above)"))),
     }
 }
@@ -252,16 +245,14 @@ fn disk(directory: &Path) -> Result<Source, Failure> {
     absolute.map(Source::Disk).map_err(|e| Failure::Input(format!("{}: {e}", directory.display())))
 }
 
-fn vector(text: &str) -> Result<[f32; 3], String> {
-    let numbers: Vec<f32> = text.split(',').map_while(|t| t.trim().parse().ok()).collect();
-    let vector = <[f32; 3]>::try_from(numbers).map_err(|_| "expected three numbers, as 0,1.5,3".to_owned())?;
-    if vector.iter().all(|v| v.is_finite()) { Ok(vector) } else { Err("the numbers must be finite".into()) }
-}
-
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    match parts {
-        Some((width, height)) if width > 0 && height > 0 => Ok((width, height)),
-        _ => Err("expected width x height in pixels, each at least 1, as 1280x720".into()),
-    }
+/// Reads a look file. A name or value that no setting has is a usage error; a file that is not TOML is a wrong file.
+fn read_look(path: &Path) -> Result<Settings, Failure> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| Failure::Input(format!("{}: the look file cannot be read: {e}", path.display())))?;
+    Settings::from_toml(&text).map_err(|error| {
+        // As `file:line:column: message`, which editors parse.
+        let separator = if error.place.is_some() { ":" } else { ": " };
+        let message = format!("{}{separator}{error}", path.display());
+        if error.is_value { Failure::Usage(message) } else { Failure::Input(message) }
+    })
 }

@@ -1,4 +1,4 @@
-//! `specula diff A B`: how far pictures are apart.
+//! `specula diff A B`: measures how different pictures are.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -7,25 +7,26 @@ use serde_json::{Value, json};
 use specula::comparison::{Comparison, Measure, Picture};
 use specula::picture;
 
-use super::Failure;
+use super::{Failure, print_json};
 
 /// Options of `diff`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "PNGs are compared as an eye sees them: the mean of FLIP (Andersson et al. 2020), 0..1; 0.01 is hardly \
-    seen, 0.1 at once. EXRs are compared as numbers: RMSE, in their own unit.\n\
-    Exit codes: 0 within --max, 1 beyond it, or a picture that is only on one side.\n\n\
+    after_help = "PNGs are compared as an eye sees them: the error is the mean of FLIP (Andersson et al. 2020), 0 to 1. \
+    0.01 is hardly visible, 0.1 is obvious. EXRs are compared as numbers: the error is the RMSE, in their own unit.\n\
+    Exit codes: 0 when every error is at most --max; 1 when one is larger, or when a picture is on one side only or does \
+    not load; 2 for a wrong command line.\n\n\
     In CI:  specula render --mode all --out now/ball.png && specula diff golden now --max 0.01"
 )]
 pub struct Args {
     /// Picture, .png or .exr, or a folder of them
     a: PathBuf,
-    /// What to compare with it: a picture of the same size, or a folder whose pictures have the same names
+    /// Picture of the same size, or folder whose pictures have the same names
     b: PathBuf,
     /// Largest error that passes
     #[arg(long, value_name = "ERROR", default_value_t = 0.0, allow_negative_numbers = true)]
     max: f64,
-    /// Write where they differ: a file; for folders a folder, one file for each picture beyond --max
+    /// Write a map of the differences: a file; for folders a folder, with a file for each picture beyond --max
     #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
     /// Print JSON
@@ -33,7 +34,7 @@ pub struct Args {
     json: bool,
 }
 
-/// One picture of both sides, or why there is no comparison.
+/// The comparison of two pictures, or why they cannot be compared.
 struct Pair {
     name: String,
     compared: Result<Comparison, String>,
@@ -48,27 +49,31 @@ impl Pair {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if args.max.is_nan() || args.max < 0.0 {
-        return Err(Failure::Input(format!("--max {}: expected 0 or more", args.max)));
+        return Err(Failure::Usage(format!("--max {}: expected 0 or more", args.max)));
     }
     if let Some(absent) = [&args.a, &args.b].into_iter().find(|path| !path.exists()) {
         return Err(Failure::Input(format!("{}: there is no such file or folder", absent.display())));
     }
     let folders = match (args.a.is_dir(), args.b.is_dir()) {
         (a, b) if a == b => a,
-        _ => return Err(Failure::Input("a folder and a file cannot be compared: name two of one kind".to_owned())),
+        _ => {
+            let message = "a folder and a file cannot be compared: name two pictures or two folders";
+            return Err(Failure::Usage(message.to_owned()));
+        }
     };
     let same_place = |x: &Path, y: &Path| matches!((x.canonicalize(), y.canonicalize()), (Ok(x), Ok(y)) if x == y);
     if let Some(out) = args.out.iter().find(|out| same_place(out, &args.a) || same_place(out, &args.b)) {
-        return Err(Failure::Input(format!("cannot write to {}: it is what is compared", out.display())));
+        let message = format!("--out {} would overwrite a picture that is compared: name another place", out.display());
+        return Err(Failure::Usage(message));
     }
     let pairs = if folders { in_folders(&args.a, &args.b)? } else { vec![pair_of_files(&args.a, &args.b)?] };
     if let Some(out) = &args.out {
-        write_maps(&pairs, out, folders, args.max).map_err(Failure::Input)?;
+        write_maps(&pairs, out, folders, args.max)?;
     }
     if args.json {
         let pictures: Vec<Value> = pairs.iter().map(|pair| as_json(pair, args.max)).collect();
         let passes = pairs.iter().all(|pair| pair.passes(args.max));
-        out!("{:#}", json!({ "pictures": pictures, "max": args.max, "passes": passes }));
+        print_json(&json!({ "pictures": pictures, "max": args.max, "passes": passes }));
     } else {
         pairs.iter().for_each(print);
     }
@@ -105,7 +110,7 @@ fn in_folders(a: &Path, b: &Path) -> Result<Vec<Pair>, Failure> {
     Ok(in_a.union(&in_b).map(pair).collect())
 }
 
-/// Names of the pictures in a folder, not in those below it.
+/// Names of the pictures in a folder, without those of its subfolders.
 fn pictures_in(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     let error = |e: std::io::Error| Failure::Input(format!("cannot read {}: {e}", folder.display()));
     let mut names = BTreeSet::new();
@@ -119,24 +124,25 @@ fn pictures_in(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     Ok(names)
 }
 
-/// Maps of raw pictures are raw too, so the file's ending must fit.
-fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(), String> {
+/// Writes maps of the differences. The map of two EXRs is an EXR too, so the ending of the file must fit.
+fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(), Failure> {
     if !folders {
         return pairs.iter().flat_map(|pair| &pair.compared).try_for_each(|found| {
             let ending = if found.measure == Measure::Flip { "png" } else { "exr" };
             if !out.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
-                return Err(format!("cannot write {}: a map of these pictures ends in .{ending}", out.display()));
+                let message = format!("cannot write {}: a map of these pictures ends in .{ending}", out.display());
+                return Err(Failure::Usage(message));
             }
-            picture::write_image(found.map(), out)
+            picture::write_image(found.map(), out).map_err(Failure::Input)
         });
     }
     if out.is_file() {
-        return Err(format!("cannot write to {}: for folders, --out is a folder", out.display()));
+        return Err(Failure::Usage(format!("--out {} is a file: to compare folders, name a folder", out.display())));
     }
-    std::fs::create_dir_all(out).map_err(|e| format!("cannot make {}: {e}", out.display()))?;
+    std::fs::create_dir_all(out).map_err(|e| Failure::Input(format!("cannot create {}: {e}", out.display())))?;
     for pair in pairs.iter().filter(|pair| !pair.passes(max)) {
         if let Ok(found) = &pair.compared {
-            picture::write_image(found.map(), &out.join(&pair.name))?;
+            picture::write_image(found.map(), &out.join(&pair.name)).map_err(Failure::Input)?;
         }
     }
     Ok(())
@@ -161,7 +167,7 @@ fn print(pair: &Pair) {
     }
 }
 
-/// Four digits after the point; less than that is told as such.
+/// An error with four digits after the point.
 fn number(error: f64) -> String {
     if error < 0.00005 { "< 0.0001".to_owned() } else { format!("{error:.4}") }
 }

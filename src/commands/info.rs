@@ -1,18 +1,19 @@
-//! `specula info`: the devices, a model, the shader tree.
+//! `specula info`: the devices, the shader tree, and what is in a model.
 
 use std::path::PathBuf;
 
 use serde_json::json;
-use specula::gpu::adapters;
-use specula::scene::Model;
+use specula::gpu::{AdapterInfo, GpuError, adapters};
+use specula::message::escape;
+use specula::scene::{Model, Primitive, Topology};
 
-use super::Failure;
 use super::common::Common;
+use super::{Failure, print_json};
 
 /// Options of `info`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// glTF model to tell about [default: the built-in shader ball]
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
@@ -21,7 +22,7 @@ pub struct Args {
     common: Common,
 }
 
-/// Runs the command. A machine without Vulkan is told about too.
+/// Runs the command. It works without Vulkan too, and then prints why there is no device.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let devices = adapters();
     let model = args.common.model(args.model.as_deref())?;
@@ -31,50 +32,103 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let (devices, why_none) = devices.map_or_else(|e| (Vec::new(), Some(e.to_string())), |d| (d, None));
         let value = json!({ "version": env!("CARGO_PKG_VERSION"), "devices": devices, "why_no_device": why_none, "shaders": tree,
             "model": summary(&model) });
-        out!("{value:#}");
+        print_json(&value);
         return Ok(());
     }
-    out!("specula {}", env!("CARGO_PKG_VERSION"));
-    out!("shaders    {tree}");
-    match devices {
-        Ok(devices) => {
-            for device in devices {
-                let note = device.refused.map(|why| format!("  (not usable: {why})")).unwrap_or_default();
-                out!("device     {} ({}), Vulkan {}, {}{note}", device.name, device.kind, device.api, device.driver);
-            }
-        }
-        Err(error) => out!("device     none: {error}"),
-    }
-    for (key, value) in summary(&model).as_object().into_iter().flatten() {
-        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        out!("{:10} {text}", key.replace('_', " "));
-    }
+    out!("specula     {}", env!("CARGO_PKG_VERSION"));
+    out!("shaders     {}", escape(&tree));
+    print_devices(devices);
+    print_model(&model);
     Ok(())
 }
 
-fn summary(model: &Model) -> serde_json::Value {
-    let placed = model.instances.iter().map(|i| &model.primitives[i.primitive]);
-    let (mut vertices, mut indices) = (0, 0);
-    for primitive in placed {
-        vertices += primitive.vertices.len();
-        indices += primitive.indices.len();
+fn print_devices(devices: Result<Vec<AdapterInfo>, GpuError>) {
+    out!("\nDevices");
+    match devices {
+        Ok(devices) if devices.is_empty() => out!("  none"),
+        Ok(devices) => {
+            for device in devices {
+                out!("  {} ({})", escape(&device.name), device.kind);
+                out!("    Vulkan {}, driver {}", device.api, escape(&device.driver));
+                if let Some(why) = &device.refused {
+                    out!("    cannot be used: {}", escape(why));
+                }
+            }
+        }
+        Err(error) => out!("  none: {error}"),
     }
-    let size = if model.bounds.is_empty() { glam::Vec3::ZERO } else { model.bounds.max - model.bounds.min };
+}
+
+/// Prints a line for each kind of thing in the model. The model's warnings are on stderr.
+fn print_model(model: &Model) {
+    let (vertices, _) = counts(model);
+    let [width, height, depth] = size(model).to_array();
+    let [x, y, z] = model.bounds.center().to_array();
+    let variants: Vec<String> = model.variants.iter().map(|name| escape(name)).collect();
+    out!("\nModel {}", escape(&model.name));
+    out!("  size        {width:.3} x {height:.3} x {depth:.3} m, center {x:.3}, {y:.3}, {z:.3}");
+    out!("  primitives  {}", model.primitives.len());
+    out!("  instances   {}", model.instances.len());
+    out!("  triangles   {}", triangles(model));
+    out!("  vertices    {vertices}");
+    out!("  materials   {}", materials(model));
+    out!("  variants    {}", if variants.is_empty() { "none".to_owned() } else { variants.join(", ") });
+    out!("  lights      {}", count(model.lights.len()));
+    out!("  cameras     {}", count(model.cameras.len()));
+    out!("  images      {}", count(model.images.len()));
+    for image in &model.images {
+        out!("    {:>5} x {:<5} {}", image.width, image.height, escape(&image.name));
+    }
+}
+
+fn count(number: usize) -> String {
+    if number == 0 { "none".to_owned() } else { number.to_string() }
+}
+
+fn summary(model: &Model) -> serde_json::Value {
+    let (vertices, indices) = counts(model);
     json!({
         "model": model.name,
         "primitives": model.primitives.len(),
         "instances": model.instances.len(),
         "vertices": vertices,
         "indices": indices,
-        "materials": model.materials.len().saturating_sub(1), // without the loader's own
+        "materials": materials(model),
         "images": model.images.iter().map(|i| format!("{} {}x{}", i.name, i.width, i.height)).collect::<Vec<_>>(),
         "lights": model.lights.len(),
         "variants": model.variants,
         "cameras": model.cameras.len(),
-        "size_m": rounded(size),
+        "size_m": rounded(size(model)),
         "center_m": rounded(model.bounds.center()),
         "warnings": model.warnings,
     })
+}
+
+/// Vertices and indices of all instances.
+fn counts(model: &Model) -> (usize, usize) {
+    let placed = model.instances.iter().map(|instance| &model.primitives[instance.primitive]);
+    placed.fold((0, 0), |(vertices, indices), p| (vertices + p.vertices.len(), indices + p.indices.len()))
+}
+
+/// Triangles of all instances; points and lines are not counted.
+fn triangles(model: &Model) -> usize {
+    let placed = model.instances.iter().map(|instance| &model.primitives[instance.primitive]);
+    let triangles = |p: &Primitive| match p.topology {
+        Topology::Triangles => p.indices.len() / 3,
+        Topology::TriangleStrip | Topology::TriangleFan => p.indices.len().saturating_sub(2),
+        Topology::Points | Topology::Lines | Topology::LineStrip => 0,
+    };
+    placed.map(triangles).sum()
+}
+
+/// Materials of the file, without glTF's default one.
+fn materials(model: &Model) -> usize {
+    model.materials.len().saturating_sub(1)
+}
+
+/// Lengths of the bounding box's edges, meters.
+fn size(model: &Model) -> glam::Vec3 {
+    if model.bounds.is_empty() { glam::Vec3::ZERO } else { model.bounds.max - model.bounds.min }
 }
 
 /// To the millimeter.

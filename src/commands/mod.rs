@@ -1,11 +1,9 @@
-//! Parsing, dispatch, and what all commands share: common options, exit codes, the way errors are printed.
+//! Parsing, dispatch, and what all commands share: common options, exit codes, and how results and errors are printed.
 
-/// `println!` that does not mind a reader who went away, as `specula modes | head` does.
+/// `println!` for people: escapes the control characters of foreign names, and ignores a reader that went away, as
+/// `specula modes | head` does. JSON goes through [`print_json`].
 macro_rules! out {
-    ($($text:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stdout().lock(), $($text)*);
-    }};
+    ($($text:tt)*) => { $crate::commands::print(&specula::message::escape_lines(&format!($($text)*))) };
 }
 
 mod bench;
@@ -13,9 +11,12 @@ mod brdf;
 mod check;
 mod common;
 mod diff;
+mod help;
 mod info;
 mod modes;
+mod names;
 mod new;
+mod parse;
 mod probe;
 mod render;
 mod signals;
@@ -29,14 +30,23 @@ use std::time::Instant;
 use clap::{Parser, Subcommand};
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
+use specula::message::tell;
 use specula::render::UploadError;
 use specula::shader::Diagnostic;
 
 /// A shader playground: save GLSL, see the model change.
 #[derive(Parser)]
-#[command(name = "specula", version, about, args_conflicts_with_subcommands = true)]
-#[command(after_help = "Without a command, `specula [MODEL]` opens the window.\n\
-    Exit codes: 0 done, 1 your input is wrong (printed as file:line), 2 usage, 3 no usable device or display.")]
+#[command(name = "specula", version, about, args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
+#[command(
+    after_help = "Without a command, `specula [MODEL]` opens the window. `specula help set` lists all settings.\n\n\
+    Exit codes:\n  \
+    0  Done.\n  \
+    1  A file is wrong: a model, a shader or another file is missing, does not load or cannot be written.\n     \
+       Or a check failed: check, diff, brdf and --validate.\n  \
+    2  The command line is wrong: an unknown command, option or name, or a value that is not allowed, also one\n     \
+       in a look file, and one that only this model, shader tree or device does not have.\n  \
+    3  There is no usable device or display, or none with the name of --device."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -54,7 +64,7 @@ enum Command {
     Modes(modes::Args),
     /// Compile every shader with every declared choice; for CI
     Check(check::Args),
-    /// Tell about the devices, the model and the shader tree
+    /// Show the devices, the shader tree and what is in a model
     Info(info::Args),
     /// Write the shader tree to a new folder, to start from
     New(new::Args),
@@ -66,19 +76,33 @@ enum Command {
     Brdf(brdf::Args),
     /// Print the raw values of a pixel in every debug mode
     Probe(probe::Args),
+    /// Print the help of a command, or the list of all settings: `specula help set`
+    Help(help::Args),
 }
 
-/// Why a command ends early. Everything is printed once, here.
+/// Why a command ends early. `end` prints it.
 #[derive(Debug)]
 pub enum Failure {
-    /// The user's input is wrong: exit code 1.
+    /// A file is wrong, or a check failed: exit code 1.
     Input(String),
+    /// A name or value on the command line or in a look file is wrong: exit code 2.
+    Usage(String),
     /// The user's shaders are wrong: exit code 1.
     Shaders(Vec<Diagnostic>),
-    /// It was printed already: exit code 1.
+    /// The command printed the reason already: exit code 1.
     Printed,
-    /// No device, no display: exit code 3.
+    /// There is no usable device or display: exit code 3.
     Device(String),
+}
+
+impl Failure {
+    fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Input(_) | Self::Shaders(_) | Self::Printed => 1,
+            Self::Usage(_) => 2,
+            Self::Device(_) => 3,
+        })
+    }
 }
 
 impl From<GpuError> for Failure {
@@ -91,6 +115,7 @@ impl From<HeadlessError> for Failure {
     fn from(error: HeadlessError) -> Self {
         match error {
             HeadlessError::Shaders(diagnostics) => Self::Shaders(diagnostics),
+            HeadlessError::Settings(message) => Self::Usage(message),
             HeadlessError::Gpu(error) | HeadlessError::Upload(UploadError::Gpu(error)) => error.into(),
             other => Self::Input(other.to_string()),
         }
@@ -109,10 +134,20 @@ pub fn main(start: Instant) -> ExitCode {
         .with_env_filter(filter)
         .without_time()
         .init();
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // A misspelled command is read as a model, and clap's message is then about whatever follows it.
+            let first = std::env::args_os().nth(1).filter(|_| error.use_stderr());
+            return match first.map_or(Ok(()), |word| help::check_command(word.as_ref())) {
+                Err(failure) => end(&failure),
+                Ok(()) => error.exit(),
+            };
+        }
+    };
     signals::clean_up_on_end();
     let result = match cli.command {
-        None => view::run(cli.view, start),
+        None => cli.view.model().map_or(Ok(()), help::check_command).and_then(|()| view::run(cli.view, start)),
         Some(Command::View(args)) => view::run(args, start),
         Some(Command::Render(args)) => render::run(args, start),
         Some(Command::Modes(args)) => modes::run(&args),
@@ -123,22 +158,39 @@ pub fn main(start: Instant) -> ExitCode {
         Some(Command::Diff(args)) => diff::run(&args),
         Some(Command::Brdf(args)) => brdf::run(args),
         Some(Command::Probe(args)) => probe::run(args),
+        Some(Command::Help(args)) => help::run(&args),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            report(&failure);
-            ExitCode::from(if matches!(failure, Failure::Device(_)) { 3 } else { 1 })
-        }
-    }
+    result.map_or_else(|failure| end(&failure), |()| ExitCode::SUCCESS)
 }
 
-fn report(failure: &Failure) {
+/// Prints why the program ends.
+fn end(failure: &Failure) -> ExitCode {
     match failure {
-        Failure::Input(message) | Failure::Device(message) => eprintln!("specula: {message}"),
+        Failure::Input(message) | Failure::Usage(message) | Failure::Device(message) => tell(message),
         Failure::Shaders(diagnostics) => print_diagnostics(diagnostics),
         Failure::Printed => {}
     }
+    failure.exit_code()
+}
+
+/// Prints text to stdout as it is, with a line break. A reader that went away is ignored.
+pub fn print(text: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stdout().lock(), "{text}");
+}
+
+/// Prints a value as indented JSON. serde escapes ASCII control characters; the others, which some terminals obey too, are escaped
+/// here.
+pub fn print_json(value: &impl serde::Serialize) {
+    let text = serde_json::to_string_pretty(value).unwrap_or_default();
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\u{7f}'..='\u{9f}' => out.push_str(&format!("\\u{:04x}", u32::from(c))),
+            c => out.push(c),
+        }
+    }
+    print(&out);
 }
 
 /// Prints diagnostics to stderr: `file:line: error: message`, which editors parse, then the source line with its caret.

@@ -1,9 +1,9 @@
-//! `specula modes`: what the shader tree offers.
+//! `specula modes`: the debug modes, constants and parameters of a shader tree.
 
 use specula::shader::{Library, Update};
 
-use super::Failure;
 use super::common::{Common, compiler};
+use super::{Failure, print_json};
 
 /// Options of `modes`.
 #[derive(clap::Args)]
@@ -24,8 +24,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         Update::Unchanged { .. } => return Ok(()),
     };
     if args.json {
-        let json = serde_json::to_string_pretty(&shaders.modes).map_err(|e| Failure::Input(e.to_string()))?;
-        out!("{json}");
+        print_json(&shaders.modes);
         return Ok(());
     }
     let width = shaders.modes.iter().map(|m| m.slug.len()).max().unwrap_or(0);
@@ -38,7 +37,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         out!("  {:width$}  {}", mode.slug, mode.doc);
     }
     if !shaders.constants.is_empty() || !shaders.parameters.is_empty() {
-        out!("\nFor --set");
+        out!("\nShader constants and parameters, for --set NAME=VALUE (`specula help set` lists all other settings)");
     }
     for constant in &shaders.constants {
         let names: Vec<&str> = constant.choices.iter().map(|(name, _)| name.as_str()).collect();

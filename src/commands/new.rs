@@ -1,4 +1,4 @@
-//! `specula new DIR`: the shader tree, to start from.
+//! `specula new DIR`: writes the built-in shader tree to a new folder.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use super::Failure;
 /// Options of `new`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Folder to make; it must not hold anything yet
+    /// Folder to create; it must be new or empty
     dir: PathBuf,
 }
 
@@ -18,6 +18,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let written = embedded::write_to(&args.dir)
         .map_err(|e| Failure::Input(format!("cannot write the shader tree to {}: {e}", args.dir.display())))?;
     out!("wrote {} files to {}", written.len(), args.dir.display());
-    out!("try: specula --shaders {}   and edit user.glsl or brdf/ndf.glsl", args.dir.display());
+    out!("Next: run specula --shaders {}, then edit user.glsl or brdf/ndf.glsl and save.", args.dir.display());
     Ok(())
 }

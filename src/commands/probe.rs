@@ -8,8 +8,8 @@ use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT,
 use specula::render::{FrameState, PixelValue};
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
-use super::Failure;
 use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
+use super::{Failure, print_json};
 
 /// Options of `probe`.
 #[derive(clap::Args)]
@@ -23,10 +23,10 @@ use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasu
     (KHR_lights_punctual)."
 )]
 pub struct Args {
-    /// glTF model, .gltf or .glb [default: the built-in shader ball]
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// The pixel, from the upper left corner
-    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    /// The pixel, counted from the upper left corner
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     at: (u32, u32),
     /// Print JSON
     #[arg(long)]
@@ -42,11 +42,11 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let (width, height) = args.common.size;
     if x >= width || y >= height {
         let message = format!(
-            "--at {x},{y} is outside of the picture of {width}x{height}; it can be 0,0 to {},{}",
+            "--at {x},{y} is outside of the picture ({width}x{height}); it can be 0,0 to {},{}",
             width - 1,
             height - 1
         );
-        return Err(Failure::Input(message));
+        return Err(Failure::Usage(message));
     }
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;
@@ -64,11 +64,11 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         let modes: Map<String, Value> = values.iter().map(|(mode, pixel)| (mode.slug.clone(), value(pixel))).collect();
         let lights: Vec<Value> = state.lights.iter().map(light).collect();
         let found = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state), "lights": lights });
-        out!("{found:#}");
+        print_json(&found);
     } else {
         print_table(args.at, &values, &state);
     }
-    // The validation layers also report at the end of the device.
+    // The layers also report what is found when objects are destroyed.
     drop(headless);
     check_validation(&gpu)
 }
@@ -89,7 +89,7 @@ fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
     Ok(shaders.modes.iter().filter(|mode| all || slugs.contains(&mode.slug)).cloned().collect())
 }
 
-/// Whether the model covers the pixel, seen in a mode that draws surfaces but not the sky.
+/// Whether the model covers the pixel, in a mode that draws surfaces and no environment.
 fn is_hit(headless: &mut Headless, at: (u32, u32)) -> Result<bool, Failure> {
     let modes = &headless.shaders().modes;
     let plain = |mode: &&Mode| !mode.tonemap && !mode.accumulate && mode.draw == DrawAs::Surfaces;
@@ -158,7 +158,7 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, PixelValue)], state: &Frame
         out!("light      {:11} {place}  intensity {}", kind(light), row(&light.intensity));
     }
     if values.is_empty() {
-        out!("\nnothing of the model is at this pixel");
+        out!("\nthe model does not cover this pixel");
     }
     let width = values.iter().map(|(mode, _)| mode.slug.len()).max().unwrap_or(0);
     let mut group = "";
@@ -183,5 +183,5 @@ fn shown(x: f32) -> String {
 
 fn pixel(text: &str) -> Result<(u32, u32), String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, as 640,360".to_owned())
+    numbers.ok_or_else(|| "expected a pixel as X,Y, counted from the upper left corner, for example 640,360".to_owned())
 }

@@ -5,18 +5,19 @@ use std::time::Instant;
 
 use specula::events::{Event, ReloadEvent, emit};
 use specula::headless::Headless;
+use specula::message;
 use specula::picture;
 use specula::render::{Outcome, Reload};
 use specula::shader::{Change, Diagnostic};
 
-use super::common::{Common, check_mode, check_validation, compiler};
+use super::common::{Common, check_mode, check_out, check_validation, compiler};
 use super::watch::{Changes, Watch};
 use super::{Failure, print_diagnostics};
 
 /// Options of `render`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// glTF model, .gltf or .glb [default: the built-in shader ball]
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
     /// File to write, .png or .exr (raw values); with `--mode all`, FILE.<mode>.png for each
     #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
@@ -35,7 +36,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     if all {
         "final".clone_into(&mut settings.mode);
     }
-    picture::check_path(&args.out).map_err(Failure::Input)?;
+    check_out(&args.out)?;
     let source = args.common.source()?;
     // Watching starts before anything is read, so that no save falls between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
@@ -101,7 +102,7 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
         first_frame_ms = begin.elapsed().as_secs_f64() * 1e3;
         // A value, a mode or a folder that this edit made wrong may be right after the next.
         match drawn.and_then(|()| write(headless, args, all)) {
-            Err(Failure::Input(message)) => eprintln!("specula: {message}"),
+            Err(Failure::Input(message) | Failure::Usage(message)) => message::tell(message),
             result => result?,
         }
     }
@@ -133,8 +134,8 @@ fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result
             eprintln!("specula: the model was loaded again");
             Ok(true)
         }
-        Err(Failure::Input(message)) => {
-            eprintln!("specula: {message}\nspecula: the last good model stays");
+        Err(Failure::Input(message) | Failure::Usage(message)) => {
+            message::tell(format_args!("{message}\nspecula: the last good model stays"));
             Ok(false)
         }
         Err(other) => Err(other),
@@ -146,7 +147,7 @@ fn take_environment(headless: &mut Headless, args: &Args) -> bool {
     let baked = headless.bake(true);
     match &baked {
         Ok(()) => emit(args.common.emits(), &Event::Bake(headless.bake_report())),
-        Err(error) => eprintln!("specula: {error}\nspecula: the last good environment stays"),
+        Err(error) => message::tell(format_args!("{error}\nspecula: the last good environment stays")),
     }
     baked.is_ok()
 }
@@ -169,13 +170,13 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
         Outcome::Ready(set) => {
             print_diagnostics(&set.shaders.warnings);
             let report = &reload.report;
-            eprintln!(
-                "specula: {} -> {}  compile {:.0} ms + pipeline {:.0} ms + frame {first_frame_ms:.0} ms",
+            message::tell(format_args!(
+                "{} -> {}  compile {:.0} ms + pipeline {:.0} ms + frame {first_frame_ms:.0} ms",
                 report.changed.join(" "),
                 report.stages.iter().map(|(stage, _)| stage.as_str()).collect::<Vec<_>>().join(" "),
                 report.compile_ms,
                 reload.pipeline_ms,
-            );
+            ));
         }
     }
     let generation = headless.shaders().generation;

@@ -1,14 +1,15 @@
 //! `specula view`: the window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use specula::app::{self, AppError, AppOptions};
 
 use super::Failure;
-use super::common::{Common, check_model_path, compiler};
+use super::common::{Common, compiler};
+use super::names::check_model_path;
 
-/// Beyond any screen, and within what window systems can count.
+/// Largest width and height of a window in pixels: beyond any screen, and within what window systems can represent.
 const LARGEST_WINDOW: u32 = 16384;
 
 /// Options of `view`.
@@ -20,14 +21,22 @@ pub struct Args {
     common: Common,
 }
 
+impl Args {
+    /// The model as it was typed.
+    pub fn model(&self) -> Option<&Path> {
+        self.model.as_deref()
+    }
+}
+
 /// Runs the command.
 pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     let events = args.common.emits();
     check_model_path(args.model.as_deref())?;
     let (width, height) = args.common.size;
     if width.max(height) > LARGEST_WINDOW {
-        let message = format!("a window of {width}x{height} is too large; at most {LARGEST_WINDOW} pixels a side");
-        return Err(Failure::Input(message));
+        let message =
+            format!("--size {width}x{height} is too large for a window; at most {LARGEST_WINDOW} pixels a side");
+        return Err(Failure::Usage(message));
     }
     let options = AppOptions {
         source: args.common.source()?,

@@ -4,6 +4,8 @@ use std::ffi::CStr;
 
 use ash::{khr, vk};
 
+use crate::message::did_you_mean;
+
 use super::error::{Context, GpuError};
 use super::instance::{Instance, NO_DRIVER};
 
@@ -47,6 +49,7 @@ pub(super) fn choose(
         None => format!("\n  {} ({})", i.name, i.kind),
     });
     let list = list.collect::<String>();
+    let names: Vec<String> = all.iter().map(|(_, info)| info.name.clone()).collect();
     let rank = |kind: &str| ["discrete", "integrated", "virtual", "other", "cpu"].iter().position(|k| *k == kind);
     all.sort_by_key(|(_, info)| rank(info.kind));
     let named = |info: &AdapterInfo| part.is_none_or(|p| info.name.to_lowercase().contains(&p.to_lowercase()));
@@ -54,7 +57,10 @@ pub(super) fn choose(
         Some(found) => Ok(found),
         None if list.is_empty() => Err(GpuError::NoDevice(NO_DRIVER.into())),
         None => Err(GpuError::NoDevice(match part {
-            Some(part) => format!("no usable device has '{part}' in its name. Devices:{list}"),
+            Some(part) => {
+                let hint = did_you_mean(part, names.iter().flat_map(|name| name.split_whitespace()));
+                format!("no usable device has '{part}' in its name.{hint} Devices:{list}")
+            }
             None => format!("Specula can use none of these:{list}"),
         })),
     }

@@ -6,6 +6,7 @@ use glam::{Mat4, Vec3};
 
 pub use super::material::*;
 pub use crate::interface::Vertex;
+use crate::message::did_you_mean;
 
 /// A loaded model. Indices into its vectors are always in range; a loader that cannot promise that returns an error.
 #[derive(Clone, Debug, Default)]
@@ -166,7 +167,8 @@ impl Model {
                 [] => "it has none".to_owned(),
                 names => format!("it has {}", names.join(", ")),
             };
-            format!("the model has no variant '{name}': {known}. Leave the name empty for the model as it comes")
+            let hint = did_you_mean(name, self.variants.iter().map(String::as_str));
+            format!("the model has no variant '{name}': {known}.{hint} An empty name is the model in its own materials")
         })
     }
 

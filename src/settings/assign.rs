@@ -1,17 +1,23 @@
 //! `path=value`, as `--set` takes it.
 
-use super::Settings;
+use super::{Settings, catalog, limits, told};
+use crate::message::{did_you_mean, either};
+
+/// Where the list of all settings is.
+const SEE: &str = "(see `specula help set`)";
 
 impl Settings {
-    /// Applies `path=value`, as `--set` takes it: a dotted path (`lights.orbit.0.strength`), or the bare name of a shader's own
-    /// constant or parameter; a TOML value, numbers joined by commas, or text without quotes.
+    /// Applies `path=value`, as `--set` takes it: a dotted path (`lights.orbit.0.strength`), or the bare name of one of the shader
+    /// tree's own constants or parameters; then a TOML value, numbers joined by commas, or text without quotes.
+    ///
+    /// Whether the shader tree has such a name is not checked here.
     ///
     /// # Errors
-    /// No `=`, a path that does not exist, or a value of the wrong kind, in words.
+    /// No `=`, a path that does not exist, or a value of the wrong kind: what was expected, with the nearest name.
     pub fn assign(&mut self, assignment: &str) -> Result<(), String> {
         let (path, text) = assignment
             .split_once('=')
-            .ok_or_else(|| format!("'{assignment}' is not path=value, as in lights.ambient_strength=0.2"))?;
+            .ok_or_else(|| format!("'{assignment}' has no value: expected path=value, as in view.ev=1 {SEE}"))?;
         let (path, text) = (path.trim(), text.trim());
         let known = self.known()?;
         let is_own = !path.contains('.') && known.get(path).is_none();
@@ -24,19 +30,39 @@ impl Settings {
         };
         let mut root = toml::Value::try_from(&*self).map_err(|e| e.to_string())?;
         set_at(&mut root, &full, value)?;
-        *self = root
-            .try_into()
-            .map_err(|e: toml::de::Error| format!("{path} cannot be '{text}'; {}", takes(&full, old, e.message())))?;
+        *self = root.try_into().map_err(|e: toml::de::Error| {
+            let takes = takes(&full, text, old, e.message());
+            if text.is_empty() {
+                format!("{path} has no value; {takes}")
+            } else {
+                format!("{path} cannot be '{text}'; {takes}")
+            }
+        })?;
         Ok(())
     }
 
-    /// A table of all settings, also of those that are not set, to look up paths and types.
-    fn known(&self) -> Result<toml::Value, String> {
+    /// A table of all settings, including those that have no value, to look up paths and types.
+    pub(super) fn known(&self) -> Result<toml::Value, String> {
         let mut all = self.clone();
         all.camera.eye.get_or_insert_default();
         all.camera.target.get_or_insert_default();
         toml::Value::try_from(all).map_err(|e| e.to_string())
     }
+}
+
+/// The message about a name that is neither a setting nor one of the shader tree's `own` names. `describe` says what one of those
+/// takes.
+pub fn unknown_setting(name: &str, own: &[&str], describe: impl Fn(&str) -> Option<String>) -> String {
+    let hint = catalog::nearest(name, own).map_or_else(String::new, |nearest| {
+        let takes = if own.contains(&nearest.as_str()) { describe(&nearest) } else { numbers(&nearest) };
+        let takes = takes.map(|takes| format!(", which takes {takes}")).unwrap_or_default();
+        format!(" Did you mean `{nearest}`{takes}?")
+    });
+    let list = own.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let list = if list.is_empty() { "none".to_owned() } else { list };
+    format!(
+        "unknown setting `{name}`.{hint} Shader parameters: {list}. Settings: `view.ev`, `lights.orbit.0.strength`, ... {SEE}"
+    )
 }
 
 /// A TOML value, or numbers joined by commas; anything else is text.
@@ -50,7 +76,7 @@ fn parse(text: &str) -> toml::Value {
     value.unwrap_or_else(|| toml::Value::String(text.into()))
 }
 
-/// What is at a path; nothing where a value of the shader author's can be put.
+/// The value at a path; `None` where a value for the shader tree can be inserted.
 fn find<'a>(root: &'a toml::Value, path: &str) -> Result<Option<&'a toml::Value>, String> {
     let mut place = root;
     let mut above = String::new();
@@ -58,18 +84,22 @@ fn find<'a>(root: &'a toml::Value, path: &str) -> Result<Option<&'a toml::Value>
         let below = match place {
             toml::Value::Table(table) => table.get(key),
             toml::Value::Array(array) => key.parse::<usize>().ok().and_then(|i| array.get(i)),
-            _ => return Err(format!("there is nothing below the part before '{key}' in {path}")),
+            _ => return Err(format!("unknown setting `{path}`. `{above}` is a value and has no part '{key}' {SEE}")),
         };
         let full = if above.is_empty() { key.to_owned() } else { format!("{above}.{key}") };
         place = match (below, place) {
             (Some(below), _) => below,
             (None, toml::Value::Array(array)) => {
-                let (length, last) = (array.len(), array.len().saturating_sub(1));
-                return Err(format!("'{key}' in {path} is not one of the {length} entries, 0 to {last}"));
+                let last = array.len().saturating_sub(1);
+                return Err(format!("unknown setting `{path}`. After `{above}` comes a number from 0 to {last} {SEE}"));
             }
             (None, _) if above == "shader" && full == path => return Ok(None),
-            (None, _) if above.is_empty() => return Err(format!("there is no {full}; there are {}", keys(place))),
-            (None, _) => return Err(format!("there is no {full}; below {above} there are {}", keys(place))),
+            (None, _) => {
+                let hint = catalog::nearest(path, &[]).map(|name| format!(" Did you mean `{name}`?"));
+                let hint = hint.unwrap_or_default();
+                let place_name = if above.is_empty() { "At the top".to_owned() } else { format!("Below `{above}`") };
+                return Err(format!("unknown setting `{path}`.{hint} {place_name} there are {} {SEE}", keys(place)));
+            }
         };
         above = full;
     }
@@ -79,25 +109,37 @@ fn find<'a>(root: &'a toml::Value, path: &str) -> Result<Option<&'a toml::Value>
 fn keys(value: &toml::Value) -> String {
     let mut keys: Vec<&str> = value.as_table().into_iter().flat_map(|table| table.keys().map(String::as_str)).collect();
     keys.sort_unstable();
-    if keys.is_empty() { "none".into() } else { keys.join(", ") }
+    if keys.is_empty() { "no settings".into() } else { keys.join(", ") }
 }
 
-/// What fits at a path where `old` is, when serde refused something else because of `cause`.
-fn takes(path: &str, old: Option<&toml::Value>, cause: &str) -> String {
-    let names = cause.strip_prefix("unknown variant").and_then(|cause| cause.split_once("expected "));
-    if let Some((_, names)) = names {
-        return format!("it can be {}", names.trim_start_matches("one of ").replace('`', ""));
+/// `a number, 0 to 1`, if the setting is a number or several numbers with limits.
+fn numbers(path: &str) -> Option<String> {
+    let setting = catalog().into_iter().find(|setting| setting.path == path)?;
+    match setting.takes {
+        "number" => Some(format!("a number, {}", told(&limits(path)?))),
+        "3 numbers" => Some(format!("3 numbers, {}", told(&limits(path)?))),
+        _ => None,
     }
+}
+
+/// What fits at a path where `old` is, after serde refused `text` because of `cause`.
+fn takes(path: &str, text: &str, old: Option<&toml::Value>, cause: &str) -> String {
+    let names = catalog::names(path);
+    if !names.is_empty() {
+        let hint = did_you_mean(text, names.iter().map(String::as_str));
+        return format!("it can be {}.{hint}", either(&names));
+    }
+    let within = limits(path).map(|limits| format!(", {}", told(&limits))).unwrap_or_default();
     match old {
         _ if path.starts_with("shader.") => "it takes a number, numbers as 1,0.8,0.6, true, false or a name".into(),
-        Some(toml::Value::Float(_)) => "it takes a number".into(),
+        Some(toml::Value::Float(_)) => format!("it takes a number{within}"),
         Some(toml::Value::Integer(_)) => "it takes a whole number, 0 or more".into(),
         Some(toml::Value::Boolean(_)) => "it takes true or false".into(),
         Some(toml::Value::Array(list)) if list.iter().all(toml::Value::is_float) => {
             format!("it takes {} numbers, as 0.9{}", list.len(), ",0.1".repeat(list.len().saturating_sub(1)))
         }
         Some(toml::Value::Array(_)) => format!("it is a list of settings, as {path}.0"),
-        Some(group) => format!("it is a group; below it there are {}", keys(group)),
+        Some(group) => format!("it is a group of settings: {}", keys(group)),
         None => cause.to_owned(),
     }
 }
@@ -113,7 +155,8 @@ fn set_at(root: &mut toml::Value, path: &str, value: toml::Value) -> Result<(), 
             toml::Value::Array(array) => index(key).and_then(|i| array.get_mut(i)),
             _ => None,
         };
-        place = below.ok_or_else(|| format!("{path} cannot be set alone: there is no {key} yet; set all of it"))?;
+        place = below
+            .ok_or_else(|| format!("{path} cannot be set alone, because {key} has no value yet; set all of {key}"))?;
     }
     match place {
         toml::Value::Table(table) => {
@@ -174,25 +217,27 @@ mod tests {
         for (assignment, part) in [
             (
                 "view.exposure=1",
-                "there is no view.exposure; below view there are background, ev, frames, msaa, tonemap",
+                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, ev, frames, msaa, \
+                 tonemap (see `specula help set`)",
             ),
-            ("views.ev=1", "there is no views; there are camera, "),
-            ("shader.rim.x=1", "there is no shader.rim; below shader there are none"),
-            ("camera.eye.0=1", "there is no eye yet"),
-            ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number"),
+            ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? At the top there are camera, "),
+            ("shader.rim.x=1", "unknown setting `shader.rim.x`. "),
+            ("camera.eye.0=1", "eye has no value yet; set all of eye"),
+            ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number, -30 to 30"),
+            ("view.ev=", "view.ev has no value; it takes a number, -30 to 30"),
             ("view.msaa=-1", "view.msaa cannot be '-1'; it takes a whole number, 0 or more"),
-            ("view=1", "view cannot be '1'; it is a group; below it there are background, ev,"),
+            ("view=1", "view cannot be '1'; it is a group of settings: background, ev,"),
             ("lights.orbit=1", "lights.orbit cannot be '1'; it is a list of settings, as lights.orbit.0"),
             ("lights.rect.enabled=yes", "lights.rect.enabled cannot be 'yes'; it takes true or false"),
             ("material.base_color=0.9,0.1", "cannot be '0.9,0.1'; it takes 3 numbers, as 0.9,0.1,0.1"),
             ("material.base_color=red", "material.base_color cannot be 'red'; it takes 3 numbers"),
             ("camera.eye=[1, 2, 3, 4]", "camera.eye cannot be '[1, 2, 3, 4]'; it takes 3 numbers"),
             ("rim={ x = 1 }", "rim cannot be '{ x = 1 }'; it takes a number, numbers as"),
-            ("lights.orbit.3.strength=1", "0 to 2"),
-            ("view.ev.x=1", "nothing below"),
-            ("view.ev", "path=value"),
+            ("lights.orbit.3.strength=1", "After `lights.orbit` comes a number from 0 to 2"),
+            ("view.ev.x=1", "`view.ev` is a value and has no part 'x'"),
+            ("view.ev", "expected path=value"),
             ("view.tonemap=filmic", "view.tonemap cannot be 'filmic'; it can be none, reinhard, reinhard-luminance, "),
-            ("lights.source=5", "lights.source cannot be '5'; it can be orbit, model, none"),
+            ("lights.source=5", "lights.source cannot be '5'; it can be orbit, model or none."),
         ] {
             let error = settings.assign(assignment).unwrap_err();
             assert!(error.contains(part), "{assignment}: {error}");

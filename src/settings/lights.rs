@@ -13,7 +13,7 @@ pub enum LightSource {
     Orbit,
     /// The model's own lights (KHR_lights_punctual).
     Model,
-    /// None.
+    /// No lights, only the environment.
     None,
 }
 

@@ -1,12 +1,14 @@
-//! Limits of numbers in the settings.
+//! Numbers with their limits.
 
 use std::ops::RangeInclusive;
 
-/// A number in the settings with its path and limits.
+use super::told;
+
+/// A number of the settings with its path and limits.
 pub(super) struct Range {
-    path: String,
+    pub(super) path: String,
     value: f32,
-    limits: RangeInclusive<f32>,
+    pub(super) limits: RangeInclusive<f32>,
 }
 
 impl Range {
@@ -21,12 +23,12 @@ impl Range {
         values.iter().enumerate().map(entry).collect()
     }
 
-    /// Returns a message if the number is out of range or NaN.
+    /// Refuses a number outside of its limits, and NaN.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self { path, value, limits } = self;
         if limits.contains(value) {
             return Ok(());
         }
-        Err(format!("{path} is {value}; it can be {} to {}", limits.start(), limits.end()))
+        Err(format!("{path} is {value}; it can be {}", told(limits)))
     }
 }

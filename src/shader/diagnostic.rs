@@ -8,7 +8,9 @@ use codespan_reporting::files::{Error as FilesError, Files};
 use codespan_reporting::term;
 use serde::Serialize;
 
-/// Whether the shader set can still be used.
+use crate::message::{escape, escape_lines};
+
+/// Whether the shader set may be used all the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -104,18 +106,43 @@ impl Diagnostic {
         self
     }
 
-    /// `file:line:column: error: message`, without the parts that are unknown. Editors parse this.
+    /// `file:line:column: error: message`, without the parts that are unknown and with control characters escaped. Editors
+    /// parse this.
     pub fn one_line(&self) -> String {
+        let file = escape(&self.file);
         let place = match (self.line, self.column) {
-            (Some(line), Some(column)) => format!("{}:{line}:{column}", self.file),
-            (Some(line), None) => format!("{}:{line}", self.file),
-            _ => self.file.clone(),
+            (Some(line), Some(column)) => format!("{file}:{line}:{column}"),
+            (Some(line), None) => format!("{file}:{line}"),
+            _ => file,
         };
-        format!("{place}: {}: {}", self.severity, self.message.replace('\n', " "))
+        format!("{place}: {}: {}", self.severity, escape_lines(&self.message.replace('\n', " ")))
     }
 
-    /// Several lines of plain text: message, place, source line with a caret, help and notes.
+    /// Several lines of plain text: the message, the place, the line of source with a caret, help and notes. Control
+    /// characters are escaped, but for tabs and line breaks.
     pub fn render(&self) -> String {
+        self.escaped().render_escaped()
+    }
+
+    /// The same diagnostic with escapes in place of control characters; its column counts the escapes.
+    fn escaped(&self) -> Self {
+        let count = |text: &str| u32::try_from(escape_lines(text).chars().count()).unwrap_or(u32::MAX - 1);
+        let token = self.excerpt.as_deref().zip(self.column).zip(self.caret_bytes());
+        let caret = token.map(|((excerpt, _), bytes)| (count(&excerpt[..bytes.start]) + 1, count(&excerpt[bytes])));
+        Self {
+            severity: self.severity,
+            file: escape(&self.file),
+            line: self.line,
+            column: caret.map_or(self.column, |(column, _)| Some(column)),
+            length: caret.map_or(self.length, |(_, length)| length),
+            message: escape_lines(&self.message),
+            excerpt: self.excerpt.as_deref().map(|excerpt| escape_lines(excerpt.trim_end_matches('\r'))),
+            help: self.help.as_deref().map(escape_lines),
+            notes: self.notes.iter().map(|note| escape_lines(note)).collect(),
+        }
+    }
+
+    fn render_escaped(&self) -> String {
         let severity = match self.severity {
             Severity::Error => RenderedSeverity::Error,
             Severity::Warning => RenderedSeverity::Warning,
@@ -134,7 +161,7 @@ impl Diagnostic {
         let config = term::Config { chars: term::Chars::ascii(), ..term::Config::default() };
         match term::emit_into_string(&config, &excerpt, &rendered) {
             Ok(text) => text.trim_end().to_owned() + "\n",
-            // Cannot happen, since `under` admits no range outside the excerpt. Fall back to the essentials.
+            // Only a range outside of the excerpt could fail, and `under` accepts none.
             Err(_) => self.one_line() + "\n",
         }
     }

@@ -1,4 +1,4 @@
-//! `specula brdf furnace`: the albedo of a surface over roughness and angle.
+//! `specula brdf furnace`: the directional albedo of a surface by roughness and angle.
 
 use serde_json::json;
 use specula::render::brdf::measure::{Claim, Grid, Surface};
@@ -6,12 +6,12 @@ use specula::settings::ShaderValue;
 use specula::shader::Constant;
 
 use super::{Opened, Options, SurfaceOptions, listed, short};
-use crate::commands::Failure;
+use crate::commands::{Failure, print_json};
 
-/// Largest albedo that counts as energy conserving. The tolerance of 0.005 covers the error of the estimate.
+/// Largest albedo that counts as energy-conserving: the estimate has an error of up to 0.005.
 const MOST: f64 = 1.005;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 18, theta: (0.0, 85.0), samples: 2048 };
-/// A coarse grid, enough to tell whether a choice affects the albedo.
+/// A grid that is just fine enough to find out whether a choice changes the albedo.
 const COARSE: Grid = Grid { rows: 4, roughness: (0.1, 1.0), columns: 4, theta: (0.0, 84.0), samples: 64 };
 
 /// Options of `brdf furnace`.
@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (min, max) = extremes(&albedo);
     let conserves = max <= MOST;
     if args.json {
-        print_json(&albedo, min, max, without.is_empty());
+        print_rows(&albedo, min, max, without.is_empty());
     } else {
         print_table(&albedo, surface);
         out!("\nmin {min:.4}  max {max:.4}");
@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let broken = without.is_empty() && !conserves;
     opened.close()?;
     if broken {
-        let found = if max.is_nan() { "NaN".to_owned() } else { format!("{max:.4}") };
+        let found = if max.is_nan() { "a value that is not a number".to_owned() } else { format!("up to {max:.4}") };
         return Err(Failure::Input(format!(
             "furnace: this combination claims to conserve energy, but its largest albedo is {found}; at most {MOST} is \
              expected. Correct the formula, or remove the choice from `conserves=` in brdf/models.glsl"
@@ -65,19 +65,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether a choice without the claim affects this surface. The diffuse model, for example, does not affect a metal.
+/// Whether an unclaimed choice changes the albedo of this surface. The diffuse model, for example, does not change that of
+/// a metal.
 fn has_part(opened: &Opened, constant: &Constant, surface: Surface) -> Result<bool, Failure> {
     let Some(other) = Claim::Conserves.of(constant).and_then(|names| names.first()) else { return Ok(true) };
     let mut settings = opened.settings.clone();
     settings.shader.insert(constant.name.clone(), ShaderValue::Name(other.clone()));
     let chosen = opened.bench.furnace(surface, COARSE)?;
     let claiming = opened.bench.with(&settings)?.furnace(surface, COARSE)?;
-    // 1e-4 is far above the rounding differences between two compilations of the same formula.
+    // Drivers may reorder sums when other code changes. 1e-4 is far above the rounding errors of that.
     let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-4 || a.is_nan() != b.is_nan();
     Ok(chosen.as_flattened().iter().zip(claiming.as_flattened()).any(differs))
 }
 
-/// Smallest and largest value; NaN if any value is NaN.
+/// Smallest and largest value; NaN when any value is NaN.
 pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
     let values = || albedo.as_flattened().iter().copied();
     let with = |pick: fn(f64, f64) -> f64| {
@@ -86,14 +87,14 @@ pub fn extremes(albedo: &[[f64; 3]]) -> (f64, f64) {
     (with(f64::min), with(f64::max))
 }
 
-fn print_json(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {
+fn print_rows(albedo: &[[f64; 3]], min: f64, max: f64, claims: bool) {
     let cells = (0..GRID.rows).flat_map(|row| (0..GRID.columns).map(move |column| (row, column)));
     let row = |((row, column), albedo): ((u32, u32), &[f64; 3])| {
         json!({ "roughness": GRID.roughness_of(row), "cos_theta": GRID.theta_of(column).to_radians().cos(),
             "albedo": albedo })
     };
     let rows: Vec<_> = cells.zip(albedo).map(row).collect();
-    out!("{:#}", json!({ "rows": rows, "min": min, "max": max, "claims_conservation": claims }));
+    print_json(&json!({ "rows": rows, "min": min, "max": max, "claims_conservation": claims }));
 }
 
 fn print_table(albedo: &[[f64; 3]], surface: Surface) {

@@ -1,4 +1,4 @@
-//! `specula brdf`: measures the BRDF of the shader tree, checks it against its claims, and plots it.
+//! `specula brdf`: measures the BRDF of a shader tree, checks its claims, and plots it.
 
 mod canvas;
 mod furnace;
@@ -20,6 +20,7 @@ use specula::shader::{Change, Constant, Library, ShaderSet, Update};
 
 use super::Failure;
 use super::common::{check_validation, compiler, open_gpu, source};
+use super::parse::number;
 
 /// Options of `brdf`.
 #[derive(clap::Args)]
@@ -30,15 +31,15 @@ pub struct Args {
 
 #[derive(Subcommand)]
 enum What {
-    /// Albedo over roughness and angle: a white surface must not reflect more light than it receives
+    /// Measure the directional albedo by roughness and angle; no surface may reflect more light than arrives
     Furnace(furnace::Args),
-    /// Whether the BRDF is reciprocal: f(l, v) = f(v, l)
+    /// Check Helmholtz reciprocity: f(l, v) = f(v, l)
     Reciprocity(reciprocity::Args),
-    /// Whether D is normalized: the integral of D NoH is 1
+    /// Check that the microfacet distribution is normalized: the integral of D NoH is 1
     Normalization(normalization::Args),
-    /// Error of the split sum against Monte Carlo, over roughness
+    /// Measure the error of image-based lighting by roughness
     SplitSum(split_sum::Args),
-    /// Plot the lobes, and the albedo over the angle, as a PNG
+    /// Plot the lobes, and the albedo over the angle, to a PNG
     Plot(plot::Args),
 }
 
@@ -59,47 +60,47 @@ struct Options {
     /// Shader tree [default: ./shaders if it is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
-    /// Select a model or set a parameter of the shader tree, such as NDF=Beckmann; may be repeated
+    /// Set a constant or parameter of the shader tree, as NDF=Beckmann; may repeat. `specula modes` lists them
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Device whose name contains this
+    /// Use the device whose name contains this text; `specula info` lists the devices
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Turn the Vulkan validation layers on; their messages fail the command
+    /// Turn the Vulkan validation layers on; each of their messages fails the command
     #[arg(long)]
     validate: bool,
 }
 
 impl Options {
-    /// The default settings with all `--set` assignments.
+    /// The default settings with the values of `--set`.
     fn settings(&self) -> Result<Settings, Failure> {
         let mut settings = Settings::default();
         for assignment in &self.set {
-            settings.assign(assignment).map_err(|e| Failure::Input(format!("--set: {e}")))?;
+            settings.assign(assignment).map_err(|e| Failure::Usage(format!("--set: {e}")))?;
         }
         let foreign = Settings { shader: Settings::default().shader, ..settings.clone() } != Settings::default();
         if foreign {
-            let message = "--set: `specula brdf` takes only constants and parameters of the shader tree, such as \
-                NDF=Beckmann; `specula modes` lists them";
-            return Err(Failure::Input(message.into()));
+            let message = "--set: `specula brdf` takes only constants and parameters of the shader tree, as NDF=Beckmann; \
+                `specula modes` lists them";
+            return Err(Failure::Usage(message.into()));
         }
         Ok(settings)
     }
 }
 
-/// The surface to measure.
+/// The surface that is measured.
 #[derive(clap::Args)]
 struct SurfaceOptions {
     /// 0 dielectric .. 1 metal
-    #[arg(long, value_name = "0..1", value_parser = unit)]
+    #[arg(long, value_name = "0..1", allow_negative_numbers = true, value_parser = unit)]
     metallic: Option<f32>,
     /// Linear RGB of the base color, each 0..1
-    #[arg(long, value_name = "R,G,B", default_value = "1,1,1", value_parser = color)]
+    #[arg(long, value_name = "R,G,B", default_value = "1,1,1", allow_hyphen_values = true, value_parser = color)]
     base_color: [f32; 3],
 }
 
 impl SurfaceOptions {
-    /// One surface with the requested metallic, or one for each of these values.
+    /// A surface with the chosen metallic, or else one with each of these.
     fn surfaces(&self, metallic: &[f32]) -> Vec<Surface> {
         let chosen = self.metallic.map_or_else(|| metallic.to_vec(), |metallic| vec![metallic]);
         chosen.into_iter().map(|metallic| Surface { base_color: self.base_color, metallic }).collect()
@@ -125,7 +126,7 @@ impl Opened {
         };
         let misfit = misfits(&settings.shader, &shaders).into_iter().next();
         if let Some(message) = unknown_names(&settings.shader, &shaders).or(misfit) {
-            return Err(Failure::Input(message));
+            return Err(Failure::Usage(message));
         }
         let gpu = open_gpu(options.device.as_deref(), options.validate)?;
         let bench = Bench::new(&gpu, &shaders, &settings)?;
@@ -136,7 +137,7 @@ impl Opened {
         unclaimed(claim, &self.settings, &self.shaders)
     }
 
-    /// Destroys everything first, so that validation messages of destruction count too.
+    /// Destroys everything, and fails if the validation layers reported a message then or before.
     fn close(self) -> Result<(), Failure> {
         let gpu = self.gpu.clone();
         drop(self);
@@ -144,17 +145,17 @@ impl Opened {
     }
 }
 
-/// Choices as the user types them: `NDF=GGX, DIFFUSE=Burley`.
+/// Choices in the form of `--set`: `NDF=GGX, DIFFUSE=Burley`.
 fn listed(choices: &[(&Constant, String)]) -> String {
     choices.iter().map(|(constant, chosen)| format!("{}={chosen}", constant.name)).collect::<Vec<_>>().join(", ")
 }
 
-/// Rounds for display: 0.3, not 0.30000001192092896.
+/// Rounds floats to six digits after the point, so that 0.3 is not printed as 0.30000001192092896.
 fn short(numbers: [f32; 3]) -> [f64; 3] {
     numbers.map(|x| (f64::from(x) * 1e6).round() / 1e6)
 }
 
-/// A direction as text.
+/// A direction as angles.
 fn direction(v: [f32; 3]) -> String {
     let [x, y, z] = v.map(f64::from);
     format!(
@@ -164,17 +165,13 @@ fn direction(v: [f32; 3]) -> String {
     )
 }
 
-fn number(text: &str, low: f32, high: f32) -> Result<f32, String> {
-    let number = text.trim().parse::<f32>().map_err(|_| format!("expected a number from {low} to {high}"))?;
-    if (low..=high).contains(&number) { Ok(number) } else { Err(format!("it can be {low} to {high}")) }
-}
-
 fn unit(text: &str) -> Result<f32, String> {
     number(text, 0.0, 1.0)
 }
 
 fn color(text: &str) -> Result<[f32; 3], String> {
-    let expected = |why: String| format!("expected three numbers, such as 1,0.8,0.6: {why}");
-    let numbers = text.split(',').map(unit).collect::<Result<Vec<_>, _>>().map_err(expected)?;
-    <[f32; 3]>::try_from(numbers).map_err(|found| expected(format!("found {}", found.len())))
+    let expected = |found: String| format!("expected three numbers, each 0 to 1, as 1,0.8,0.6; found {found}");
+    let numbers: Option<Vec<f32>> = text.split(',').map(|number| unit(number).ok()).collect();
+    let numbers = numbers.ok_or_else(|| expected(text.to_owned()))?;
+    <[f32; 3]>::try_from(numbers).map_err(|numbers| expected(numbers.len().to_string()))
 }

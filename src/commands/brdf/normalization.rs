@@ -1,10 +1,10 @@
-//! `specula brdf normalization`: the integral of D NoH, which is 1 for every normal distribution function.
+//! `specula brdf normalization`: checks that the integral of D NoH is 1, as for every distribution of microfacets.
 
 use serde_json::json;
 use specula::render::brdf::measure::Grid;
 
 use super::{Opened, Options};
-use crate::commands::Failure;
+use crate::commands::{Failure, print_json};
 
 const MOST: f64 = 0.005;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 1, theta: (0.0, 0.0), samples: 4096 };
@@ -30,7 +30,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let list: Vec<_> = rows.iter().map(|(r, integral)| json!({ "roughness": r, "integral": integral })).collect();
         let largest = json!({ "roughness": worst.0, "error": off(&worst) });
-        out!("{:#}", json!({ "rows": list, "worst": largest, "limit": MOST, "normalized": holds }));
+        print_json(&json!({ "rows": list, "worst": largest, "limit": MOST, "normalized": holds }));
     } else {
         out!("roughness  integral of D NoH");
         for (roughness, integral) in &rows {

@@ -1,15 +1,16 @@
-//! `specula brdf plot`: plots the lobes of the selected models, and the albedo over the angle.
+//! `specula brdf plot`: plots the lobes of the chosen models, and the albedo over the angle.
 
 use std::path::PathBuf;
 
-use specula::picture;
 use specula::render::brdf::measure::{Bench, Claim, Grid, Lobe, Surface, choices};
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
 use super::furnace::extremes;
 use super::plot_axes::{Chart, HalfDisk, TEXT, draw_legend};
-use super::{Opened, Options, SurfaceOptions, number, short, unit};
+use super::{Opened, Options, SurfaceOptions, short, unit};
 use crate::commands::Failure;
+use crate::commands::common::check_out;
+use crate::commands::parse::number;
 
 const WIDTH: f32 = 1600.0;
 const MARGIN: f32 = 56.0;
@@ -34,11 +35,11 @@ pub struct Args {
     /// PNG to write
     #[arg(long, short, value_name = "FILE.png", default_value = "lobes.png")]
     out: PathBuf,
-    /// Angle between light and normal, degrees
-    #[arg(long, value_name = "DEG", default_value = "45", value_parser = |t: &str| number(t, 0.0, 89.0))]
+    /// Angle of the light in degrees from the normal, 0 to 89
+    #[arg(long, value_name = "DEG", default_value = "45", allow_negative_numbers = true, value_parser = |t: &str| number(t, 0.0, 89.0))]
     angle: f32,
     /// One to six values of roughness
-    #[arg(long, value_name = "R,R,..", value_delimiter = ',', default_value = "0.2,0.4,0.6,0.8", value_parser = unit)]
+    #[arg(long, value_name = "R,R,..", value_delimiter = ',', default_value = "0.2,0.4,0.6,0.8", allow_hyphen_values = true, value_parser = unit)]
     roughness: Vec<f32>,
     #[command(flatten)]
     surface: SurfaceOptions,
@@ -46,7 +47,7 @@ pub struct Args {
     options: Options,
 }
 
-/// The measurements of one surface.
+/// The measured lobes and albedo of one surface.
 struct Measured {
     surface: Surface,
     /// For each roughness, [`LOBE_COLUMNS`] lobes.
@@ -57,13 +58,14 @@ struct Measured {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    picture::check_path(&args.out).map_err(Failure::Input)?;
     if args.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("png")) {
-        return Err(Failure::Input(format!("cannot write {}: a plot is a PNG, so name it .png", args.out.display())));
+        let message = format!("cannot write {}: the file of a plot must end in .png", args.out.display());
+        return Err(Failure::Usage(message));
     }
+    check_out(&args.out)?;
     if args.roughness.len() > 6 {
         let found = args.roughness.len();
-        return Err(Failure::Input(format!("--roughness takes at most 6 values, found {found}")));
+        return Err(Failure::Usage(format!("--roughness takes at most 6 values; found {found}")));
     }
     let opened = Opened::new(&args.options)?;
     let surfaces = args.surface.surfaces(&[0.0, 1.0]);

@@ -1,12 +1,12 @@
-//! `specula brdf reciprocity`: checks f(l, v) = f(v, l).
+//! `specula brdf reciprocity`: checks that f(l, v) = f(v, l).
 
 use serde_json::json;
 use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
 
 use super::{Opened, Options, SurfaceOptions, direction, listed};
-use crate::commands::Failure;
+use crate::commands::{Failure, print_json};
 
-/// Largest relative difference that counts as rounding error.
+/// Largest relative difference that rounding explains.
 const MOST: f32 = 1e-4;
 const GRID: Grid = Grid { rows: 20, roughness: (0.05, 1.0), columns: 16, theta: (0.0, 85.0), samples: 1024 };
 
@@ -39,10 +39,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let claims = without.is_empty();
     let holds = pair.error < MOST;
     if args.json {
-        out!(
-            "{:#}",
-            json!({ "error": pair.error, "roughness": roughness, "metallic": metallic, "l": pair.l, "v": pair.v,
-                "limit": MOST, "claims_reciprocity": claims, "reciprocal": holds })
+        print_json(
+            &json!({ "error": pair.error, "roughness": roughness, "metallic": metallic, "l": pair.l, "v": pair.v,
+                "limit": MOST, "claims_reciprocity": claims, "reciprocal": holds }),
         );
     } else {
         out!("largest difference of f(l, v) and f(v, l): {:.3e} of their mean", pair.error);
@@ -68,7 +67,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The pair with the largest difference, its row and the surface's metallic.
+/// The pair of directions with the largest difference, its row in the grid, and the metallic of the surface.
 fn worst_of(opened: &Opened, surface: Surface) -> Result<(Worst, u32, f32), Failure> {
     let cells = opened.bench.reciprocity(surface, GRID)?;
     let rows = (0..).flat_map(|row: u32| std::iter::repeat_n(row, GRID.columns as usize));

@@ -1,4 +1,4 @@
-//! `specula brdf split-sum`: the error of image-based lighting by the split sum, against Monte Carlo.
+//! `specula brdf split-sum`: compares the picture's image-based lighting with the same integral by random paths.
 
 use std::path::Path;
 
@@ -9,14 +9,15 @@ use specula::scene::{self, LoadOptions};
 use specula::settings::{LightSource, MaterialOverride};
 
 use super::{Options, SurfaceOptions};
-use crate::commands::Failure;
 use crate::commands::common::{check_mode, check_validation, compiler, open_gpu, source};
+use crate::commands::names::check_environment;
+use crate::commands::{Failure, print_json};
 
-/// A built-in model with a sphere.
+/// The sphere of this model is measured.
 const MODEL: &str = "material-override";
 const SIDE: u32 = 64;
 const ROWS: u32 = 10;
-/// Pixels seen at more than 84 degrees are skipped, since they show the facets of the mesh.
+/// Least NoV of the compared pixels, at an angle of 84 degrees. At larger angles the triangles of the mesh are visible.
 const LEAST_N_DOT_V: f32 = 0.1;
 
 /// Options of `brdf split-sum`.
@@ -24,11 +25,11 @@ const LEAST_N_DOT_V: f32 = 0.1;
 pub struct Args {
     #[command(flatten)]
     surface: SurfaceOptions,
-    /// Environment: studio, sky, furnace, or a .hdr or .exr file
-    #[arg(long, value_name = "WHAT", default_value = "studio")]
+    /// Environment that lights the surface: studio, sky, furnace, or a .hdr or .exr file
+    #[arg(long, value_name = "NAME|FILE", default_value = "studio")]
     env: String,
-    /// Number of Monte Carlo frames to average
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    /// Number of frames of random paths that are averaged, 1 to 10000
+    #[arg(long, value_name = "N", default_value_t = 64, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     frames: u32,
     /// Print JSON
     #[arg(long)]
@@ -37,8 +38,8 @@ pub struct Args {
     options: Options,
 }
 
-/// The difference between split sum and Monte Carlo, relative to the mean of Monte Carlo. At this resolution a sun's
-/// highlight on a smooth surface covers a few pixels, which then dominate both numbers.
+/// Difference between the split sum and the reference, relative to the mean of the reference. The picture is small: with a sun and a
+/// smooth surface, the result depends on the few pixels of the highlight.
 struct Row {
     roughness: f32,
     /// Mean difference.
@@ -58,9 +59,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let metallic = args.surface.metallic.unwrap_or(1.0);
     let base_color = args.surface.base_color;
     settings.material = MaterialOverride { enabled: true, base_color, metallic, ..MaterialOverride::default() };
-    settings.check().map_err(Failure::Input)?;
+    settings.check().map_err(Failure::Usage)?;
+    check_environment(&args.env)?;
     if !settings.environment.is_lit() {
-        return Err(Failure::Input("split-sum needs an environment: --env studio, sky, furnace or a file".into()));
+        return Err(Failure::Usage("split-sum needs an environment: use --env studio, sky, furnace or a file".into()));
     }
 
     let gpu = open_gpu(args.options.device.as_deref(), args.options.validate)?;
@@ -79,17 +81,19 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let split_sum = capture(&mut headless, "final")?;
         let truth = capture(&mut headless, "monte-carlo")?;
         let row = compare(roughness, &split_sum, &truth, &n_dot_v);
-        rows.push(row.ok_or_else(|| {
-            Failure::Input(format!("the environment {} is black, so there is nothing to compare", args.env))
-        })?);
+        rows.push(row.ok_or_else(|| Failure::Input(format!("{} is black, so there is nothing to compare", args.env)))?);
     }
     if args.json {
         let list = rows.iter().map(|r| json!({ "roughness": r.roughness, "bias": r.bias, "rms": r.rms }));
         let list: Vec<_> = list.collect();
         let options = json!({ "environment": args.env, "metallic": metallic, "frames": args.frames });
-        out!("{:#}", json!({ "rows": list, "options": options }));
+        print_json(&json!({ "rows": list, "options": options }));
     } else {
-        out!("(split sum - Monte Carlo) / mean of Monte Carlo, {} frames, environment {}", args.frames, args.env);
+        out!(
+            "Error of the split sum in {}: split sum minus random paths ({} frames), relative to their mean",
+            args.env,
+            args.frames
+        );
         out!("\nroughness     bias      rms");
         for row in &rows {
             out!("{:9.1}  {:+6.2} %  {:5.2} %", row.roughness, row.bias * 100.0, row.rms * 100.0);

@@ -1,25 +1,27 @@
-//! Values of the author's constants and parameters: from settings, by name, to the bits that the shader reads.
+//! Values of the shader tree's own constants and parameters: looked up by name in the settings and converted to the bits that the
+//! shader reads.
 
 use std::collections::BTreeMap;
 
 use crate::gpu::Specialization;
 use crate::interface::PARAMS_SIZE;
-use crate::settings::ShaderValue;
+use crate::message::{did_you_mean, either};
+use crate::settings::{ShaderValue, unknown_setting};
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::{Constant, Parameter, ShaderSet};
 
 type Values = BTreeMap<String, ShaderValue>;
 
-/// Specialization constants: all of them, in the order of their ids, so that equal values give equal pipelines. A value that
-/// does not fit leaves the default.
+/// All specialization constants in the order of their ids, so that equal values give equal pipelines. A constant whose value does not
+/// fit has its default.
 pub(crate) fn constants(values: &Values, constants: &[Constant]) -> Specialization {
     let set = |c: &Constant| values.get(&c.name).and_then(|value| constant_bits(c, value).ok());
     constants.iter().map(|c| (c.id, set(c).unwrap_or(c.default))).collect()
 }
 
-/// What is wrong with the values that do not fit their constant or parameter, a sentence each. They are kept: the next edit may
-/// make them fit again.
+/// A message for each value that does not fit its constant or parameter. The values are kept, since the next edit may make them
+/// fit again.
 pub fn misfits(values: &Values, shaders: &ShaderSet) -> Vec<String> {
     let constants = shaders.constants.iter().filter_map(|c| constant_bits(c, values.get(&c.name)?).err());
     let parameters = shaders.parameters.iter().filter_map(|p| parameter_numbers(p, values.get(&p.name)).err());
@@ -27,29 +29,18 @@ pub fn misfits(values: &Values, shaders: &ShaderSet) -> Vec<String> {
 }
 
 fn constant_bits(constant: &Constant, value: &ShaderValue) -> Result<u32, String> {
-    let number = number(value, &constant.choices).ok_or_else(|| {
-        let expected = match constant.scalar {
-            _ if !constant.choices.is_empty() => format!("one of {}", names(&constant.choices)),
-            Scalar::Bool => "true or false".into(),
-            Scalar::Int | Scalar::Uint => "a whole number".into(),
-            Scalar::Float => "a number".into(),
-        };
-        format!("{} cannot be {}; it takes {expected}", constant.name, shown(value))
-    })?;
-    let whole = number.fract() == 0.0;
-    match constant.scalar {
-        Scalar::Bool => Ok(u32::from(number != 0.0)),
-        Scalar::Float => Ok((number as f32).to_bits()),
-        Scalar::Int if whole && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&number) => {
-            Ok((number as i32).cast_unsigned())
-        }
-        Scalar::Uint if whole && (0.0..=f64::from(u32::MAX)).contains(&number) => Ok(number as u32),
-        Scalar::Int => Err(format!("{} is an int; {number} does not fit", constant.name)),
-        Scalar::Uint => Err(format!("{} is a uint; {number} does not fit", constant.name)),
-    }
+    let number = fitting(value, constant.scalar, &constant.choices)
+        .ok_or_else(|| misfit(&constant.name, value, &takes_constant(constant), &constant.choices))?;
+    within(&constant.name, constant.range, &[number])?;
+    Ok(match constant.scalar {
+        Scalar::Bool => u32::from(number != 0.0),
+        Scalar::Float => (number as f32).to_bits(),
+        Scalar::Int => (number as i32).cast_unsigned(),
+        Scalar::Uint => number as u32,
+    })
 }
 
-/// The author's parameter block, `PARAMS_SIZE` bytes. A value that does not fit leaves the default.
+/// The bytes of the uniform block `Params`, `PARAMS_SIZE` of them. A parameter whose value does not fit has its default.
 pub(crate) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
     let mut block = vec![0; PARAMS_SIZE as usize];
     for parameter in parameters {
@@ -72,49 +63,94 @@ pub(crate) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
 }
 
 fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Result<Vec<f64>, String> {
-    let count = parameter.kind.components();
+    let Some(value) = value else { return Ok(parameter.default.clone()) };
     let numbers = match value {
-        None => Some(parameter.default.clone()),
-        Some(ShaderValue::Vector(numbers)) => Some(numbers.clone()),
-        Some(value) => number(value, &parameter.choices).map(|n| vec![n]),
+        ShaderValue::Vector(numbers) => Some(numbers.clone()),
+        value => fitting(value, parameter.kind.scalar(), &parameter.choices).map(|number| vec![number]),
     };
-    match numbers {
-        Some(numbers) if numbers.len() == count && numbers.iter().all(|n| n.is_finite()) => {
-            value.map_or(Ok(()), |_| within(parameter, &numbers))?;
-            Ok(numbers)
-        }
-        _ => {
-            let expected = match count {
-                _ if !parameter.choices.is_empty() => format!("one of {}", names(&parameter.choices)),
-                1 => "a number".into(),
-                n => format!("{n} numbers, as [{}]", vec!["0.5"; n].join(", ")),
-            };
-            let found = value.map(shown).unwrap_or_default();
-            Err(format!("{} cannot be {found}; it takes {expected}", parameter.name))
-        }
-    }
+    let fits = |numbers: &Vec<f64>| {
+        let scalar = parameter.kind.scalar();
+        let fits = |number: &f64| fitting(&ShaderValue::Float(*number), scalar, &parameter.choices).is_some();
+        numbers.len() == parameter.kind.components() && numbers.iter().all(fits)
+    };
+    let numbers = numbers
+        .filter(fits)
+        .ok_or_else(|| misfit(&parameter.name, value, &takes_parameter(parameter), &parameter.choices))?;
+    within(&parameter.name, parameter.range, &numbers)?;
+    Ok(numbers)
+}
+
+/// The number that a value stands for, if a constant or parameter of this type takes it. A choice takes its names and their numbers
+/// and nothing else.
+fn fitting(value: &ShaderValue, scalar: Scalar, choices: &[(String, i64)]) -> Option<f64> {
+    let number = number(value, choices)?;
+    let is_bool = matches!(value, ShaderValue::Bool(_));
+    let is_whole = number.fract() == 0.0;
+    let fits = match scalar {
+        _ if !choices.is_empty() => !is_bool && choices.iter().any(|(_, known)| *known as f64 == number),
+        Scalar::Bool => is_bool || number == 0.0 || number == 1.0,
+        _ if is_bool => false,
+        Scalar::Float => (number as f32).is_finite(),
+        Scalar::Int => is_whole && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&number),
+        Scalar::Uint => is_whole && (0.0..=f64::from(u32::MAX)).contains(&number),
+    };
+    fits.then_some(number)
+}
+
+fn misfit(name: &str, value: &ShaderValue, takes: &str, choices: &[(String, i64)]) -> String {
+    let hint = match value {
+        ShaderValue::Name(typed) => did_you_mean(typed, choices.iter().map(|(name, _)| name.as_str())),
+        _ => String::new(),
+    };
+    format!("{name} cannot be {}; it takes {takes}.{hint}", shown(value))
 }
 
 /// Refuses numbers outside of the declared range.
-fn within(parameter: &Parameter, numbers: &[f64]) -> Result<(), String> {
-    let Some((low, high)) = parameter.range else { return Ok(()) };
+fn within(name: &str, range: Option<(f64, f64)>, numbers: &[f64]) -> Result<(), String> {
+    let Some((low, high)) = range else { return Ok(()) };
     let Some(at) = numbers.iter().position(|n| !(low..=high).contains(n)) else { return Ok(()) };
     let component = if numbers.len() > 1 { format!(".{at}") } else { String::new() };
-    Err(format!("{}{component} is {}; it can be {low} to {high}", parameter.name, numbers[at]))
+    Err(format!("{name}{component} is {}; it can be {low} to {high}", numbers[at]))
 }
 
-/// Names in `values` that the tree does not have, as a message with those it has; `None` when all exist.
+fn takes_constant(constant: &Constant) -> String {
+    takes(constant.scalar, 1, &constant.choices, constant.range)
+}
+
+fn takes_parameter(parameter: &Parameter) -> String {
+    takes(parameter.kind.scalar(), parameter.kind.components(), &parameter.choices, parameter.range)
+}
+
+/// What can be given to a constant or parameter: `GGX or Beckmann (0 or 1)`, `a number, 0 to 1`.
+fn takes(scalar: Scalar, components: usize, choices: &[(String, i64)], range: Option<(f64, f64)>) -> String {
+    let within = range.map(|(low, high)| format!(", {low} to {high}")).unwrap_or_default();
+    match scalar {
+        _ if !choices.is_empty() => {
+            let (names, numbers): (Vec<&str>, Vec<i64>) = choices.iter().map(|(name, n)| (name.as_str(), *n)).unzip();
+            format!("{} ({})", either(&names), either(&numbers))
+        }
+        Scalar::Bool => "true or false".to_owned(),
+        Scalar::Float if components > 1 => {
+            format!("{components} numbers, as {}{within}", vec!["0.5"; components].join(","))
+        }
+        Scalar::Float => format!("a number{within}"),
+        Scalar::Uint if range.is_none() => "a whole number, 0 or more".to_owned(),
+        Scalar::Int | Scalar::Uint => format!("a whole number{within}"),
+    }
+}
+
+/// The message about the first name in `values` that the tree does not have, with the nearest name; `None` when all exist.
 pub fn unknown_names(values: &Values, shaders: &ShaderSet) -> Option<String> {
-    let known: Vec<&str> =
-        shaders.constants.iter().map(|c| &*c.name).chain(shaders.parameters.iter().map(|p| &*p.name)).collect();
-    let unknown = values.keys().find(|name| !known.contains(&name.as_str()))?;
-    let list = if known.is_empty() { "none".into() } else { known.join(", ") };
-    Some(format!(
-        "there is no setting or shader parameter '{unknown}'. This shader tree's own are: {list}. Settings have paths, as view.ev or lights.orbit.0.strength"
-    ))
+    let constants = shaders.constants.iter().map(|c| (c.name.as_str(), takes_constant(c)));
+    let parameters = shaders.parameters.iter().map(|p| (p.name.as_str(), takes_parameter(p)));
+    let known: Vec<(&str, String)> = constants.chain(parameters).collect();
+    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    let unknown = values.keys().find(|name| !names.contains(&name.as_str()))?;
+    let describe = |name: &str| known.iter().find(|(known, _)| *known == name).map(|(_, takes)| takes.clone());
+    Some(unknown_setting(unknown, &names, describe))
 }
 
-/// A value as one number; a name is looked up in `choices`. `None` for vectors and unknown names.
+/// A value as one number; a name is looked up in `choices`, whatever the case of its letters. `None` for vectors and unknown names.
 pub fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
     match value {
         ShaderValue::Bool(b) => Some(f64::from(u8::from(*b))),
@@ -125,10 +161,6 @@ pub fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
             choices.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|(_, value)| *value as f64)
         }
     }
-}
-
-fn names(choices: &[(String, i64)]) -> String {
-    choices.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
 fn shown(value: &ShaderValue) -> String {

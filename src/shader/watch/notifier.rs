@@ -123,7 +123,9 @@ impl Notifier {
         };
         if let Some(directory) = directory.filter(|_| !self.has_told) {
             let (directory, every) = (directory.display(), POLL.as_millis());
-            eprintln!("specula: no change notifications for {directory} ({why}); looking every {every} ms instead");
+            crate::message::tell(format_args!(
+                "no change notifications for {directory} ({why}); looking every {every} ms instead"
+            ));
             self.has_told = true;
         }
     }

@@ -1,0 +1,85 @@
+//! What stands where a model or an environment is expected: a file, a built-in name, a typing error, or another kind of
+//! file, which is answered with its option.
+
+use std::path::Path;
+
+use specula::message::nearest;
+use specula::scene::{self, BUILT_IN};
+use specula::shader::is_specula_tree;
+
+use super::Failure;
+
+/// Whether a text looks like a name and not like a file: it has neither an ending nor a folder.
+pub fn is_word(text: &str) -> bool {
+    Path::new(text).extension().is_none() && !text.contains(std::path::is_separator)
+}
+
+/// Fails when there is neither such a file nor a built-in model of that name, and when the file is no model.
+pub fn check_model_path(path: Option<&Path>) -> Result<(), Failure> {
+    let Some(path) = path else { return Ok(()) };
+    check_kind(path)?;
+    let name = path.to_string_lossy();
+    if path.exists() || BUILT_IN.contains(&&*name) {
+        return Ok(());
+    }
+    let list = BUILT_IN.join(", ");
+    if is_word(&name) {
+        let hint = suggest(nearest(&name, BUILT_IN));
+        let message =
+            format!("there is no model '{name}'.{hint} Name a .gltf or .glb file or a built-in model: {list}");
+        return Err(Failure::Usage(message));
+    }
+    let beside = models_in(path.parent().unwrap_or(Path::new("")));
+    let hint = suggest(nearest(&name, beside.iter().map(String::as_str)));
+    Err(Failure::Input(format!("{name}: there is no such file.{hint} Built-in models: {list}")))
+}
+
+fn suggest(name: Option<&str>) -> String {
+    name.map(|name| format!(" Did you mean '{name}'?")).unwrap_or_default()
+}
+
+/// Refuses what is told apart from a model by its name or by its content as a folder.
+fn check_kind(path: &Path) -> Result<(), Failure> {
+    let shown = path.display();
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let message = match ending.as_str() {
+        _ if path.is_dir() && is_specula_tree(path) => format!("{shown} is a shader tree; use `--shaders {shown}`"),
+        _ if path.is_dir() => {
+            let models = models_in(path);
+            let list =
+                if models.is_empty() { "there is none".to_owned() } else { format!("it has {}", models.join(", ")) };
+            format!("{shown} is a folder; expected a .gltf or .glb file in it ({list})")
+        }
+        "hdr" | "exr" => format!("{shown} is an environment; use `--env {shown}`"),
+        "toml" => format!("{shown} is a look file; use `--look {shown}`"),
+        "binary" => format!("{shown} is a measured BRDF; use `--measured {shown}`"),
+        "glsl" | "vert" | "frag" | "comp" => {
+            format!("{shown} is a shader; use `--shaders {}`, the folder of its tree", folder.display())
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::Usage(message))
+}
+
+/// Paths of the models in a folder, in order; none where it cannot be read.
+fn models_in(folder: &Path) -> Vec<String> {
+    let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let names = std::fs::read_dir(place).into_iter().flatten().flatten().map(|entry| folder.join(entry.file_name()));
+    let is_model =
+        |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf"));
+    let mut models: Vec<String> = names.filter(|path| is_model(path)).map(|path| path.display().to_string()).collect();
+    models.sort();
+    models
+}
+
+/// Fails when an environment is a word that no built-in one has. A missing file is found where it is opened.
+pub fn check_environment(name: &str) -> Result<(), Failure> {
+    let known = || scene::environment::BUILT_IN.into_iter().chain(["none"]);
+    if known().any(|known| known == name) || !is_word(name) || Path::new(name).exists() {
+        return Ok(());
+    }
+    let hint = suggest(nearest(name, known()));
+    let list = known().collect::<Vec<_>>().join(", ");
+    Err(Failure::Usage(format!("unknown environment '{name}'.{hint} It can be {list} or a .hdr or .exr file")))
+}

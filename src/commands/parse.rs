@@ -1,0 +1,43 @@
+//! Parsers of option values. Each error says what was expected, with an example or a range.
+
+use specula::settings::{limits, told};
+
+/// Three finite numbers, as `0,1.5,3`.
+pub fn vector(text: &str) -> Result<[f32; 3], String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|t| t.trim().parse().ok()).collect();
+    let vector = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
+    let vector = vector.ok_or_else(|| "expected three numbers, as 0,1.5,3".to_owned())?;
+    if vector.iter().all(|v| v.is_finite()) { Ok(vector) } else { Err("expected three finite numbers".into()) }
+}
+
+/// A width and a height in pixels, as `1280x720`.
+pub fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parts {
+        Some((width, height)) if width > 0 && height > 0 => Ok((width, height)),
+        _ => Err("expected WIDTHxHEIGHT in pixels, each at least 1, as 1280x720".into()),
+    }
+}
+
+/// A vertical field of view, degrees.
+pub fn fovy(text: &str) -> Result<f32, String> {
+    setting("camera.fovy", " degrees", text)
+}
+
+/// An exposure value, EV100.
+pub fn ev(text: &str) -> Result<f32, String> {
+    setting("view.ev", "", text)
+}
+
+/// A number from `low` to `high`.
+pub fn number(text: &str, low: f32, high: f32) -> Result<f32, String> {
+    let number = text.trim().parse::<f32>().ok().filter(|number| (low..=high).contains(number));
+    number.ok_or_else(|| format!("expected a number, {low} to {high}"))
+}
+
+/// A number within the limits of a setting.
+fn setting(path: &str, unit: &str, text: &str) -> Result<f32, String> {
+    let limits = limits(path).unwrap_or(f32::MIN..=f32::MAX);
+    let number = text.trim().parse::<f32>().ok().filter(|number| limits.contains(number));
+    number.ok_or_else(|| format!("expected a number, {}{unit}", told(&limits)))
+}

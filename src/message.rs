@@ -1,0 +1,104 @@
+//! What all messages share: control characters of foreign names are escaped before a terminal sees them, and a name
+//! that does not exist is answered with the nearest one that does.
+
+use std::fmt::{Display, Write as _};
+
+/// Least likeness, 0..1, of a name that is suggested for another.
+const LEAST_LIKENESS: f64 = 0.4;
+
+/// One line of text without control characters: each, line breaks and tabs too, becomes an escape such as `\u{1b}`. For
+/// names from files.
+pub fn escape(text: &str) -> String {
+    escape_but(text, &[])
+}
+
+/// Text of several lines without control characters: line breaks and tabs stay, and all others become escapes such as
+/// `\u{1b}`. For whole messages.
+pub fn escape_lines(text: &str) -> String {
+    escape_but(text, &['\n', '\t'])
+}
+
+fn escape_but(text: &str, kept: &[char]) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' if !kept.contains(&c) => out.push_str("\\n"),
+            c if c.is_control() && !kept.contains(&c) => {
+                let _ = write!(out, "\\u{{{:x}}}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Prints a message to stderr: `specula: MESSAGE`, with its control characters escaped.
+pub fn tell(message: impl Display) {
+    eprintln!("specula: {}", escape_lines(&message.to_string()));
+}
+
+/// Prints a warning to stderr: `specula: warning: MESSAGE`, with its control characters escaped.
+pub fn warn(message: impl Display) {
+    eprintln!("specula: warning: {}", escape_lines(&message.to_string()));
+}
+
+/// The candidate most like what was typed, whatever the case of its letters; the first of several that are equally
+/// like it. `None` when none is like it.
+pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let likeness = |candidate: &'a str| (likeness(typed, candidate), candidate);
+    best(candidates.into_iter().map(likeness))
+}
+
+/// How much two names are alike, 0..1; 1 when they differ in the case of their letters at most.
+pub(crate) fn likeness(a: &str, b: &str) -> f64 {
+    strsim::normalized_damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
+}
+
+/// The first candidate with the greatest likeness, if that is enough to be suggested.
+pub(crate) fn best<'a>(candidates: impl Iterator<Item = (f64, &'a str)>) -> Option<&'a str> {
+    let (likeness, best) = candidates.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
+    (likeness > LEAST_LIKENESS).then_some(best)
+}
+
+/// The question for the end of a message about an unknown name, as `` Did you mean `studio`? `` with a space in front;
+/// empty when no candidate is like it.
+pub fn did_you_mean<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(typed, candidates).map(|name| format!(" Did you mean `{name}`?")).unwrap_or_default()
+}
+
+/// A list in words: `A, B or C`.
+pub fn either<T: Display>(items: &[T]) -> String {
+    match items {
+        [] => "nothing".to_owned(),
+        [one] => one.to_string(),
+        [all @ .., last] => format!("{} or {last}", all.iter().map(T::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_escaped() {
+        assert_eq!(escape("a\u{1b}[31m\tb\nc\r\u{7f}\u{9b}ä"), "a\\u{1b}[31m\\u{9}b\\nc\\u{d}\\u{7f}\\u{9b}ä");
+        assert_eq!(escape_lines("a\u{1b}\tb\nc"), "a\\u{1b}\tb\nc");
+    }
+
+    #[test]
+    fn the_nearest_name_is_found_whatever_its_case() {
+        let names = ["GGX", "ndf", "studio", "sky"];
+        for (typed, expected) in [("NDF", Some("ndf")), ("nfd", Some("ndf")), ("studo", Some("studio")), ("qqqq", None)]
+        {
+            assert_eq!(nearest(typed, names), expected, "{typed}");
+        }
+        assert_eq!(nearest("x", []), None);
+        assert_eq!(did_you_mean("sly", names), " Did you mean `sky`?");
+    }
+
+    #[test]
+    fn lists_are_told_in_words() {
+        assert_eq!(either(&["GGX"]), "GGX");
+        assert_eq!(either(&[0, 1, 2]), "0, 1 or 2");
+    }
+}

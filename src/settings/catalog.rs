@@ -1,0 +1,218 @@
+//! The list of all settings with what each takes, for `specula help set` and for messages.
+
+use std::ops::RangeInclusive;
+
+use clap::ValueEnum;
+
+use super::{LightSource, Settings, Tonemap};
+use crate::message;
+
+/// One setting, ready to be printed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Path for `--set`, as `lights.orbit.0.strength`.
+    pub path: String,
+    /// Kind of value: a number, three numbers, a name, ...
+    pub takes: &'static str,
+    /// Value without any option; empty when there is none.
+    pub default: String,
+    /// What a number can be; empty when it can be anything, or when it is no number.
+    pub range: String,
+    /// Unit or color space; empty for pure numbers.
+    pub unit: &'static str,
+    /// What the setting does.
+    pub doc: String,
+}
+
+/// Path, unit and meaning of every setting. A `*` in a path stands for the number of an orbiting light.
+const DESCRIBED: [(&str, &str, &str); 38] = [
+    ("mode", "", "Debug mode; `specula modes` lists them"),
+    ("variant", "", "Variant of the model; without one its own materials"),
+    ("measured", "", "File of a measured BRDF, for the modes `measured...`"),
+    ("camera.eye", "meters", "Position of the camera; without it the model is framed"),
+    ("camera.target", "meters", "Point that the camera looks at; without it the center of the model"),
+    ("camera.fovy", "degrees", "Vertical field of view"),
+    ("camera.azimuth", "degrees", "Framing: angle around the model, from +Z towards +X"),
+    ("camera.elevation", "degrees", "Framing: angle above the horizon"),
+    ("lights.source", "", "Which lights shine"),
+    ("lights.spin", "degrees/s", "Speed of the orbiting lights in the window"),
+    ("lights.chosen", "", "Light that the BRDF terms show, counted from 1; 0: all of them"),
+    ("lights.ambient_color", "linear RGB", "Color of the flat light without an environment"),
+    ("lights.ambient_strength", "radiance", "Strength of the flat light without an environment"),
+    ("lights.orbit.*.color", "linear RGB", "Color"),
+    ("lights.orbit.*.strength", "candela", "Intensity for a model with a radius of 1 m"),
+    ("lights.orbit.*.distance", "radii", "Distance from the model's center, in radii of the model"),
+    ("lights.orbit.*.azimuth", "degrees", "Angle around +Y, from +Z towards +X"),
+    ("lights.orbit.*.polar", "degrees", "Angle from +Y"),
+    ("lights.rect.enabled", "", "Whether the rectangle shines"),
+    ("lights.rect.color", "linear RGB", "Color"),
+    ("lights.rect.strength", "radiance", "Strength; it does not depend on the size"),
+    ("lights.rect.width", "radii", "Length of the horizontal edges, in radii of the model"),
+    ("lights.rect.height", "radii", "Length of the other edges, in radii of the model"),
+    ("lights.rect.distance", "radii", "Distance from the model's center, in radii of the model"),
+    ("lights.rect.azimuth", "degrees", "Angle around +Y, from +Z towards +X"),
+    ("lights.rect.polar", "degrees", "Angle from +Y"),
+    ("material.enabled", "", "Whether this material replaces all of the model's"),
+    ("material.base_color", "linear RGB", "Base color"),
+    ("material.metallic", "", "0 dielectric, 1 metal"),
+    ("material.roughness", "", "Perceptual roughness"),
+    ("material.anisotropy", "", "Strength of the anisotropy"),
+    ("material.anisotropy_rotation", "degrees", "Angle from the tangent towards the bitangent"),
+    ("environment.name", "", "studio, furnace, sky, none, or a .hdr or .exr file"),
+    ("environment.rotation", "degrees", "Angle around +Y"),
+    ("environment.intensity", "", "Factor on the radiance"),
+    ("environment.blur", "", "Blur behind the model, as a roughness"),
+    ("view.tonemap", "", "Tone map"),
+    ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100)"),
+];
+
+/// The rest of [`DESCRIBED`]: what each can be is no range of floats.
+const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 3] = [
+    ("view.background", "", "", "none (transparent), env, or #rrggbb"),
+    ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
+    ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),
+];
+
+/// All settings, in the order in which they are documented.
+pub fn catalog() -> Vec<Setting> {
+    let defaults = toml::Value::try_from(Settings::default()).ok();
+    let known = Settings::default().known().ok();
+    let described = DESCRIBED.iter().map(|(path, unit, doc)| (*path, *unit, "", *doc));
+    let all = described.chain(DESCRIBED_WITH_RANGE);
+    let rows = all.flat_map(|(path, unit, range, doc)| {
+        let lights = if path.contains('*') { 3 } else { 1 };
+        (0..lights).map(move |light| (path.replace('*', &light.to_string()), unit, range, doc))
+    });
+    let mut rows: Vec<_> = rows.collect();
+    // The lights one after the other, all else in place.
+    let group = |path: &str| path.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
+    let groups: Vec<String> = rows.iter().map(|(path, ..)| group(path)).collect();
+    rows.sort_by_key(|(path, ..)| groups.iter().position(|known| *known == group(path)));
+    let row = |(path, unit, range, doc): (String, &'static str, &str, &str)| {
+        let default = defaults.as_ref().and_then(|root| at(root, &path)).map(shown).unwrap_or_default();
+        let takes = known.as_ref().and_then(|root| at(root, &path)).map(kind).unwrap_or_default();
+        let range = limits(&path).map_or_else(|| range.to_owned(), |limits| told(&limits));
+        let names = names(&path);
+        let doc = if names.is_empty() { doc.to_owned() } else { format!("{doc}: {}", names.join(", ")) };
+        Setting { takes: if names.is_empty() { takes } else { "name" }, path, default, range, unit, doc }
+    };
+    rows.into_iter().map(row).collect()
+}
+
+/// Paths of all settings.
+pub(super) fn paths() -> Vec<String> {
+    catalog().into_iter().map(|setting| setting.path).collect()
+}
+
+/// The names that a setting with a fixed choice takes; empty for all other settings.
+pub(super) fn names(path: &str) -> Vec<String> {
+    fn of<T: ValueEnum>() -> Vec<String> {
+        T::value_variants().iter().filter_map(|v| Some(v.to_possible_value()?.get_name().to_owned())).collect()
+    }
+    match path {
+        "view.tonemap" => of::<Tonemap>(),
+        "lights.source" => of::<LightSource>(),
+        _ => Vec::new(),
+    }
+}
+
+/// Smallest and largest value of a number, or of each of its components; `None` when it has no limits or no such
+/// setting exists.
+pub fn limits(path: &str) -> Option<RangeInclusive<f32>> {
+    let settings = Settings::default();
+    let of = |path: &str| settings.ranges().into_iter().find(|range| range.path == path).map(|range| range.limits);
+    of(path).or_else(|| of(&format!("{path}.0")))
+}
+
+/// Limits in words: `0 to 1`.
+pub fn told(limits: &RangeInclusive<f32>) -> String {
+    let number = |x: f32| if x.abs() >= 1e4 { format!("{x:e}") } else { x.to_string() };
+    format!("{} to {}", number(*limits.start()), number(*limits.end()))
+}
+
+/// The setting that is most like an unknown path. A path without a dot is also compared with the last parts of all
+/// paths, since that is how people abbreviate them.
+pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<String> {
+    let paths = paths();
+    let candidates = own.iter().copied().chain(paths.iter().map(String::as_str));
+    let likeness = |path: &str| {
+        let whole = message::likeness(typed, path);
+        let last = path.rsplit('.').next().filter(|_| !typed.contains('.')).unwrap_or(path);
+        // A full name wins over an abbreviation that is equally like it.
+        whole.max(0.99 * message::likeness(typed, last))
+    };
+    message::best(candidates.map(|path| (likeness(path), path))).map(str::to_owned)
+}
+
+/// What is at a path of a table.
+fn at<'a>(root: &'a toml::Value, path: &str) -> Option<&'a toml::Value> {
+    path.split('.').try_fold(root, |place, key| match place {
+        toml::Value::Array(array) => array.get(key.parse::<usize>().ok()?),
+        other => other.get(key),
+    })
+}
+
+fn kind(value: &toml::Value) -> &'static str {
+    match value {
+        toml::Value::Float(_) => "number",
+        toml::Value::Integer(_) => "whole number",
+        toml::Value::Boolean(_) => "true or false",
+        toml::Value::Array(_) => "3 numbers",
+        _ => "text",
+    }
+}
+
+/// A value as it is typed after `=`. Floats are those of an `f32`.
+fn shown(value: &toml::Value) -> String {
+    match value {
+        toml::Value::Float(x) => (*x as f32).to_string(),
+        toml::Value::Array(list) => list.iter().map(shown).collect::<Vec<_>>().join(","),
+        toml::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn leaves(value: &toml::Value, path: &str, out: &mut Vec<String>) {
+        let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+        match value {
+            toml::Value::Table(table) => table.iter().for_each(|(key, value)| leaves(value, &below(key), out)),
+            toml::Value::Array(list) if list.iter().any(toml::Value::is_table) => {
+                list.iter().enumerate().for_each(|(i, value)| leaves(value, &below(&i.to_string()), out));
+            }
+            _ => out.push(path.to_owned()),
+        }
+    }
+
+    #[test]
+    fn every_setting_is_described_once() {
+        let (mut expected, mut found) = (Vec::new(), paths());
+        leaves(&Settings::default().known().unwrap(), "", &mut expected);
+        expected.sort();
+        found.sort();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn a_setting_is_found_by_its_last_part() {
+        for (typed, own, expected) in [
+            ("tonemap", &[][..], Some("view.tonemap")),
+            ("ndf", &["NDF"], Some("NDF")),
+            ("view.exposure", &[], Some("view.ev")),
+            ("roughness", &["roughness_scale"], Some("material.roughness")),
+            ("qqqqq", &["NDF"], None),
+        ] {
+            assert_eq!(nearest(typed, own).as_deref(), expected, "{typed}");
+        }
+    }
+
+    #[test]
+    fn limits_are_those_that_are_checked() {
+        assert_eq!(limits("camera.fovy"), Some(1.0..=170.0));
+        assert_eq!(limits("lights.orbit.2.color").map(|l| told(&l)).as_deref(), Some("0 to 1e6"));
+        assert_eq!(limits("camera.eye"), None);
+    }
+}
