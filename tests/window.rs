@@ -306,6 +306,20 @@ fn the_environment_is_baked_and_a_damaged_one_costs_nothing() {
     assert!(viewer.quit().contains("sky.hdr"), "no word of the damaged file");
 }
 
+#[test]
+fn an_environment_in_a_linked_folder_is_baked_again() {
+    let tree = Tree::new();
+    std::fs::create_dir(tree.beside("skies")).unwrap();
+    std::os::unix::fs::symlink("skies", tree.beside("linked")).unwrap();
+    std::fs::write(tree.beside("skies/sky.hdr"), hdr::uniform([128, 0, 0, 129])).unwrap();
+    let mut viewer = Viewer::open(tree, &["sphere-grid", "--env", "linked/sky.hdr", "--lights", "none"]);
+    viewer.running.event("bake");
+    std::fs::write(viewer.tree.beside("skies/sky.hdr"), hdr::uniform([0, 128, 0, 129])).unwrap();
+    viewer.running.event("bake");
+    viewer.until("a green model", |shot| brightest(shot).is_some_and(|[r, g, _]| g > 60 && r < g / 2));
+    viewer.quit();
+}
+
 /// The brightest pixel of the model: the background is darker.
 fn brightest(shot: &RgbaImage) -> Option<[u8; 3]> {
     shot.pixels().map(|pixel| [pixel[0], pixel[1], pixel[2]]).max_by_key(|rgb| rgb.iter().max().copied())

@@ -115,8 +115,9 @@ impl Notifier {
 
     /// Says once why changes are found by looking. `main` is the directory that the user knows.
     pub fn tell(&mut self, main: Option<&Path>) {
-        let polled = || self.polled.iter().max_by_key(|(_, (has_content, _))| *has_content);
-        let (directory, why) = match (&self.system, polled()) {
+        // The outermost directory that holds content stands for all.
+        let polled = self.polled.iter().find(|(_, (has_content, _))| *has_content).or(self.polled.iter().next());
+        let (directory, why) = match (&self.system, polled) {
             (Err(why), _) => (main, why),
             (Ok(_), Some((directory, (_, why)))) => (Some(directory.as_path()), why),
             (Ok(_), None) => return,

@@ -77,7 +77,7 @@ impl Plan {
         }
     }
 
-    /// Whether the tree had the file `path` at `real` as a plain entry of a directory that it had under the same name.
+    /// Whether the tree contains the directory of `real` under the name of the directory of `path`.
     pub fn has_directory_of(&self, path: &Path, real: &Path) -> bool {
         let place = real.parent().and_then(|folder| self.places.get(folder));
         place.zip(path.parent()).is_some_and(|(place, folder)| place.tree_names.contains(folder))
