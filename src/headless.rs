@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Rect, SetLayouts, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, Rect, SetLayouts, return_freed_memory, vk};
 use crate::render::{
     BakeControl, BakeError, BakeReport, Baked, Capture, Drawn, FrameInput, GpuScene, Outcome, PipelineSet, Reload,
     Reloader, Renderer, Shot, Target, UploadError, Wanted, measured_buffer, misfits, unknown_names,
@@ -109,6 +109,8 @@ impl Headless {
             upload_ms,
         };
         this.open_files()?;
+        // Decoders and the compiler are done: what they have freed is there for the frame.
+        return_freed_memory();
         Ok((this, reload))
     }
 

@@ -48,14 +48,14 @@ fn save(capture: &Capture, path: &Path, format: ImageFormat) -> Result<(), Strin
     let size = || "the picture's size does not match its pixels".to_owned();
     let saved = match format {
         ImageFormat::OpenExr => {
-            let floats = capture.raw.iter().flatten().copied().collect();
-            let image: ImageBuffer<Rgba<f32>, Vec<f32>> =
+            let floats = capture.raw.as_flattened();
+            let image: ImageBuffer<Rgba<f32>, &[f32]> =
                 ImageBuffer::from_raw(width, height, floats).ok_or_else(size)?;
             image.save_with_format(path, format)
         }
         _ => {
-            let image: ImageBuffer<Rgba<u8>, Vec<u8>> =
-                ImageBuffer::from_raw(width, height, capture.rgba8.clone()).ok_or_else(size)?;
+            let image: ImageBuffer<Rgba<u8>, &[u8]> =
+                ImageBuffer::from_raw(width, height, capture.rgba8.as_slice()).ok_or_else(size)?;
             image.save_with_format(path, format)
         }
     };

@@ -62,7 +62,7 @@ impl Readback {
     pub(super) fn finish(self) -> Capture {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
-        let raw = floats(&self.raw.read(), self.half);
+        let raw = floats(self.raw.content(), self.half);
         Capture { width: self.width, height: self.height, rgba8, raw }
     }
 }
