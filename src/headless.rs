@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use};
+use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PixelValue,
     ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
@@ -86,6 +86,8 @@ impl Headless {
         }
         this.check_settings()?;
         this.provide()?;
+        // Decoders and the compiler are done: the frame may use what they have freed.
+        return_freed_memory();
         Ok((this, reload))
     }
 

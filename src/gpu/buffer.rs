@@ -96,8 +96,14 @@ impl Buffer {
 
     /// Copies the contents out. For [`Memory::Readback`], after the fence of the submission that wrote them.
     pub fn read(&self) -> Vec<u8> {
+        self.content().to_vec()
+    }
+
+    /// The content itself; empty where the CPU cannot see it. For `Memory::Readback`, after the writing submission's
+    /// fence.
+    pub fn content(&self) -> &[u8] {
         let mapped = self.allocation.as_ref().and_then(Allocation::mapped_slice);
-        mapped.map(|m| m[..self.size as usize].to_vec()).unwrap_or_default()
+        mapped.map(|m| &m[..self.size as usize]).unwrap_or_default()
     }
 }
 

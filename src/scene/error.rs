@@ -1,4 +1,4 @@
-//! Why a model was not loaded, in words for the person who opened it.
+//! Errors of loading a model, with messages for the person who opened it.
 
 use std::path::PathBuf;
 
@@ -104,7 +104,7 @@ pub enum Problem {
         place: String,
         /// The URI, decoded.
         uri: String,
-        /// How it leaves: by its own words, or through a link.
+        /// How the path leaves the folder: as it is written, or through a link.
         found: String,
     },
     /// A file that the model names cannot be read.
@@ -136,7 +136,7 @@ pub enum Problem {
          The file is most likely invalid; please report it with the file."
     )]
     Refused {
-        /// The panic's words.
+        /// The panic's message.
         found: String,
     },
 }

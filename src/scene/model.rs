@@ -35,7 +35,8 @@ pub struct Model {
     pub outline: Vec<Vec3>,
     /// Every file that was read, absolute: these are watched.
     pub files: Vec<PathBuf>,
-    /// What the loader tolerated: unknown extensions, replaced tangents. One sentence each.
+    /// What the loader tolerated or replaced, one sentence each: unknown extensions, images that cannot be decoded,
+    /// repaired tangents.
     pub warnings: Vec<String>,
     /// Where the loading time went.
     pub timing: LoadTiming,
@@ -103,8 +104,8 @@ impl Bounds {
     }
 }
 
-/// How vertices form primitives. A line loop is made a strip; a triangle strip or fan a list when flat normals or
-/// tangents are made for it, which splits its vertices.
+/// How indices form primitives. The loader turns a line loop into a strip, and a triangle strip or fan into a list
+/// where it makes flat normals or tangents, since those split vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Topology {
@@ -133,9 +134,9 @@ pub struct Primitive {
     pub indices: Vec<u32>,
     /// How the indices are read.
     pub topology: Topology,
-    /// Index into `Model::materials`: what it is drawn with, in the variant that is chosen.
+    /// Index into `Model::materials`: the material in the selected variant.
     pub material: usize,
-    /// The same without a variant.
+    /// Index into `Model::materials`: the material without a variant.
     pub default_material: usize,
     /// KHR_materials_variants: indices into `Model::variants` and `Model::materials`, each variant once at most.
     pub variant_materials: Vec<(usize, usize)>,
@@ -146,7 +147,7 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    /// Its material in a variant: the default one where the file names no other.
+    /// The primitive's material in a variant: the default one where the file names no other.
     pub fn material_in(&self, variant: Option<usize>) -> usize {
         let named = self.variant_materials.iter().find(|(of, _)| Some(*of) == variant);
         named.map_or(self.default_material, |(_, material)| *material)
@@ -154,10 +155,21 @@ impl Primitive {
 }
 
 impl Model {
-    /// Index of the variant of this name; `None` for the empty name, which is the model as it comes.
+    /// The first `most` warnings, and a sentence that counts the others, if any: few enough to show over the picture.
+    pub fn first_warnings(&self, most: usize) -> Vec<String> {
+        let mut shown: Vec<String> = self.warnings.iter().take(most).cloned().collect();
+        match self.warnings.len().saturating_sub(most) {
+            0 => {}
+            1 => shown.push("1 more warning is in the terminal.".into()),
+            more => shown.push(format!("{more} more warnings are in the terminal.")),
+        }
+        shown
+    }
+
+    /// Index of the variant of this name; `None` for the empty name, which stands for the default materials.
     ///
     /// # Errors
-    /// A name that the model does not have, in words with those it has.
+    /// A name that the model does not have. The message lists the names that it has.
     pub fn variant(&self, name: &str) -> Result<Option<usize>, String> {
         if name.is_empty() {
             return Ok(None);
@@ -172,10 +184,10 @@ impl Model {
         })
     }
 
-    /// Gives every primitive its material of the variant of this name; the empty name takes all variants back.
+    /// Gives every primitive its material in the variant of this name; the empty name selects the default materials.
     ///
     /// # Errors
-    /// As [`Model::variant`]; nothing is changed then.
+    /// As [`Model::variant`]; the model stays unchanged then.
     pub fn select_variant(&mut self, name: &str) -> Result<(), String> {
         let variant = self.variant(name)?;
         for primitive in &mut self.primitives {
@@ -211,7 +223,7 @@ pub struct Image {
     pub rgba8: Vec<u8>,
 }
 
-/// What a light radiates like.
+/// Kind of a light, which decides the unit of its intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     /// Parallel light; intensity in lux.

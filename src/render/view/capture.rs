@@ -7,7 +7,7 @@ use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, vk};
 use crate::render::pixel::PixelValue;
 
 /// A frame in memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Capture {
     /// Pixels across.
     pub width: u32,
@@ -68,16 +68,13 @@ impl Readback {
     pub fn finish(self) -> Capture {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
-        let texels = floats(&self.raw.read(), self.half);
-        let pixels: Vec<PixelValue> = texels.into_iter().map(PixelValue::decode).collect();
-        Capture {
-            width: self.width,
-            height: self.height,
-            rgba8,
-            raw: pixels.iter().map(|pixel| pixel.value).collect(),
-            no_data: pixels.iter().map(|pixel| pixel.no_data).collect(),
-            not_finite: pixels.iter().map(|pixel| pixel.not_finite).collect(),
+        let mut capture = Capture { width: self.width, height: self.height, rgba8, ..Capture::default() };
+        for pixel in texels(self.raw.content(), self.half).map(PixelValue::decode) {
+            capture.raw.push(pixel.value);
+            capture.no_data.push(pixel.no_data);
+            capture.not_finite.push(pixel.not_finite);
         }
+        capture
     }
 }
 
@@ -109,17 +106,17 @@ impl PixelReadback {
     /// The pixel of the last frame that recorded one. SYNC: after that frame's fence.
     pub(super) fn read(&self) -> Option<PixelAt> {
         let (at, half) = self.copied?;
-        floats(&self.buffer.read(), half).first().map(|texel| PixelAt { at, value: PixelValue::decode(*texel) })
+        texels(self.buffer.content(), half).next().map(|texel| PixelAt { at, value: PixelValue::decode(texel) })
     }
 }
 
 /// RGBA pixels of half or full floats.
-fn floats(bytes: &[u8], half: bool) -> Vec<[f32; 4]> {
-    let decode = |pixel: &[u8]| -> [f32; 4] {
+fn texels(bytes: &[u8], half: bool) -> impl Iterator<Item = [f32; 4]> + '_ {
+    let decode = move |texel: &[u8]| -> [f32; 4] {
         std::array::from_fn(|c| match half {
-            true => half::f16::from_le_bytes([pixel[2 * c], pixel[2 * c + 1]]).to_f32(),
-            false => f32::from_le_bytes([pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]]),
+            true => half::f16::from_le_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32(),
+            false => f32::from_le_bytes([texel[4 * c], texel[4 * c + 1], texel[4 * c + 2], texel[4 * c + 3]]),
         })
     };
-    bytes.chunks_exact(if half { 8 } else { 16 }).map(decode).collect()
+    bytes.chunks_exact(if half { 8 } else { 16 }).map(decode)
 }

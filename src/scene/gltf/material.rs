@@ -1,4 +1,4 @@
-//! Materials: the core's values here, those of the extensions in `extensions`.
+//! Reads materials: the core properties here, the extensions in `extensions`.
 
 use glam::{Vec3, Vec4};
 use gltf::json;
@@ -12,7 +12,7 @@ use super::textures::{Collector, Origin, Slot};
 use super::values::{self, clamp, roughness};
 use crate::interface as contract;
 
-/// The materials of a file and what they use.
+/// The materials of a file, with the textures and images that they use.
 pub struct Materials {
     /// The default material, then the file's.
     pub materials: Vec<Material>,
@@ -20,7 +20,7 @@ pub struct Materials {
     pub textures: Vec<Texture>,
     /// Where the used images are. `Texture::image` counts these.
     pub images: Vec<Origin>,
-    /// Tolerated values.
+    /// Values that were corrected, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ fn read_one(source: &json::Material, place: &str, collector: &mut Collector<'_>)
         let place = format!("{place}.alphaCutoff");
         material.alpha_cutoff = clamp(cutoff.0, 0.0..=f32::MAX, &place, &mut collector.warnings)?;
     }
-    // Specular-glossiness stands in the same places, and is what the author prefers where it is understood.
+    // A material with specular-glossiness has metallic-roughness only as a fallback, and uses the same members here.
     if !extensions::specular_glossiness(&mut material, source, place, collector)? {
         metallic_roughness(&mut material, &source.pbr_metallic_roughness, place, collector)?;
     }

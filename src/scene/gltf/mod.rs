@@ -1,5 +1,5 @@
-//! glTF 2.0 to [`Model`]. The `gltf` crate parses the JSON; everything that the JSON refers to is checked and read
-//! here, since the crate's own readers panic on invalid files and refuse some valid ones.
+//! Reads glTF 2.0 into a [`Model`]. The `gltf` crate parses the JSON. Everything that the JSON refers to is checked and
+//! read here, since the crate's own readers panic on invalid files and refuse some valid ones.
 
 mod accessor;
 mod buffers;
@@ -39,7 +39,7 @@ use crate::interface::MAX_LIGHTS;
 /// Largest coordinate of a mesh and of the scene, meters: a camera that frames it can still be squared in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
 
-/// Loads a file. `tried` gets every file that was read or looked for, also when the load fails.
+/// Loads a file. Every file that was read or looked for is added to `tried`, also when the load fails.
 pub fn load_file(path: &Path, options: &LoadOptions, tried: &mut Vec<PathBuf>) -> Result<Model, Problem> {
     let start = Instant::now();
     let path = std::path::absolute(path).map_err(Problem::Read)?;
@@ -55,7 +55,8 @@ pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
     guarded(name, bytes, Files { folder: None, allow_outside: false, tried: &mut Vec::new() }, Instant::now())
 }
 
-/// A panic in here would be a bug of ours or of a decoder; a file that provokes it must not cost the user the session.
+/// Builds the model and turns a panic into an error. A panic here is a bug of Specula, and the file that triggers it must
+/// not end the session.
 fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result<Model, Problem> {
     catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start))).unwrap_or_else(|panic| {
         let words =
@@ -182,7 +183,7 @@ fn out_of_range(place: &str, kind: &str, index: usize, count: usize) -> Problem 
     Problem::invalid(place, expected, index.to_string())
 }
 
-/// Looks an index of the file up. `place` names who asks, for the message.
+/// Looks up an index of the file. `place` names the object that holds the index, for the message.
 fn get<'a, T>(items: &'a [T], index: json::Index<T>, place: &str, kind: &str) -> Result<&'a T, Problem> {
     items.get(index.value()).ok_or_else(|| out_of_range(place, kind, index.value(), items.len()))
 }

@@ -1,4 +1,4 @@
-//! What materials use: textures, their samplers and images, and how texture coordinates reach them.
+//! The texture slots of materials: textures, samplers, images and texture transforms.
 
 use std::collections::HashMap;
 
@@ -16,13 +16,13 @@ use super::values::{self, Extensions};
 /// The highest TEXCOORD set that a vertex carries.
 const LAST_UV_SET: u32 = 1;
 
-/// Collects what the materials of a file use, each once.
+/// Collects the textures and images that the materials of a file use, each once.
 pub struct Collector<'a> {
     /// Used pairs of image and sampler.
     pub textures: Vec<Texture>,
     /// Where the used images are. `Texture::image` counts these.
     pub images: Vec<Origin>,
-    /// Tolerated values.
+    /// Values that were corrected, one sentence each.
     pub warnings: Vec<String>,
     root: &'a json::Root,
     /// Indices into `images`.
@@ -40,7 +40,7 @@ pub enum Origin {
     Texture(usize),
 }
 
-/// A textureInfo of any kind.
+/// A textureInfo, which is a material's reference to a texture.
 pub struct Slot {
     texture: usize,
     uv_set: u32,
@@ -48,13 +48,13 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// Of a textureInfo that the parser knows.
+    /// Reads a textureInfo that the parser knows.
     pub fn new(info: &json::texture::Info) -> Self {
         let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.clone());
         Self { texture: info.index.value(), uv_set: info.tex_coord, transform }
     }
 
-    /// Of one whose extensions are raw JSON: normal and occlusion textures, and all of extensions.
+    /// Makes a slot whose extensions are raw JSON: that of a normal or occlusion texture, or of a material extension.
     pub fn raw(texture: usize, uv_set: u32, others: Option<&Extensions>, place: &str) -> Result<Self, Problem> {
         let raw = others.and_then(|others| others.get("KHR_texture_transform"));
         let transform = raw.map(|raw| json::deserialize::from_value(raw.clone())).transpose().map_err(|error| {
@@ -66,7 +66,7 @@ impl Slot {
 }
 
 impl<'a> Collector<'a> {
-    /// With nothing in it.
+    /// A collector that is empty.
     pub fn new(root: &'a json::Root) -> Self {
         let (textures, images, warnings) = (Vec::new(), Vec::new(), Vec::new());
         Self { textures, images, warnings, root, image_of: HashMap::new(), texture_of: HashMap::new() }
