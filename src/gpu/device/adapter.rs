@@ -4,10 +4,10 @@ use std::ffi::CStr;
 
 use ash::{khr, vk};
 
-use crate::message::did_you_mean;
-
-use super::error::{Context, GpuError};
 use super::instance::{Instance, NO_DRIVER};
+use crate::gpu::GpuError;
+use crate::gpu::error::Context;
+use crate::message::did_you_mean;
 
 /// A physical device as `specula info` lists it.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -36,7 +36,7 @@ pub fn adapters() -> Result<Vec<AdapterInfo>, GpuError> {
 }
 
 /// Takes the fastest kind of device whose name contains `part`. `window` is whether it must show windows.
-pub(super) fn choose(
+pub(in crate::gpu) fn choose(
     instance: &ash::Instance,
     part: Option<&str>,
     window: bool,
@@ -127,7 +127,7 @@ fn missing(instance: &ash::Instance, physical: vk::PhysicalDevice, version: u32,
 }
 
 /// The first queue family with graphics and compute.
-pub(super) fn graphics_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
+pub(in crate::gpu) fn graphics_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
     // SAFETY: `physical` comes from this live instance.
     let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
     let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;

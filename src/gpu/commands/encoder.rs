@@ -5,12 +5,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::buffer::Buffer;
-use super::descriptor::{DescriptorSet, SetLayouts};
-use super::device::Gpu;
-use super::image::Image;
 use super::pass::PassTimer;
-use super::pipeline::Pipeline;
+use crate::gpu::{Buffer, DescriptorSet, Gpu, Image, Pipeline, SetLayouts};
 
 /// A rectangle in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,14 +98,14 @@ pub struct Attachments<'a> {
 
 /// Records into one command buffer.
 pub struct Encoder {
-    pub(super) gpu: Arc<Gpu>,
-    pub(super) raw: vk::CommandBuffer,
-    pub(super) kept: Vec<Arc<dyn Any + Send + Sync>>,
-    pub(super) timer: Option<PassTimer>,
+    pub(in crate::gpu) gpu: Arc<Gpu>,
+    pub(in crate::gpu) raw: vk::CommandBuffer,
+    pub(in crate::gpu) kept: Vec<Arc<dyn Any + Send + Sync>>,
+    pub(in crate::gpu) timer: Option<PassTimer>,
 }
 
 impl Encoder {
-    pub(super) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer, timer: Option<PassTimer>) -> Self {
+    pub(in crate::gpu) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer, timer: Option<PassTimer>) -> Self {
         Self { gpu: gpu.clone(), raw, kept: Vec::new(), timer }
     }
 
@@ -124,7 +120,7 @@ impl Encoder {
     }
 
     /// SYNC: as [`Encoder::transition`], for one mip level.
-    pub(super) fn transition_level(&mut self, image: &Arc<Image>, level: u32, from: Use, to: Use) {
+    pub(in crate::gpu) fn transition_level(&mut self, image: &Arc<Image>, level: u32, from: Use, to: Use) {
         self.transition_levels(image, level..level + 1, from, to);
     }
 
@@ -216,7 +212,7 @@ impl Encoder {
         }
     }
 
-    /// Sets the interpolation weight of [`super::Raster::Averaged`]: 0 keeps the target, 1 replaces it.
+    /// Sets the interpolation weight of [`crate::gpu::Raster::Averaged`]: 0 keeps the target, 1 replaces it.
     pub fn set_weight(&mut self, weight: f32) {
         // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_set_blend_constants(self.raw, &[weight; 4]) };
@@ -293,7 +289,7 @@ impl Encoder {
     }
 
     /// SYNC: makes earlier writes of a stage visible to all later commands, and to the CPU after the fence.
-    pub(super) fn writes_done(&mut self, stage: vk::PipelineStageFlags2, access: vk::AccessFlags2) {
+    pub(in crate::gpu) fn writes_done(&mut self, stage: vk::PipelineStageFlags2, access: vk::AccessFlags2) {
         let barrier = [vk::MemoryBarrier2::default()
             .src_stage_mask(stage)
             .src_access_mask(access)

@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::buffer::Buffer;
 use super::encoder::Encoder;
-use super::image::Image;
+use crate::gpu::{Buffer, Image};
 
 impl Encoder {
     /// Copies `size` bytes of a buffer to an offset in another. Both ranges lie inside their buffers.
@@ -18,7 +17,7 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
     }
 
-    /// Fills every mip level of an image in [`super::Use::CopyTo`]. The buffer holds the levels one after the other, each with
+    /// Fills every mip level of an image in [`crate::gpu::Use::CopyTo`]. The buffer holds the levels one after the other, each with
     /// all its layers, tightly packed.
     pub fn copy_to_image(&mut self, from: &Arc<Buffer>, offset: u64, to: &Arc<Image>) {
         self.keep(from);
@@ -37,7 +36,7 @@ impl Encoder {
         }
     }
 
-    /// Reads every mip level of an image in [`super::Use::CopyFrom`], in the order that [`Encoder::copy_to_image`] takes.
+    /// Reads every mip level of an image in [`crate::gpu::Use::CopyFrom`], in the order that [`Encoder::copy_to_image`] takes.
     pub fn copy_levels_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>, offset: u64) {
         let mut at = offset;
         for level in 0..from.desc().mips {
@@ -46,12 +45,12 @@ impl Encoder {
         }
     }
 
-    /// Reads mip level 0 of an image in [`super::Use::CopyFrom`] into tightly packed rows.
+    /// Reads mip level 0 of an image in [`crate::gpu::Use::CopyFrom`] into tightly packed rows.
     pub fn copy_from_image(&mut self, from: &Arc<Image>, to: &Arc<Buffer>) {
         self.copy_region(from, whole_level(from, 0, 0), to);
     }
 
-    /// Reads one pixel of mip level 0 of an image in [`super::Use::CopyFrom`].
+    /// Reads one pixel of mip level 0 of an image in [`crate::gpu::Use::CopyFrom`].
     pub fn copy_pixel(&mut self, from: &Arc<Image>, at: (u32, u32), to: &Arc<Buffer>) {
         self.copy_region(from, one_pixel(from, at), to);
     }

@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::descriptor::{DescriptorSet, SetLayouts};
 use super::encoder::Encoder;
-use super::pipeline::ComputePipeline;
+use crate::gpu::{ComputePipeline, DescriptorSet, SetLayouts};
 
 impl Encoder {
     /// Binds each set at its own number, then runs `groups` workgroups of a pipeline.

@@ -7,11 +7,11 @@ use std::ffi::CString;
 
 use ash::vk;
 
-use super::device::Gpu;
+use super::gpu::Gpu;
 
 impl Gpu {
     /// Names a Vulkan object that this device owns.
-    pub(super) fn name<H: vk::Handle>(&self, object: H, name: &str) {
+    pub(in crate::gpu) fn name<H: vk::Handle>(&self, object: H, name: &str) {
         let Some(utils) = &self.debug_utils else { return };
         let name = c_string(name);
         let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
@@ -20,7 +20,7 @@ impl Gpu {
     }
 
     /// Opens a labeled region of commands.
-    pub(super) fn begin_label(&self, commands: vk::CommandBuffer, label: &str) {
+    pub(in crate::gpu) fn begin_label(&self, commands: vk::CommandBuffer, label: &str) {
         let Some(utils) = &self.debug_utils else { return };
         let label = c_string(label);
         let info = vk::DebugUtilsLabelEXT::default().label_name(&label);
@@ -29,7 +29,7 @@ impl Gpu {
     }
 
     /// Closes the innermost labeled region.
-    pub(super) fn end_label(&self, commands: vk::CommandBuffer) {
+    pub(in crate::gpu) fn end_label(&self, commands: vk::CommandBuffer) {
         let Some(utils) = &self.debug_utils else { return };
         // SAFETY: the command buffer is recording, and `begin_label` opened a region in it.
         unsafe { utils.cmd_end_debug_utils_label(commands) };

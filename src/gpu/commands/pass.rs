@@ -2,14 +2,14 @@
 
 use ash::vk;
 
-use super::device::Gpu;
 use super::encoder::Encoder;
+use crate::gpu::Gpu;
 
 /// Number of passes of a submission that are timed. Passes beyond it have a label only.
-pub(super) const MAX_TIMED_PASSES: u32 = 64;
+pub(in crate::gpu) const MAX_TIMED_PASSES: u32 = 64;
 
 /// Timestamps of a submission: two for the whole, then two for each pass.
-pub(super) const MAX_TIMESTAMPS: u32 = 2 + 2 * MAX_TIMED_PASSES;
+pub(in crate::gpu) const MAX_TIMESTAMPS: u32 = 2 + 2 * MAX_TIMED_PASSES;
 
 /// Device time of a pass.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -21,14 +21,14 @@ pub struct PassTime {
 }
 
 /// The query pool of the commands being recorded, and the names of the passes timed so far.
-pub(super) struct PassTimer {
+pub(in crate::gpu) struct PassTimer {
     queries: vk::QueryPool,
-    pub(super) names: Vec<String>,
+    pub(in crate::gpu) names: Vec<String>,
 }
 
 impl PassTimer {
     /// `queries` holds [`MAX_TIMESTAMPS`] timestamps, all reset.
-    pub(super) fn new(queries: vk::QueryPool) -> Self {
+    pub(in crate::gpu) fn new(queries: vk::QueryPool) -> Self {
         Self { queries, names: Vec::new() }
     }
 
@@ -42,7 +42,7 @@ impl PassTimer {
 
 impl Encoder {
     /// Records `commands` as the pass `name`. GPU debuggers and validation messages show the name as a label, and
-    /// [`super::Frames::pass_times`] reports the pass's time once the frame is finished.
+    /// [`crate::gpu::Frames::pass_times`] reports the pass's time once the frame is finished.
     ///
     /// Passes may nest, and names may repeat. A pass inside [`Encoder::begin_rendering`] is valid but less exact: it makes a
     /// software device finish the drawing before it, and a tiled GPU measures whole tiles.
@@ -62,7 +62,7 @@ impl Encoder {
 }
 
 /// Writes a timestamp when all earlier commands are finished.
-pub(super) fn write_timestamp(gpu: &Gpu, commands: vk::CommandBuffer, queries: vk::QueryPool, query: u32) {
+pub(in crate::gpu) fn write_timestamp(gpu: &Gpu, commands: vk::CommandBuffer, queries: vk::QueryPool, query: u32) {
     // SAFETY: the command buffer is recording and has reset the query.
     unsafe { gpu.device.cmd_write_timestamp2(commands, vk::PipelineStageFlags2::ALL_COMMANDS, queries, query) };
 }

@@ -5,24 +5,21 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::buffer::{Buffer, Memory};
-use super::device::Gpu;
-use super::encoder::Use;
-use super::error::GpuError;
-use super::frames::one_shot;
 use super::image::{Image, ImageDesc};
 use super::sampler::{Sampler, SamplerDesc};
+use crate::gpu::{Gpu, GpuError, Use, one_shot};
 
 /// One placeholder of each kind of descriptor. lavapipe reads every descriptor of a bound set, used or not, and crashes on
 /// one that was never written.
-pub(super) struct Blank {
-    pub(super) image: Arc<Image>,
-    pub(super) cube: Arc<Image>,
-    pub(super) sampler: Arc<Sampler>,
-    pub(super) buffer: Arc<Buffer>,
+pub(in crate::gpu) struct Blank {
+    pub(in crate::gpu) image: Arc<Image>,
+    pub(in crate::gpu) cube: Arc<Image>,
+    pub(in crate::gpu) sampler: Arc<Sampler>,
+    pub(in crate::gpu) buffer: Arc<Buffer>,
 }
 
 impl Blank {
-    pub(super) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+    pub(in crate::gpu) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
         use vk::BufferUsageFlags as Usage;
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::STORAGE;
         let format = vk::Format::R16G16B16A16_SFLOAT;

@@ -6,9 +6,9 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 
-use super::device::Gpu;
-use super::error::{Context, GpuError};
 use super::memory::{Resource, allocate};
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 
 /// Which side reads and writes a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub enum Memory {
 /// A buffer with its memory.
 pub struct Buffer {
     gpu: Arc<Gpu>,
-    pub(super) raw: vk::Buffer,
+    pub(in crate::gpu) raw: vk::Buffer,
     allocation: Option<Allocation>,
     size: u64,
 }

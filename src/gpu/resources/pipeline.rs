@@ -6,8 +6,8 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::descriptor::SetLayouts;
-use super::device::Gpu;
-use super::error::{Context, GpuError};
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 
 const MAIN: &CStr = c"main";
 
@@ -69,7 +69,7 @@ pub enum Raster {
     Lines,
     /// Additive blending without depth test; alpha becomes the maximum.
     Added,
-    /// Linear interpolation from the target to the fragment, by the weight of [`super::Encoder::set_weight`]; alpha
+    /// Linear interpolation from the target to the fragment, by the weight of [`crate::gpu::Encoder::set_weight`]; alpha
     /// becomes the maximum.
     Averaged,
 }
@@ -104,7 +104,7 @@ impl PipelineDesc<'_> {
 pub struct Pipeline {
     gpu: Arc<Gpu>,
     _layouts: Arc<SetLayouts>,
-    pub(super) raw: vk::Pipeline,
+    pub(in crate::gpu) raw: vk::Pipeline,
 }
 
 impl Pipeline {
@@ -184,7 +184,7 @@ impl Pipeline {
 pub struct ComputePipeline {
     gpu: Arc<Gpu>,
     _layouts: Arc<SetLayouts>,
-    pub(super) raw: vk::Pipeline,
+    pub(in crate::gpu) raw: vk::Pipeline,
 }
 
 impl ComputePipeline {

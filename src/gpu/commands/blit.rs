@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::encoder::{Encoder, Use};
-use super::image::Image;
+use crate::gpu::Image;
 
 impl Encoder {
     /// Fills every level of `to`: copies `from`, an image of the same size, to level 0, and halves each level into the next.

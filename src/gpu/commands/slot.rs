@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::device::Gpu;
 use super::encoder::Encoder;
-use super::error::{Context, GpuError};
 use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer, write_timestamp};
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 
 /// How long a wait may take before the device counts as lost, in nanoseconds. A frame this long would freeze the desktop.
 const FENCE_TIMEOUT_NS: u64 = 60_000_000_000;
@@ -16,21 +16,21 @@ const FENCE_TIMEOUT_NS: u64 = 60_000_000_000;
 /// Semaphores of a submission that goes to a window.
 #[derive(Clone, Copy, Default)]
 pub struct Submission {
-    pub(super) wait: Option<vk::Semaphore>,
-    pub(super) signal: Option<vk::Semaphore>,
+    pub(in crate::gpu) wait: Option<vk::Semaphore>,
+    pub(in crate::gpu) signal: Option<vk::Semaphore>,
 }
 
 /// Device times of one submission.
 #[derive(Default)]
-pub(super) struct Times {
+pub(in crate::gpu) struct Times {
     /// Milliseconds of all its commands.
-    pub(super) ms: f64,
+    pub(in crate::gpu) ms: f64,
     /// Times of its passes, in the order in which they began.
-    pub(super) passes: Vec<PassTime>,
+    pub(in crate::gpu) passes: Vec<PassTime>,
 }
 
 /// One command buffer with its fence and timestamps.
-pub(super) struct Slot {
+pub(in crate::gpu) struct Slot {
     gpu: Arc<Gpu>,
     pool: vk::CommandPool,
     buffer: vk::CommandBuffer,
@@ -45,7 +45,7 @@ pub(super) struct Slot {
 
 impl Slot {
     /// Creates a slot whose objects are called `name`. `timed` asks for timestamps, if the queue has them.
-    pub(super) fn new(gpu: &Arc<Gpu>, name: &str, timed: bool) -> Result<Self, GpuError> {
+    pub(in crate::gpu) fn new(gpu: &Arc<Gpu>, name: &str, timed: bool) -> Result<Self, GpuError> {
         // A later step that fails leaves null handles, which `Drop` ignores.
         let mut slot = Self {
             gpu: gpu.clone(),
@@ -80,7 +80,7 @@ impl Slot {
     }
 
     /// SYNC: waits until the device has run this slot's last submission, then releases the resources that it used.
-    pub(super) fn wait(&mut self) -> Result<(), GpuError> {
+    pub(in crate::gpu) fn wait(&mut self) -> Result<(), GpuError> {
         if self.pending {
             // SAFETY: the fence is live, and a submission signals it.
             match unsafe { self.gpu.device.wait_for_fences(&[self.fence], true, FENCE_TIMEOUT_NS) } {
@@ -94,13 +94,13 @@ impl Slot {
     }
 
     /// Whether the device has run this slot's last submission; true before the first, false on a lost device.
-    pub(super) fn is_finished(&self) -> bool {
+    pub(in crate::gpu) fn is_finished(&self) -> bool {
         // SAFETY: the fence is live.
         !self.pending || unsafe { self.gpu.device.get_fence_status(self.fence) } == Ok(true)
     }
 
     /// SYNC: waits for the slot's last submission, whose command buffer and timestamps are then recorded anew.
-    pub(super) fn begin(&mut self) -> Result<Encoder, GpuError> {
+    pub(in crate::gpu) fn begin(&mut self) -> Result<Encoder, GpuError> {
         self.wait()?;
         let device = &self.gpu.device;
         // SAFETY: no submission is pending, so nothing uses the pool; the buffer belongs to it.
@@ -119,7 +119,7 @@ impl Slot {
     }
 
     /// Submits the commands of the last [`Slot::begin`]. If that fails, the slot can begin again.
-    pub(super) fn submit(&mut self, encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
+    pub(in crate::gpu) fn submit(&mut self, encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
         let device = &self.gpu.device;
         self.kept = encoder.kept;
         let passes = encoder.timer.map(|timer| timer.names);
@@ -151,7 +151,7 @@ impl Slot {
     }
 
     /// Device times of the last submission, which must be finished. `None` without timestamps.
-    pub(super) fn times(&self) -> Option<Times> {
+    pub(in crate::gpu) fn times(&self) -> Option<Times> {
         let names = self.passes.as_ref()?;
         let mut ticks = vec![0u64; 2 + 2 * names.len()];
         // SAFETY: a finished submission has written these queries, two for itself and two for each pass.

@@ -2,16 +2,15 @@
 
 use std::sync::Arc;
 
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 use ash::vk;
 use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
-use super::device::Gpu;
-use super::error::{Context, GpuError};
-
 /// A surface that shows images in a window.
 pub struct Surface {
-    pub(super) gpu: Arc<Gpu>,
-    pub(super) raw: vk::SurfaceKHR,
+    pub(in crate::gpu) gpu: Arc<Gpu>,
+    pub(in crate::gpu) raw: vk::SurfaceKHR,
 }
 
 impl Surface {
@@ -46,6 +45,6 @@ impl Drop for Surface {
 }
 
 /// The error of a device that was opened for headless use.
-pub(super) fn no_display() -> GpuError {
+pub(in crate::gpu) fn no_display() -> GpuError {
     GpuError::NoDevice("the device was opened without a display".into())
 }

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use super::device::Gpu;
 use super::encoder::Encoder;
-use super::error::GpuError;
 use super::pass::PassTime;
 use super::slot::{Slot, Submission, Times};
+use crate::gpu::{Gpu, GpuError};
 
 /// A ring of frame slots.
 pub struct Frames {
@@ -42,7 +41,7 @@ impl Frames {
     }
 
     /// Whether the device has finished the last frame submitted to `slot`, without waiting for it. The CPU may then read what
-    /// that frame copied to a [`super::Memory::Readback`] buffer, if [`Encoder::copies_done`] followed the copy. True for a slot
+    /// that frame copied to a [`crate::gpu::Memory::Readback`] buffer, if [`Encoder::copies_done`] followed the copy. True for a slot
     /// that was never used, false on a lost device.
     pub fn is_finished(&self, slot: usize) -> bool {
         self.slots.get(slot).is_none_or(Slot::is_finished)

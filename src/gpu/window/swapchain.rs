@@ -4,17 +4,15 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::device::Gpu;
-use super::error::{Context, GpuError};
-use super::image::{Image, ImageDesc};
-use super::slot::Submission;
 use super::surface::{Surface, no_display};
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError, Image, ImageDesc, Submission};
 
 /// An image of the swapchain to draw a frame to.
 pub struct Acquired {
-    /// The image, in [`super::Use::Acquired`].
+    /// The image, in [`crate::gpu::Use::Acquired`].
     pub image: Arc<Image>,
-    /// For [`super::Frames::submit`].
+    /// For [`crate::gpu::Frames::submit`].
     pub submission: Submission,
     /// Whether the swapchain no longer fits the window. The frame can still be shown.
     pub stale: bool,
@@ -121,7 +119,7 @@ impl Swapchain {
     }
 
     /// Acquires the next image, or `None` when the caller must create the swapchain anew: it no longer fits the window, or the
-    /// last acquired image was never presented because its frame failed. Call after [`super::Frames::begin`], which has waited
+    /// last acquired image was never presented because its frame failed. Call after [`crate::gpu::Frames::begin`], which has waited
     /// for the last use of the semaphore.
     ///
     /// # Errors

@@ -8,8 +8,9 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use raw_window_handle::RawDisplayHandle;
 
 use super::adapter::{AdapterInfo, choose, graphics_family};
-use super::error::{Context, GpuError};
 use super::instance::Instance;
+use crate::gpu::GpuError;
+use crate::gpu::error::Context;
 
 /// How to open a device.
 #[derive(Default)]
@@ -25,20 +26,20 @@ pub struct GpuOptions {
 /// An open device with one graphics queue and one allocator.
 pub struct Gpu {
     // Fields are dropped in this order: the allocator before the device, the device before the instance.
-    pub(super) allocator: Arc<Mutex<Allocator>>,
-    pub(super) device: Device,
-    pub(super) instance: Instance,
-    pub(super) physical: vk::PhysicalDevice,
-    pub(super) queue_family: u32,
+    pub(in crate::gpu) allocator: Arc<Mutex<Allocator>>,
+    pub(in crate::gpu) device: Device,
+    pub(in crate::gpu) instance: Instance,
+    pub(in crate::gpu) physical: vk::PhysicalDevice,
+    pub(in crate::gpu) queue_family: u32,
     queue: Mutex<vk::Queue>,
-    pub(super) surface: Option<khr::surface::Instance>,
-    pub(super) swapchain: Option<khr::swapchain::Device>,
-    pub(super) debug_utils: Option<ext::debug_utils::Device>,
-    pub(super) pipeline_cache: vk::PipelineCache,
-    pub(super) properties: vk::PhysicalDeviceProperties,
+    pub(in crate::gpu) surface: Option<khr::surface::Instance>,
+    pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
+    pub(in crate::gpu) debug_utils: Option<ext::debug_utils::Device>,
+    pub(in crate::gpu) pipeline_cache: vk::PipelineCache,
+    pub(in crate::gpu) properties: vk::PhysicalDeviceProperties,
     timestamp_bits: u32,
-    pub(super) anisotropy: bool,
-    pub(super) wireframe: bool,
+    pub(in crate::gpu) anisotropy: bool,
+    pub(in crate::gpu) wireframe: bool,
     info: AdapterInfo,
 }
 
@@ -128,7 +129,7 @@ impl Gpu {
     }
 
     /// Milliseconds between two timestamps of the queue, whose counter may wrap around between them.
-    pub(super) fn ticks_to_ms(&self, begin: u64, end: u64) -> f64 {
+    pub(in crate::gpu) fn ticks_to_ms(&self, begin: u64, end: u64) -> f64 {
         let mask = u64::MAX >> (64 - self.timestamp_bits.clamp(1, 64));
         let ticks = end.wrapping_sub(begin) & mask;
         // More than half the counter's range means that `end` came first by a few ticks.
@@ -144,11 +145,11 @@ impl Gpu {
         let _ = unsafe { self.device.device_wait_idle() };
     }
 
-    pub(super) fn lock_queue(&self) -> MutexGuard<'_, vk::Queue> {
+    pub(in crate::gpu) fn lock_queue(&self) -> MutexGuard<'_, vk::Queue> {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub(super) fn lock_allocator(&self) -> MutexGuard<'_, Allocator> {
+    pub(in crate::gpu) fn lock_allocator(&self) -> MutexGuard<'_, Allocator> {
         self.allocator.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -161,7 +162,7 @@ impl Drop for Gpu {
 }
 
 /// The logical device, which `Drop` destroys. All calls go through [`Deref`].
-pub(super) struct Device(ash::Device);
+pub(in crate::gpu) struct Device(ash::Device);
 
 impl Deref for Device {
     type Target = ash::Device;

@@ -3,12 +3,10 @@
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
+use crate::gpu::error::Context;
+use crate::gpu::{Encoder, Gpu, GpuError};
 use ash::vk;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, RendererError};
-
-use super::device::Gpu;
-use super::encoder::Encoder;
-use super::error::{Context, GpuError};
 
 /// egui's renderer on our device.
 pub struct UiRenderer {
@@ -39,7 +37,7 @@ impl UiRenderer {
     }
 
     /// Uploads new and changed textures. A frame in flight may use a changed texture, so the caller must have waited for all
-    /// frames ([`super::Frames::wait_all`]).
+    /// frames ([`crate::gpu::Frames::wait_all`]).
     ///
     /// # Errors
     /// The device is out of memory.

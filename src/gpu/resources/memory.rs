@@ -1,31 +1,28 @@
 //! Device memory for images and buffers.
 
+use crate::gpu::{Gpu, GpuError, fault};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
-use super::device::Gpu;
-use super::error::GpuError;
-use super::fault;
-
 /// The resource that memory is allocated for.
-pub(super) struct Resource<'a> {
+pub(in crate::gpu) struct Resource<'a> {
     /// Its name, for the allocator's reports.
-    pub(super) name: &'a str,
+    pub(in crate::gpu) name: &'a str,
     /// What the caller does, as "creating the image `depth`".
-    pub(super) action: &'a str,
+    pub(in crate::gpu) action: &'a str,
     /// Size, alignment and memory types that Vulkan requires for it.
-    pub(super) requirements: vk::MemoryRequirements,
+    pub(in crate::gpu) requirements: vk::MemoryRequirements,
     /// Which side reads and writes it.
-    pub(super) location: MemoryLocation,
+    pub(in crate::gpu) location: MemoryLocation,
     /// False for images with optimal tiling.
-    pub(super) linear: bool,
+    pub(in crate::gpu) linear: bool,
     /// The injected fault that limits its size in bytes, see [`fault`].
-    pub(super) limit: &'static str,
+    pub(in crate::gpu) limit: &'static str,
 }
 
 /// Allocates memory for a resource. The caller binds it once, and frees it after the resource.
-pub(super) fn allocate(gpu: &Gpu, resource: &Resource<'_>) -> Result<Allocation, GpuError> {
+pub(in crate::gpu) fn allocate(gpu: &Gpu, resource: &Resource<'_>) -> Result<Allocation, GpuError> {
     let mib = resource.requirements.size as f64 / f64::from(1 << 20);
     let action = format!("{} ({mib:.1} MiB)", resource.action);
     if fault::value(resource.limit).is_some_and(|most| resource.requirements.size > most) {

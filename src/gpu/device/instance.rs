@@ -5,28 +5,29 @@ use std::ffi::{CStr, CString, c_char};
 use ash::{ext, vk};
 use raw_window_handle::RawDisplayHandle;
 
-use super::error::{Context, GpuError};
 use super::validation::{Messages, messenger_info};
+use crate::gpu::GpuError;
+use crate::gpu::error::Context;
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 /// What to do when the loader finds no driver.
-pub(super) const NO_DRIVER: &str = "the Vulkan loader found no driver. Install one; a software driver for Debian and \
+pub(in crate::gpu) const NO_DRIVER: &str = "the Vulkan loader found no driver. Install one; a software driver for Debian and \
                                     Ubuntu: apt-get install mesa-vulkan-drivers";
 
 /// A loaded Vulkan library and an instance made from it. `Drop` destroys the messenger, then the instance.
-pub(super) struct Instance {
-    pub(super) entry: ash::Entry,
-    pub(super) raw: ash::Instance,
+pub(in crate::gpu) struct Instance {
+    pub(in crate::gpu) entry: ash::Entry,
+    pub(in crate::gpu) raw: ash::Instance,
     /// Whether VK_EXT_debug_utils is enabled.
-    pub(super) has_debug_utils: bool,
+    pub(in crate::gpu) has_debug_utils: bool,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Box<Messages>,
 }
 
 impl Instance {
     /// Creates an instance that can open windows on `display`, with validation layers if `validation` is set.
-    pub(super) fn new(validation: bool, display: Option<RawDisplayHandle>) -> Result<Self, GpuError> {
+    pub(in crate::gpu) fn new(validation: bool, display: Option<RawDisplayHandle>) -> Result<Self, GpuError> {
         // SAFETY: loading the system's Vulkan loader runs its initializers, as every Vulkan program does.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| GpuError::NoLoader(e.to_string()))?;
         let layers = if validation { vec![validation_layer(&entry)?] } else { Vec::new() };
@@ -73,7 +74,7 @@ impl Instance {
     }
 
     /// Messages of the validation layers, oldest first.
-    pub(super) fn messages(&self) -> Vec<String> {
+    pub(in crate::gpu) fn messages(&self) -> Vec<String> {
         self.messages.all()
     }
 }

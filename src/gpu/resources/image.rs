@@ -6,9 +6,9 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 
-use super::device::Gpu;
-use super::error::{Context, GpuError};
 use super::memory::{Resource, allocate};
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 
 /// Size, format and usage of an image.
 #[derive(Clone, Copy, Debug)]
@@ -67,9 +67,9 @@ fn texel_bytes(format: vk::Format) -> u64 {
 /// of a swapchain's image belongs to the swapchain.
 pub struct Image {
     gpu: Arc<Gpu>,
-    pub(super) raw: vk::Image,
-    pub(super) view: vk::ImageView,
-    pub(super) level_views: Vec<vk::ImageView>,
+    pub(in crate::gpu) raw: vk::Image,
+    pub(in crate::gpu) view: vk::ImageView,
+    pub(in crate::gpu) level_views: Vec<vk::ImageView>,
     allocation: Option<Allocation>,
     owned: bool,
     desc: ImageDesc,
@@ -134,7 +134,7 @@ impl Image {
     }
 
     /// Wraps an image that a swapchain owns.
-    pub(super) fn from_swapchain(
+    pub(in crate::gpu) fn from_swapchain(
         gpu: &Arc<Gpu>,
         name: &str,
         raw: vk::Image,
@@ -159,7 +159,7 @@ impl Image {
         &self.desc
     }
 
-    pub(super) fn aspect(&self) -> vk::ImageAspectFlags {
+    pub(in crate::gpu) fn aspect(&self) -> vk::ImageAspectFlags {
         aspect(self.desc.format)
     }
 }

@@ -7,10 +7,10 @@ use ash::vk;
 
 use super::blank::Blank;
 use super::buffer::Buffer;
-use super::device::Gpu;
-use super::error::{Context, GpuError};
 use super::image::Image;
 use super::sampler::Sampler;
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 use crate::interface::{self, BindingKind};
 
 const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -24,7 +24,7 @@ const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 pub struct SetLayouts {
     gpu: Arc<Gpu>,
     sets: Vec<vk::DescriptorSetLayout>,
-    pub(super) pipeline: vk::PipelineLayout,
+    pub(in crate::gpu) pipeline: vk::PipelineLayout,
     blank: Blank,
 }
 
@@ -65,7 +65,7 @@ impl SetLayouts {
         Ok(Arc::new(layouts))
     }
 
-    pub(super) fn push_stages(&self) -> vk::ShaderStageFlags {
+    pub(in crate::gpu) fn push_stages(&self) -> vk::ShaderStageFlags {
         STAGES
     }
 }
@@ -106,8 +106,8 @@ fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
 pub struct DescriptorSet {
     layouts: Arc<SetLayouts>,
     pool: vk::DescriptorPool,
-    pub(super) raw: vk::DescriptorSet,
-    pub(super) index: u32,
+    pub(in crate::gpu) raw: vk::DescriptorSet,
+    pub(in crate::gpu) index: u32,
     _kept: Vec<Arc<dyn Any + Send + Sync>>,
 }
 
@@ -145,7 +145,7 @@ impl SetWriter {
     }
 
     /// Points `binding` to one level of an image, with all its layers. The image's usage must include `STORAGE`, and the image
-    /// must be in [`super::Use::Storage`] whenever the set is used.
+    /// must be in [`crate::gpu::Use::Storage`] whenever the set is used.
     pub fn storage_level(mut self, binding: u32, image: &Arc<Image>, level: u32) -> Self {
         let image_view = image.level_views.get(level as usize).copied().unwrap_or_default();
         let image_layout = vk::ImageLayout::GENERAL;
@@ -162,7 +162,7 @@ impl SetWriter {
         self
     }
 
-    /// Points `binding` to an image, which must be in [`super::Use::Sampled`] whenever the set is used.
+    /// Points `binding` to an image, which must be in [`crate::gpu::Use::Sampled`] whenever the set is used.
     pub fn texture(mut self, binding: u32, image: &Arc<Image>, sampler: &Arc<Sampler>) -> Self {
         let info = vk::DescriptorImageInfo {
             sampler: sampler.raw,

@@ -7,17 +7,17 @@ use ash::vk;
 
 /// Messages of the validation layers since the start. The driver has its address, so it lives in a `Box`.
 #[derive(Default)]
-pub(super) struct Messages(Mutex<Vec<String>>);
+pub(in crate::gpu) struct Messages(Mutex<Vec<String>>);
 
 impl Messages {
     /// All messages, oldest first.
-    pub(super) fn all(&self) -> Vec<String> {
+    pub(in crate::gpu) fn all(&self) -> Vec<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
 
 /// How to create the messenger: it reports warnings and errors of validation.
-pub(super) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
+pub(in crate::gpu) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
     vk::DebugUtilsMessengerCreateInfoEXT::default()
         .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING)
         .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION)

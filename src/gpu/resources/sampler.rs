@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 use ash::vk;
-
-use super::device::Gpu;
-use super::error::{Context, GpuError};
 
 /// Filtering and addressing of texture reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -42,7 +41,7 @@ impl SamplerDesc {
 /// A sampler.
 pub struct Sampler {
     gpu: Arc<Gpu>,
-    pub(super) raw: vk::Sampler,
+    pub(in crate::gpu) raw: vk::Sampler,
 }
 
 impl Sampler {

@@ -1,0 +1,9 @@
+//! Objects that commands use: buffers, images, samplers, descriptor sets and pipelines.
+
+pub(in crate::gpu) mod blank;
+pub(in crate::gpu) mod buffer;
+pub(in crate::gpu) mod descriptor;
+pub(in crate::gpu) mod image;
+pub(in crate::gpu) mod memory;
+pub(in crate::gpu) mod pipeline;
+pub(in crate::gpu) mod sampler;
