@@ -21,6 +21,7 @@
 
 pub mod app;
 pub mod comparison;
+mod disk_cache;
 pub mod events;
 pub mod gpu;
 pub mod headless;

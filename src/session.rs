@@ -4,9 +4,10 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use crate::render::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat, misfits, unknown_names};
+use crate::render::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
 use crate::scene::Model;
 use crate::settings::Settings;
+use crate::shader::values::{misfits, unknown_names};
 use crate::shader::{Diagnostic, Mode, ShaderSet};
 
 /// Settings, model and shaders, from which every [`FrameState`] is made.

@@ -5,6 +5,12 @@
 //!
 //! - `image-bytes:N`: creating an image of more than `N` bytes of device memory fails with [`super::GpuError::OutOfMemory`].
 //! - `buffer-bytes:N`: the same for buffers.
+//!
+//! `app` knows these:
+//!
+//! - `worker-panic:N`: the worker panics at its Nth reload.
+//! - `compile-delay-ms:N`: every reload takes so much longer.
+//! - `load-delay-ms:N`: reading a model takes so much longer.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -23,6 +29,13 @@ pub fn value(name: &str) -> Option<u64> {
         })
     });
     faults.get(name).copied()
+}
+
+/// Sleeps for as many milliseconds as the fault `name` says, if it is there.
+pub fn delay(name: &str) {
+    if let Some(ms) = value(name) {
+        std::thread::sleep(std::time::Duration::from_millis(ms));
+    }
 }
 
 /// Parses the variable's text. The error is the part that is not a fault.

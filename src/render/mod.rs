@@ -6,7 +6,6 @@
 
 pub mod brdf;
 mod compute;
-mod disk_cache;
 mod environment;
 mod pipeline;
 mod pixel;
@@ -21,7 +20,6 @@ pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_s
 pub use pixel::PixelValue;
 pub use resources::{BoundFrame, Missing, ProvideError, Resources, environment_files, read_measured};
 pub use scene::{GpuModel, UploadError};
-pub use state::parameters::{misfits, number, unknown_names};
 pub use state::{
     EnvironmentKey, FrameInputs, FrameState, MaterialVariant, MeasuredKey, PipelineRequest, Revisions, Scene,
     TargetFormat,

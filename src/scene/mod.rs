@@ -14,9 +14,11 @@ mod gltf;
 mod lights;
 mod material;
 mod measured;
+pub mod mips;
 mod model;
 mod outline;
 mod pick;
+mod texture_source;
 
 use std::path::{Path, PathBuf};
 
@@ -30,6 +32,7 @@ pub use lights::{light_count, lights};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pick::near_pixel;
+pub use texture_source::{TextureSource, texture_sources};
 
 /// What a load may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

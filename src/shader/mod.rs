@@ -12,6 +12,7 @@ pub mod diagnostic;
 pub mod library;
 pub mod source;
 pub mod spirv;
+pub mod values;
 pub mod watch;
 
 pub use annotation::{Constant, DrawAs, Encode, Mode, Parameter};

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use egui::{Slider, Ui};
 
 use super::{color, row, section};
-use crate::render::number;
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
+use crate::shader::values::number;
 use crate::shader::{Constant, Parameter, ShaderSet};
 
 /// Shows the panel; `values` are those that are set, by name.

@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use super::{DeviceGate, Message, Outbox, panic_text};
-use crate::gpu::{Gpu, SetLayouts};
+use crate::gpu::{Gpu, SetLayouts, fault};
 use crate::render::GpuModel;
 use crate::scene::{self, LoadError, LoadOptions, Model};
 
@@ -33,7 +33,10 @@ pub(in crate::app) struct Reading {
 /// Begins to read a model: parse, decode, tangents.
 pub(in crate::app) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
     let file = path.clone();
-    let model = std::thread::spawn(move || scene::open(file.as_deref(), &options));
+    let model = std::thread::spawn(move || {
+        fault::delay("load-delay-ms");
+        scene::open(file.as_deref(), &options)
+    });
     Reading { path, start: Instant::now(), model }
 }
 

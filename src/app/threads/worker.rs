@@ -259,6 +259,7 @@ impl Thread {
     fn reload(&mut self, edit: Edit) -> Option<Arc<PipelineSet>> {
         self.reloads += 1;
         assert!(fault::value("worker-panic") != Some(self.reloads), "the injected fault worker-panic");
+        fault::delay("compile-delay-ms");
         let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
         let request =
             |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);

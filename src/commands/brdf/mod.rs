@@ -13,9 +13,10 @@ use std::sync::Arc;
 
 use clap::Subcommand;
 use specula::gpu::Gpu;
+use specula::render::all_stages;
 use specula::render::brdf::measure::{Bench, Claim, Surface, unclaimed};
-use specula::render::{all_stages, misfits, unknown_names};
 use specula::settings::Settings;
+use specula::shader::values::{misfits, unknown_names};
 use specula::shader::{Change, Constant, Library, ShaderSet, Update};
 
 use super::Failure;

@@ -7,14 +7,13 @@ use bytemuck::{Pod, Zeroable};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::settings::Settings;
-use crate::shader::{Constant, ShaderSet};
+use crate::shader::{Constant, ShaderSet, values};
 
 use crate::render::brdf::ltc;
 use crate::render::brdf::measured::measured_buffer;
 use crate::render::compute;
 use crate::render::environment::bake::GpuEnvironment;
 use crate::render::pipeline::{MEASURE_STAGES, PipelineSet};
-use crate::render::state::parameters;
 use crate::render::state::{PipelineRequest, TargetFormat};
 use crate::render::view::{SharedImages, Sources, Uniforms};
 
@@ -107,7 +106,7 @@ impl Claim {
 /// The author's constants in the order of their ids, each with what `settings` choose of it: a choice's name, or a
 /// number.
 pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
-    let chosen = parameters::constants(&settings.shader, &shaders.constants);
+    let chosen = values::constants(&settings.shader, &shaders.constants);
     let name = |constant: &Constant, bits: u32| {
         // Choices are whole numbers: of an int they may be negative.
         let is = |value: i64| value == i64::from(bits) || value == i64::from(bits.cast_signed());
@@ -176,7 +175,7 @@ impl Bench {
         let environment = shared.environment.clone();
         let sources = Sources { environment, tables: bound.tables, measured: shared.measured.clone() };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
-        let params = parameters::params(&settings.shader, &shared.set.shaders.parameters);
+        let params = values::params(&settings.shader, &shared.set.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);
         let frame = uniforms.set(&shared.layouts, &sources, &shared.images)?;
         Ok(Self { shared, constants: request.constants, frame })

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use crate::disk_cache;
 use crate::gpu::{Buffer, GpuError, Image, ImageDesc, Memory, Specialization, Use, one_shot, vk};
 use crate::interface::Task;
 
 use crate::render::compute;
-use crate::render::disk_cache;
 use crate::render::pipeline::PipelineSet;
 
 /// Stage that makes the DFG table.

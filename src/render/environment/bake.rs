@@ -4,11 +4,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::disk_cache;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
 use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
-use crate::render::disk_cache;
 use crate::render::environment::passes::{IRRADIANCE_LEVEL, Passes, no_results};
 use crate::render::pipeline::PipelineSet;
 

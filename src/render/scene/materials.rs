@@ -3,15 +3,14 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::texture_source::Source;
 use crate::gpu::{
     Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, vk,
 };
 use crate::interface::{self, TEXTURE_COUNT, TEXTURE_OCCLUSION};
-use crate::scene::{self as model, Model};
+use crate::scene::{self as model, Model, TextureSource};
 
 /// The images on the device.
-pub(crate) type Textures = HashMap<Source, Arc<Image>>;
+pub(crate) type Textures = HashMap<TextureSource, Arc<Image>>;
 
 /// A descriptor set for each material of the model.
 pub(crate) fn materials(
@@ -34,7 +33,7 @@ pub(crate) fn materials(
                 Some(sampler) => sampler.clone(),
                 None => samplers.entry(wanted).or_insert(make_sampler(gpu, &wanted)?).clone(),
             };
-            if let Some(image) = textures.get(&Source::of(model, material, slot)) {
+            if let Some(image) = textures.get(&TextureSource::of(model, material, slot)) {
                 writer = writer.texture(1 + slot as u32, image, &sampler);
             }
         }

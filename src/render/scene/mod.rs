@@ -1,8 +1,6 @@
 //! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set for each material.
 
 mod materials;
-pub(super) mod mips;
-mod texture_source;
 mod upload;
 
 use std::sync::Arc;

@@ -9,9 +9,7 @@ use crate::gpu::{Buffer, Gpu, Image, ImageDesc, Memory, Use, one_shot, vk};
 use crate::interface::Vertex;
 use crate::render::scene::UploadError;
 use crate::render::scene::materials::Textures;
-use crate::render::scene::mips;
-use crate::render::scene::texture_source::{Source, sources};
-use crate::scene::Model;
+use crate::scene::{Model, TextureSource, mips, texture_sources};
 
 /// A model's data on the device.
 pub(super) struct Uploaded {
@@ -48,7 +46,7 @@ const TEXTURE_USAGE: vk::ImageUsageFlags =
 /// # Errors
 /// An image beyond the device's limit, or no memory left. Some pixels may be gone then.
 pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, UploadError> {
-    let sources: Vec<Source> = sources(model).into_iter().collect();
+    let sources: Vec<TextureSource> = texture_sources(model).into_iter().collect();
     check_sizes(gpu, model, &sources)?;
     let staging = Staging::new(gpu, model, &sources)?;
     let textures = staging.textures(model, &sources)?;
@@ -67,7 +65,7 @@ pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, Uplo
     Ok(Uploaded { vertices, indices, ranges, textures })
 }
 
-fn check_sizes(gpu: &Gpu, model: &Model, sources: &[Source]) -> Result<(), UploadError> {
+fn check_sizes(gpu: &Gpu, model: &Model, sources: &[TextureSource]) -> Result<(), UploadError> {
     let most = gpu.max_image_size();
     let too_large = sources.iter().filter_map(|source| source.image(model)).find(|i| i.width > most || i.height > most);
     match too_large {
@@ -86,7 +84,7 @@ struct Staging<'a> {
 }
 
 impl<'a> Staging<'a> {
-    fn new(gpu: &'a Arc<Gpu>, model: &Model, sources: &[Source]) -> Result<Self, UploadError> {
+    fn new(gpu: &'a Arc<Gpu>, model: &Model, sources: &[TextureSource]) -> Result<Self, UploadError> {
         let geometry =
             model.primitives.iter().map(|p| size_of_val(p.vertices.as_slice()).max(size_of_val(&*p.indices)));
         let images = || sources.iter().map(|source| staged_bytes(source, model));
@@ -138,7 +136,7 @@ impl<'a> Staging<'a> {
 
     /// Makes all textures, as many at a time as the staging buffer holds, and frees each image's pixels after the last
     /// texture that is made of them.
-    fn textures(&self, model: &mut Model, sources: &[Source]) -> Result<Textures, UploadError> {
+    fn textures(&self, model: &mut Model, sources: &[TextureSource]) -> Result<Textures, UploadError> {
         let mut readers = vec![0u32; model.images.len()];
         sources.iter().flat_map(|source| source.images()).for_each(|image| readers[image] += 1);
         free_unread(model, &readers);
@@ -155,9 +153,9 @@ impl<'a> Staging<'a> {
     }
 
     /// How many of the first sources fit into the staging buffer; at least 1, as it holds the largest.
-    fn fitting(&self, sources: &[Source], model: &Model) -> usize {
+    fn fitting(&self, sources: &[TextureSource], model: &Model) -> usize {
         let mut free = self.buffer.size();
-        let fits = |source: &&Source| {
+        let fits = |source: &&TextureSource| {
             let bytes = staged_bytes(source, model);
             let fits = bytes <= free;
             free = free.saturating_sub(bytes);
@@ -166,7 +164,7 @@ impl<'a> Staging<'a> {
         sources.iter().take_while(fits).count().max(1)
     }
 
-    fn batch(&self, sources: &[Source], model: &Model, textures: &mut Textures) -> Result<(), UploadError> {
+    fn batch(&self, sources: &[TextureSource], model: &Model, textures: &mut Textures) -> Result<(), UploadError> {
         let mut places = Vec::new();
         let mut used = 0;
         for source in sources {
@@ -189,7 +187,7 @@ impl<'a> Staging<'a> {
     }
 
     /// Writes all levels of a texture to `offset`, one after the other.
-    fn fill(&self, source: Source, model: &Model, offset: u64) {
+    fn fill(&self, source: TextureSource, model: &Model, offset: u64) {
         let (width, height) = size(&source, model);
         let pixels = source.pixels(model);
         self.write(offset, &pixels);
@@ -210,7 +208,7 @@ fn free_unread(model: &mut Model, readers: &[u32]) {
 }
 
 /// Makes the image of a texture, without content.
-fn make_image(gpu: &Arc<Gpu>, source: &Source, model: &Model) -> Result<Arc<Image>, UploadError> {
+fn make_image(gpu: &Arc<Gpu>, source: &TextureSource, model: &Model) -> Result<Arc<Image>, UploadError> {
     let name = source.image(model).map_or("default", |image| &image.name);
     let format = if source.is_srgb() { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
     let (width, height) = size(source, model);
@@ -219,12 +217,12 @@ fn make_image(gpu: &Arc<Gpu>, source: &Source, model: &Model) -> Result<Arc<Imag
 }
 
 /// Bytes of the staging buffer that all levels of a texture take.
-fn staged_bytes(source: &Source, model: &Model) -> u64 {
+fn staged_bytes(source: &TextureSource, model: &Model) -> u64 {
     let (width, height) = size(source, model);
     (mips::bytes(width, height) as u64).next_multiple_of(ALIGNMENT)
 }
 
 /// Width and height in pixels.
-fn size(source: &Source, model: &Model) -> (u32, u32) {
+fn size(source: &TextureSource, model: &Model) -> (u32, u32) {
     source.image(model).map_or((1, 1), |image| (image.width, image.height))
 }

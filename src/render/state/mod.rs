@@ -3,7 +3,6 @@
 //! [`FrameState::new`] is a pure function. A frame is drawn from one state as a whole, so no picture ever mixes the settings,
 //! shaders or resources of two.
 
-pub mod parameters;
 mod pipelines;
 mod scene;
 
@@ -20,7 +19,7 @@ use crate::interface::{Frame, Light, MAX_LIGHTS};
 use crate::render::environment::bake::{BAKE_STAGES, LARGEST_HALF};
 use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
-use crate::shader::{Mode, ShaderSet, Stage};
+use crate::shader::{Mode, ShaderSet, Stage, values};
 
 /// Paths traced for each pixel in each frame of an accumulating mode.
 const PATHS_PER_FRAME: u32 = 8;
@@ -144,7 +143,7 @@ impl FrameState {
             ..Default::default()
         };
         Self {
-            params: parameters::params(&settings.shader, &shaders.parameters),
+            params: values::params(&settings.shader, &shaders.parameters),
             environment: lit.then(|| environment_key(&settings.environment.name, revisions.environment, shaders)),
             measured: (!settings.measured.is_empty())
                 .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Scene, parameters};
+use super::Scene;
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
     self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
@@ -10,7 +10,7 @@ use crate::interface::{
 };
 use crate::scene::light_count;
 use crate::settings::{LightSource, Settings, Tonemap};
-use crate::shader::{DrawAs, Encode, Mode, ShaderSet};
+use crate::shader::{DrawAs, Encode, Mode, ShaderSet, values};
 
 /// What distinguishes the pipelines of two materials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -108,7 +108,7 @@ impl PipelineRequest {
         Self {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
-            constants: parameters::constants(&settings.shader, &shaders.constants),
+            constants: values::constants(&settings.shader, &shaders.constants),
             tonemap: if mode.is_some_and(|m| m.tonemap) { settings.view.tonemap as u32 } else { TONEMAP_OFF },
             encode: mode.map_or(Encode::Color, |m| m.encode).id(),
             target,

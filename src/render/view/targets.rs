@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use crate::gpu::{DescriptorSet, Gpu, GpuError, Image, ImageDesc, Sampler, SetLayouts, SetWriter, vk};
 use crate::interface::SET_PASS;
-use crate::render::scene::mips;
 use crate::render::state::TargetFormat;
+use crate::scene::mips;
 
 /// What the targets are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

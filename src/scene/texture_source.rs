@@ -13,24 +13,34 @@ use crate::scene::{Image, Material, Model, packs_occlusion};
 
 /// An image as materials read it. Indices are into `Model::images`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) enum Source {
+pub enum TextureSource {
     /// Stands in for a missing texture, whose factor is all there is.
     White,
     /// Stands in for a missing normal texture.
     FlatNormal,
     /// One of the model's images.
-    Image { image: usize, srgb: bool },
+    Image {
+        /// The image.
+        image: usize,
+        /// Whether its colors are sRGB-encoded.
+        srgb: bool,
+    },
     /// A metallic-roughness image with the red channel of an occlusion image of the same size: one texture to read
     /// for each pixel instead of two.
-    Packed { metallic_roughness: usize, occlusion: usize },
+    Packed {
+        /// The image of the other channels.
+        metallic_roughness: usize,
+        /// The image of the red channel.
+        occlusion: usize,
+    },
 }
 
 /// Pixels that one task of the merge works on.
 const PIXELS_A_TASK: usize = 1 << 16;
 
-impl Source {
+impl TextureSource {
     /// What a material has in a slot, `interface::TEXTURE_*`.
-    pub(crate) fn of(model: &Model, material: &Material, slot: usize) -> Self {
+    pub fn of(model: &Model, material: &Material, slot: usize) -> Self {
         let image_in = |slot: usize| material.textures[slot].map(|used| model.textures[used.texture].image);
         let is = |of: &[u32]| of.iter().any(|texture| *texture as usize == slot);
         let Some(image) = image_in(slot) else {
@@ -56,12 +66,12 @@ impl Source {
     }
 
     /// Whether its colors are sRGB-encoded.
-    pub(crate) fn is_srgb(self) -> bool {
+    pub fn is_srgb(self) -> bool {
         matches!(self, Self::Image { srgb: true, .. })
     }
 
     /// The image that it has its name and size from; `None` for a stand-in, which is a pixel.
-    pub(crate) fn image(self, model: &Model) -> Option<&Image> {
+    pub fn image(self, model: &Model) -> Option<&Image> {
         match self {
             Self::White | Self::FlatNormal => None,
             Self::Image { image, .. } | Self::Packed { metallic_roughness: image, .. } => Some(&model.images[image]),
@@ -69,7 +79,7 @@ impl Source {
     }
 
     /// The images that its pixels come from, as indices into `Model::images`.
-    pub(crate) fn images(self) -> impl Iterator<Item = usize> {
+    pub fn images(self) -> impl Iterator<Item = usize> {
         let [first, second] = match self {
             Self::White | Self::FlatNormal => [None, None],
             Self::Image { image, .. } => [Some(image), None],
@@ -79,7 +89,7 @@ impl Source {
     }
 
     /// Its pixels, RGBA, rows top to bottom. Reads `Image::rgba8`, which an upload empties.
-    pub(crate) fn pixels(self, model: &Model) -> Cow<'_, [u8]> {
+    pub fn pixels(self, model: &Model) -> Cow<'_, [u8]> {
         match self {
             Self::White => Cow::Borrowed(&[255; 4]),
             Self::FlatNormal => Cow::Borrowed(&[128, 128, 255, 255]),
@@ -101,12 +111,12 @@ impl Source {
 }
 
 /// Everything that the materials of a model read, the stand-ins first.
-pub(crate) fn sources(model: &Model) -> BTreeSet<Source> {
+pub fn texture_sources(model: &Model) -> BTreeSet<TextureSource> {
     let used = model
         .materials
         .iter()
-        .flat_map(|material| (0..material.textures.len()).map(move |slot| Source::of(model, material, slot)));
-    used.chain([Source::White, Source::FlatNormal]).collect()
+        .flat_map(|material| (0..material.textures.len()).map(move |slot| TextureSource::of(model, material, slot)));
+    used.chain([TextureSource::White, TextureSource::FlatNormal]).collect()
 }
 
 #[cfg(test)]
@@ -144,8 +154,8 @@ mod tests {
         let mut model = model(&[size, size]);
         let material = material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 1)]);
         model.materials = vec![material.clone(), self::material(&[(TEXTURE_BASE_COLOR, 0)])];
-        let packed = Source::Packed { metallic_roughness: 0, occlusion: 1 };
-        let of = |slot: u32| Source::of(&model, &material, slot as usize);
+        let packed = TextureSource::Packed { metallic_roughness: 0, occlusion: 1 };
+        let of = |slot: u32| TextureSource::of(&model, &material, slot as usize);
         assert_eq!([of(TEXTURE_METALLIC_ROUGHNESS), of(TEXTURE_OCCLUSION)], [packed; 2]);
         let pixels = packed.pixels(&model);
         let images = [&model.images[0].rgba8, &model.images[1].rgba8].map(|image| image.chunks_exact(4));
@@ -155,18 +165,21 @@ mod tests {
             assert_eq!(merged, [occlusion[0], roughness[1], roughness[2], roughness[3]]);
         }
         // The occlusion image itself is not uploaded; the other one is for its other user.
-        let image = Source::Image { image: 0, srgb: true };
-        assert_eq!(Vec::from_iter(sources(&model)), [Source::White, Source::FlatNormal, image, packed]);
+        let image = TextureSource::Image { image: 0, srgb: true };
+        assert_eq!(
+            Vec::from_iter(texture_sources(&model)),
+            [TextureSource::White, TextureSource::FlatNormal, image, packed]
+        );
     }
 
     #[test]
     fn images_that_differ_stay_apart() {
         let apart = |model: &Model, material: &Material| {
-            let of = |slot: u32| Source::of(model, material, slot as usize);
+            let of = |slot: u32| TextureSource::of(model, material, slot as usize);
             [of(TEXTURE_METALLIC_ROUGHNESS), of(TEXTURE_OCCLUSION)]
         };
         let material = material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 1)]);
-        let both = |srgb| [Source::Image { image: 0, srgb }, Source::Image { image: 1, srgb: false }];
+        let both = |srgb| [TextureSource::Image { image: 0, srgb }, TextureSource::Image { image: 1, srgb: false }];
         assert_eq!(apart(&model(&[(4, 4), (4, 2)]), &material), both(false));
         let glossy = Material { specular_glossiness: true, ..material.clone() };
         assert_eq!(apart(&model(&[(4, 4), (4, 4)]), &glossy), both(true));
@@ -178,7 +191,7 @@ mod tests {
         assert_eq!(apart(&model(&[(4, 4), (4, 4)]), &second), both(false));
         // One image for both needs no merge.
         let one = self::material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 0)]);
-        assert_eq!(apart(&model(&[(4, 4)]), &one), [Source::Image { image: 0, srgb: false }; 2]);
+        assert_eq!(apart(&model(&[(4, 4)]), &one), [TextureSource::Image { image: 0, srgb: false }; 2]);
     }
 
     #[test]
@@ -187,13 +200,14 @@ mod tests {
         let all: Vec<(u32, usize)> = (0..crate::interface::TEXTURE_COUNT as u32).map(|slot| (slot, 0)).collect();
         let srgb = |glossy| {
             let material = Material { specular_glossiness: glossy, ..material(&all) };
-            (0..all.len()).filter(|&slot| Source::of(&model, &material, slot).is_srgb()).collect::<Vec<_>>()
+            (0..all.len()).filter(|&slot| TextureSource::of(&model, &material, slot).is_srgb()).collect::<Vec<_>>()
         };
         assert_eq!(srgb(false), [0, 4, 9, 12, 18]);
         assert_eq!(srgb(true), [0, 1, 4, 9, 12, 18]);
         let bare = Material::default();
-        let flat: Vec<usize> =
-            (0..all.len()).filter(|&slot| Source::of(&model, &bare, slot) == Source::FlatNormal).collect();
+        let flat: Vec<usize> = (0..all.len())
+            .filter(|&slot| TextureSource::of(&model, &bare, slot) == TextureSource::FlatNormal)
+            .collect();
         assert_eq!(flat, [TEXTURE_NORMAL as usize, TEXTURE_CLEARCOAT_NORMAL as usize]);
     }
 }

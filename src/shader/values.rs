@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::gpu::Specialization;
 use crate::interface::PARAMS_SIZE;
 use crate::message::{did_you_mean, either};
 use crate::settings::{ShaderValue, unknown_setting};
@@ -12,6 +11,8 @@ use crate::shader::spirv::reflect::Scalar;
 use crate::shader::{Constant, Parameter, ShaderSet};
 
 type Values = BTreeMap<String, ShaderValue>;
+/// Specialization constants: ids and the bits of their values.
+type Specialization = Vec<(u32, u32)>;
 
 /// All specialization constants in the order of their ids, so that equal values give equal pipelines. A constant whose value does not
 /// fit has its default.

@@ -11,17 +11,17 @@ use crate::settings::linear_from_srgb;
 const PIXELS_A_TASK: usize = 1 << 14;
 
 /// Number of levels down to 1x1.
-pub(crate) fn count(width: u32, height: u32) -> u32 {
+pub fn count(width: u32, height: u32) -> u32 {
     width.max(height).max(1).ilog2() + 1
 }
 
 /// Size of a level.
-pub(crate) fn size(width: u32, height: u32, level: u32) -> (u32, u32) {
+pub fn size(width: u32, height: u32, level: u32) -> (u32, u32) {
     ((width >> level).max(1), (height >> level).max(1))
 }
 
 /// Bytes of all levels.
-pub(crate) fn bytes(width: u32, height: u32) -> usize {
+pub fn bytes(width: u32, height: u32) -> usize {
     let pixels = |level| {
         let (width, height) = size(width, height, level);
         width as usize * height as usize
@@ -31,7 +31,7 @@ pub(crate) fn bytes(width: u32, height: u32) -> usize {
 
 /// Levels 1 and up of an RGBA image, one after the other: each pixel is the mean of up to 2x2 pixels above it, of the
 /// linear values when the image is sRGB-encoded. Alpha is always linear.
-pub(crate) fn below(rgba8: &[u8], width: u32, height: u32, srgb: bool) -> Vec<u8> {
+pub fn below(rgba8: &[u8], width: u32, height: u32, srgb: bool) -> Vec<u8> {
     let mut chain = vec![0; bytes(width, height) - rgba8.len()];
     let (mut above, mut rest) = (rgba8, chain.as_mut_slice());
     for level in 1..count(width, height) {
