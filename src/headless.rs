@@ -6,12 +6,13 @@ use std::time::Instant;
 
 use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PixelValue,
-    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
+    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError,
+    Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
 use crate::settings::Settings;
+use crate::shader::PixelValue;
 use crate::shader::{Change, Compiler, Diagnostic, Mode, ShaderSet, Source};
 
 /// Why there is no picture.

@@ -68,6 +68,16 @@ impl BindingKind {
 
 /// Binding in [`SET_TASK`] of the buffer that a task leaves numbers in; it is as large as the stages declare it.
 pub const BINDING_RESULTS: u32 = 5;
+/// Binding in [`SET_TASK`] of the block [`Task`].
+pub const BINDING_TASK: u32 = 0;
+/// Binding in [`SET_TASK`] of the image that a task reads.
+pub const BINDING_SOURCE: u32 = 1;
+/// Binding in [`SET_TASK`] of the cube map that a task reads.
+pub const BINDING_SOURCE_CUBE: u32 = 2;
+/// Binding in [`SET_TASK`] of the mip level that a task writes.
+pub const BINDING_TARGET: u32 = 3;
+/// Binding in [`SET_TASK`] of a mip level that a task reads.
+pub const BINDING_LEVEL_ABOVE: u32 = 4;
 
 /// One descriptor of the contract. A shader may use any subset.
 #[derive(Clone, Copy, Debug)]
@@ -119,11 +129,11 @@ const OTHERS: &[Binding] = &[
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),
-    binding(SET_TASK, 0, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
-    binding(SET_TASK, 1, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
-    binding(SET_TASK, 2, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
-    binding(SET_TASK, 3, "BINDING_TARGET", BindingKind::StorageImage, 0),
-    binding(SET_TASK, 4, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
+    binding(SET_TASK, BINDING_TASK, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
+    binding(SET_TASK, BINDING_SOURCE, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
+    binding(SET_TASK, BINDING_SOURCE_CUBE, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
+    binding(SET_TASK, BINDING_TARGET, "BINDING_TARGET", BindingKind::StorageImage, 0),
+    binding(SET_TASK, BINDING_LEVEL_ABOVE, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
     binding(SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
 ];
 

@@ -12,7 +12,8 @@
 //! - [`render`]: where shaders, device and scene meet: frame states, resources, views.
 //! - [`events`]: what happens, as JSON lines.
 //! - [`session`]: what the user works on; it survives the device.
-//! - [`picture`], [`comparison`], [`headless`]: captures as files; how far two are apart; rendering without a window.
+//! - [`picture`], [`comparison`], [`headless`], [`measure`]: captures as files; how far two are apart; rendering, and measuring the
+//!   BRDF, without a window.
 //! - [`app`]: the window.
 //!
 //! An edit becomes a settled set of changed paths ([`shader::watch`]), then dirty stages and new SPIR-V ([`shader::library`]), then
@@ -26,6 +27,7 @@ pub mod events;
 pub mod gpu;
 pub mod headless;
 pub mod interface;
+pub mod measure;
 pub mod message;
 pub mod picture;
 pub mod render;

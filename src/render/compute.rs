@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::gpu::{
     Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, Use, one_shot, vk,
 };
-use crate::interface::{BINDINGS, SET_TASK, Task};
+use crate::interface::{BINDING_TASK, SET_TASK, Task};
 
 /// Invocations of a workgroup along x and y, where a stage does not say otherwise.
 const GROUP: u32 = 8;
@@ -13,37 +13,6 @@ const GROUP: u32 = 8;
 /// Workgroups that cover `layers` squares of `side` texels.
 pub(crate) fn groups(side: u32, layers: u32) -> [u32; 3] {
     [side.div_ceil(GROUP), side.div_ceil(GROUP), layers]
-}
-
-/// Number of a binding of set 3 by its name in GLSL.
-fn binding(name: &str) -> u32 {
-    let found = BINDINGS.iter().find(|b| b.set == SET_TASK && b.name == name);
-    found.map_or(0, |b| b.binding)
-}
-
-/// Points BINDING_TARGET to a level.
-pub(crate) fn target(writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
-    writer.storage_level(binding("BINDING_TARGET"), image, level)
-}
-
-/// Points BINDING_LEVEL_ABOVE to a level.
-pub(crate) fn level_above(writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
-    writer.storage_level(binding("BINDING_LEVEL_ABOVE"), image, level)
-}
-
-/// Points BINDING_SOURCE to an image.
-pub(crate) fn source(writer: SetWriter, image: &Arc<Image>, sampler: &Arc<Sampler>) -> SetWriter {
-    writer.texture(binding("BINDING_SOURCE"), image, sampler)
-}
-
-/// Points BINDING_SOURCE_CUBE to a cube.
-pub(crate) fn source_cube(writer: SetWriter, image: &Arc<Image>, sampler: &Arc<Sampler>) -> SetWriter {
-    writer.texture(binding("BINDING_SOURCE_CUBE"), image, sampler)
-}
-
-/// Points BINDING_RESULTS to a buffer.
-pub(crate) fn results(writer: SetWriter, buffer: &Arc<Buffer>) -> SetWriter {
-    writer.buffer(binding("BINDING_RESULTS"), buffer)
 }
 
 /// Set 3 of one dispatch.
@@ -56,7 +25,7 @@ pub(crate) fn bindings(
     let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
     let buffer = Buffer::new(gpu, "task", size_of::<Task>() as u64, usage, Memory::Upload)?;
     buffer.write(0, bytemuck::bytes_of(task));
-    let writer = SetWriter::default().buffer(binding("BINDING_TASK"), &buffer);
+    let writer = SetWriter::default().buffer(BINDING_TASK, &buffer);
     DescriptorSet::new(layouts, SET_TASK, more(writer))
 }
 

@@ -4,20 +4,19 @@
 //! what is on the device and binds a state to it once everything is there. A [`View`] draws the [`BoundFrame`].
 //! [`Reloader`] turns changed files into a new [`PipelineSet`], all or nothing, on any thread.
 
-pub mod brdf;
-mod compute;
+mod brdf;
+pub(crate) mod compute;
 mod environment;
 mod pipeline;
-mod pixel;
 mod resources;
 mod scene;
 mod state;
 mod view;
 
+pub(crate) use brdf::{ltc, measured::measured_buffer};
 pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
 pub use environment::bake_named;
 pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages, tree_name};
-pub use pixel::PixelValue;
 pub use resources::{BoundFrame, Missing, ProvideError, Resources, environment_files, read_measured};
 pub use scene::{GpuModel, UploadError};
 pub use state::{
@@ -25,3 +24,4 @@ pub use state::{
     TargetFormat,
 };
 pub use view::{Capture, Output, PixelAt, Redraw, View};
+pub(crate) use view::{SharedImages, Sources, Uniforms};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::disk_cache;
 use crate::gpu::{Buffer, GpuError, Image, ImageDesc, Memory, Specialization, Use, one_shot, vk};
-use crate::interface::Task;
+use crate::interface::{BINDING_TARGET, Task};
 
 use crate::render::compute;
 use crate::render::pipeline::PipelineSet;
@@ -62,7 +62,8 @@ fn table(
     let pipeline = set.compute(stage, constants)?;
     let readback = vk::BufferUsageFlags::TRANSFER_DST;
     let buffer = Buffer::new(set.gpu(), "table", desc.bytes(), readback, Memory::Readback)?;
-    let bindings = compute::bindings(set.gpu(), set.layouts(), &task, |writer| compute::target(writer, &image, 0))?;
+    let bindings =
+        compute::bindings(set.gpu(), set.layouts(), &task, |writer| writer.storage_level(BINDING_TARGET, &image, 0))?;
     one_shot(set.gpu(), |encoder| {
         encoder.transition(&image, Use::Undefined, Use::Storage);
         encoder.dispatch(set.layouts(), &pipeline, &[&bindings], groups);

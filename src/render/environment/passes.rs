@@ -4,7 +4,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, Use, one_shot, vk};
-use crate::interface::{BINDING_RESULTS, SET_TASK, Task};
+use crate::interface::{
+    BINDING_LEVEL_ABOVE, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, SET_TASK, Task,
+};
 
 use crate::render::compute;
 use crate::render::environment::bake::{BAKE_STAGES, CUBE, DOWNSAMPLE, IRRADIANCE};
@@ -42,6 +44,11 @@ pub(crate) struct Passes<'a> {
 }
 
 impl Passes<'_> {
+    /// Binds the level that a pass writes, and the results that all passes share.
+    fn to(&self, writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
+        writer.storage_level(BINDING_TARGET, image, level).buffer(BINDING_RESULTS, self.results)
+    }
+
     /// The map to level 0, then each level from the one above. The cube ends up in [`Use::Sampled`].
     pub(crate) fn cube(&self, map: &Arc<Image>, cube: &Arc<Image>, radiance_scale: f32) -> Result<(), GpuError> {
         let desc = *cube.desc();
@@ -57,18 +64,18 @@ impl Passes<'_> {
             ..Task::default()
         };
         let bind = |task: &Task, more: &dyn Fn(SetWriter) -> SetWriter| {
-            let writer = |writer| more(compute::results(compute::target(writer, cube, task.level), self.results));
+            let writer = |writer| more(self.to(writer, cube, task.level));
             compute::bindings(self.gpu, self.layouts, task, writer)
         };
         let mut dispatches = vec![(
             self.set.compute(CUBE, &Vec::new())?,
-            bind(&first, &|w| compute::source(w, map, &sampler))?,
+            bind(&first, &|w| w.texture(BINDING_SOURCE, map, &sampler))?,
             desc.width,
         )];
         for level in 1..desc.mips {
             let side = (desc.width >> level).max(1);
             let task = Task { size: [side; 2], level, ..first };
-            let set = bind(&task, &|writer| compute::level_above(writer, cube, level - 1))?;
+            let set = bind(&task, &|writer| writer.storage_level(BINDING_LEVEL_ABOVE, cube, level - 1))?;
             dispatches.push((self.set.compute(DOWNSAMPLE, &Vec::new())?, set, side));
         }
         one_shot(self.gpu, |encoder| {
@@ -88,8 +95,7 @@ impl Passes<'_> {
         let side = to.desc().width;
         let task = Task { size: [side; 2], levels: 1, ..Task::default() };
         let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-            let writer = compute::level_above(compute::target(writer, to, 0), cube, IRRADIANCE_LEVEL);
-            compute::results(writer, self.results)
+            self.to(writer, to, 0).storage_level(BINDING_LEVEL_ABOVE, cube, IRRADIANCE_LEVEL)
         })?;
         let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
         one_shot(self.gpu, |encoder| {
@@ -119,7 +125,7 @@ impl Passes<'_> {
             let samples = samples.get(level as usize).copied().unwrap_or(1);
             let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
             let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-                compute::results(compute::target(compute::source_cube(writer, cube, sampler), to, level), self.results)
+                self.to(writer.texture(BINDING_SOURCE_CUBE, cube, sampler), to, level)
             })?;
             dispatches.push((level, bindings, compute::groups(side, desc.layers)));
         }

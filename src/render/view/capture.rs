@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::PixelAt;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, vk};
-use crate::render::pixel::PixelValue;
+use crate::shader::PixelValue;
 
 /// A frame in memory.
 #[derive(Clone, Debug, Default)]

@@ -11,16 +11,16 @@ use std::sync::Arc;
 pub use capture::Capture;
 use capture::{PixelReadback, Readback};
 use targets::{TargetDesc, Targets};
-pub(super) use uniforms::{SharedImages, Sources, Uniforms};
+pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use super::brdf::ltc;
 use super::compute;
-use super::pixel::PixelValue;
 use super::resources::BoundFrame;
 use super::state::TargetFormat;
 use crate::gpu::{
     Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };
+use crate::shader::PixelValue;
 
 /// Where a view puts its picture.
 pub struct Output<'a> {

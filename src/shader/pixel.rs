@@ -1,7 +1,7 @@
 //! The value of one pixel as the HDR target holds it: color, coverage and flags. `shaders/common/pixel.glsl` writes it.
 
+use super::Mode;
 use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE};
-use crate::shader::Mode;
 
 /// The most samples of a pixel whose mean keeps coverage and flags apart.
 const MOST_SAMPLES: f32 = 8.0;

@@ -6,16 +6,12 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
+use crate::render::{
+    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, TargetFormat, Uniforms,
+    compute, ltc, measured_buffer,
+};
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
-
-use crate::render::brdf::ltc;
-use crate::render::brdf::measured::measured_buffer;
-use crate::render::compute;
-use crate::render::environment::bake::GpuEnvironment;
-use crate::render::pipeline::{MEASURE_STAGES, PipelineSet};
-use crate::render::state::{PipelineRequest, TargetFormat};
-use crate::render::view::{SharedImages, Sources, Uniforms};
 
 /// What is measured. All else has glTF's defaults.
 #[derive(Clone, Copy, Debug)]
@@ -171,7 +167,7 @@ impl Bench {
     fn on(shared: Arc<Shared>, settings: &Settings) -> Result<Self, GpuError> {
         let request = request(settings, &shared.set.shaders);
         shared.set.build(&request)?;
-        let bound = shared.set.bind(&request).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
+        let bound = shared.set.bind(&request).ok_or_else(|| GpuError::NoStage("ibl/dfg.comp".to_owned()))?;
         let environment = shared.environment.clone();
         let sources = Sources { environment, tables: bound.tables, measured: shared.measured.clone() };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
@@ -229,7 +225,7 @@ impl Bench {
         };
         let size = (grid.columns * grid.rows) as usize * size_of::<T>();
         let results = Buffer::new(gpu, "results", size as u64, vk::BufferUsageFlags::STORAGE_BUFFER, Memory::Readback)?;
-        let writer = |writer: SetWriter| compute::results(writer, &results);
+        let writer = |writer: SetWriter| writer.buffer(interface::BINDING_RESULTS, &results);
         let bindings = compute::bindings(gpu, layouts, &task, writer)?;
         let pipeline = set.compute(stage, &self.constants)?;
         let groups = [grid.columns.div_ceil(8), grid.rows.div_ceil(8), 1];
