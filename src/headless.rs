@@ -1,13 +1,14 @@
 //! Rendering without a window: the same reload and the same frame as on screen, called one after the other.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
+
+use rayon::prelude::*;
 
 use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError,
-    Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
+    Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
@@ -163,15 +164,9 @@ impl Headless {
         &self.resources.environment().report
     }
 
-    /// The files of the environment.
-    pub fn environment_files(&self) -> Vec<PathBuf> {
-        environment_files(&self.session.settings.environment.name)
-    }
-
-    /// The file of the measured BRDF, if there is one.
-    pub fn measured_files(&self) -> Vec<PathBuf> {
-        let path = &self.session.settings.measured;
-        std::path::absolute(path).ok().filter(|_| !path.is_empty()).into_iter().collect()
+    /// The settings, the model and the shaders.
+    pub fn session(&self) -> &Session {
+        &self.session
     }
 
     /// The shaders in use; empty before the first good ones.
@@ -300,7 +295,10 @@ impl Headless {
             })
         };
         let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
-        self.resources.build_all(&states.iter().map(|state| &state.pipelines).collect::<Vec<_>>())?;
+        if let Some(set) = self.resources.pipelines() {
+            // A driver compiles a pipeline on the thread that asks for it.
+            states.par_iter().try_for_each(|state| set.build(&state.pipelines))?;
+        }
         self.view.probe = Some(at);
         let mut values = Vec::new();
         for state in &states {

@@ -24,6 +24,7 @@ pub mod app;
 pub mod comparison;
 mod disk_cache;
 pub mod events;
+pub mod file_kind;
 pub mod gpu;
 pub mod headless;
 pub mod interface;

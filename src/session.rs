@@ -2,10 +2,11 @@
 //! one.
 
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::render::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
-use crate::scene::Model;
+use crate::scene::{Model, environment};
 use crate::settings::Settings;
 use crate::shader::values::{misfits, unknown_names};
 use crate::shader::{Diagnostic, Mode, ShaderSet};
@@ -72,6 +73,19 @@ impl Session {
             size,
             target,
         }))
+    }
+
+    /// The file of the environment, absolute; none for a built-in one.
+    pub fn environment_files(&self) -> Vec<PathBuf> {
+        let name = self.settings.environment.name.as_str();
+        let is_file = name != "none" && (!environment::BUILT_IN.contains(&name) || Path::new(name).is_file());
+        is_file.then(|| std::path::absolute(name).ok()).flatten().into_iter().collect()
+    }
+
+    /// The file of the measured BRDF, absolute; none without one.
+    pub fn measured_files(&self) -> Vec<PathBuf> {
+        let path = &self.settings.measured;
+        std::path::absolute(path).ok().filter(|_| !path.is_empty()).into_iter().collect()
     }
 
     /// What in the settings does not fit the shaders or the model, one sentence each. `names`: unknown names count, too;

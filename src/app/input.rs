@@ -4,10 +4,10 @@ use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::camera::CameraController;
 use super::command::Command;
 use super::screen::Screen;
 use super::viewer::Viewer;
+use crate::scene::CameraController;
 use crate::session::Session;
 use crate::settings::LightSettings;
 

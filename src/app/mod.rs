@@ -3,7 +3,6 @@
 //! [`viewer`] holds the session and the last complete picture, [`screen`] draws it, [`threads`] make what is missing. Panels, keys
 //! and dropped files change settings or send a [`command`].
 
-mod camera;
 mod command;
 mod input;
 mod panels;
@@ -210,7 +209,7 @@ impl ApplicationHandler<Message> for App {
                 open.screen.resized();
                 open.window.request_redraw();
             }
-            WindowEvent::DroppedFile(path) => open.viewer.open_path(&path),
+            WindowEvent::DroppedFile(path) => open.viewer.open_path(path),
             WindowEvent::RedrawRequested => {
                 let drawn = open.screen.draw(&open.window, &mut open.viewer);
                 match drawn {

@@ -8,7 +8,6 @@ use winit::event::WindowEvent;
 use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
-use super::camera::CameraController;
 use super::input::Mouse;
 use super::panels::{self, Readings};
 use super::viewer::Viewer;
@@ -18,7 +17,7 @@ use crate::gpu::{
 };
 use crate::picture;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
-use crate::scene::CameraView;
+use crate::scene::{CameraController, CameraView};
 
 /// While the device draws one frame, the CPU prepares the next.
 const FRAMES_IN_FLIGHT: usize = 2;

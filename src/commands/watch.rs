@@ -48,7 +48,7 @@ impl Watch {
     /// Watches the files of the model, the environment and the measured BRDF too, in place of those before.
     pub fn follow(&mut self, headless: &Headless) {
         let model = headless.model();
-        let (environment, measured) = (headless.environment_files(), headless.measured_files());
+        let (environment, measured) = (headless.session().environment_files(), headless.session().measured_files());
         let files: Vec<PathBuf> = model.files.iter().chain(&environment).chain(&measured).cloned().collect();
         self.watcher.set_files(&files);
         self.model_files = model.files.iter().cloned().collect();

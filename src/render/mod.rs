@@ -17,7 +17,7 @@ pub(crate) use brdf::{ltc, measured::measured_buffer};
 pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
 pub use environment::bake_named;
 pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages, tree_name};
-pub use resources::{BoundFrame, Missing, ProvideError, Resources, environment_files, read_measured};
+pub use resources::{BoundFrame, Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};
 pub use state::{
     EnvironmentKey, FrameInputs, FrameState, MaterialVariant, MeasuredKey, PipelineRequest, Revisions, Scene,

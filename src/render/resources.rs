@@ -1,7 +1,6 @@
 //! Everything on the device that frames are drawn with, found by the keys of a [`FrameState`]. It can be dropped and made
 //! again from what the session holds.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts};
@@ -12,7 +11,7 @@ use super::environment::bake::{BakeControl, BakeError, GpuEnvironment};
 use super::environment::bake_named;
 use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};
-use super::state::{EnvironmentKey, FrameState, MeasuredKey, PipelineRequest, Scene};
+use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene};
 
 /// A [`FrameState`] with the pipelines and resources that it is drawn with: complete, so that it can be shown. It keeps them
 /// alive, whatever replaces them meanwhile.
@@ -244,16 +243,6 @@ impl Resources {
         self.scene = Some((scene.clone(), drawn.clone()));
         Ok(Some(drawn))
     }
-
-    /// Makes the pipelines of several requests in parallel: a driver compiles a pipeline on the thread that asks for it.
-    ///
-    /// # Errors
-    /// The driver refuses one.
-    pub fn build_all(&self, requests: &[&PipelineRequest]) -> Result<(), GpuError> {
-        use rayon::prelude::*;
-        let Some(set) = &self.pipelines else { return Ok(()) };
-        requests.par_iter().try_for_each(|request| set.build(request))
-    }
 }
 
 /// Why a resource could not be made.
@@ -280,11 +269,4 @@ pub enum ProvideError {
 pub fn read_measured(gpu: &Arc<Gpu>, key: &MeasuredKey) -> Result<Arc<Buffer>, ProvideError> {
     let measured = Measured::open(&key.path)?;
     Ok(measured_buffer(gpu, Some(&measured))?)
-}
-
-/// The files behind an environment's name, which are watched: none for a built-in one.
-pub fn environment_files(name: &str) -> Vec<PathBuf> {
-    use crate::scene::environment::BUILT_IN;
-    let is_file = name != "none" && (!BUILT_IN.contains(&name) || PathBuf::from(name).is_file());
-    is_file.then(|| std::path::absolute(name).ok()).flatten().into_iter().collect()
 }

@@ -7,6 +7,7 @@
 mod built_in;
 mod camera;
 mod control;
+mod controller;
 pub mod environment;
 mod error;
 mod features;
@@ -17,6 +18,7 @@ mod measured;
 pub mod mips;
 mod model;
 mod outline;
+mod pack;
 mod pick;
 mod texture_source;
 
@@ -25,12 +27,14 @@ use std::path::{Path, PathBuf};
 pub use built_in::{BUILT_IN, built_in};
 pub use camera::{CameraView, frame};
 pub use control::{FlyCamera, OrbitCamera};
+pub use controller::CameraController;
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
 pub use lights::{light_count, lights};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
+pub use pack::pack_material;
 pub use pick::near_pixel;
 pub use texture_source::{TextureSource, texture_sources};
 
