@@ -9,9 +9,9 @@ use specula::scene::{self, BUILT_IN};
 
 use super::Failure;
 
-/// Whether a text looks like a name and not like a file: it has neither an ending nor a folder.
+/// Whether a text looks like a name: it is no option, and has neither an ending nor a folder as files do.
 pub fn is_word(text: &str) -> bool {
-    Path::new(text).extension().is_none() && !text.contains(std::path::is_separator)
+    !text.starts_with('-') && Path::new(text).extension().is_none() && !text.contains(std::path::is_separator)
 }
 
 /// Fails when there is neither such a file nor a built-in model of that name, and when the file is no model.
