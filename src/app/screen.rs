@@ -21,8 +21,6 @@ use crate::scene::{CameraController, CameraView};
 
 /// While the device draws one frame, the CPU prepares the next.
 const FRAMES_IN_FLIGHT: usize = 2;
-/// Frames that an accumulating mode adds up: more change nothing that can be seen.
-const MOST_ACCUMULATED: u32 = 4096;
 /// A repaint that egui asks for later than this is none.
 const NEVER: Duration = Duration::from_secs(3600);
 
@@ -158,7 +156,7 @@ impl Screen {
         }
 
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let gets_better = viewer.accumulates() && self.view.accumulated() < MOST_ACCUMULATED;
+        let gets_better = viewer.accumulates() && self.view.accumulated() < View::MOST_ACCUMULATED;
         let again = self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better;
         Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
     }
@@ -243,7 +241,7 @@ impl Screen {
         });
         match prepared {
             Ok(frame) => self.last = frame,
-            Err(error @ GpuError::OutOfMemory(_)) => viewer.notices.keep(format!("{error}. The picture before stays.")),
+            Err(error @ GpuError::OutOfMemory(_)) => viewer.keep_saying(format!("{error}. The picture before stays.")),
             Err(error) => return Err(error),
         }
         Ok(self.last.clone())
@@ -252,7 +250,8 @@ impl Screen {
     /// The pixel of the picture under the mouse.
     fn mouse_pixel(&self) -> Option<(u32, u32)> {
         let (x, y) = (self.mouse.at.x - self.rect.at.0 as f32, self.mouse.at.y - self.rect.at.1 as f32);
-        (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32))
+        let (width, height) = self.last.as_ref()?.state.size;
+        (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32)).filter(|(x, y)| *x < width && *y < height)
     }
 
     /// Takes the newest pixel that a finished frame has copied.
@@ -267,7 +266,8 @@ impl Screen {
 
     /// Whether the value under the mouse on screen is not that of the picture on screen.
     fn awaits_pixel(&self) -> bool {
-        self.view.probe.is_some() && (self.view.redrawn() || self.pixel.map(|pixel| pixel.at) != self.view.probe)
+        let current = self.view.probe.map(|at| (at, self.view.picture()));
+        current.is_some() && self.pixel.map(|pixel| (pixel.at, pixel.picture)) != current
     }
 
     /// Measures and reports the first frames; returns whether there was something to report, which the panels show.

@@ -35,10 +35,13 @@ impl Notices {
     }
 
     /// Shows a message until it is dismissed.
-    pub(super) fn keep(&mut self, text: String) {
-        if !self.kept.contains(&text) {
+    /// Returns whether it is new.
+    pub(super) fn keep(&mut self, text: String) -> bool {
+        let is_new = !self.kept.contains(&text);
+        if is_new {
             self.kept.push(text);
         }
+        is_new
     }
 
     /// The last message, and how long it is still shown; without end if it `stays`.

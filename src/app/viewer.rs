@@ -191,7 +191,7 @@ impl Viewer {
 
     /// The value of a pixel of the picture in words; `None` where nothing is.
     pub(super) fn value_text(&self, pixel: &PixelAt) -> Option<String> {
-        let PixelAt { at: (x, y), value } = pixel;
+        let PixelAt { at: (x, y), value, .. } = pixel;
         let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
         let mode = self.shown().filter(|_| covered)?.mode()?;
         Some(format!("{}   at {x}, {y}", value.text(mode)))
@@ -245,6 +245,13 @@ impl Viewer {
         let text = text.into();
         message::tell(&text);
         self.notices.say(text);
+    }
+
+    /// Tells the user something until it is dismissed.
+    pub(super) fn keep_saying(&mut self, text: String) {
+        if self.notices.keep(text.clone()) {
+            message::tell(text);
+        }
     }
 
     pub(super) fn execute(&mut self, command: Command) {

@@ -175,7 +175,8 @@ impl Resources {
         };
         let environment = match self.environment.get(state.environment.as_ref()) {
             Some(environment) => environment.clone(),
-            None if is_first => self.environment.last_good().clone(),
+            // An edit shows at once, in the light of the same environment as the shaders before baked it.
+            None if is_first || self.has_baked(state) => self.environment.last_good().clone(),
             None => return Ok(None),
         };
         let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
@@ -225,6 +226,12 @@ impl Resources {
             }
         }
         Ok(())
+    }
+
+    /// Whether the environment of `state` is the one that was baked last, if with other shaders or from an older file.
+    fn has_baked(&self, state: &FrameState) -> bool {
+        let baked = self.environment.made.as_ref().map(|(key, _)| &key.name);
+        baked.is_some() && baked == state.environment.as_ref().map(|key| &key.name)
     }
 
     /// The newest set, if `state` was made of its shaders.

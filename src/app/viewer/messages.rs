@@ -163,9 +163,9 @@ impl Viewer {
     fn on_panic(&mut self, thread: &'static str, text: &str) {
         let restarts = thread == "worker" && self.worker_restarts < WORKER_RESTARTS;
         let then = if restarts { "; it was started again" } else { "" };
-        self.notices
-            .keep(format!("Specula's {thread} thread failed ({text}){then}. Please report this; your files are safe."));
-        message::tell(format_args!("the {thread} thread failed ({text}){then}"));
+        self.keep_saying(format!(
+            "Specula's {thread} thread failed ({text}){then}. Please report this; your files are safe"
+        ));
         match thread {
             "worker" if restarts => {
                 self.worker_restarts += 1;

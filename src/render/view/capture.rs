@@ -81,7 +81,8 @@ impl Readback {
 /// One pixel of each frame of a slot, copied within the frame.
 pub(super) struct PixelReadback {
     buffer: Arc<Buffer>,
-    copied: Option<((u32, u32), bool)>,
+    /// Place, whether the target has half floats, and the picture.
+    copied: Option<((u32, u32), bool, u64)>,
 }
 
 impl PixelReadback {
@@ -91,10 +92,10 @@ impl PixelReadback {
     }
 
     /// Records the copy of a pixel of an HDR image, which is in [`Use::Sampled`] before and after.
-    pub(super) fn record(&mut self, encoder: &mut Encoder, hdr: &Arc<Image>, at: Option<(u32, u32)>) {
+    pub(super) fn record(&mut self, encoder: &mut Encoder, hdr: &Arc<Image>, at: Option<(u32, u32)>, picture: u64) {
         let desc = hdr.desc();
         let at = at.filter(|(x, y)| *x < desc.width && *y < desc.height);
-        self.copied = at.map(|at| (at, desc.format == vk::Format::R16G16B16A16_SFLOAT));
+        self.copied = at.map(|at| (at, desc.format == vk::Format::R16G16B16A16_SFLOAT, picture));
         if let Some(at) = at {
             encoder.transition(hdr, Use::Sampled, Use::CopyFrom);
             encoder.copy_pixel(hdr, at, &self.buffer);
@@ -105,8 +106,12 @@ impl PixelReadback {
 
     /// The pixel of the last frame that recorded one. SYNC: after that frame's fence.
     pub(super) fn read(&self) -> Option<PixelAt> {
-        let (at, half) = self.copied?;
-        texels(self.buffer.content(), half).next().map(|texel| PixelAt { at, value: PixelValue::decode(texel) })
+        let (at, half, picture) = self.copied?;
+        texels(self.buffer.content(), half).next().map(|texel| PixelAt {
+            at,
+            value: PixelValue::decode(texel),
+            picture,
+        })
     }
 }
 

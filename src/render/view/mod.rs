@@ -50,6 +50,8 @@ pub struct PixelAt {
     pub at: (u32, u32),
     /// Its value.
     pub value: PixelValue,
+    /// [`View::picture`] of the picture that it belongs to.
+    pub picture: u64,
 }
 
 /// What the HDR target holds.
@@ -73,13 +75,16 @@ pub struct View {
     in_flight: Vec<InFlight>,
     targets: Option<Targets>,
     drawn: Option<Drawn>,
-    redrawn: bool,
+    /// Counts the pictures that were drawn.
+    picture: u64,
     sample_index: u32,
     /// The pixel whose value each frame reports.
     pub probe: Option<(u32, u32)>,
 }
 
 impl View {
+    /// Frames that an accumulating mode adds up, unless every frame is asked for: more change nothing that can be seen.
+    pub const MOST_ACCUMULATED: u32 = 4096;
     /// Format of every picture.
     pub const OUTPUT_FORMAT: vk::Format = Swapchain::FORMAT;
 
@@ -102,7 +107,7 @@ impl View {
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,
-            redrawn: false,
+            picture: 0,
             sample_index: 0,
             probe: None,
         })
@@ -151,8 +156,12 @@ impl View {
         // An accumulating mode adds a frame to the mean of the same picture, and starts again with another.
         let accumulates = frame.state.pipelines.accumulates;
         let unchanged = self.drawn.as_ref().is_some_and(|drawn| drawn.only == only && drawn.frame.is_same(frame));
-        self.sample_index = if unchanged && accumulates { self.sample_index.saturating_add(1) } else { 0 };
-        self.redrawn = !unchanged || accumulates || redraw != Redraw::IfChanged;
+        let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
+        let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
+        if redrawn {
+            self.picture += 1;
+            self.sample_index = if unchanged && accumulates { self.sample_index.saturating_add(1) } else { 0 };
+        }
 
         // What the shaders read.
         let in_flight = &mut self.in_flight[slot];
@@ -167,7 +176,7 @@ impl View {
 
         // The model, to HDR.
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, only };
-        if self.redrawn {
+        if redrawn {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
             passes.accumulate(encoder, self.sample_index);
@@ -175,7 +184,7 @@ impl View {
         self.drawn = Some(Drawn { frame: frame.clone(), only });
 
         // The value of one pixel, for whoever asks for it once the frame has finished.
-        in_flight.pixel.record(encoder, targets.picture(), self.probe);
+        in_flight.pixel.record(encoder, targets.picture(), self.probe, self.picture);
 
         // HDR to the picture: exposure, tone map, sRGB.
         encoder.transition(output.image, output.before, Use::Color);
@@ -189,9 +198,9 @@ impl View {
         passes::clear(encoder, output.image);
     }
 
-    /// Whether the last frame drew the model, and not only the tone map over what the HDR target held.
-    pub fn redrawn(&self) -> bool {
-        self.redrawn
+    /// Number of the picture on screen. It changes whenever the model is drawn, and not when only the tone map is.
+    pub fn picture(&self) -> u64 {
+        self.picture
     }
 
     /// Number of frames that the picture is the mean of.
