@@ -8,7 +8,6 @@ use crate::scene::{Measured, MeasuredError};
 
 use super::brdf::measured::measured_buffer;
 use super::environment::bake::{BakeControl, BakeError, GpuEnvironment};
-use super::environment::bake_named;
 use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};
 use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene};
@@ -218,7 +217,7 @@ impl Resources {
     pub fn bake(&mut self, key: EnvironmentKey, from_disk: bool) -> Result<(), ProvideError> {
         let set = self.pipelines.clone().ok_or(ProvideError::Stale)?;
         let control = BakeControl { progress: &|_, _| {}, superseded: &|| false, from_disk };
-        match bake_named(&set, &key.name, &control) {
+        match GpuEnvironment::bake(&set, &key.name, &control) {
             Ok(environment) => self.set_environment(key, Some(environment)),
             Err(error) => {
                 self.set_environment(key, None);

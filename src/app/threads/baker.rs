@@ -7,9 +7,7 @@ use std::thread::JoinHandle;
 
 use super::{Message, Outbox};
 use crate::gpu::{Buffer, Gpu};
-use crate::render::{
-    BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, bake_named, read_measured,
-};
+use crate::render::{BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, read_measured};
 
 /// What the baker sends.
 pub(in crate::app) enum BakeMessage {
@@ -65,7 +63,7 @@ impl Baker {
             };
             let superseded = || newest.load(Ordering::SeqCst) != number;
             let control = BakeControl { progress: &progress, superseded: &superseded, from_disk: true };
-            let result = bake_named(&set, &key.name, &control);
+            let result = GpuEnvironment::bake(&set, &key.name, &control);
             // The window may hold the last pipelines that need this set.
             drop(set);
             outbox.send(Message::Bake(BakeMessage::Environment(number, key, result)));

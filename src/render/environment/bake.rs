@@ -177,11 +177,13 @@ impl GpuEnvironment {
         Ok(out.read())
     }
 
-    /// Bakes an environment with a set's stages, or takes the result from the disk.
+    /// Bakes an environment, a built-in one or a file, with the stages of `set`, or takes the result from the disk. From any
+    /// thread.
     ///
     /// # Errors
     /// A bad map, a device that fails, or `control` gave up.
-    pub fn bake(set: &PipelineSet, file: &EnvironmentFile, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
+    pub fn bake(set: &PipelineSet, name: &str, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
+        let file = &EnvironmentFile::open(name)?;
         let start = Instant::now();
         let gpu = set.gpu();
         let mut this = Self::new(gpu)?;

@@ -202,16 +202,6 @@ impl PipelineSet {
         Some(BoundPipelines { pipelines, tables })
     }
 
-    /// Number of graphics pipelines that are kept.
-    pub fn len(&self) -> usize {
-        lock(&self.graphics).entries.len()
-    }
-
-    /// Whether no graphics pipeline is kept.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     pub(crate) fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
     }

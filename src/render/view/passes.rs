@@ -1,11 +1,4 @@
-//! The passes of a frame, in the order in which they run.
-//!
-//! | pass | reads | draws to |
-//! |---|---|---|
-//! | behind | | HDR color; then copied and blurred level by level |
-//! | model | behind | HDR color: opaque, transmissive, sky, blended |
-//! | accumulate | HDR color | mean |
-//! | tone map | HDR color, or mean | the output |
+//! The passes of a frame, in the order in which they run: `behind`, `model`, `accumulate`, `tone map`.
 
 use std::sync::Arc;
 
