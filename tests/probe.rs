@@ -62,7 +62,7 @@ fn nan_and_missing_data_are_told_apart() {
     assert_eq!((&modes["final"], &modes["clearcoat"]), (&json!("NaN"), &Value::Null));
     let depth = numbers(&modes["depth"])[0];
     // The table: one number for a scalar, the unit behind it.
-    let table = probe(directory.path(), &args).expect(0, &[]).stdout;
+    let table = probe(directory.path(), &args).expect(0, &[]).stdout.clone();
     let row = |slug: &str| {
         let row = table.lines().find(|line| line.trim_start().starts_with(&format!("{slug} ")));
         row.unwrap_or_else(|| panic!("no {slug} in {table}")).split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
@@ -71,7 +71,7 @@ fn nan_and_missing_data_are_told_apart() {
     assert!(row("depth").ends_with(" m") && row("d").ends_with(" 1/sr"), "{table}");
     assert!((row("depth").split(' ').next().unwrap().parse::<f64>().unwrap() - depth).abs() < 1e-4, "{table}");
     assert_eq!([row("depth"), row("uv0")].map(|row| row.split(' ').count()), [2, 2], "{table}");
-    let good = probe(directory.path(), &["--at", "50,30", "--mode", "final"]).expect(0, &[]).stdout;
+    let good = probe(directory.path(), &["--at", "50,30", "--mode", "final"]).expect(0, &[]).stdout.clone();
     assert!(good.contains(" cd/m^2 before exposure"), "{good}");
 }
 
