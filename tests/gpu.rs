@@ -107,7 +107,8 @@ fn validation_messages_name_pipelines_after_their_stages() {
     };
     let vertex =
         module("one.vert", shaderc::ShaderKind::Vertex, "#version 450\nvoid main() { gl_Position = vec4(1); }");
-    let fragment = "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1); }";
+    let fragment = "#version 450\nlayout(set = 2, binding = 0) uniform sampler2D unbound;\n\
+                    layout(location = 0) out vec4 color;\nvoid main() { color = texture(unbound, vec2(0)); }";
     let fragment = module("two.frag", shaderc::ShaderKind::Fragment, fragment);
     let desc = PipelineDesc {
         vertex: &vertex,
@@ -115,15 +116,15 @@ fn validation_messages_name_pipelines_after_their_stages() {
         color: FORMAT,
         depth: false,
         raster: Raster::Solid,
-        samples: 4,
+        samples: 1,
         class: PrimitiveClass::Triangles,
     };
     let pipeline = Pipeline::new(&gpu, &layouts, &desc).unwrap();
-    let single_sampled = image(&gpu, "single-sampled", vk::ImageUsageFlags::COLOR_ATTACHMENT);
+    let target = image(&gpu, "target", vk::ImageUsageFlags::COLOR_ATTACHMENT);
     record(&gpu, |encoder| {
-        encoder.transition(&single_sampled, Use::Undefined, Use::Color);
+        encoder.transition(&target, Use::Undefined, Use::Color);
         encoder.begin_rendering(&Attachments {
-            color: &single_sampled,
+            color: &target,
             clear: None,
             resolve: None,
             depth: None,
@@ -134,7 +135,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
         encoder.draw(3);
         encoder.end_rendering();
     });
-    assert_message(&gpu, &["one.vert + two.frag (Solid Triangles, 4 samples)"]);
+    assert_message(&gpu, &["one.vert + two.frag (Solid Triangles)", "not bound"]);
 }
 
 #[test]
