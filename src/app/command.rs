@@ -1,17 +1,17 @@
-//! What keys, panels and dropped files ask the viewer to do beyond changing a setting.
+//! Commands of keys, panels and dropped files to the viewer: everything that is not a setting.
 
 use std::path::PathBuf;
 
 use crate::file_kind::FileKind;
 
-/// A request to the viewer.
+/// A command to the viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
     /// Compile everything again.
     Reload,
-    /// Look at the whole model again.
+    /// Move the camera so that it sees the whole model.
     FrameModel,
-    /// Write the picture to a file.
+    /// Write the picture to `specula-N.png`.
     Screenshot,
     /// Close the window.
     Quit,
@@ -30,7 +30,7 @@ pub(super) enum Command {
 /// The command that opens a dropped file or folder.
 ///
 /// # Errors
-/// Nothing that the window opens, in words.
+/// A message, if the window cannot open this kind of file.
 pub(super) fn open_as(path: PathBuf) -> Result<Command, String> {
     match FileKind::of(&path) {
         FileKind::ShaderTree => Ok(Command::OpenTree(path)),

@@ -1,4 +1,4 @@
-//! The window's thread: the session, what is on the device, and the last complete picture. Only this thread touches them.
+//! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod messages;
 
@@ -22,7 +22,7 @@ use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, ShaderSet, Source};
 
-/// The last complete picture, and what it was made from: it is drawn until the next one is complete.
+/// The last complete picture and its inputs. The window draws it until the next picture is complete.
 struct Shown {
     settings: Settings,
     scene: Option<Scene>,
@@ -30,26 +30,26 @@ struct Shown {
     frame: BoundFrame,
 }
 
-/// A reload whose first frame has not been drawn yet.
+/// A reload whose first frame has not finished.
 struct FirstFrame {
     shaders: Arc<ShaderSet>,
     event: ReloadEvent,
 }
 
-/// The model that is loaded, and the one that is being loaded.
+/// Files and state of the model on screen and of a model that is loading.
 #[derive(Default)]
 pub(super) struct ModelStatus {
     /// The file on screen; `None` is a built-in model.
     path: Option<PathBuf>,
-    /// The file that was asked for last.
+    /// The file that was requested last.
     requested: Option<PathBuf>,
-    /// The files that are watched: of the model, or those that a failed load tried.
+    /// The watched files: those of the model on screen, and after a failed load also those that it tried.
     files: Vec<PathBuf>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
 }
 
-/// Everything behind the window.
+/// The window's state apart from the screen.
 pub(super) struct Viewer {
     pub(super) session: Session,
     pub(super) panels: PanelState,
@@ -60,7 +60,7 @@ pub(super) struct Viewer {
     pub(super) start: Instant,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
-    /// Ends with the viewer: no thread may use the device after it.
+    /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
     layouts: Arc<SetLayouts>,
     compiler: Arc<Compiler>,
@@ -118,8 +118,8 @@ impl Viewer {
         Ok(viewer)
     }
 
-    /// The frame to draw now: the picture that the settings ask for if it is complete; else the last complete one, seen from
-    /// where the camera is. What is missing is asked for. `None` before the first shaders.
+    /// The frame to draw: the picture that the settings describe if it is complete, otherwise the last complete picture with the
+    /// current camera. Requests what is missing from the threads. `None` before the first shaders.
     ///
     /// # Errors
     /// Out of memory.
@@ -129,7 +129,7 @@ impl Viewer {
         let Some(state) = self.session.frame_state(time_s, size, target) else { return Ok(None) };
         let state = Arc::new(state);
         self.request_missing(&state);
-        // Until the model has been seen, the first environment need not be there.
+        // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
         if let Some(frame) = self.resources.bind(&state, is_first)? {
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
@@ -139,8 +139,8 @@ impl Viewer {
         Ok(self.shown.as_ref().map(|shown| self.interim(shown, time_s, size)))
     }
 
-    /// The last complete picture at this size and time. Its model may be looked at from elsewhere and its lights may go on
-    /// orbiting meanwhile, since neither needs anything new; all else is as it was.
+    /// The last complete picture at this size and time. Camera and orbiting lights follow the current settings, since they need
+    /// no new resources; all else is unchanged.
     fn interim(&self, shown: &Shown, time_s: f32, size: (u32, u32)) -> BoundFrame {
         let mut settings = shown.settings.clone();
         let same_model = match (&shown.scene, self.session.model()) {
@@ -165,7 +165,7 @@ impl Viewer {
         }))
     }
 
-    /// Asks the threads for what a state lacks.
+    /// Requests from the threads what a state lacks.
     fn request_missing(&mut self, state: &FrameState) {
         let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
         self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target });
@@ -183,13 +183,13 @@ impl Viewer {
         self.shown.as_ref().map(|shown| &*shown.frame.state)
     }
 
-    /// The title over a picture that is the mean of `frames` frames, and what comes after it.
+    /// The title over the picture: see [`title`].
     pub(super) fn title(&self, frames: u32) -> Option<String> {
         let shown = self.shown()?;
         title(shown.mode()?, self.session.mode(), shown.pipelines.accumulates.then_some(frames))
     }
 
-    /// The value of a pixel of the picture in words; `None` where nothing is.
+    /// The text of a pixel's value; `None` where nothing covers the pixel.
     pub(super) fn value_text(&self, pixel: &PixelAt) -> Option<String> {
         let PixelAt { at: (x, y), value, .. } = pixel;
         let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
@@ -197,33 +197,33 @@ impl Viewer {
         Some(format!("{}   at {x}, {y}", value.text(mode)))
     }
 
-    /// Whether the picture is the mean of frames, so that each one more makes it better.
+    /// Whether the mode on screen accumulates.
     pub(super) fn accumulates(&self) -> bool {
         self.shown().is_some_and(|state| state.pipelines.accumulates)
     }
 
-    /// Whether the picture moves by itself: the lights orbit, or a shader reads the time.
+    /// Whether the picture is animated: the lights orbit, or a shader reads the time.
     pub(super) fn moves(&self) -> bool {
         let animated = self.session.shaders.as_ref().is_some_and(|shaders| shaders.animated);
         self.session.settings.lights.spin != 0.0 || animated
     }
 
-    /// A picture that does not move is kept, so its time stands still.
+    /// Seconds since the start, or 0 for a still picture, so that it need not be redrawn.
     fn time_s(&self) -> f32 {
         if self.moves() { self.start.elapsed().as_secs_f32() } else { 0.0 }
     }
 
-    /// Whether the device draws faster than a screen shows, so that waiting for the screen saves work.
+    /// Whether the device is faster than the display, so that vertical sync saves work.
     pub(super) fn gpu_is_fast(&self) -> bool {
         self.gpu.info().kind != "cpu"
     }
 
-    /// Whether the duration of the next frame is of interest: it is the first of a generation, or of the model.
+    /// Whether to measure the next frame: the first of a shader generation, or of the model.
     pub(super) fn times_next_frame(&self) -> bool {
         self.first_frame.is_some() || (!self.ready && self.session.model().is_some())
     }
 
-    /// Notes that `frame` has finished, `ms` after it was begun.
+    /// Reports the first frame of a reload or of the model. `frame` has finished `ms` milliseconds after it began.
     pub(super) fn frame_done(&mut self, frame: Option<&BoundFrame>, ms: f64) {
         let Some(state) = frame.map(|frame| &frame.state) else { return };
         if let Some(first) = self.first_frame.take_if(|first| Arc::ptr_eq(&first.shaders, &state.shaders)) {
@@ -233,21 +233,21 @@ impl Viewer {
             self.ready = true;
             let ms = self.start.elapsed().as_secs_f64() * 1e3;
             emit(self.events, &Event::Ready { device: &self.gpu.info().name, ms });
-            // The worker goes on with the modes that are likely next.
+            // After this build the worker also builds the neighboring modes.
             if let Some(set) = self.resources.pipelines() {
                 self.threads.worker.build(set, &state.pipelines);
             }
         }
     }
 
-    /// Tells the user something for a few seconds.
+    /// Shows a message for a few seconds.
     pub(super) fn say(&mut self, text: impl Into<String>) {
         let text = text.into();
         message::tell(&text);
         self.notices.say(text);
     }
 
-    /// Tells the user something until it is dismissed.
+    /// Shows a message until the user dismisses it.
     pub(super) fn keep_saying(&mut self, text: String) {
         if self.notices.keep(text.clone()) {
             message::tell(text);
@@ -283,7 +283,7 @@ impl Viewer {
         self.watch_files();
     }
 
-    /// Opens whatever was dropped on the window.
+    /// Opens a file or folder that was dropped on the window.
     pub(super) fn open_path(&mut self, path: PathBuf) {
         match open_as(path) {
             Ok(command) => self.execute(command),
@@ -291,7 +291,7 @@ impl Viewer {
         }
     }
 
-    /// Starts the worker again, from the files as they are now.
+    /// Starts a new worker, which compiles the current files.
     fn restart_worker(&mut self) {
         let (settings, scene) = (self.session.settings.clone(), self.session.scene());
         let snapshot = Snapshot { target: target(&self.gpu, &settings), settings, scene };
@@ -301,7 +301,7 @@ impl Viewer {
         self.watch_tree();
     }
 
-    /// Loads a model; the old one stays until it is ready.
+    /// Loads a model. The current model stays until the new one is ready.
     fn load_model(&mut self, path: Option<PathBuf>) {
         self.model.requested.clone_from(&path);
         self.model.loading = true;
@@ -314,7 +314,7 @@ impl Viewer {
         }
     }
 
-    /// Watches the files of model, environment and measured BRDF.
+    /// Watches the files of the model, the environment and the measured BRDF.
     pub(super) fn watch_files(&mut self) {
         let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
         let files: Vec<PathBuf> = self.model.files.iter().chain(&environment).chain(&measured).cloned().collect();
@@ -323,7 +323,7 @@ impl Viewer {
         }
     }
 
-    /// Lets the lights go on orbiting for `seconds`.
+    /// Moves the orbiting lights by `seconds`.
     pub(super) fn turn_lights(&mut self, seconds: f32) {
         let lights = &mut self.session.settings.lights;
         if lights.spin == 0.0 {
@@ -335,7 +335,7 @@ impl Viewer {
     }
 }
 
-/// Half floats with as many samples as the settings ask for and the device has.
+/// Half floats with the samples of the settings, or 1 if the device does not support them.
 fn target(gpu: &Gpu, settings: &Settings) -> TargetFormat {
     View::target_format(gpu, settings.view.msaa, false).unwrap_or(TargetFormat::half(1))
 }

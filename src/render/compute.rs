@@ -1,4 +1,4 @@
-//! What the compute tasks share: their bindings, their workgroups, and the way of images in and out.
+//! Helpers that all compute tasks share: bindings, workgroup counts, samplers and image uploads.
 
 use std::sync::Arc;
 
@@ -7,15 +7,15 @@ use crate::gpu::{
 };
 use crate::interface::{BINDING_TASK, SET_TASK, Task};
 
-/// Invocations of a workgroup along x and y, where a stage does not say otherwise.
+/// Workgroup size along x and y of most compute stages.
 const GROUP: u32 = 8;
 
-/// Workgroups that cover `layers` squares of `side` texels.
+/// Workgroups that cover `layers` images of `side` x `side` texels.
 pub(crate) fn groups(side: u32, layers: u32) -> [u32; 3] {
     [side.div_ceil(GROUP), side.div_ceil(GROUP), layers]
 }
 
-/// Set 3 of one dispatch.
+/// Descriptor set 3 of one dispatch: the task's parameters, and what `more` binds.
 pub(crate) fn bindings(
     gpu: &Arc<Gpu>,
     layouts: &Arc<SetLayouts>,
@@ -29,7 +29,7 @@ pub(crate) fn bindings(
     DescriptorSet::new(layouts, SET_TASK, more(writer))
 }
 
-/// A trilinear sampler: equirectangular maps repeat from left to right.
+/// A trilinear sampler, clamped vertically. `wrap_u` is REPEAT for an equirectangular map, whose left and right edges meet.
 pub(crate) fn linear(gpu: &Arc<Gpu>, wrap_u: vk::SamplerAddressMode) -> Result<Arc<Sampler>, GpuError> {
     Sampler::new(
         gpu,
@@ -45,7 +45,7 @@ pub(crate) fn linear(gpu: &Arc<Gpu>, wrap_u: vk::SamplerAddressMode) -> Result<A
     )
 }
 
-/// Fills images, all levels and layers, and leaves them in [`Use::Sampled`].
+/// Uploads all levels and layers of the images, and leaves them in [`Use::Sampled`].
 pub(crate) fn upload(gpu: &Arc<Gpu>, images: &[(&Arc<Image>, &[u8])]) -> Result<(), GpuError> {
     let place = |size: usize| (size as u64).next_multiple_of(16);
     let size = images.iter().map(|(_, bytes)| place(bytes.len())).sum();

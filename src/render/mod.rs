@@ -1,8 +1,8 @@
-//! The only place where shaders, the device and the scene meet.
+//! Draws a scene with shaders on a device. No other module knows all three.
 //!
-//! [`FrameState`] says what a picture shows, as a pure function of the settings, the shaders and the model. [`Resources`] holds
-//! what is on the device and binds a state to it once everything is there. A [`View`] draws the [`BoundFrame`].
-//! [`Reloader`] turns changed files into a new [`PipelineSet`], all or nothing, on any thread.
+//! A [`FrameState`] describes a picture; it is a pure function of settings, shaders and model. [`Resources`] holds all device
+//! objects and binds a state to them once none is missing. A [`View`] draws the resulting [`BoundFrame`].
+//! A [`Reloader`] turns changed files into a new [`PipelineSet`], all or nothing, on any thread.
 
 mod brdf;
 pub(crate) mod compute;

@@ -1,4 +1,4 @@
-//! What the results of the threads do to the viewer.
+//! Applies the results of the threads to the viewer.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use crate::message;
 use crate::render::{Outcome, Reload};
 use crate::settings::LightSource;
 
-/// How often the worker is started again after panics in a row.
+/// Maximum number of worker restarts after consecutive panics.
 const WORKER_RESTARTS: u32 = 3;
 
 impl Viewer {
@@ -70,8 +70,8 @@ impl Viewer {
         self.shader.last = Some(event);
     }
 
-    /// Tells of values and modes that the shaders do not have; they are kept for the next edit. Names from the command line that
-    /// never existed are told of once.
+    /// Reports settings and modes that the shaders lack. The settings stay, because the next edit may declare them. Unknown names
+    /// are reported only for the first shaders.
     fn check_names(&mut self, is_first: bool) {
         let mut problems = self.session.problems(is_first);
         if self.session.mode().is_none() {
@@ -107,7 +107,7 @@ impl Viewer {
                 self.resources.set_model(&uploaded);
             }
             Err((message, tried)) => {
-                // The model on screen stays watched, and so is what must be repaired.
+                // Watch the model on screen as well as the files that must be repaired.
                 let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
                 self.model.files = on_screen.into_iter().chain(tried).collect();
                 self.say(message);
@@ -132,7 +132,7 @@ impl Viewer {
                     }
                     Err(error) => {
                         self.resources.set_environment(key, None);
-                        self.say(format!("{error}\nThe environment before stays."));
+                        self.say(format!("{error}\nThe previous environment stays."));
                     }
                 }
             }
@@ -143,7 +143,7 @@ impl Viewer {
         }
     }
 
-    /// Takes changed files in: each belongs to the environment, the measured BRDF or the model.
+    /// Handles changed files of the environment, the measured BRDF or the model.
     fn on_files_changed(&mut self, changed: &BTreeSet<PathBuf>) {
         let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
         let is_changed = |files: &[PathBuf]| files.iter().any(|file| changed.contains(file));

@@ -1,4 +1,4 @@
-//! Tables of the BRDF's albedo, made on the device for one choice of models: what the split sum and multiple scattering need.
+//! Tables of the BRDF's albedo for one choice of models, computed on the device. The split sum and multiple scattering read them.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use crate::interface::{BINDING_TARGET, Task};
 use crate::render::compute;
 use crate::render::pipeline::PipelineSet;
 
-/// Stage that makes the DFG table.
+/// Stage that computes the DFG table.
 pub(crate) const DFG: &str = "ibl/dfg.comp";
-/// Stage that makes the sheen's albedo table.
+/// Stage that computes the sheen's albedo table.
 pub(crate) const SHEEN_ALBEDO: &str = "ibl/sheen_albedo.comp";
 
 const DFG_SIZE: u32 = 128;
@@ -29,7 +29,7 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    /// Makes the tables with these values of the author's constants, or takes them from the disk.
+    /// Computes the tables with these values of the author's constants, or loads them from the disk cache.
     pub(crate) fn new(set: &PipelineSet, constants: &Specialization) -> Result<Arc<Self>, GpuError> {
         let rows = [1, DFG_SIZE, 1];
         let dfg = table(set, DFG, constants, DFG_SIZE, DFG_SAMPLES, rows)?;

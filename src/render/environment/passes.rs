@@ -1,4 +1,4 @@
-//! The passes of a bake, each recorded, submitted and waited for.
+//! The passes of a bake. Each method records, submits and waits.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::render::pipeline::PipelineSet;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
 pub(crate) const IRRADIANCE_LEVEL: u32 = 5;
-/// The buffer that the passes share, all 0, as large as they declare it (ibl/small_lights.glsl).
+/// The zeroed buffer `BINDING_RESULTS`, as large as the largest declaration in the stages (ibl/small_lights.glsl).
 pub(crate) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer>, GpuError> {
     let stages = BAKE_STAGES.iter().filter_map(|path| set.shaders.stages.get(*path));
     let declared = stages.flat_map(|stage| &stage.reflection.descriptors);
@@ -34,27 +34,27 @@ pub(crate) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer
     Ok(results)
 }
 
-/// The passes, each recorded and waited for.
+/// What all passes need.
 pub(crate) struct Passes<'a> {
     pub(crate) gpu: &'a Arc<Gpu>,
     pub(crate) layouts: &'a Arc<SetLayouts>,
     pub(crate) set: &'a PipelineSet,
-    /// BINDING_RESULTS of all: what one finds and the next ones need, see ibl/small_lights.glsl.
+    /// `BINDING_RESULTS`: one pass stores here what the following ones read, see ibl/small_lights.glsl.
     pub(crate) results: &'a Arc<Buffer>,
 }
 
 impl Passes<'_> {
-    /// Binds the level that a pass writes, and the results that all passes share.
+    /// Binds the level that a pass writes, and the shared results.
     fn to(&self, writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
         writer.storage_level(BINDING_TARGET, image, level).buffer(BINDING_RESULTS, self.results)
     }
 
-    /// The map to level 0, then each level from the one above. The cube ends up in [`Use::Sampled`].
+    /// Resamples the map to level 0, then each level from the level above. Leaves the cube in [`Use::Sampled`].
     pub(crate) fn cube(&self, map: &Arc<Image>, cube: &Arc<Image>, radiance_scale: f32) -> Result<(), GpuError> {
         let desc = *cube.desc();
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
-        // A texel of the cube's face center spans 2 / side; the map has width / 2 pi of its own in a radian. Two at
-        // least: with one the energy of a small lamp is off by 0.6 %.
+        // At the center of a face, a texel of the cube spans 2 / side radians; the map has width / 2 pi texels per radian.
+        // At least 2 x 2 samples: with one, the energy of a small lamp is off by 0.6 %.
         let finer = (map.desc().width as f32 / std::f32::consts::TAU * 2.0 / desc.width as f32).ceil().max(2.0);
         let first = Task {
             size: [desc.width; 2],
@@ -90,7 +90,7 @@ impl Passes<'_> {
         })
     }
 
-    /// The cube's light to each normal's. Both images end up in [`Use::Sampled`].
+    /// Integrates the radiance of the cube over the hemisphere of each normal. Leaves both images in [`Use::Sampled`].
     pub(crate) fn irradiance(&self, cube: &Arc<Image>, to: &Arc<Image>) -> Result<(), GpuError> {
         let side = to.desc().width;
         let task = Task { size: [side; 2], levels: 1, ..Task::default() };
@@ -108,7 +108,8 @@ impl Passes<'_> {
         })
     }
 
-    /// Some of the levels, with samples for each of the image's; the last one leaves the image in [`Use::Sampled`].
+    /// Prefilters `levels` of `to`. `samples` has an entry for every level of the image. The last level leaves the image in
+    /// [`Use::Sampled`].
     pub(crate) fn prefilter(
         &self,
         stage: &str,

@@ -1,4 +1,4 @@
-//! Materials on the device: a uniform buffer, textures and samplers in a descriptor set each.
+//! Materials on the device: one descriptor set each, with a uniform buffer, textures and samplers.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -9,10 +9,10 @@ use crate::gpu::{
 use crate::interface;
 use crate::scene::{self as model, Model, TextureSource, pack_material};
 
-/// The images on the device.
+/// The textures on the device, by source.
 pub(crate) type Textures = HashMap<TextureSource, Arc<Image>>;
 
-/// A descriptor set for each material of the model.
+/// Creates a descriptor set for each material of the model.
 pub(crate) fn materials(
     gpu: &Arc<Gpu>,
     layouts: &Arc<SetLayouts>,
@@ -49,8 +49,8 @@ fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>
         model::Wrap::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
         model::Wrap::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
     };
-    // A software device pays for each texel: it reads the nearest of two mip levels, and no anisotropic samples. A GPU
-    // hardly notices either.
+    // On a software device every texel costs time, so it reads only the nearest mip level and takes no anisotropic samples.
+    // On a GPU both are nearly free.
     let software = gpu.info().kind == "cpu";
     let smooth = sampler.mag_linear && sampler.min_linear && sampler.mip == model::Mip::Linear;
     let anisotropy = if smooth && !software { 8 } else { 1 };
