@@ -12,7 +12,7 @@ use std::sync::mpsc::channel;
 
 use notify::{RecursiveMode, Watcher as _};
 use support::open_image;
-use support::process::{PATIENCE, finish, run, specula};
+use support::process::{PATIENCE, finish, run};
 use tempfile::TempDir;
 
 /// `render` arguments of a picture that takes no time.

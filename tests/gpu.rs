@@ -188,7 +188,7 @@ fn a_large_copy_takes_longer_than_the_pass_before_it() {
     for _ in 0..10 {
         let mut encoder = frames.begin().unwrap();
         encoder.pass("clear", |encoder| clear(encoder, &target, [0.0; 4]));
-        encoder.pass("copy", |encoder| encoder.copy_buffer(&bulk[0], 0, &bulk[1], 32 * MIB));
+        encoder.pass("copy", |encoder| encoder.copy_buffer(&bulk[0], 0, &bulk[1], 0, 32 * MIB));
         encoder.copies_done();
         frames.submit(encoder, Submission::default()).unwrap();
         frames.wait().unwrap();

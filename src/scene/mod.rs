@@ -26,8 +26,8 @@ use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
 pub use camera::{CameraView, frame};
-pub use camera_motion::{FlyCamera, OrbitCamera};
 pub use camera_controller::CameraController;
+pub use camera_motion::{FlyCamera, OrbitCamera};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
