@@ -7,11 +7,11 @@ use super::super::model::{Image, Material, Texture};
 use crate::interface as contract;
 
 /// Pixels along a side of the checkerboard.
-const SIDE: u32 = 64;
-/// Pixels along a side of one of its squares.
+const SIDE: u32 = 256;
+/// Pixels along a side of one of its squares: 32 squares across, small enough to show on the pieces of a texture atlas.
 const SQUARE: u32 = 8;
 /// Its two grays around the middle, sRGB-encoded.
-const GRAYS: [u8; 2] = [104, 152];
+const GRAYS: [u8; 2] = [72, 184];
 /// Most materials that a warning names.
 const MOST_NAMES: usize = 3;
 
