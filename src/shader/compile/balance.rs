@@ -1,7 +1,7 @@
 //! Finds `#if` without `#endif`, and the reverse, in single files.
 //!
 //! glslang counts conditionals across includes. If a file lacks an `#endif`, all files after it are skipped, and glslang reports
-//! errors in these. So the compiler looks for the cause here when a stage fails.
+//! errors in these. A stray `#else` may even compile, without the rest of the file that includes it. So every file is checked here.
 
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, lines, tokens};
@@ -40,6 +40,20 @@ pub fn unbalanced(file: &str, text: &str) -> Option<Diagnostic> {
         }),
         None => check(file, &directives),
     }
+}
+
+/// A quick look, which takes comments for code and does not count `#else`.
+pub fn looks_balanced(text: &str) -> bool {
+    let mut depth = 0_u32;
+    for directive in text.lines().filter_map(|line| line.trim_start().strip_prefix('#')) {
+        match directive.trim_start().get(..2) {
+            Some("if") => depth += 1,
+            Some("en") if depth > 0 => depth -= 1,
+            Some("en" | "el") if depth == 0 => return false,
+            _ => {}
+        }
+    }
+    depth == 0
 }
 
 fn check(file: &str, directives: &[Directive<'_>]) -> Option<Diagnostic> {

@@ -138,13 +138,13 @@ impl Compiler {
             Err(text) => (Err(()), text),
         };
         let (mut errors, warnings) = log::parse(&text, path, snapshot, &dependencies);
-        if result.is_err() {
-            let causes = unbalanced(snapshot, &dependencies);
-            if !causes.is_empty() {
-                errors = causes;
-            } else if errors.is_empty() {
-                errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
-            }
+        // A stray `#else` can hide the rest of the file that includes it, and still compile.
+        let causes = unbalanced(snapshot, &dependencies, result.is_ok());
+        let result = if causes.is_empty() { result } else { Err(()) };
+        if !causes.is_empty() {
+            errors = causes;
+        } else if errors.is_empty() {
+            errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
         }
         Compiled { result: result.map_err(|()| errors), warnings, dependencies, ms }
     }
@@ -171,9 +171,12 @@ impl Compiler {
 }
 
 /// The conditionals without a partner in these files: one error for each file that has any. All other errors of the stage may
-/// follow from them.
-fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>) -> Vec<Diagnostic> {
-    let check = |path: &TreePath| balance::unbalanced(&snapshot.display_path(path), &snapshot.read(path).ok()?);
+/// follow from them. A stage that compiled gets a `quick` look.
+fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>, quick: bool) -> Vec<Diagnostic> {
+    let check = |path: &TreePath| {
+        let text = snapshot.read(path).ok().filter(|text| !quick || !balance::looks_balanced(text))?;
+        balance::unbalanced(&snapshot.display_path(path), &text)
+    };
     files.iter().filter_map(check).collect()
 }
 
