@@ -1,5 +1,5 @@
-//! The window, on a display of its own (Xvfb): open, resize, edit, break, screenshot, close. Keys and sizes come from
-//! xdotool, through the X server, as a person's do.
+//! The window on its own display (Xvfb): open, resize, edit, break, screenshot, close. xdotool sends keys and sizes through
+//! the X server, as a user would.
 
 mod support;
 
@@ -13,14 +13,14 @@ use support::{Tree, glb, hdr, open_image};
 
 const NDF: &str = "brdf/ndf.glsl";
 
-/// An X server that ends with the test.
+/// An X server. Dropping this ends it.
 struct Display {
     server: Child,
     name: String,
 }
 
 impl Display {
-    /// Starts a server on a display that is free; it says which, once it takes connections.
+    /// Starts a server on a free display. The server prints the display's number once it accepts connections.
     fn new() -> Self {
         if let Err(error) = Command::new("xdotool").stdout(Stdio::null()).stderr(Stdio::null()).status() {
             missing::<()>("xdotool", "xdotool", &error);
@@ -61,7 +61,7 @@ fn missing<T>(program: &str, package: &str, error: &std::io::Error) -> T {
     panic!("{program} is not installed, and the window is not tested without it: apt-get install {package}");
 }
 
-/// `specula view` on a tree of its own, under validation. Fields drop in order: the program goes before its display.
+/// `specula view` on its own tree, with validation. Fields drop in order: the program before its display.
 struct Viewer {
     running: Running,
     tree: Tree,
@@ -70,7 +70,7 @@ struct Viewer {
 }
 
 impl Viewer {
-    /// Opens the window; it may still be empty.
+    /// Opens the window, which may still be empty.
     fn open(tree: Tree, more: &[&str]) -> Self {
         let display = Display::new();
         let mut command = view(&tree, &display);
@@ -82,7 +82,7 @@ impl Viewer {
         running.event("window");
         let found = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
         let window = found.stdout.lines().next().unwrap().to_owned();
-        // There is no window manager to give it the keyboard.
+        // Without a window manager, nothing else gives the window the keyboard focus.
         display.xdotool(&["windowfocus", "--sync", &window]);
         Self { running, tree, window, display }
     }
@@ -97,7 +97,7 @@ impl Viewer {
         self.display.xdotool(&["windowsize", "--sync", &self.window, &width.to_string(), &height.to_string()]);
     }
 
-    /// The picture that is on screen.
+    /// The picture on screen.
     #[track_caller]
     fn screenshot(&mut self) -> RgbaImage {
         self.key("F12");
@@ -106,7 +106,7 @@ impl Viewer {
         open_image(&path).into_rgba8()
     }
 
-    /// Takes screenshots until one is as it should be: what is new is shown only when it is complete.
+    /// Takes screenshots until `is` accepts one, since a new picture appears only once it is complete.
     #[track_caller]
     fn until(&mut self, what: &str, is: impl Fn(&RgbaImage) -> bool) {
         let deadline = Instant::now() + PATIENCE;
@@ -115,7 +115,7 @@ impl Viewer {
         }
     }
 
-    /// Ctrl+Q; the program must end well, which it does not after a validation message. What it said on stderr.
+    /// Presses Ctrl+Q. The program must succeed, which it does not after a validation message. Returns its stderr.
     #[track_caller]
     fn quit(mut self) -> String {
         self.key("ctrl+q");
@@ -141,7 +141,7 @@ fn open_resize_edit_break_screenshot_close() {
     let first = viewer.screenshot();
     assert!(first.pixels().any(|pixel| pixel != first.get_pixel(0, 0)), "an empty picture");
 
-    // Without its panels the picture is the window.
+    // Without panels, the picture fills the window.
     viewer.key("h");
     assert_eq!(viewer.screenshot().dimensions(), (640, 480));
     viewer.resize(700, 500);
@@ -181,7 +181,7 @@ fn any_size_and_any_number_of_sizes() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let first = viewer.screenshot();
-    // Smaller than the panels, a single pixel, and a drag at a window's corner.
+    // Smaller than the panels, a single pixel, and extreme shapes.
     for (width, height) in [(90, 60), (1, 1), (1, 400), (400, 1)] {
         viewer.resize(width, height);
         let picture = viewer.screenshot();
@@ -195,13 +195,13 @@ fn any_size_and_any_number_of_sizes() {
     viewer.quit();
 }
 
-/// Nothing moves, nothing is drawn: the processor is the next save's.
+/// While nothing changes, the window draws nothing.
 #[test]
 fn a_window_in_which_nothing_happens_rests() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let deadline = Instant::now() + PATIENCE;
-    // Shaders may still warm up. One second of rest is enough; a window that draws on and on has none.
+    // Pipelines may still be built. One idle second is enough: a window that draws continuously has none.
     loop {
         let before = viewer.running.ticks();
         std::thread::sleep(Duration::from_secs(1));
@@ -210,7 +210,7 @@ fn a_window_in_which_nothing_happens_rests() {
         }
         assert!(Instant::now() < deadline, "it never rests. {}", viewer.running.story());
     }
-    // It wakes again.
+    // Input wakes the window.
     let picture = viewer.screenshot();
     viewer.key("n");
     viewer.until("shading normals", |shot| *shot != picture);
@@ -241,7 +241,7 @@ fn shaders_that_are_broken_from_the_start_are_waited_for() {
     let original = tree.read(NDF);
     tree.write(NDF, &original.replace("alpha * alpha;", "alpha * alfa;"));
     let mut viewer = Viewer::open(tree, &["sphere-grid"]);
-    // The first compile may have failed before or after the window was found.
+    // The first compilation may have failed before or after the window was found.
     viewer.key("F5");
     viewer.running.reload(false);
     viewer.tree.write(NDF, &original);
@@ -295,7 +295,7 @@ fn the_environment_is_baked_and_a_damaged_one_costs_nothing() {
     viewer.until("a red model", |shot| brightest(shot).is_some_and(|[r, g, _]| r > 60 && g < r / 2));
     let red = viewer.screenshot();
     std::fs::write(&path, b"#?RADIANCE\n").unwrap();
-    // An edit after it that changes no pixel: by then the bad file was looked at.
+    // A later edit that changes no pixel. Once it is reported, the bad file has been handled.
     let user = viewer.tree.edited("user.glsl", "    return radiance;", "    return radiance * 1.0;");
     viewer.tree.write("user.glsl", &user);
     viewer.running.reload(true);
@@ -320,7 +320,7 @@ fn an_environment_in_a_linked_folder_is_baked_again() {
     viewer.quit();
 }
 
-/// The brightest pixel of the model: the background is darker.
+/// The brightest pixel of the model. The background is darker.
 fn brightest(shot: &RgbaImage) -> Option<[u8; 3]> {
     shot.pixels().map(|pixel| [pixel[0], pixel[1], pixel[2]]).max_by_key(|rgb| rgb.iter().max().copied())
 }
