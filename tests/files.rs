@@ -12,7 +12,7 @@ use std::sync::mpsc::channel;
 
 use notify::{RecursiveMode, Watcher as _};
 use support::open_image;
-use support::process::{PATIENCE, finish, run, specula};
+use support::process::{PATIENCE, finish, run};
 use tempfile::TempDir;
 
 /// Arguments of a `render` that is fast.
@@ -115,7 +115,9 @@ fn a_signal_leaves_no_temporary_files() {
         })
         .unwrap();
         watcher.watch(directory.path(), RecursiveMode::NonRecursive).unwrap();
-        let mut command = specula(directory.path());
+        // Under `nohup`, and in a shell's background job, signals are ignored from the start.
+        let mut command = Command::new("env");
+        command.arg("--default-signal=HUP,INT,TERM").arg(env!("CARGO_BIN_EXE_specula")).current_dir(directory.path());
         command.args(["render", "sphere-grid", "--env", "none", "--size", "2048x2048", "--set", "view.msaa=1"]);
         command.args(["--mode", "all", "--out", "big.exr"]).stdout(Stdio::null()).stderr(Stdio::null());
         let mut child = command.spawn().unwrap();

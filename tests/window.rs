@@ -2,136 +2,22 @@
 //! the X server, as a user would.
 
 mod support;
+mod window {
+    mod controls;
+    mod endurance;
+    mod faults;
+    mod panels;
+    mod pictures;
+}
 
-use std::io::{BufRead as _, BufReader, ErrorKind};
-use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use image::RgbaImage;
-use support::process::{Finished, PATIENCE, Running, finish, specula};
-use support::{Tree, glb, hdr, open_image};
+use support::process::{PATIENCE, finish};
+use support::window::{Display, Viewer};
+use support::{Tree, glb, hdr};
 
 const NDF: &str = "brdf/ndf.glsl";
-
-/// An X server. Dropping this ends it.
-struct Display {
-    server: Child,
-    name: String,
-}
-
-impl Display {
-    /// Starts a server on a free display. The server prints the display's number once it accepts connections.
-    fn new() -> Self {
-        if let Err(error) = Command::new("xdotool").stdout(Stdio::null()).stderr(Stdio::null()).status() {
-            missing::<()>("xdotool", "xdotool", &error);
-        }
-        let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp"]);
-        let mut server = command
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap_or_else(|error| missing("Xvfb", "xvfb", &error));
-        let mut line = String::new();
-        BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        assert!(!line.trim().is_empty(), "Xvfb ended before it had a display");
-        Self { server, name: format!(":{}", line.trim()) }
-    }
-
-    /// Runs xdotool; it must succeed.
-    #[track_caller]
-    fn xdotool(&self, args: &[&str]) -> Finished {
-        let mut command = Command::new("xdotool");
-        let finished = finish(command.args(args).env("DISPLAY", &self.name));
-        assert_eq!(finished.code, Some(0), "xdotool {args:?}: {finished:#?}");
-        finished
-    }
-}
-
-impl Drop for Display {
-    fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
-    }
-}
-
-fn missing<T>(program: &str, package: &str, error: &std::io::Error) -> T {
-    assert_eq!(error.kind(), ErrorKind::NotFound, "{program}: {error}");
-    panic!("{program} is not installed, and the window is not tested without it: apt-get install {package}");
-}
-
-/// `specula view` on its own tree, with validation. Fields drop in order: the program before its display.
-struct Viewer {
-    running: Running,
-    tree: Tree,
-    window: String,
-    display: Display,
-}
-
-impl Viewer {
-    /// Opens the window, which may still be empty.
-    fn open(tree: Tree, more: &[&str]) -> Self {
-        let display = Display::new();
-        let mut command = view(&tree, &display);
-        command.args(["--shaders", "shaders", "--size", "640x480", "--set", "view.msaa=1"]);
-        if !more.contains(&"--env") {
-            command.args(["--env", "none"]);
-        }
-        let mut running = Running::start(command.args(more));
-        running.event("window");
-        let found = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
-        let window = found.stdout.lines().next().unwrap().to_owned();
-        // Without a window manager, nothing else gives the window the keyboard focus.
-        display.xdotool(&["windowfocus", "--sync", &window]);
-        Self { running, tree, window, display }
-    }
-
-    #[track_caller]
-    fn key(&self, key: &str) {
-        self.display.xdotool(&["key", key]);
-    }
-
-    #[track_caller]
-    fn resize(&self, width: u32, height: u32) {
-        self.display.xdotool(&["windowsize", "--sync", &self.window, &width.to_string(), &height.to_string()]);
-    }
-
-    /// The picture on screen.
-    #[track_caller]
-    fn screenshot(&mut self) -> RgbaImage {
-        self.key("F12");
-        let event = self.running.event("screenshot");
-        let path = self.tree.beside(event["file"].as_str().unwrap());
-        open_image(&path).into_rgba8()
-    }
-
-    /// Takes screenshots until `is` accepts one, since a new picture appears only once it is complete.
-    #[track_caller]
-    fn until(&mut self, what: &str, is: impl Fn(&RgbaImage) -> bool) {
-        let deadline = Instant::now() + PATIENCE;
-        while !is(&self.screenshot()) {
-            assert!(Instant::now() < deadline, "{what} never showed. {}", self.running.story());
-        }
-    }
-
-    /// Presses Ctrl+Q. The program must succeed, which it does not after a validation message. Returns its stderr.
-    #[track_caller]
-    fn quit(mut self) -> String {
-        self.key("ctrl+q");
-        let status = self.running.end();
-        assert!(status.success(), "it ended with {status}. {}", self.running.story());
-        self.running.stderr()
-    }
-}
-
-/// `specula view` on this display.
-fn view(tree: &Tree, display: &Display) -> Command {
-    let mut command = specula(&tree.beside(""));
-    command.env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
-    command.args(["view", "--validate", "--events", "json"]);
-    command
-}
 
 #[test]
 fn open_resize_edit_break_screenshot_close() {
@@ -281,7 +167,7 @@ fn names_that_do_not_exist_are_told() {
 #[test]
 fn a_window_too_large_is_refused() {
     let (tree, display) = (Tree::new(), Display::new());
-    finish(view(&tree, &display).args(["--size", "99999x99999"])).expect(2, &["99999x99999"]);
+    finish(display.view(&tree).args(["--size", "99999x99999"])).expect(2, &["99999x99999"]);
 }
 
 #[test]

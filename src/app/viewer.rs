@@ -23,7 +23,7 @@ use crate::settings::Settings;
 use crate::shader::{Change, Compiler, ShaderSet, Source};
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
-struct Shown {
+struct LastComplete {
     settings: Settings,
     scene: Option<Scene>,
     revisions: Revisions,
@@ -66,7 +66,7 @@ pub(super) struct Viewer {
     compiler: Arc<Compiler>,
     source: Source,
     allow_outside: bool,
-    shown: Option<Shown>,
+    shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
     ready: bool,
     worker_restarts: u32,
@@ -133,7 +133,7 @@ impl Viewer {
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
         if let Some(frame) = self.resources.bind(&state, is_first)? {
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
-            self.shown = Some(Shown { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
+            self.shown = Some(LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
             return Ok(Some(frame));
         }
         Ok(self.shown.as_ref().map(|shown| self.interim(shown, time_s, size)))
@@ -141,7 +141,7 @@ impl Viewer {
 
     /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow the
     /// current settings, since they need no new resources. All else is unchanged.
-    fn interim(&self, shown: &Shown, time_s: f32, size: (u32, u32)) -> BoundFrame {
+    fn interim(&self, shown: &LastComplete, time_s: f32, size: (u32, u32)) -> BoundFrame {
         let mut settings = shown.settings.clone();
         let same_model = match (&shown.scene, self.session.model()) {
             (Some(scene), Some(model)) => Arc::ptr_eq(scene.model(), model),

@@ -8,12 +8,12 @@
 //!
 //! `app` knows these:
 //!
-//! - `worker-panic:N`: the worker panics at its Nth reload.
+//! - `worker-panic:N`: the worker panics at the Nth reload of the process. The worker that replaces it goes on counting.
 //! - `compile-delay-ms:N`: every reload takes so much longer.
 //! - `load-delay-ms:N`: reading a model takes so much longer.
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// The environment variable that this module reads.
 pub const VARIABLE: &str = "SPECULA_FAULT";
@@ -29,6 +29,16 @@ pub fn value(name: &str) -> Option<u64> {
         })
     });
     faults.get(name).copied()
+}
+
+/// Counts calls: whether this is call number N of the process for a fault `name:N`.
+pub fn strikes(name: &str) -> bool {
+    static CALLS: Mutex<BTreeMap<String, u64>> = Mutex::new(BTreeMap::new());
+    let Some(number) = value(name) else { return false };
+    let mut calls = CALLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let call = calls.entry(name.to_owned()).or_default();
+    *call += 1;
+    *call == number
 }
 
 /// Sleeps for as many milliseconds as the fault `name` says, if it is there.

@@ -5,8 +5,8 @@
 
 mod built_in;
 mod camera;
-mod control;
-mod controller;
+mod camera_controller;
+mod camera_motion;
 pub mod environment;
 mod error;
 mod features;
@@ -25,8 +25,8 @@ use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
 pub use camera::{CameraView, frame};
-pub use control::{FlyCamera, OrbitCamera};
-pub use controller::CameraController;
+pub use camera_controller::CameraController;
+pub use camera_motion::{FlyCamera, OrbitCamera};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};

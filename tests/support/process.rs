@@ -5,7 +5,7 @@ use std::io::{BufRead as _, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -46,7 +46,7 @@ impl Finished {
 
 /// The program, to be run in `directory`.
 pub fn specula(directory: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_specula"));
+    let mut command = Command::new(std::env::var("TMP_OLD_BIN").unwrap_or(env!("CARGO_BIN_EXE_specula").into()));
     command.current_dir(directory).stdin(Stdio::null());
     command
 }
@@ -79,12 +79,30 @@ pub fn finish(command: &mut Command) -> Finished {
     Finished { code: status.code(), stdout, stderr: stderr.recv_timeout(PATIENCE).unwrap_or_default() }
 }
 
+/// What a program has written on stderr so far, and a signal for each new line.
+#[derive(Default)]
+struct Stderr {
+    text: Mutex<String>,
+    grew: Condvar,
+}
+
+/// What a process holds at a moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Usage {
+    /// Resident memory, KiB.
+    pub memory_kib: u64,
+    /// Number of threads.
+    pub threads: usize,
+    /// Number of open file descriptors.
+    pub files: usize,
+}
+
 /// A program that runs with `--events json`. Dropping it kills it.
 pub struct Running {
     child: Child,
     events: Receiver<String>,
     seen: Vec<String>,
-    stderr: Arc<Mutex<String>>,
+    stderr: Arc<Stderr>,
     stderr_ends: Option<JoinHandle<()>>,
 }
 
@@ -96,9 +114,14 @@ impl Running {
         forward(child.stdout.take().unwrap(), sender);
         let (sender, lines) = channel();
         forward(child.stderr.take().unwrap(), sender);
-        let stderr = Arc::<Mutex<String>>::default();
+        let stderr = Arc::<Stderr>::default();
         let log = stderr.clone();
-        let ends = std::thread::spawn(move || lines.iter().for_each(|line| *log.lock().unwrap() += &(line + "\n")));
+        let ends = std::thread::spawn(move || {
+            for line in lines {
+                *log.text.lock().unwrap() += &(line + "\n");
+                log.grew.notify_all();
+            }
+        });
         Self { child, events, seen: Vec::new(), stderr, stderr_ends: Some(ends) }
     }
 
@@ -118,7 +141,7 @@ impl Running {
 
     /// Waits for the first event that `is` accepts.
     #[track_caller]
-    pub fn until(&mut self, what: &str, is: impl Fn(&Value) -> bool) -> Value {
+    pub fn until(&mut self, what: &str, mut is: impl FnMut(&Value) -> bool) -> Value {
         let deadline = Instant::now() + PATIENCE;
         loop {
             let event = self.next(what, deadline);
@@ -174,14 +197,36 @@ impl Running {
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
     }
 
+    /// What the program holds now (proc(5)).
+    pub fn usage(&self) -> Usage {
+        let process = format!("/proc/{}", self.child.id());
+        let status = std::fs::read_to_string(format!("{process}/status")).unwrap();
+        let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+        let count = |folder: &str| std::fs::read_dir(format!("{process}/{folder}")).unwrap().count();
+        Usage {
+            memory_kib: resident.trim().trim_end_matches(" kB").parse().unwrap(),
+            threads: count("task"),
+            files: count("fd"),
+        }
+    }
+
     /// What the program said on stderr so far; all of it after [`Self::end`].
     pub fn stderr(&self) -> String {
-        self.stderr.lock().unwrap().clone()
+        self.stderr.text.lock().unwrap().clone()
+    }
+
+    /// Waits until the program has said `part` on stderr.
+    #[track_caller]
+    pub fn until_stderr(&self, part: &str) {
+        let text = self.stderr.text.lock().unwrap();
+        let (text, waited) = self.stderr.grew.wait_timeout_while(text, PATIENCE, |text| !text.contains(part)).unwrap();
+        drop(text);
+        assert!(!waited.timed_out(), "waited in vain for `{part}` on stderr. {}", self.story());
     }
 
     /// What the program said so far, for messages.
     pub fn story(&self) -> String {
-        format!("Events so far:\n{}\nstderr so far:\n{}", self.seen.join("\n"), self.stderr.lock().unwrap())
+        format!("Events so far:\n{}\nstderr so far:\n{}", self.seen.join("\n"), self.stderr())
     }
 }
 

@@ -117,7 +117,6 @@ impl Worker {
             inbox,
             edits: edits.clone(),
             edits_taken: 0,
-            reloads: 0,
             outbox: outbox.clone(),
         };
         let thread = outbox.spawn("worker", move |_| state.run());
@@ -191,7 +190,6 @@ struct Thread {
     edits: Arc<AtomicU64>,
     /// How many of `edits` were taken out of the inbox.
     edits_taken: u64,
-    reloads: u64,
     outbox: Outbox,
 }
 
@@ -257,8 +255,7 @@ impl Thread {
 
     /// Compiles the edit and builds its pipelines. Returns the new set, if there is one.
     fn reload(&mut self, edit: Edit) -> Option<Arc<PipelineSet>> {
-        self.reloads += 1;
-        assert!(fault::value("worker-panic") != Some(self.reloads), "the injected fault worker-panic");
+        assert!(!fault::strikes("worker-panic"), "the injected fault worker-panic");
         fault::delay("compile-delay-ms");
         let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
         let request =

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::gpu::error::Context;
-use crate::gpu::{Gpu, GpuError};
 use ash::vk;
 use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
+
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 
 /// A surface that shows images in a window.
 pub struct Surface {

@@ -7,11 +7,11 @@ use super::super::model::{Image, Material, Texture};
 use crate::interface as contract;
 
 /// Side of the checkerboard, in pixels.
-const SIDE: u32 = 64;
-/// Side of one of its squares, in pixels.
+const SIDE: u32 = 256;
+/// Side of one of its squares, in pixels: small enough that the pieces of a texture atlas show several squares.
 const SQUARE: u32 = 8;
 /// Its two grays, sRGB-encoded.
-const GRAYS: [u8; 2] = [104, 152];
+const GRAYS: [u8; 2] = [72, 184];
 /// Maximum number of materials that a warning names.
 const MOST_NAMES: usize = 3;
 

@@ -1,0 +1,209 @@
+//! `specula view` on an X server of its own (Xvfb). Keys, the mouse and sizes go through the X server by xdotool. What the window
+//! shows comes from the server's frame buffer, which Xvfb keeps in a file.
+
+use std::io::{BufRead as _, BufReader, ErrorKind};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use image::RgbaImage;
+use tempfile::TempDir;
+
+use super::process::{Finished, PATIENCE, Running, finish, specula};
+use super::{Tree, open_image};
+
+/// An X server. Dropping this ends it.
+pub struct Display {
+    server: Child,
+    name: String,
+    frame_buffer: TempDir,
+}
+
+impl Display {
+    /// Starts a server on a free display. The server prints the display's number once it accepts connections.
+    pub fn new() -> Self {
+        if let Err(error) = Command::new("xdotool").stdout(Stdio::null()).stderr(Stdio::null()).status() {
+            missing::<()>("xdotool", "xdotool", &error);
+        }
+        let frame_buffer = tempfile::tempdir().unwrap();
+        let mut command = Command::new("Xvfb");
+        command.args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-fbdir"]);
+        let mut server = command
+            .arg(frame_buffer.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap_or_else(|error| missing("Xvfb", "xvfb", &error));
+        let mut line = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        assert!(!line.trim().is_empty(), "Xvfb ended before it had a display");
+        Self { server, name: format!(":{}", line.trim()), frame_buffer }
+    }
+
+    /// `specula view` on this display, in the folder of `tree`.
+    pub fn view(&self, tree: &Tree) -> Command {
+        let mut command = specula(&tree.beside(""));
+        command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command.args(["view", "--validate", "--events", "json"]);
+        command
+    }
+
+    /// Runs xdotool, which must succeed.
+    #[track_caller]
+    pub fn xdotool(&self, args: &[&str]) -> Finished {
+        let mut command = Command::new("xdotool");
+        let finished = finish(command.args(args).env("DISPLAY", &self.name));
+        assert_eq!(finished.code, Some(0), "xdotool {args:?}: {finished:#?}");
+        finished
+    }
+
+    /// The whole screen as it is now.
+    pub fn screen(&self) -> RgbaImage {
+        let bytes = std::fs::read(self.frame_buffer.path().join("Xvfb_screen0")).unwrap();
+        // X11/XWDFile.h: a header of big-endian words, color table entries of 12 bytes, then rows of 4-byte BGRX pixels.
+        let word = |index: usize| u32::from_be_bytes(bytes[4 * index..][..4].try_into().unwrap());
+        let (header_bytes, width, height, row_bytes, colors) = (word(0), word(4), word(5), word(12), word(19));
+        assert_eq!((word(7), word(11)), (0, 32), "expected little-endian pixels of 32 bits");
+        let start = (header_bytes + 12 * colors) as usize;
+        RgbaImage::from_fn(width, height, |x, y| {
+            let at = start + (y * row_bytes + 4 * x) as usize;
+            image::Rgba([bytes[at + 2], bytes[at + 1], bytes[at], 255])
+        })
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+fn missing<T>(program: &str, package: &str, error: &std::io::Error) -> T {
+    assert_eq!(error.kind(), ErrorKind::NotFound, "{program}: {error}");
+    panic!("{program} is not installed, and the window is not tested without it: apt-get install {package}");
+}
+
+/// `specula view` on a tree of its own, under validation. Fields drop in order: the program ends before its display.
+pub struct Viewer {
+    /// The program.
+    pub running: Running,
+    /// Its shader tree.
+    pub tree: Tree,
+    window: String,
+    display: Display,
+}
+
+impl Viewer {
+    /// Opens the window, which may still be empty. `more` overrides `--env none` and `--size 640x480`.
+    pub fn open(tree: Tree, more: &[&str]) -> Self {
+        Self::with_fault(tree, more, "")
+    }
+
+    /// [`Self::open`] with a fault in the form of `SPECULA_FAULT`.
+    pub fn with_fault(tree: Tree, more: &[&str], fault: &str) -> Self {
+        let display = Display::new();
+        let mut command = display.view(&tree);
+        command.args(["--shaders", "shaders", "--set", "view.msaa=1"]).env("SPECULA_FAULT", fault);
+        for (option, value) in [("--env", "none"), ("--size", "640x480")] {
+            if !more.contains(&option) {
+                command.args([option, value]);
+            }
+        }
+        let mut running = Running::start(command.args(more));
+        running.event("window");
+        let found = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
+        let window = found.stdout.lines().next().unwrap().to_owned();
+        // Without a window manager, nothing else gives the window the keyboard focus.
+        display.xdotool(&["windowfocus", "--sync", &window]);
+        Self { running, tree, window, display }
+    }
+
+    /// Presses and releases a key.
+    #[track_caller]
+    pub fn key(&self, key: &str) {
+        self.display.xdotool(&["key", key]);
+    }
+
+    /// Moves the mouse to a pixel of the window.
+    #[track_caller]
+    pub fn move_mouse(&self, (x, y): (u32, u32)) {
+        self.display.xdotool(&["mousemove", "--window", &self.window, &x.to_string(), &y.to_string()]);
+    }
+
+    /// Moves the mouse to a pixel of the window and clicks.
+    #[track_caller]
+    pub fn click(&self, at: (u32, u32)) {
+        self.move_mouse(at);
+        self.display.xdotool(&["click", "1"]);
+    }
+
+    /// Drags from one pixel of the window to another.
+    #[track_caller]
+    pub fn drag(&self, from: (u32, u32), to: (u32, u32)) {
+        self.move_mouse(from);
+        self.display.xdotool(&["mousedown", "1"]);
+        self.move_mouse(to);
+        self.display.xdotool(&["mouseup", "1"]);
+    }
+
+    /// Resizes the window.
+    #[track_caller]
+    pub fn resize(&self, width: u32, height: u32) {
+        self.display.xdotool(&["windowsize", "--sync", &self.window, &width.to_string(), &height.to_string()]);
+    }
+
+    /// The picture on screen, without panels.
+    #[track_caller]
+    pub fn screenshot(&mut self) -> RgbaImage {
+        self.key("F12");
+        let event = self.running.event("screenshot");
+        let path = self.tree.beside(event["file"].as_str().unwrap());
+        let shot = open_image(&path).into_rgba8();
+        // The program looks for the first free name, which a thousand screenshots would make slow.
+        std::fs::remove_file(&path).unwrap();
+        shot
+    }
+
+    /// Takes screenshots until `is` accepts one, because new content appears only once it is complete.
+    #[track_caller]
+    pub fn until(&mut self, what: &str, is: impl Fn(&RgbaImage) -> bool) {
+        let deadline = Instant::now() + PATIENCE;
+        while !is(&self.screenshot()) {
+            assert!(Instant::now() < deadline, "{what} never appeared. {}", self.running.story());
+        }
+    }
+
+    /// The screen with panels and messages as it is now. The window is at its upper left. Looking wakes nothing up.
+    pub fn screen(&self) -> RgbaImage {
+        self.display.screen()
+    }
+
+    /// Looks at the screen until `is` accepts it, and returns it.
+    #[track_caller]
+    pub fn until_screen(&self, what: &str, is: impl Fn(&RgbaImage) -> bool) -> RgbaImage {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let screen = self.screen();
+            if is(&screen) {
+                return screen;
+            }
+            if Instant::now() > deadline {
+                let (_, path) = tempfile::Builder::new().suffix(".png").tempfile().unwrap().keep().unwrap();
+                screen.save(&path).unwrap();
+                panic!("{what} never appeared on the screen, kept as {}. {}", path.display(), self.running.story());
+            }
+            // The frame buffer gives no event when it changes.
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Presses Ctrl+Q. The program must exit with 0, which it does not after a validation message. Returns its stderr.
+    #[track_caller]
+    pub fn quit(mut self) -> String {
+        self.key("ctrl+q");
+        let status = self.running.end();
+        assert!(status.success(), "it ended with {status}. {}", self.running.story());
+        self.running.stderr()
+    }
+}

@@ -1,0 +1,91 @@
+//! A long session: memory, threads and file descriptors stay as they are. `SPECULA_LONG=1` runs ten times as many steps.
+
+use image::RgbaImage;
+
+use super::controls::{choose_environment, drag_slider};
+use crate::support::process::Usage;
+use crate::support::window::Viewer;
+use crate::support::{Tree, glb};
+
+const TONEMAP: &str = "tonemap.frag";
+/// Memory may grow by this much, in KiB: allocators keep some of what is freed.
+const SLACK_KIB: u64 = 16 * 1024;
+
+/// How many times as many steps as in an ordinary run.
+fn factor() -> usize {
+    if std::env::var_os("SPECULA_LONG").is_some_and(|value| value == "1") { 10 } else { 1 }
+}
+
+/// Repeats `step` so many times, and compares what the program holds after a fifth of them with what it holds in the end.
+fn repeat(viewer: &mut Viewer, what: &str, steps: usize, mut step: impl FnMut(&mut Viewer, usize)) {
+    let mut usage = |viewer: &mut Viewer, range: std::ops::Range<usize>| -> Usage {
+        range.for_each(|number| step(viewer, number));
+        viewer.running.usage()
+    };
+    let early = usage(viewer, 0..steps / 5);
+    let late = usage(viewer, steps / 5..steps);
+    println!("{what}: {early:?} after {}, {late:?} after {steps}", steps / 5);
+    assert!(late.memory_kib < early.memory_kib + SLACK_KIB, "{what}: memory grows from {early:?} to {late:?}");
+    assert!(late.threads <= early.threads, "{what}: threads grow from {early:?} to {late:?}");
+    assert!(late.files <= early.files, "{what}: file descriptors grow from {early:?} to {late:?}");
+}
+
+fn open(tree: Tree, more: &[&str]) -> (Viewer, RgbaImage) {
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let mut viewer = Viewer::open(tree, &[&["model.glb"], more].concat());
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    (viewer, first)
+}
+
+#[test]
+fn a_thousand_reloads_keep_nothing() {
+    let (mut viewer, first) = open(Tree::new(), &[]);
+    let original = viewer.tree.read(TONEMAP);
+    let texts = [viewer.tree.edited(TONEMAP, "value * frame.exposure", "value * (0.5 * frame.exposure)"), original];
+    repeat(&mut viewer, "reloads", 100 * factor(), |viewer, number| {
+        viewer.tree.write(TONEMAP, &texts[number % 2]);
+        viewer.running.reload(true);
+    });
+    assert!(viewer.screenshot() == first, "the first text no longer shows the first picture");
+    viewer.quit();
+}
+
+#[test]
+fn two_hundred_drags_of_a_constant_keep_nothing() {
+    let (mut viewer, first) = open(Tree::new(), &[]);
+    let left = first.width();
+    let before = viewer.screen();
+    let text = viewer.tree.read(TONEMAP).replace(
+        "void main() {",
+        "layout(constant_id = USER_CONSTANTS + 16) const float LEVEL = 1.0;   //@ui \"Level\" 0..1\n\nvoid main() {",
+    );
+    viewer.tree.write(TONEMAP, &text.replace("vec4 scene = texelFetch(", "vec4 scene = LEVEL * texelFetch("));
+    viewer.running.reload(true);
+    // The new row is where the panel first differs, below the section Shaders, which tells of the reload.
+    let differs =
+        |screen: &RgbaImage, y: u32| (left..screen.width()).any(|x| screen.get_pixel(x, y) != before.get_pixel(x, y));
+    let row = |screen: &RgbaImage| (120..screen.height()).find(|y| differs(screen, *y));
+    let after = viewer.until_screen("the constant's row", |screen| row(screen).is_some());
+    let y = row(&after).unwrap() + 8;
+    repeat(&mut viewer, "drags", 200 * factor(), |viewer, number| {
+        drag_slider(viewer, left, y, (number % 7) as f32 / 7.0);
+        viewer.screenshot();
+    });
+    drag_slider(&viewer, left, y, 0.0);
+    viewer.until("black", |shot| shot != &first);
+    drag_slider(&viewer, left, y, 1.0);
+    viewer.until("the constant's first value", |shot| *shot == first);
+    viewer.quit();
+}
+
+#[test]
+fn twenty_environments_keep_nothing() {
+    let (mut viewer, first) = open(Tree::new(), &["--size", "640x640", "--env", "studio"]);
+    let left = first.width();
+    repeat(&mut viewer, "environments", 20 * factor(), |viewer, number| {
+        choose_environment(viewer, left, [1, 0][number % 2]);
+        viewer.running.event("bake");
+    });
+    viewer.quit();
+}

@@ -1,0 +1,85 @@
+//! The picture is shown whole or not at all: while anything about it changes, the one before stays.
+
+use glam::Vec3;
+use specula::scene::MeasuredKind;
+
+use super::controls::choose_environment;
+use crate::NDF;
+use crate::support::window::Viewer;
+use crate::support::{Tree, glb};
+
+/// The environment's light and the pipelines for it change in one step: each screenshot is one of two pictures.
+#[test]
+fn an_environment_comes_and_goes_in_one_step() {
+    let size = ["sphere-grid", "--size", "640x640"];
+    let mut unlit = Viewer::open(Tree::new(), &size);
+    unlit.running.event("ready");
+    let without = unlit.screenshot();
+    unlit.quit();
+
+    let mut viewer = Viewer::open(Tree::new(), &[&size[..], &["--env", "furnace"]].concat());
+    // The model and the light appear in either order.
+    let (mut ready, mut baked) = (false, false);
+    viewer.running.until("model and environment", |event| {
+        ready |= event["event"] == "ready";
+        baked |= event["event"] == "bake";
+        ready && baked
+    });
+    let with = viewer.screenshot();
+    assert!(with != without, "the environment gives no light");
+    let left = with.width();
+    for (entry, before, after) in [(3, &with, &without), (1, &without, &with), (3, &with, &without)] {
+        choose_environment(&viewer, left, entry);
+        viewer.until("the chosen environment", |shot| {
+            assert!(shot == before || shot == after, "a picture that is neither the one before nor the one after");
+            shot == after
+        });
+    }
+    viewer.quit();
+}
+
+/// A broken edit compiles while the user asks for another mode, with every key that the modes have.
+#[test]
+fn a_mode_asked_for_during_a_broken_edit_is_shown() {
+    let mut viewer = Viewer::with_fault(Tree::new(), &["sphere-grid"], "compile-delay-ms:200");
+    viewer.running.event("ready");
+    let original = viewer.tree.read(NDF);
+    let mut last = viewer.screenshot();
+    for (number, key) in "cznwbmudgvfktijxp".chars().enumerate() {
+        viewer.tree.write(NDF, &original.replace("alpha * alpha;", &format!("alpha * alfa{number};")));
+        viewer.key(&key.to_string());
+        viewer.running.reload(false);
+        viewer.until(&format!("the mode of the key {key}"), |shot| *shot != last);
+        last = viewer.screenshot();
+    }
+    viewer.quit();
+}
+
+/// A measured BRDF of one value for all directions, in UTIA's format.
+fn measured(value: f32) -> Vec<u8> {
+    MeasuredKind::Utia.encode(|_, _| Vec3::splat(value))
+}
+
+#[test]
+fn the_measured_brdf_is_watched_and_a_damaged_one_costs_nothing() {
+    let tree = Tree::new();
+    let path = tree.beside("matte.bin");
+    std::fs::write(&path, measured(0.1)).unwrap();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::sphere(16, 32), &glb::gray())).unwrap();
+    let mut viewer = Viewer::open(tree, &["model.glb", "--measured", "matte.bin", "--mode", "measured"]);
+    viewer.running.event("ready");
+    let dark = viewer.screenshot();
+    std::fs::write(&path, measured(0.2)).unwrap();
+    viewer.until("the new file", |shot| *shot != dark);
+    let bright = viewer.screenshot();
+    assert!(
+        bright.as_raw().iter().zip(dark.as_raw()).all(|(bright, dark)| bright >= dark),
+        "twice the reflectance is darker"
+    );
+    std::fs::write(&path, b"damaged").unwrap();
+    viewer.running.until_stderr("matte.bin");
+    assert!(viewer.screenshot() == bright, "a damaged file changed the picture");
+    std::fs::write(&path, measured(0.1)).unwrap();
+    viewer.until("the first file", |shot| *shot == dark);
+    viewer.quit();
+}
