@@ -1,4 +1,4 @@
-//! The files that `render` writes, from outside: full disks, links, pipes and signals.
+//! How `render`, as a process, writes files: full disks, links, pipes and signals.
 
 mod support;
 
@@ -15,7 +15,7 @@ use support::open_image;
 use support::process::{PATIENCE, finish, run};
 use tempfile::TempDir;
 
-/// `render` arguments of a picture that takes no time.
+/// Arguments of a `render` that is fast.
 const QUICK: [&str; 8] = ["render", "sphere-grid", "--env", "none", "--size", "64x48", "--lights", "orbit"];
 
 fn render(directory: &Path, out: &str) -> support::process::Finished {
@@ -29,7 +29,7 @@ fn names_in(directory: &Path) -> Vec<String> {
     names
 }
 
-/// A directory that holds an old picture.
+/// A directory that contains an old picture.
 fn with_old_picture() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("old.png"), "old").unwrap();

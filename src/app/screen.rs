@@ -241,7 +241,7 @@ impl Screen {
         });
         match prepared {
             Ok(frame) => self.last = frame,
-            Err(error @ GpuError::OutOfMemory(_)) => viewer.keep_saying(format!("{error}. The picture before stays.")),
+            Err(error @ GpuError::OutOfMemory(_)) => viewer.keep_saying(format!("{error}. The last picture stays.")),
             Err(error) => return Err(error),
         }
         Ok(self.last.clone())

@@ -139,8 +139,8 @@ impl Viewer {
         Ok(self.shown.as_ref().map(|shown| self.interim(shown, time_s, size)))
     }
 
-    /// The last complete picture at this size and time. Camera and orbiting lights follow the current settings, since they need
-    /// no new resources; all else is unchanged.
+    /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow the
+    /// current settings, since they need no new resources. All else is unchanged.
     fn interim(&self, shown: &LastComplete, time_s: f32, size: (u32, u32)) -> BoundFrame {
         let mut settings = shown.settings.clone();
         let same_model = match (&shown.scene, self.session.model()) {

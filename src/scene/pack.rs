@@ -1,12 +1,12 @@
-//! Materials as the shader reads them.
+//! Packs materials into the uniform block that the shader reads.
 
 use super::{Conductor, Material};
 use crate::interface::{self, TEXTURE_COUNT, TEXTURE_OCCLUSION};
 
-/// A material as the shader reads it.
+/// The uniform block of a material. `id` is its index in the model.
 pub fn pack_material(material: &Material, id: u32) -> interface::Material {
     let conductor = material.conductor.unwrap_or(Conductor { n: glam::Vec3::ONE, k: glam::Vec3::ZERO });
-    // As `features` relies on.
+    // `features` relies on this.
     let has_occlusion = material.textures[TEXTURE_OCCLUSION as usize].is_some();
     let (sin, cos) = material.anisotropy.rotation.sin_cos();
     let mut packed = interface::Material {

@@ -9,7 +9,7 @@ use crate::shader::source::text::{Line, lines, tokens};
 /// A conditional directive and its line.
 struct Directive<'a> {
     keyword: &'a str,
-    /// What follows the keyword.
+    /// The text after the keyword.
     condition: &'a str,
     line: &'a Line<'a>,
 }
@@ -30,7 +30,7 @@ impl Directive<'_> {
 pub fn unbalanced(file: &str, text: &str) -> Option<Diagnostic> {
     let lines = lines(text);
     let directives = directives(&lines);
-    // The last #endif of a file with an include guard is the guard's, so one that is missing is missing inside.
+    // In a file with an include guard, the last #endif belongs to the guard, so a missing #endif is missing inside.
     match guarded(&lines, &directives) {
         Some(inside) => check(file, inside).map(|error| {
             let guard = &directives[0];
@@ -147,7 +147,7 @@ mod tests {
         let cases = [
             ("float a;\n#ifdef X\n", 2, "`#ifdef X`"),
             ("#if A\n#endif\n  #if B > 1 // why\n", 3, "`#if B > 1`"),
-            // The guard itself, and a block inside of a guard.
+            // The guard itself, and a block inside the guard.
             ("// A.\n#ifndef A\n#define A\nfloat a;\n", 2, "`#ifndef A`"),
             ("#ifndef A\n#define A\n#if X\nfloat a;\n#endif\nfloat b;\n", 1, "`#ifndef A`"),
             ("#ifndef A\n#define A\n#if X\nfloat a;\n\n#endif\n", 3, "`#if X`"),
