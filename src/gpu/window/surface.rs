@@ -24,7 +24,7 @@ impl Surface {
         // SAFETY: the handles come from a live window; the instance has the extensions of this display.
         let raw = unsafe { ash_window::create_surface(&gpu.instance.entry, &gpu.instance.raw, display, window, None) }
             .context("creating the window's surface")?;
-        gpu.name(raw, "window surface");
+        // It gets no name: the surface belongs to the instance, and the layers of Vulkan 1.3.239 crash when it is named.
         let surface = Self { gpu: gpu.clone(), raw };
         // SAFETY: surface and device are live.
         let shown = unsafe { loader.get_physical_device_surface_support(gpu.physical, gpu.queue_family, raw) }
