@@ -131,7 +131,9 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
     if response.on_hover_text("Click to copy the position").interact(egui::Sense::click()).clicked() {
         ui.ctx().copy_text(place);
     }
-    let full = diagnostic.full();
+    // A monospace character is 7.6 points wide; the number of the line and its bar take up to 8.
+    let columns = (ui.available_width() / 7.6) as usize;
+    let full = diagnostic.clone().within(columns.saturating_sub(8)).full();
     // Skip the first two lines, message and position, which are shown above.
     let rest = full.lines().skip(2).collect::<Vec<_>>().join("\n");
     ui.label(RichText::new(&diagnostic.message).monospace().color(Color32::WHITE));
