@@ -1,4 +1,4 @@
-//! What was baked once, on disk: named by the hash of all that went in, so an entry is never stale, at most useless.
+//! Baked results on disk. An entry is named by a hash of all its inputs, so it is never stale.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,13 +6,13 @@ use std::time::SystemTime;
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-/// Most bytes that are kept; the oldest entries go first.
+/// Size of the cache in bytes. Beyond it, the oldest entries are deleted.
 const MOST_BYTES: u64 = 512 << 20;
 const ENDING: &str = "bake";
-/// Bytes at the end of a file: XXH3 of what comes before.
+/// Bytes of the checksum at the end of a file: XXH3 of all before it.
 const CHECKSUM: u64 = 8;
 
-/// Names an entry after all that it was made from.
+/// The name of an entry: a hash of all its inputs and of Specula's version.
 pub(crate) fn key(parts: &[&[u8]]) -> String {
     let mut hasher = Xxh3::new();
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
@@ -23,7 +23,7 @@ pub(crate) fn key(parts: &[&[u8]]) -> String {
     format!("{:032x}", hasher.digest128())
 }
 
-/// `$SPECULA_CACHE`, or `specula` in the user's cache folder; `None` where there is no home.
+/// `baked` in `$SPECULA_CACHE` or in `specula` of the user's cache folder. `None` without a home folder.
 fn folder() -> Option<PathBuf> {
     let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let base = set("SPECULA_CACHE")
@@ -36,7 +36,7 @@ fn file(folder: &Path, key: &str) -> PathBuf {
     folder.join(format!("{key}.{ENDING}"))
 }
 
-/// An entry of exactly `size` bytes, whole; anything else counts as absent.
+/// Loads an entry of exactly `size` bytes. An entry of another size, or with a wrong checksum, counts as absent.
 pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
     let path = file(&folder()?, key);
     let metadata = std::fs::metadata(&path).ok()?;
@@ -50,7 +50,7 @@ pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
     is_whole.then_some(bytes)
 }
 
-/// Keeps an entry. A cache that cannot be written costs time, never the picture, so failures are only traced.
+/// Stores an entry. A failure costs only time, so it is traced and not reported.
 pub(crate) fn store(key: &str, bytes: &[u8]) {
     let Some(folder) = folder() else { return };
     if let Err(error) = write(&folder, key, bytes) {
@@ -60,7 +60,7 @@ pub(crate) fn store(key: &str, bytes: &[u8]) {
 
 fn write(folder: &Path, key: &str, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    // Whole or not at all: another Specula may read it at the same time.
+    // Another process may read the entry at the same time, so it must appear whole.
     let temporary = folder.join(format!("{key}.{}.part", std::process::id()));
     let mut file_of_part = std::fs::File::create(&temporary)?;
     file_of_part.write_all(bytes)?;

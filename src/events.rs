@@ -1,4 +1,4 @@
-//! What happens, as one JSON object a line on stdout, for programs that drive Specula (`--events json`).
+//! Events as JSON lines on stdout, for programs that drive Specula (`--events json`).
 
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ pub enum Event<'a> {
         /// Milliseconds since the start of the program.
         ms: f64,
     },
-    /// The first picture of the model is there.
+    /// The first picture of the model is on screen.
     Ready {
         /// Device in use.
         device: &'a str,
@@ -23,21 +23,21 @@ pub enum Event<'a> {
     },
     /// A reload is finished.
     Reload(ReloadEvent),
-    /// An environment is baked, or came from the disk.
+    /// An environment was baked, or loaded from the disk cache.
     Bake(&'a BakeReport),
     /// A screenshot was written.
     Screenshot {
         /// Its path.
         file: &'a str,
     },
-    /// A message of the compiler or of a check.
+    /// A diagnostic of the compiler or of a check.
     Diagnostic(&'a Diagnostic),
 }
 
 /// A finished reload.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ReloadEvent {
-    /// Generation on screen afterwards.
+    /// Shader generation on screen after the reload.
     pub generation: u64,
     /// Changed files, as diagnostics name them.
     pub changed: Vec<String>,
@@ -47,9 +47,9 @@ pub struct ReloadEvent {
     pub ok: bool,
     /// From the first file event to the settled set of changes.
     pub detect_ms: f64,
-    /// Compiling.
+    /// Compiling the stages.
     pub compile_ms: f64,
-    /// Creating pipelines.
+    /// Creating the pipelines.
     pub pipeline_ms: f64,
     /// From the swap to the end of the first frame.
     pub first_frame_ms: f64,
@@ -83,7 +83,7 @@ pub fn emit(enabled: bool, event: &Event<'_>) {
     }
     if let Ok(line) = serde_json::to_string(event) {
         use std::io::Write as _;
-        // A reader that went away is no reason to stop.
+        // Specula goes on after the reader has closed the pipe.
         let _ = writeln!(std::io::stdout().lock(), "{line}");
     }
 }

@@ -1,20 +1,22 @@
-//! Rendering without a window: the same reload and the same frame as on screen, called one after the other.
+//! Rendering without a window: the same reload and the same frames as on screen, on one thread.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PixelValue,
-    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, environment_files,
+    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError,
+    Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
 use crate::settings::Settings;
+use crate::shader::PixelValue;
 use crate::shader::{Change, Compiler, Diagnostic, Mode, ShaderSet, Source};
 
-/// Why there is no picture.
+/// Why rendering failed.
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
     /// The shaders do not compile, and there are no earlier ones.
@@ -32,7 +34,7 @@ pub enum HeadlessError {
     /// The model does not fit the device.
     #[error(transparent)]
     Upload(#[from] UploadError),
-    /// The device.
+    /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
@@ -57,18 +59,18 @@ pub struct Headless {
     resources: Resources,
     frames: Frames,
     view: View,
-    /// What [`Headless::render`] reads back; made anew only for another size.
+    /// The image that [`Headless::render`] draws to and reads back.
     output: Option<Arc<Image>>,
     size: (u32, u32),
     upload_ms: f64,
 }
 
 impl Headless {
-    /// Compiles the tree, uploads the model and makes everything that the first frame needs. The HDR target has full floats, so
-    /// that what is read back is what the shader wrote.
+    /// Compiles the tree, uploads the model and creates everything that the first frame needs. The HDR target has full floats,
+    /// so that readback returns exactly what the shader wrote.
     ///
     /// # Errors
-    /// Shaders that do not compile, settings or a model that do not fit, a device that fails.
+    /// Shaders that do not compile, settings or a model that do not fit, a device error.
     pub fn new(
         gpu: &Arc<Gpu>,
         compiler: &Arc<Compiler>,
@@ -86,15 +88,16 @@ impl Headless {
         }
         this.check_settings()?;
         this.provide()?;
-        // Decoders and the compiler are done: the frame may use what they have freed.
+        // Decoding and compiling are done. Return the freed memory, which a software device needs for the frame.
         return_freed_memory();
         Ok((this, reload))
     }
 
-    /// The same without compiling anything: [`Headless::update`] does, and may fail any number of times before a first picture.
+    /// Like [`Headless::new`], but compiles nothing. Call [`Headless::update`], which may fail any number of times before the
+    /// first picture.
     ///
     /// # Errors
-    /// Settings or a model that do not fit, a device that fails.
+    /// Settings or a model that do not fit, a device error.
     pub fn open(
         gpu: &Arc<Gpu>,
         compiler: &Arc<Compiler>,
@@ -127,16 +130,16 @@ impl Headless {
         Ok(this)
     }
 
-    /// Bakes the environment and reads the measured BRDF that the settings name, if those in use are others, and makes the
-    /// pipelines of the next frame. On failure those in use stay.
+    /// Creates everything that the next frame lacks: the environment, the measured BRDF and the pipelines. On failure those in
+    /// use stay.
     ///
     /// # Errors
-    /// A file that is bad, a device that fails.
+    /// A bad file, or a device error.
     pub fn provide(&mut self) -> Result<(), HeadlessError> {
         self.bind().map(|_| ())
     }
 
-    /// Bakes the environment of the settings again. `from_disk`: a cached result will do.
+    /// Bakes the environment of the settings again. `from_disk` allows a cached result.
     ///
     /// # Errors
     /// As [`Headless::provide`].
@@ -147,30 +150,24 @@ impl Headless {
         }
     }
 
-    /// Notes that the environment's file has changed: the next frame bakes it again.
+    /// Reports that the environment's file has changed. The next frame bakes it again.
     pub fn environment_changed(&mut self) {
         self.session.revisions.environment += 1;
     }
 
-    /// Notes that the file of the measured BRDF has changed: the next frame reads it again.
+    /// Reports that the file of the measured BRDF has changed. The next frame reads it again.
     pub fn measured_changed(&mut self) {
         self.session.revisions.measured += 1;
     }
 
-    /// What the last bake took.
+    /// How long the last bake took.
     pub fn bake_report(&self) -> &BakeReport {
         &self.resources.environment().report
     }
 
-    /// The files of the environment.
-    pub fn environment_files(&self) -> Vec<PathBuf> {
-        environment_files(&self.session.settings.environment.name)
-    }
-
-    /// The file of the measured BRDF, if there is one.
-    pub fn measured_files(&self) -> Vec<PathBuf> {
-        let path = &self.session.settings.measured;
-        std::path::absolute(path).ok().filter(|_| !path.is_empty()).into_iter().collect()
+    /// The settings, the model and the shaders.
+    pub fn session(&self) -> &Session {
+        &self.session
     }
 
     /// The shaders in use; empty before the first good ones.
@@ -178,7 +175,7 @@ impl Headless {
         self.session.shaders.clone().unwrap_or_default()
     }
 
-    /// The tree.
+    /// The reloader, with the shader tree.
     pub fn reloader(&self) -> &Reloader {
         &self.reloader
     }
@@ -198,19 +195,19 @@ impl Headless {
         self.upload_ms
     }
 
-    /// Device time of the last frame in milliseconds, where the device can tell.
+    /// Device time of the last frame in milliseconds, if the device supports timestamps.
     pub fn device_ms(&self) -> Option<f64> {
         self.frames.last_device_ms()
     }
 
-    /// Device time of each pass of the last frame, where the device can tell.
+    /// Device time of each pass of the last frame, if the device supports timestamps.
     pub fn pass_times(&self) -> &[PassTime] {
         self.frames.pass_times()
     }
 
-    /// Takes changed shaders in. On failure the last good ones stay.
+    /// Reloads changed shaders. On failure the last good shaders stay.
     pub fn update(&mut self, change: Change) -> Reload {
-        // `open` has checked that there is one.
+        // `open` has checked that the target exists, so the fallback is never used unless the settings change.
         let target = self.target().unwrap_or(TargetFormat::full(1));
         let session = &self.session;
         let reload = self.reloader.update(change, |shaders| session.pipelines(shaders, target), || false);
@@ -226,7 +223,7 @@ impl Headless {
         reload
     }
 
-    /// Replaces the model. On failure the old one stays.
+    /// Replaces the model. On failure the old model stays.
     ///
     /// # Errors
     /// A model that does not fit the device.
@@ -239,10 +236,10 @@ impl Headless {
         Ok(())
     }
 
-    /// Renders one frame, making what it needs, and reads it back. An accumulating mode is the mean of `view.frames` frames.
+    /// Renders a frame and reads it back. An accumulating mode averages `view.frames` frames.
     ///
     /// # Errors
-    /// Settings that do not fit, a device that fails.
+    /// Settings that do not fit, a bad file, a device error.
     pub fn render(&mut self) -> Result<Capture, HeadlessError> {
         let frame = self.bind()?;
         if frame.state.pipelines.accumulates {
@@ -261,7 +258,7 @@ impl Headless {
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
-    /// Renders one frame and waits for it, without reading it back: what a frame in a window takes.
+    /// Renders one frame and waits for it without reading it back, which is the work of a frame in a window.
     ///
     /// # Errors
     /// As [`Headless::render`].
@@ -270,10 +267,10 @@ impl Headless {
         self.draw_frame(&frame, Redraw::Always)
     }
 
-    /// The values of one pixel, counted from the upper left corner, in some modes; zero where nothing is.
+    /// The values of one pixel, counted from the upper left corner, in each of `modes`; zero where nothing covers the pixel.
     ///
-    /// Only the instances near the pixel are drawn, and only their pipelines are made; all of them if one of those near is
-    /// transmissive, since that one shows what lies behind it from around the pixel.
+    /// Only the instances near the pixel are drawn, and only their pipelines are created. If one of them is transmissive, all
+    /// instances are drawn, since a transmissive surface refracts light from around the pixel.
     ///
     /// # Errors
     /// As [`Headless::render`].
@@ -299,7 +296,10 @@ impl Headless {
             })
         };
         let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
-        self.resources.build_all(&states.iter().map(|state| &state.pipelines).collect::<Vec<_>>())?;
+        if let Some(set) = self.resources.pipelines() {
+            // A driver compiles a pipeline on the calling thread.
+            states.par_iter().try_for_each(|state| set.build(&state.pipelines))?;
+        }
         self.view.probe = Some(at);
         let mut values = Vec::new();
         for state in &states {
@@ -314,7 +314,7 @@ impl Headless {
         Ok(values)
     }
 
-    /// The picture that the settings ask for.
+    /// The picture that the settings describe.
     ///
     /// # Errors
     /// Settings that do not fit, or no shaders yet.
@@ -328,10 +328,10 @@ impl Headless {
         View::target_format(&self.gpu, self.session.settings.view.msaa, true).map_err(HeadlessError::Settings)
     }
 
-    /// Fails on the first setting that does not fit the shaders or the model, or that neither knows.
+    /// Checks that the shaders and the model know every setting, and that each value fits.
     ///
     /// # Errors
-    /// That setting, in words.
+    /// A message about the first setting that does not fit.
     pub fn check_settings(&self) -> Result<(), HeadlessError> {
         self.session.problems(true).into_iter().next().map_or(Ok(()), |problem| Err(HeadlessError::Settings(problem)))
     }

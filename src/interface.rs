@@ -1,7 +1,7 @@
-//! The contract between Rust and GLSL: descriptor sets, bindings, specialization ids and the structs that both sides read.
+//! The contract between Rust and GLSL: descriptor sets, bindings, specialization ids and the structs that both sides use.
 //!
-//! Rust writes this memory, so Rust owns its meaning. [`glsl`] prints the whole contract as `shaders/interface.glsl`;
-//! `shader::contract` compares every compiled stage with [`BINDINGS`], [`SPECIALIZATION`] and [`BLOCKS`].
+//! Rust writes this memory, so Rust declares it. [`glsl`] prints the contract as `shaders/interface.glsl`, and
+//! `shader::contract` checks every compiled stage against [`BINDINGS`], [`SPECIALIZATION`] and [`BLOCKS`].
 //!
 //! All blocks use `scalar` layout, so a Rust `#[repr(C)]` struct of 4-byte fields and its GLSL twin agree byte for byte.
 
@@ -15,30 +15,30 @@ pub use constants::*;
 pub use print::glsl;
 pub use textures::*;
 
-/// Raised whenever a shader tree written for the previous contract would misread memory.
+/// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
 pub const VERSION: u32 = 3;
 
-/// Set 0: bound once a frame.
+/// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;
-/// Set 1: bound once a material.
+/// Set 1: bound once per material.
 pub const SET_MATERIAL: u32 = 1;
 /// Set 2: the images that a pass reads.
 pub const SET_PASS: u32 = 2;
-/// Set 3: what a compute task reads and writes.
+/// Set 3: the inputs and outputs of a compute task.
 pub const SET_TASK: u32 = 3;
 
-/// Push constants available to every graphics pipeline, in bytes (lavapipe and the Vulkan minimum both give 128).
+/// Bytes of push constants of every graphics pipeline: the minimum that Vulkan guarantees, and lavapipe's limit.
 pub const PUSH_CONSTANT_SIZE: u32 = 128;
-/// Size of the user's parameter block in bytes: what `//@ui` members of `Params` may fill together.
+/// Size in bytes of the author's parameter block `Params`, whose members have `//@ui` annotations.
 pub const PARAMS_SIZE: u32 = 4096;
 
-/// Most lights of a frame: as many as fit into 16 KiB, the largest uniform block that every device has.
+/// Maximum number of lights in a frame: as many as fit into 16 KiB, the uniform block size that Vulkan guarantees.
 pub const MAX_LIGHTS: usize = 16384 / size_of::<Light>();
 
-/// Specialization constants from this id on belong to the shader author (`//@ui` on a `constant_id`).
+/// First id of the author's specialization constants (`//@ui` on a `constant_id`).
 pub const USER_CONSTANTS: u32 = 32;
 
-/// How a descriptor is used; printed into messages, so in GLSL's words.
+/// Kind of a descriptor, in GLSL's terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BindingKind {
     /// `uniform` block.
@@ -49,7 +49,7 @@ pub enum BindingKind {
     Sampler2D,
     /// `samplerCube`.
     SamplerCube,
-    /// `rgba16f image2DArray`: one level of an image, all its layers.
+    /// `rgba16f image2DArray`: one mip level of an image with all its layers.
     StorageImage,
 }
 
@@ -66,8 +66,18 @@ impl BindingKind {
     }
 }
 
-/// Binding in [`SET_TASK`] of the buffer that a task leaves numbers in; it is as large as the stages declare it.
+/// Binding in [`SET_TASK`] of the buffer that a task writes numbers to. It is as large as the stages declare.
 pub const BINDING_RESULTS: u32 = 5;
+/// Binding in [`SET_TASK`] of the block [`Task`].
+pub const BINDING_TASK: u32 = 0;
+/// Binding in [`SET_TASK`] of the image that a task reads.
+pub const BINDING_SOURCE: u32 = 1;
+/// Binding in [`SET_TASK`] of the cube map that a task reads.
+pub const BINDING_SOURCE_CUBE: u32 = 2;
+/// Binding in [`SET_TASK`] of the mip level that a task writes.
+pub const BINDING_TARGET: u32 = 3;
+/// Binding in [`SET_TASK`] of a mip level that a task reads.
+pub const BINDING_LEVEL_ABOVE: u32 = 4;
 
 /// One descriptor of the contract. A shader may use any subset.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +112,7 @@ pub const BINDINGS: &[Binding] = &{
 /// Every descriptor that is not a material's texture.
 const OTHERS: &[Binding] = &[
     binding(SET_FRAME, 0, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
-    // Uniform blocks where a storage buffer would do: a software device reads those for each pixel of a group apart.
+    // Lights are a uniform block because a software device reads a storage buffer separately for each pixel of a group.
     binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::UniformBuffer, MAX_LIGHTS * size_of::<Light>()),
     binding(SET_FRAME, 2, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
     binding(SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
@@ -113,17 +123,17 @@ const OTHERS: &[Binding] = &[
     binding(SET_FRAME, 8, "BINDING_LTC", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 9, "BINDING_MEASURED", BindingKind::StorageBuffer, 0),
     binding(SET_FRAME, 10, "BINDING_SHEEN_ALBEDO", BindingKind::Sampler2D, 0),
-    // Nothing is there, and it must be the fourth uniform block that a stage can see: Mesa's lavapipe (22.3) notes which
-    // uniforms branches depend on, and those of the fourth over its own counters, which ends the process.
+    // Works around a crash of Mesa's lavapipe (22.3), which records the uniforms that branches depend on and overwrites its
+    // own counters with those of a stage's fourth uniform block. So the fourth block is this one, which nothing reads.
     binding(SET_FRAME, 11, "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),
-    binding(SET_TASK, 0, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
-    binding(SET_TASK, 1, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
-    binding(SET_TASK, 2, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
-    binding(SET_TASK, 3, "BINDING_TARGET", BindingKind::StorageImage, 0),
-    binding(SET_TASK, 4, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
+    binding(SET_TASK, BINDING_TASK, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
+    binding(SET_TASK, BINDING_SOURCE, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
+    binding(SET_TASK, BINDING_SOURCE_CUBE, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),
+    binding(SET_TASK, BINDING_TARGET, "BINDING_TARGET", BindingKind::StorageImage, 0),
+    binding(SET_TASK, BINDING_LEVEL_ABOVE, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
     binding(SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
 ];
 
@@ -134,13 +144,13 @@ pub struct Specialization {
     pub id: u32,
     /// Name in GLSL.
     pub name: &'static str,
-    /// What it selects.
+    /// Its meaning.
     pub doc: &'static str,
 }
 
-/// `constant_id` of [`SPECIALIZATION`]'s debug mode.
+/// `constant_id` of the debug mode.
 pub const SPEC_MODE: u32 = 0;
-/// [`SPEC_MODE`]: the picture. The other modes are the tree's.
+/// Value of [`SPEC_MODE`] for the final picture. The shader tree defines all other modes.
 pub const MODE_FINAL: u32 = 0;
 /// `constant_id` of the material's alpha mode: [`ALPHA_OPAQUE`], [`ALPHA_MASK`] or [`ALPHA_BLEND`].
 pub const SPEC_ALPHA_MODE: u32 = 1;
@@ -152,9 +162,9 @@ pub const SPEC_TONEMAP: u32 = 3;
 /// `constant_id` of the encoding, `ENCODE_*`; for the tone mapping pass.
 pub const SPEC_ENCODE: u32 = 4;
 
-/// `constant_id` of the number of lights, up to [`UNROLLED_LIGHTS`]; 0: only `Frame::light_count` knows.
+/// `constant_id` of the number of lights, up to [`UNROLLED_LIGHTS`]. 0 means that `Frame::light_count` has the number.
 pub const SPEC_LIGHT_COUNT: u32 = 5;
-/// So many lights, or fewer, are worth pipelines of their own, in which the loop over them is unrolled.
+/// Up to this many lights, a pipeline is specialized for their number, so that the loop over them is unrolled.
 pub const UNROLLED_LIGHTS: usize = 4;
 
 /// The specialization constants that Rust sets for every stage; those from [`USER_CONSTANTS`] on are the author's.

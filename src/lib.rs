@@ -1,31 +1,34 @@
 //! Specula, a hot-reloading shader playground: it watches a GLSL tree, recompiles it while it runs and rebuilds the pipelines of
-//! a glTF PBR viewer in place. One rule stands above all others: **a save never costs the user the picture.**
+//! a glTF PBR viewer in place. The first rule of its design: **a save never costs the user the picture.**
 //!
-//! The modules, from the ground up; each imports only from those above it in this list:
+//! Each module imports only from modules above it in this list:
 //!
-//! - [`message`]: escapes and nearest names for messages.
+//! - [`message`]: escapes text for the terminal, and suggests the nearest valid name.
 //! - [`interface`]: the contract between Rust and GLSL.
-//! - [`settings`]: everything a user can set.
-//! - [`shader`]: files to SPIR-V. Knows no device and no scene.
-//! - [`gpu`]: Vulkan objects, the only `unsafe`. Knows no files and no glTF.
+//! - [`settings`]: all settings of the user.
+//! - [`shader`]: compiles files to SPIR-V. Has no device and no scene.
+//! - [`gpu`]: Vulkan objects, the only `unsafe` code. Reads no files and no glTF.
 //! - [`scene`]: CPU data: glTF, tangents, camera, lights.
-//! - [`render`]: where shaders, device and scene meet: frame states, resources, views.
-//! - [`events`]: what happens, as JSON lines.
-//! - [`session`]: what the user works on; it survives the device.
-//! - [`picture`], [`comparison`], [`headless`]: captures as files; how far two are apart; rendering without a window.
+//! - [`render`]: draws scenes with shaders on a device: frame states, resources, views.
+//! - [`events`]: events as JSON lines.
+//! - [`session`]: what the user works on; it survives the loss of the device.
+//! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
+//! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
 //! - [`app`]: the window.
 //!
-//! An edit becomes a settled set of changed paths ([`shader::watch`]), then dirty stages and new SPIR-V ([`shader::library`]), then
-//! a new pipeline set ([`render::Reloader`]), which the next frame uses as a whole. An error anywhere before that yields
-//! diagnostics and changes nothing else.
+//! An edit passes three steps. [`shader::watch`] collects the changed paths, [`shader::library`] compiles the dirty stages, and
+//! [`render::Reloader`] builds a new pipeline set, which the next frame uses as a whole. An error in any step yields diagnostics
+//! and changes nothing else.
 
 pub mod app;
 pub mod comparison;
 mod disk_cache;
 pub mod events;
+pub mod file_kind;
 pub mod gpu;
 pub mod headless;
 pub mod interface;
+pub mod measure;
 pub mod message;
 pub mod picture;
 pub mod render;

@@ -1,11 +1,12 @@
-//! What the user works on: settings, model, the last good shaders, diagnostics. Knows no device, so that it survives the loss of
-//! one.
+//! What the user works on: settings, model, the last good shaders, diagnostics. A session holds no device object, so it
+//! survives the loss of the device.
 
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::render::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
-use crate::scene::Model;
+use crate::scene::{Model, environment};
 use crate::settings::Settings;
 use crate::shader::values::{misfits, unknown_names};
 use crate::shader::{Diagnostic, Mode, ShaderSet};
@@ -13,21 +14,21 @@ use crate::shader::{Diagnostic, Mode, ShaderSet};
 /// Settings, model and shaders, from which every [`FrameState`] is made.
 #[derive(Clone, Default)]
 pub struct Session {
-    /// What the user set.
+    /// The user's settings.
     pub settings: Settings,
-    /// The last good shaders; `None` before the first.
+    /// The last good shaders, once there are any.
     pub shaders: Option<Arc<ShaderSet>>,
-    /// What is wrong with the shader tree: errors of the newest edit, or warnings of the shaders in use.
+    /// Errors of the newest edit, or warnings of the shaders in use.
     pub diagnostics: Vec<Diagnostic>,
-    /// How often the files behind the settings have changed.
+    /// How often the files that the settings name have changed.
     pub revisions: Revisions,
     model: Option<Arc<Model>>,
-    /// The last scene: making one of a large model takes a while.
+    /// The last scene, kept because a scene of a large model takes time to create.
     scene: RefCell<Option<Scene>>,
 }
 
 impl Session {
-    /// A session without model and shaders.
+    /// A session without a model and shaders.
     pub fn new(settings: Settings) -> Self {
         Self { settings, ..Self::default() }
     }
@@ -42,12 +43,12 @@ impl Session {
         self.model = Some(model.clone());
     }
 
-    /// The debug mode of the settings as the shaders describe it; `None` if they lack it.
+    /// The selected debug mode; `None` if the shaders lack it.
     pub fn mode(&self) -> Option<&Mode> {
         self.shaders.as_ref()?.modes.iter().find(|mode| mode.slug == self.settings.mode)
     }
 
-    /// The model as the settings show it.
+    /// The model with the selected variant and material override.
     pub fn scene(&self) -> Option<Scene> {
         let model = self.model.as_ref()?;
         let mut last = self.scene.borrow_mut();
@@ -61,7 +62,7 @@ impl Session {
         PipelineRequest::new(&self.settings, shaders, self.scene().as_ref(), target)
     }
 
-    /// The picture that the settings ask for; `None` without shaders.
+    /// The picture that the settings describe; `None` without shaders.
     pub fn frame_state(&self, time_s: f32, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
         Some(FrameState::new(&FrameInputs {
             settings: &self.settings,
@@ -74,8 +75,21 @@ impl Session {
         }))
     }
 
-    /// What in the settings does not fit the shaders or the model, one sentence each. `names`: unknown names count, too;
-    /// without, they are kept silently, because the next edit may declare them.
+    /// The absolute path of the environment's file; empty for a built-in environment.
+    pub fn environment_files(&self) -> Vec<PathBuf> {
+        let name = self.settings.environment.name.as_str();
+        let is_file = name != "none" && (!environment::BUILT_IN.contains(&name) || Path::new(name).is_file());
+        is_file.then(|| std::path::absolute(name).ok()).flatten().into_iter().collect()
+    }
+
+    /// The absolute path of the measured BRDF's file; empty without a measured BRDF.
+    pub fn measured_files(&self) -> Vec<PathBuf> {
+        let path = &self.settings.measured;
+        std::path::absolute(path).ok().filter(|_| !path.is_empty()).into_iter().collect()
+    }
+
+    /// Describes each setting that does not fit the shaders or the model in a sentence. With `names`, it also reports
+    /// unknown names; otherwise they are accepted, because the next edit may declare them.
     pub fn problems(&self, names: bool) -> Vec<String> {
         let Some(shaders) = &self.shaders else { return Vec::new() };
         let mut problems = misfits(&self.settings.shader, shaders);

@@ -1,4 +1,4 @@
-//! Everything a user can set, as one serde struct. The window, `--set`, look files and the tests all use it.
+//! All settings of the user in one serde struct. The window, `--set`, look files and the tests all use it.
 
 mod assign;
 mod catalog;
@@ -22,7 +22,7 @@ pub use look::LookError;
 pub use material::MaterialOverride;
 use range::Range;
 
-/// All settings. `toml` of this struct is a look file; dotted paths into it are what `--set` takes.
+/// All settings. A look file is this struct as TOML. `--set` takes dotted paths into it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -32,17 +32,17 @@ pub struct Settings {
     pub camera: CameraSettings,
     /// Lights.
     pub lights: LightSettings,
-    /// KHR_materials_variants: name of the model's variant; empty for the model's own materials.
+    /// Name of a variant of the model (KHR_materials_variants); empty for the model's default materials.
     pub variant: String,
     /// Material override: one material replaces all of the model's.
     pub material: MaterialOverride,
     /// Environment.
     pub environment: EnvironmentSettings,
-    /// File of a measured BRDF for the modes of the group Measured; empty for none.
+    /// File of a measured BRDF, which the modes of the group Measured show; empty for none.
     pub measured: String,
     /// Exposure, tone mapping, background, multisampling.
     pub view: ViewSettings,
-    /// Values of the shader author's own `//@ui` constants and parameters, by name.
+    /// Values of the constants and parameters that `//@ui` annotations declare, by name.
     pub shader: BTreeMap<String, ShaderValue>,
 }
 
@@ -78,7 +78,7 @@ pub enum ShaderValue {
     Name(String),
 }
 
-/// The camera. Without `eye` the model is framed.
+/// The camera. Without `eye`, `azimuth` and `elevation` frame the model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraSettings {
@@ -125,7 +125,7 @@ pub enum Tonemap {
     Neutral,
 }
 
-/// How radiance becomes a picture.
+/// How the renderer turns radiance into a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ViewSettings {
@@ -137,11 +137,11 @@ pub struct ViewSettings {
     pub background: String,
     /// Samples per pixel, 1 or 4.
     pub msaa: u32,
-    /// Number of frames that rendering without a window averages, in modes that accumulate.
+    /// Number of frames that accumulating modes average when rendering without a window.
     pub frames: u32,
 }
 
-/// The default background. It is also used when the background is `env` and the mode shows data instead of light.
+/// The default background. Modes that show data instead of light also use it if the background is `env`.
 const BACKGROUND: &str = "#1b1d21";
 
 impl Default for ViewSettings {
@@ -151,10 +151,10 @@ impl Default for ViewSettings {
 }
 
 impl ViewSettings {
-    /// Linear RGB and alpha of the background. With `env` it is the background of modes that show data instead of light.
+    /// Linear RGB and alpha of the background. For `env`, the background of modes that show data instead of light.
     ///
     /// # Errors
-    /// A text that is neither `none`, `env` nor a color.
+    /// The setting is neither `none`, `env` nor a color.
     pub fn background_linear(&self) -> Result<[f32; 4], String> {
         let text = if self.background == "env" { BACKGROUND } else { self.background.as_str() };
         if text == "none" {
@@ -193,10 +193,10 @@ impl Settings {
         ranges
     }
 
-    /// Refuses values that no picture can be drawn with.
+    /// Checks that every value is valid.
     ///
     /// # Errors
-    /// The setting, its value and what it can be.
+    /// A message with the setting, its value and the valid values.
     pub fn check(&self) -> Result<(), String> {
         self.ranges().iter().try_for_each(Range::check)?;
         let vectors = [("camera.eye", self.camera.eye), ("camera.target", self.camera.target)];

@@ -1,4 +1,4 @@
-//! The commands from outside: exit codes, messages, files and JSON.
+//! The commands as processes: exit codes, messages, files and JSON.
 
 mod cli {
     mod terminal;
@@ -20,18 +20,18 @@ fn directory() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// `render` of a model file in `directory`, under validation and by direct light.
+/// Runs `render` on a model file in `directory`, with validation and direct light only.
 fn render(directory: &Path, model: &str, more: &[&str]) -> Finished {
     let args = ["render", model, "--validate", "--env", "none", "--out", "out.png", SMALL[0], SMALL[1]];
     run(directory, &[&args[..], more].concat())
 }
 
-/// A correct model, as a document to be spoiled.
+/// A valid model as JSON and binary data, for tests to damage.
 fn document() -> (Value, Vec<u8>) {
     glb::document(&glb::quad(1.0), &glb::gray())
 }
 
-/// Fails unless `render` refuses this model with exit code 1, names it and says all `parts`, and writes no picture.
+/// Fails unless `render` refuses this model with exit code 1 and a message with its name and all `parts`, and writes no picture.
 #[track_caller]
 fn refused(bytes: &[u8], parts: &[&str]) {
     let directory = directory();
@@ -112,7 +112,7 @@ fn an_extension_that_is_required_and_lacking() {
     refused(&spoiled(|json| json["extensionsRequired"] = json!([name])), &[name, "supported"]);
 }
 
-/// A `.gltf` whose buffer lies at `uri`.
+/// A `.gltf` file with its buffer at `uri`.
 fn with_buffer_at(uri: &str) -> (String, Vec<u8>) {
     let (mut json, bin) = document();
     json["buffers"][0]["uri"] = json!(uri);
@@ -191,7 +191,7 @@ fn an_out_that_cannot_be_written() {
     out("x.bmp").expect(2, &["x.bmp", ".png or .exr"]);
     fs::create_dir(directory.path().join("folder.png")).unwrap();
     out("folder.png").expect(1, &["folder.png", "is a folder"]);
-    // Not even root writes there, and only after the rendering it shows.
+    // Not even root can write there, and the error appears only after rendering.
     out("/proc/x.png").expect(1, &["cannot write /proc/x.png"]);
 }
 
@@ -264,12 +264,12 @@ fn check_fails_with_file_and_line() {
 
     let text = tree.edited("brdf/ndf.glsl", "alpha * alpha", "alpha * alfa");
     tree.write("brdf/ndf.glsl", &text);
-    // A library that compiles only because of what others include before it.
+    // A library that compiles only if another file has included its dependencies.
     tree.write("common/loose.glsl", "float loose() { return PI; }\n");
     let bad = run(&here, &["check", "--shaders", "shaders"]);
     let place = format!("shaders/brdf/ndf.glsl:{}:", line_of(&text, "alfa"));
     bad.expect(1, &[&place, "error:", "'alfa'", "^^^^", "shaders/common/loose.glsl:1:", "'PI'"]);
-    // `./shaders` is found without being named.
+    // `./shaders` is the default.
     run(&here, &["check"]).expect(1, &[&place]);
 
     let json = run(&here, &["check", "--json"]).expect(1, &[]).json();
@@ -327,7 +327,7 @@ fn an_exr_holds_raw_floats() {
     run(directory.path(), &[&args[..], &SMALL, &["--env", "none", "--set", "view.msaa=1"]].concat()).expect(0, &[]);
     let exr = open_image(&directory.path().join("depth.exr")).into_rgba32f();
     let pixel = exr.get_pixel(24, 16).0;
-    // The front of a unit sphere, 5 m away: metres, beyond what a PNG could hold.
+    // The front of a unit sphere, 5 m away. The value is in meters, which a PNG could not hold.
     assert!((pixel[0] - 4.0).abs() < 0.02 && pixel[3] == 1.0, "{pixel:?}");
     assert_eq!(exr.get_pixel(0, 0).0[3], 0.0);
 }

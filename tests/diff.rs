@@ -1,4 +1,4 @@
-//! `specula diff` from outside: printed lines, JSON, maps and exit codes.
+//! `specula diff` as a process: printed lines, JSON, maps and exit codes.
 
 mod support;
 
@@ -16,7 +16,7 @@ fn directory() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// Gray, and a square of 4 x 4 pixels of another color from 8,16 on.
+/// Writes a gray picture with a 4 x 4 square of another color at 8,16.
 fn png(folder: &Path, name: &str, square: [u8; 4]) {
     let inside = |x: u32, y: u32| (8..12).contains(&x) && (16..20).contains(&y);
     let color = |x, y| Rgba(if inside(x, y) { square } else { [128, 128, 128, 255] });
@@ -24,7 +24,7 @@ fn png(folder: &Path, name: &str, square: [u8; 4]) {
     RgbaImage::from_fn(SIDE, SIDE, color).save(folder.join(name)).unwrap();
 }
 
-/// 2 everywhere, alpha 1, but for one value of red at 3,5.
+/// Writes a picture of 2 everywhere with alpha 1, except for the red value at 3,5.
 fn exr(folder: &Path, name: &str, red: f32) {
     let color = |x, y| Rgba([if (x, y) == (3, 5) { red } else { 2.0 }, 2.0, 2.0, 1.0]);
     Rgba32FImage::from_fn(SIDE, SIDE, color).save(folder.join(name)).unwrap();
@@ -63,7 +63,7 @@ fn what_an_eye_sees_and_where() {
     let map = image::open(here.join("map.png")).unwrap().into_rgb8();
     let sum = |x, y| map.get_pixel(x, y).0.iter().map(|c| u32::from(*c)).sum::<u32>();
     assert!(sum(9, 17) > 250 && sum(30, 2) < 20, "{} {}", sum(9, 17), sum(30, 2));
-    // The limit decides, and only it.
+    // Only the limit determines the exit code.
     let limit = |max: f64| diff(here, &["a.png", "b.png", "--max", &max.to_string()]);
     limit(error * 1.01).expect(0, &[]);
     limit(error * 0.99).expect(1, &[]);
@@ -75,7 +75,7 @@ fn alpha_alone_and_one_step_are_differences() {
     let here = folder.path();
     png(here, "a.png", [128, 128, 128, 255]);
     png(here, "step.png", [129, 128, 128, 255]);
-    // Over middle gray an eye would not see it.
+    // Over middle gray the difference would not be visible.
     png(here, "clear.png", [128, 128, 128, 0]);
     for other in ["step.png", "clear.png"] {
         let told = diff(here, &["a.png", other]);
@@ -94,7 +94,7 @@ fn raw_pictures_are_compared_as_numbers() {
     let told = diff(here, &["a.exr", "b.exr", "--json", "--out", "map.exr"]);
     told.expect(1, &[]);
     let found = &told.json()["pictures"][0];
-    // One of 4 x 1024 values is off by 8.
+    // One of 4 x 1024 values differs by 8.
     assert!((found["error"].as_f64().unwrap() - 8.0 / 64.0).abs() < 1e-9, "{found}");
     assert_eq!((&found["measure"], &found["largest"]), (&json!("rmse"), &json!(8.0)));
     assert_eq!((&found["largest_at"], &found["differing"]), (&json!([3, 5]), &json!(1)));
@@ -134,7 +134,7 @@ fn folders_by_name() {
     assert!(lines[1].contains("other.png  FLIP") && lines[2].starts_with("same "), "{lines:?}");
     let maps: Vec<_> = fs::read_dir(folder.path().join("maps")).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert_eq!(maps, ["other.png"]);
-    // A picture that is not there is beyond every limit.
+    // A missing picture exceeds every limit.
     diff(folder.path(), &["a", "b", "--max", "1"]).expect(1, &["1 of 3"]);
     fs::remove_file(b.join("new.png")).unwrap();
     diff(folder.path(), &["a", "b", "--max", "1"]).expect(0, &[]);

@@ -1,4 +1,4 @@
-//! The files that `render` writes, from outside: full disks, links, pipes and signals.
+//! How `render`, as a process, writes files: full disks, links, pipes and signals.
 
 mod support;
 
@@ -12,10 +12,10 @@ use std::sync::mpsc::channel;
 
 use notify::{RecursiveMode, Watcher as _};
 use support::open_image;
-use support::process::{PATIENCE, finish, run, specula};
+use support::process::{PATIENCE, finish, run};
 use tempfile::TempDir;
 
-/// `render` arguments of a picture that takes no time.
+/// Arguments of a `render` that is fast.
 const QUICK: [&str; 8] = ["render", "sphere-grid", "--env", "none", "--size", "64x48", "--lights", "orbit"];
 
 fn render(directory: &Path, out: &str) -> support::process::Finished {
@@ -29,7 +29,7 @@ fn names_in(directory: &Path) -> Vec<String> {
     names
 }
 
-/// A directory that holds an old picture.
+/// A directory that contains an old picture.
 fn with_old_picture() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("old.png"), "old").unwrap();
@@ -115,7 +115,9 @@ fn a_signal_leaves_no_temporary_files() {
         })
         .unwrap();
         watcher.watch(directory.path(), RecursiveMode::NonRecursive).unwrap();
-        let mut command = specula(directory.path());
+        // Under `nohup`, and in a shell's background job, signals are ignored from the start.
+        let mut command = Command::new("env");
+        command.arg("--default-signal=HUP,INT,TERM").arg(env!("CARGO_BIN_EXE_specula")).current_dir(directory.path());
         command.args(["render", "sphere-grid", "--env", "none", "--size", "2048x2048", "--set", "view.msaa=1"]);
         command.args(["--mode", "all", "--out", "big.exr"]).stdout(Stdio::null()).stderr(Stdio::null());
         let mut child = command.spawn().unwrap();

@@ -1,5 +1,4 @@
-//! Every debug mode shows what it says: data where there are some, a checkerboard where there are none, encoded as
-//! promised.
+//! Every debug mode shows what its documentation says: data, or a checkerboard where there is none, in the declared encoding.
 
 mod support;
 
@@ -13,15 +12,15 @@ use specula::settings::Settings;
 use specula::shader::Encode;
 use support::{SIZE, Session, glb, load, model, ready, render, renderer, settings, srgb};
 
-/// The slugs that programs outside rely on.
+/// Slugs that other programs rely on.
 const FIXED: &str = "final base-color alpha metallic roughness occlusion emissive normal-texture geometric-normal \
     shading-normal tangent bitangent uv0 uv1 vertex-color position d g v f diffuse-lobe specular-lobe dielectric metal \
     ambient light-1 light-2 light-3 n-dot-l n-dot-v n-dot-h v-dot-h nan";
 
-/// What these show is the same all over a closed, opaque, unmirrored model: 1, 1.5, or the color for "good".
+/// Modes that are uniform on a closed, opaque, unmirrored model: 1, 1.5, or the color of a valid pixel.
 const SAME_ALL_OVER: [&str; 5] = ["alpha", "f90", "ior", "face-orientation", "tangent-sign"];
 
-/// Modes of what the shader ball lacks: a model that has it, what else must be set, the modes.
+/// Modes without data on the shader ball: a model that has the data, more settings, and the modes.
 const ELSEWHERE: [(&str, &[&str], &[&str]); 11] = [
     ("clearcoat", &[], &["clearcoat", "clearcoat-roughness", "clearcoat-normal", "clearcoat-lobe", "clearcoat-light"]),
     ("anisotropy", &[], &["anisotropy", "anisotropy-direction"]),
@@ -39,10 +38,10 @@ const ELSEWHERE: [(&str, &[&str], &[&str]); 11] = [
         &["ibl-diffuse", "ibl-specular", "irradiance", "prefiltered", "environment", "monte-carlo", "ibl-error"],
     ),
 ];
-/// These need a file: `the_measured_modes_show_the_file`.
+/// Modes that need a file: see `the_measured_modes_show_the_file`.
 const MEASURED: [&str; 3] = ["measured", "measured-split", "measured-error"];
 
-/// One sample, so that no pixel mixes the model and what is behind it; by direct light.
+/// Direct light, and one sample per pixel, so that no pixel mixes the model with the background.
 fn sharp(model: Model, more: &[&str]) -> Headless {
     let mut settings: Settings =
         settings(&["view.msaa=1", "view.frames=2", "view.background=none", "environment.name=none"]);
@@ -61,7 +60,7 @@ fn covered(capture: &Capture) -> Vec<[f32; 3]> {
     values
 }
 
-/// Whether each pixel on the model has the flag for "no such data"; in the order of [`covered`].
+/// The "no data" flag of each pixel on the model, in the order of [`covered`].
 fn no_data(capture: &Capture) -> Vec<bool> {
     capture.raw.iter().zip(&capture.no_data).filter(|(value, _)| value[3] == 1.0).map(|(_, flag)| *flag).collect()
 }
@@ -80,7 +79,7 @@ fn the_fixed_slugs_exist() {
     }
 }
 
-/// What is wrong with a mode of which the model has data.
+/// What is wrong with the picture of a mode whose data the model has.
 fn fault(headless: &mut Headless, slug: &str) -> Option<String> {
     let capture = render(headless, slug);
     let values = covered(&capture);
@@ -113,11 +112,11 @@ fn modes_of_what_the_shader_ball_lacks_show_data_elsewhere() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// A file of MERL's format for a matte surface of this albedo: the same BRDF for all pairs of directions.
+/// A MERL file of a matte surface with this albedo: the same BRDF value for all pairs of directions.
 fn matte_merl(albedo: f64) -> Vec<u8> {
     let counts = [90_i32, 90, 180];
     let pairs = counts.iter().product::<i32>() as usize;
-    // What the file holds is to be multiplied by these (Matusik et al. 2003, the database's reader).
+    // MERL's reader multiplies the stored values by these (Matusik et al. 2003).
     let scales = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
     let value = |scale: f64| (albedo / PI / scale).to_le_bytes().repeat(pairs);
     counts.iter().flat_map(|count| count.to_le_bytes()).chain(scales.into_iter().flat_map(value)).collect()
@@ -136,26 +135,26 @@ fn the_measured_modes_show_the_file() {
     assert!(MEASURED.iter().all(|slug| !no_data(&render(&mut headless, slug)).contains(&false)), "no file");
     headless.settings_mut().measured = path.display().to_string();
     let mut raw = |slug: &str| covered(&render(&mut headless, slug));
-    // base color / pi times irradiance, without the cosine: the file's albedo is the material's, 0.5.
+    // `lambert` is base color / pi times irradiance, without the cosine. File and material both have albedo 0.5.
     let (measured, lambert, cosine) = (raw("measured"), raw("lambert"), raw("n-dot-l"));
     for ((measured, lambert), cosine) in measured.iter().zip(&lambert).zip(&cosine) {
         let expected = lambert[0] * cosine[0];
         assert!(measured.iter().all(|c| (c - expected).abs() < 2e-3 * expected), "{measured:?}, not {expected}");
     }
-    // Left of the middle as measured, right of it as shaded, with a highlight; between them a line of two pixels.
+    // Left of the middle the measured BRDF, right of it the material with its highlight, between them a line of two pixels.
     let (split, diffuse, specular) = (raw("measured-split"), raw("direct-diffuse"), raw("direct-specular"));
     let equal = |a: f32, b: f32| (a - b).abs() < 1e-4;
     let left = (0..split.len()).filter(|i| equal(split[*i][0], measured[*i][0])).count();
     let right = (0..split.len()).filter(|i| equal(split[*i][0], diffuse[*i][0] + specular[*i][0])).count();
     assert!(left.abs_diff(right) < split.len() / 20 && left + right >= split.len() - 2 * SIZE.1 as usize);
-    // The shaded surface is brighter where its highlight is, and darker far from it: F does not let all light in.
+    // The shaded surface is brighter in its highlight and darker elsewhere, since Fresnel reduces the diffuse lobe.
     let error = raw("measured-error");
     assert!(error.iter().any(|[r, _, b]| r > b) && error.iter().any(|[r, _, b]| b > r));
 }
 
 #[test]
 fn absent_data_is_a_checkerboard() {
-    // No normals: flat ones are made. No coordinates, colors or textures.
+    // Without normals, the loader generates flat ones. No coordinates, colors or textures.
     let mesh = glb::Mesh { normals: Vec::new(), ..glb::quad(1.0) };
     let mut headless = sharp(load(&glb::model(&mesh, &glb::gray())), &["camera.azimuth=0", "camera.elevation=0"]);
     let data = [
@@ -203,13 +202,13 @@ fn absent_data_is_a_checkerboard() {
     for slug in ["light-1", "light-2", "light-3", "d", "g", "v", "f", "n-dot-l", "diffuse-lobe", "direct-specular"] {
         check(&mut headless, slug);
     }
-    // Of two lights there is no third.
+    // Three orbiting lights: there is no fourth.
     headless.settings_mut().assign("lights.source=orbit").unwrap();
     headless.settings_mut().lights.chosen = 4;
     check(&mut headless, "specular-lobe");
 }
 
-/// Blended surfaces are opaque in a debug mode, so the flag is there too, and what is behind them stays hidden.
+/// In a debug mode, blended surfaces are opaque: they have the flag, and hide the surfaces behind them.
 #[test]
 fn blended_surfaces_without_data_have_the_flag() {
     let mut material = glb::gray();
@@ -219,7 +218,7 @@ fn blended_surfaces_without_data_have_the_flag() {
     assert!(!no_data(&render(&mut headless, "roughness")).contains(&true));
 }
 
-/// A gray that a material has by chance is data.
+/// A material whose gray equals the checkerboard's still has data.
 #[test]
 fn the_gray_of_the_checkerboard_is_not_a_flag() {
     let mut material = glb::gray();
@@ -230,14 +229,14 @@ fn the_gray_of_the_checkerboard_is_not_a_flag() {
     assert!(!capture.no_data.contains(&true));
 }
 
-/// The flag of one sample passes the mean of four, and neither coverage nor the samples around it change.
+/// A flag of one sample survives the mean of four samples, and changes neither coverage nor neighboring pixels.
 #[test]
 fn flags_survive_multisampling() {
     let mut session = Session::new(model("shader-ball"), settings(&["environment.name=none", "view.background=none"]));
     let before = session.mode("final");
     assert!(before.raw.iter().any(|value| value[3] > 0.0 && value[3] < 1.0), "no edge");
     assert!(!before.not_finite.contains(&true) && !before.no_data.contains(&true));
-    // The compiler cannot fold what depends on a parameter.
+    // The compiler cannot fold an expression that depends on a parameter.
     let nan = "if (s.position_ws.x > 0.0) radiance.g = sqrt(-1.0 - rim_strength);\n    return radiance;\n}\n\n#endif";
     ready(&session.edit("user.glsl", "return radiance;\n}\n\n#endif", nan));
     let after = session.mode("final");
@@ -246,7 +245,7 @@ fn flags_survive_multisampling() {
         let ([r, g, b, a], [r0, g0, b0, a0]) = (after.raw[i], before.raw[i]);
         counts[usize::from(after.not_finite[i])] += usize::from(a0 > 0.0);
         assert_eq!(a, a0, "coverage of pixel {i}");
-        // NaN counts as 0, and the other channels are as they were.
+        // NaN counts as 0, and the other channels are unchanged.
         assert!((r, b) == (r0, b0) && (0.0..=g0).contains(&g), "{:?} was {:?}", after.raw[i], before.raw[i]);
         assert!(after.not_finite[i] || g == g0, "pixel {i} changed without a flag");
     }
@@ -258,7 +257,7 @@ fn flags_survive_multisampling() {
     assert!(clearcoat.raw.iter().zip(&before.raw).all(|(a, b)| a[3] == b[3]), "coverage");
 }
 
-/// One frame of many that is NaN is told, and the mean of the frames is not NaN.
+/// If one of many frames is NaN, the mean has the flag and is not NaN.
 #[test]
 fn a_frame_that_is_not_finite_is_remembered_by_the_mean() {
     let view = ["environment.name=studio", "view.msaa=1", "view.frames=4", "view.background=none"];
@@ -288,7 +287,7 @@ fn a_light_that_is_missing_leaves_the_others() {
 
 #[test]
 fn the_built_in_models_have_no_nan_anywhere() {
-    // The warnings are pure magenta, yellow and cyan; what is well is gray.
+    // The warnings are pure magenta, yellow and cyan. Valid pixels are gray.
     let is_well = |headless: &mut Headless| {
         let values = covered(&render(headless, "nan"));
         values.iter().all(|[r, g, b]| r == g && g == b)
@@ -344,7 +343,7 @@ fn the_picture_is_exposed_tone_mapped_and_encoded() {
     }
 }
 
-/// Fails unless the picture's bytes are `stored` of its raw values, to one step.
+/// Fails unless each byte of the picture is `stored` of its raw value, rounded.
 fn assert_encoded(capture: &Capture, what: &str, stored: impl Fn(f64) -> f64) {
     for (raw, bytes) in capture.raw.iter().zip(capture.rgba8.chunks_exact(4)) {
         let expected_alpha = if raw[3] == 1.0 { 255 } else { 0 };
@@ -372,7 +371,7 @@ fn light_adds_up_and_materials_mix() {
                 let tolerance = 1e-4 * whole[i][c].abs() + 1e-6;
                 assert!((found - whole[i][c]).abs() < tolerance, "{what}: {found}, not {} in pixel {i}", whole[i][c]);
             };
-            // Each light comes with ambient light, which must count once.
+            // Each light's picture includes the ambient light, which must count once.
             let lit: f32 = lights.iter().map(|light| light[i][c]).sum();
             near(lit - 2.0 * ambient[i][c] + emitted[i][c], "lights");
             let m = metallic[i][c];
@@ -382,7 +381,7 @@ fn light_adds_up_and_materials_mix() {
     }
 }
 
-/// A material may read TEXCOORD_1 of a mesh that has only TEXCOORD_0.
+/// A material may read TEXCOORD_1 of a mesh that has only TEXCOORD_0, and then gets TEXCOORD_0.
 #[test]
 fn a_second_set_of_coordinates_that_is_not_there_is_the_first() {
     let mut session = Session::new(model("sphere-grid"), settings(&["environment.name=none"]));
@@ -394,7 +393,7 @@ fn a_second_set_of_coordinates_that_is_not_there_is_the_first() {
     assert!(spread > 0.5 && first.raw == second.raw, "{spread}");
 }
 
-/// Where the eye is seen from is worked out after an edit has moved the vertex.
+/// The view direction is computed from the position that an edited vertex shader has moved.
 #[test]
 fn moved_vertices_are_seen_from_where_they_are() {
     let eye = glam::Vec3::new(2.0, 2.0, 3.4);

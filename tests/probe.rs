@@ -1,4 +1,4 @@
-//! `specula probe`: the values of one pixel, as `render` has them.
+//! `specula probe` prints the same values of a pixel that `render` draws.
 
 mod support;
 
@@ -22,7 +22,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 #[test]
 fn values_are_those_of_the_raw_picture() {
     let directory = tempfile::tempdir().unwrap();
-    // Light; data; what depends on the neighbors of a pixel; a mean of frames; edges; layers.
+    // Light, data, derivatives that use neighboring pixels, a mean of frames, edges, layers.
     let modes = ["final", "position", "facet-normal", "mip-level", "d", "energy", "wireframe", "overdraw"];
     let args: Vec<&str> = modes.iter().flat_map(|mode| ["--mode", mode]).collect();
     let found = probe(directory.path(), &[&["--at", "50,30", "--json"], args.as_slice()].concat());
@@ -40,11 +40,11 @@ fn values_are_those_of_the_raw_picture() {
     }
     let absent = probe(directory.path(), &["--at", "50,30", "--json", "--mode", "clearcoat"]).expect(0, &[]).json();
     assert!(absent["modes"]["clearcoat"].is_null(), "no coat, but {absent}");
-    // The picture is lit: it is not all zero that agrees.
+    // The values are not all zero.
     assert!(numbers(&found["modes"]["final"])[0] > 0.01 && numbers(&found["modes"]["d"])[0] > 0.0, "{found}");
 }
 
-/// NaN is no number in JSON, and null says that there is no data.
+/// JSON has no NaN, and null means no data.
 #[test]
 fn nan_and_missing_data_are_told_apart() {
     let directory = tempfile::tempdir().unwrap();
@@ -61,7 +61,7 @@ fn nan_and_missing_data_are_told_apart() {
     let modes = &found["modes"];
     assert_eq!((&modes["final"], &modes["clearcoat"]), (&json!("NaN"), &Value::Null));
     let depth = numbers(&modes["depth"])[0];
-    // The table: one number for a scalar, the unit behind it.
+    // The table has one number for a scalar, followed by the unit.
     let table = probe(directory.path(), &args).expect(0, &[]).stdout.clone();
     let row = |slug: &str| {
         let row = table.lines().find(|line| line.trim_start().starts_with(&format!("{slug} ")));
@@ -96,7 +96,7 @@ fn camera_and_lights_are_told_in_world_space() {
     }
     assert!(numbers(&lights[3]["half_x"]).len() == 3 && numbers(&lights[3]["half_y"]).len() == 3);
     assert!(lights[0].get("half_x").is_none());
-    // The pixel's point lies at its depth before the camera, close to the middle of the picture.
+    // The pixel's position is at its depth in front of the camera, close to the center of the picture.
     let position = numbers(&found["modes"]["position"]);
     let depth = numbers(&found["modes"]["depth"])[0];
     let forward = [0.0, -0.5 / 16.25_f64.sqrt(), -4.0 / 16.25_f64.sqrt()];
@@ -104,7 +104,7 @@ fn camera_and_lights_are_told_in_world_space() {
     assert!((along - depth).abs() < 1e-4, "{along} {depth}");
 }
 
-/// A light at infinity has no position; a spot tells how it falls off.
+/// A directional light prints no position, and a spot light prints its falloff.
 #[test]
 fn each_kind_of_light_tells_what_it_needs() {
     let directory = tempfile::tempdir().unwrap();

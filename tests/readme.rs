@@ -1,4 +1,4 @@
-//! The README's own snippets, cut out of it and saved into a tree, do what it says.
+//! The README's snippets, saved into a tree, do what the README says.
 
 mod support;
 
@@ -6,7 +6,7 @@ use specula::scene::BUILT_IN;
 use specula::shader::{Library, Source, check};
 use support::{Session, assert_differ, assert_same, compiler, model, ready, settings};
 
-/// The indented or plain code of the first GLSL block that contains `part`.
+/// The code of the first GLSL block that contains `part`, indented or not.
 fn snippet(part: &str) -> String {
     let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
     let mut blocks = readme.split("```glsl\n").skip(1).map(|rest| rest.split("```").next().unwrap());
@@ -17,7 +17,7 @@ fn session() -> Session {
     Session::new(model(BUILT_IN[0]), settings(&["environment.name=none"]))
 }
 
-/// `specula check` would pass.
+/// Fails unless `specula check` would pass.
 fn passes_check(session: &Session) {
     let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &specula::render::stages());
     let found = check::check(&mut library);
@@ -52,7 +52,7 @@ fn the_debug_mode_of_the_readme() {
     let mut count = 0;
     for (position, height) in inside {
         let expected = (position[1] * 4.0).rem_euclid(1.0);
-        // Multisampling averages both, and a mean across the edge of a band is no band.
+        // Multisampling averages across the edges of bands, so those pixels do not match a band.
         count += usize::from((height[0] - expected).abs() < 0.02);
     }
     assert!(count > 200, "only {count} pixels show their height in bands of 25 cm");

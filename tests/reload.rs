@@ -1,4 +1,4 @@
-//! A reload is a transaction: a good edit shows, a bad one says why and changes no pixel.
+//! A reload is a transaction: a good edit changes the picture, and a bad edit reports why and changes no pixel.
 
 mod support;
 
@@ -12,14 +12,14 @@ use support::{
     stages,
 };
 
-/// A lit sphere: one kind of material, so that a reload builds one pipeline.
+/// A lit sphere with a single kind of material, so that a reload builds one pipeline.
 fn sphere() -> Session {
     Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings(&["environment.name=none"]))
 }
 
 const NDF: &str = "brdf/ndf.glsl";
 const USER: &str = "user.glsl";
-/// Stages that read the environment.
+/// Stages that sample the environment.
 const SKY: &[&str] = &["pbr.frag", "sky.frag"];
 /// Stages that round to half floats.
 const ROUNDING: &[&str] = &[
@@ -61,7 +61,7 @@ fn a_broken_edit_changes_no_pixel_and_says_where() {
     assert!(error.message.contains("alfa") && error.render().contains("^^^^"), "{}", error.render());
     assert_same(&before, &session.render(), "after a broken edit");
 
-    // Taken back, the text is the one on screen: nothing is compiled, and the message is void.
+    // Undoing the edit restores the text on screen, so nothing is compiled and the message goes.
     let reload = session.edit(NDF, "alpha * alfa", "alpha * alpha");
     assert!(matches!(reload.outcome, Outcome::Unchanged { cleared: true }), "{:?}", stages(&reload));
     assert!(stages(&reload).is_empty(), "{:?}", stages(&reload));
@@ -113,7 +113,7 @@ fn includes_may_come_late_move_and_go() {
         text.replace("    return radiance;", "    return radiance * mine();")
     };
 
-    // Included before it exists: both places that were looked at are named.
+    // An include of a missing file: the message names both paths that were searched.
     let reload = session.save(USER, &with_include("lib/mine.glsl"));
     let found = lines(failed(&reload));
     let line = line_of(&session.tree.read(USER), "lib/mine.glsl");
@@ -121,13 +121,13 @@ fn includes_may_come_late_move_and_go() {
     assert!(found[0].starts_with(&place) && found[0].contains("lib/mine.glsl"), "{found:#?}");
     assert_same(&before, &session.render(), "with an include missing");
 
-    // Created later, in a folder that is new as well.
+    // The file is created later, in a new folder.
     fs::create_dir(session.tree.path("lib")).unwrap();
     ready(&session.save("lib/mine.glsl", "vec3 mine() { return vec3(0.2, 1.0, 0.2); }\n"));
     let green = session.render();
     assert_differ(&before, &green, "the include is there");
 
-    // Renamed, and the include with it.
+    // The file and its include are renamed.
     fs::rename(session.tree.path("lib/mine.glsl"), session.tree.path("lib/yours.glsl")).unwrap();
     let reload = session.changed(&["lib/mine.glsl", "lib/yours.glsl"]);
     assert!(lines(failed(&reload))[0].contains("lib/mine.glsl"), "{:#?}", lines(failed(&reload)));
@@ -136,7 +136,7 @@ fn includes_may_come_late_move_and_go() {
     assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(&reload)));
     assert_same(&green, &session.render(), "under its new name");
 
-    // Deleted, then no longer included.
+    // The file is deleted, and then its include.
     fs::remove_file(session.tree.path("lib/yours.glsl")).unwrap();
     assert!(lines(failed(&session.changed(&["lib/yours.glsl"])))[0].contains("lib/yours.glsl"));
     assert_same(&green, &session.render(), "after the include was deleted");
@@ -144,7 +144,7 @@ fn includes_may_come_late_move_and_go() {
     assert_same(&before, &session.render(), "without the include");
 }
 
-/// What a driver was seen to fail at: the module that reaches it must be sound.
+/// Drivers have failed at such code, so the specialized module must be valid.
 #[test]
 fn loops_and_choices_of_any_kind_draw() {
     let mut session = Session::new(model("shader-ball"), settings(&["view.msaa=1", "FRESNEL_DIELECTRIC=Exact"]));
@@ -214,14 +214,14 @@ fn interface_glsl_is_held_against_this_program() {
     let original = session.tree.read("interface.glsl");
     let file = session.tree.path("interface.glsl").display().to_string();
 
-    // Written by another version: named, with what to do.
+    // A tree of another version: the message names the version and says what to do.
     let version = format!("INTERFACE_VERSION = {}u", specula::interface::VERSION);
     let reload = session.edit("interface.glsl", &version, "INTERFACE_VERSION = 77u");
     let error = failed(&reload).iter().find(|d| d.file == file && d.message.contains("77")).expect("a diagnostic");
     assert_eq!(error.line, Some(line_of(&original, "INTERFACE_VERSION")), "{error}");
     assert!(error.help.as_ref().is_some_and(|help| help.contains("specula new")), "{error:?}");
 
-    // A member moved, and push constants that do not fit.
+    // A moved member, and push constants that do not fit.
     for (from, to, parts) in [
         ("    vec3 eye_ws;", "    float nearer; vec3 eye_ws;", ["Frame.nearer", "Specula has `eye_ws`"]),
         ("    uint node_id;", "    uint node_id; mat4 more[2];", ["push constants `Draw`", "at most 128"]),
@@ -233,7 +233,7 @@ fn interface_glsl_is_held_against_this_program() {
         assert_same(&before, &session.render(), "refused");
     }
 
-    // Another text of the same version is used, with a warning.
+    // A changed file of the same version is used, with a warning.
     session.tree.write("interface.glsl", &original);
     let reload = session.edit("interface.glsl", "// Printed by", "// Once printed by");
     assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(&reload)));
@@ -241,7 +241,7 @@ fn interface_glsl_is_held_against_this_program() {
     assert!(warnings.iter().any(|line| line.starts_with(&file) && line.contains("differs")), "{warnings:#?}");
 }
 
-/// glslang skips the files after an open conditional and reports errors in these; the user gets the cause alone.
+/// After an open conditional, glslang skips files and reports errors in them. The user sees only the cause.
 #[test]
 fn an_unbalanced_conditional_is_one_error_at_its_line() {
     let mut session = sphere();
@@ -254,7 +254,7 @@ fn an_unbalanced_conditional_is_one_error_at_its_line() {
         (inside("#ifdef NEVER"), "#ifdef NEVER", "has no `#endif`"),
         (inside("#if 1 == 2"), "#if 1 == 2", "has no `#endif`"),
         (inside("#endif // extra"), "#endif // extra", "has no `#if`"),
-        (inside("#else // extra"), "#else // extra", "has no `#if`"),
+        (format!("{original}#else // extra\n"), "#else // extra", "has no `#if`"),
     ];
     for (text, at, message) in cases {
         assert_ne!(text, original, "{at}");
@@ -266,11 +266,8 @@ fn an_unbalanced_conditional_is_one_error_at_its_line() {
         assert!(errors[0].message.contains(message) && errors[0].help.is_some(), "{:?}", errors[0]);
         assert_same(&before, &session.render(), "refused");
     }
-    ready_or_unchanged(&session.save(NDF, &original));
-}
-
-fn ready_or_unchanged(reload: &specula::render::Reload) {
-    assert!(!matches!(reload.outcome, Outcome::Failed(_)), "{:#?}", lines(failed(reload)));
+    let reload = session.save(NDF, &original);
+    assert!(matches!(reload.outcome, Outcome::Unchanged { cleared: true }), "{:?}", stages(&reload));
 }
 
 #[test]
@@ -293,7 +290,7 @@ fn an_annotation_that_does_not_parse_is_a_diagnostic_with_its_line() {
         let error = &failed(&reload)[0];
         assert_eq!(error.file, session.tree.path(file).display().to_string(), "{error}");
         let text = session.tree.read(file);
-        // Of two modes of one name the second is at fault.
+        // Of two modes with the same name, the error is at the second.
         let (at, _) = text.lines().enumerate().filter(|(_, line)| line.contains(to)).last().unwrap();
         assert_eq!(error.line, Some(at as u32 + 1), "{error}");
         assert!(error.full().contains(part), "{}", error.full());
@@ -335,7 +332,7 @@ fn a_parameter_added_appears_and_values_survive_by_name() {
     let rim = session.render();
     assert_differ(&plain, &rim, "a rim");
 
-    // In front of the others: every offset moves, and no value with it.
+    // A new first member moves every offset, but values keep their names.
     let first = "    float roughness_scale;";
     ready(&session.edit(USER, first, &format!("    float glow;                //@ui \"Glow\" 0..1 = 0.0\n{first}")));
     let names: Vec<String> =

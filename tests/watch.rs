@@ -1,4 +1,4 @@
-//! `render --watch` as a child process: every way of saving shows, nothing costs the picture.
+//! `render --watch` as a child process: every way of saving updates the picture, and no error loses it.
 
 mod support;
 
@@ -17,7 +17,7 @@ use support::{Tree, glb, hdr, line_of, srgb};
 const USER: &str = "user.glsl";
 const MODEL: &str = "model/quad.glb";
 
-/// `specula render --watch` on a tree of its own, with a square that fills the picture.
+/// `specula render --watch` on its own tree, with a square that fills the picture.
 struct Watched {
     tree: Tree,
     running: Running,
@@ -33,7 +33,7 @@ impl Watched {
         })
     }
 
-    /// `prepare` adds files beside the tree and options of its own.
+    /// `prepare` may add files beside the tree, and options.
     fn with(prepare: impl FnOnce(&Tree, &mut Command)) -> Self {
         let tree = Tree::new();
         let original = tree.read(USER);
@@ -42,7 +42,7 @@ impl Watched {
         fs::create_dir(tree.beside("out")).unwrap();
         let (sender, pictures) = channel();
         let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
-            // Reading the picture is an event too.
+            // Ignore the events of reading the picture.
             if event.is_ok_and(|event| !event.kind.is_access()) {
                 let _ = sender.send(());
             }
@@ -59,7 +59,7 @@ impl Watched {
         Self { tree, running, original, pictures, _watcher: watcher }
     }
 
-    /// user.glsl such that the whole picture has this encoded gray.
+    /// A `user.glsl` that fills the picture with this encoded gray.
     fn text(&self, gray: u8) -> String {
         let value = format!("    return vec3({:?} / 255.0) / frame.exposure;", f32::from(gray));
         self.original.replace("    return radiance;", &value)
@@ -78,7 +78,7 @@ impl Watched {
         });
     }
 
-    /// Waits until the pixel in the middle is as it should be; looks again whenever the file changes.
+    /// Waits until `is` accepts the center pixel. Checks again whenever the file changes.
     #[track_caller]
     fn until(&self, what: &str, is: impl Fn([u8; 3]) -> bool) {
         let deadline = Instant::now() + PATIENCE;
@@ -95,7 +95,7 @@ impl Watched {
     }
 }
 
-/// The middle pixel. The file must always be there and whole.
+/// The center pixel. The file must always exist and be complete.
 #[track_caller]
 fn center(path: &Path) -> [u8; 3] {
     let png = support::open_image(path).into_rgb8();
@@ -166,7 +166,7 @@ fn a_broken_edit_keeps_the_picture_and_says_why() {
     assert!(good["generation"].as_u64() > failed["generation"].as_u64(), "{failed} {good}");
     watched.shows(70, "the fix");
 
-    // Broken, then taken back: nothing to draw, and yet the program says that all is well.
+    // A broken edit is undone: nothing is drawn, but the program reports that the shaders are good again.
     watched.tree.write(USER, &broken);
     watched.running.reload(false);
     watched.tree.write(USER, &watched.text(70));
@@ -177,13 +177,13 @@ fn a_broken_edit_keeps_the_picture_and_says_why() {
 fn the_picture_is_never_half_written_and_a_storm_of_saves_ends_with_the_last() {
     let watched = Watched::new();
     let (reader, stop) = read_all_the_time(watched.picture());
-    // An editor that saves at every key, some saves half way through a word.
+    // An editor that saves at every key, sometimes in the middle of a word.
     for save in 0..50_u8 {
         let text = watched.text(100 + save);
         let text = if save % 3 == 1 { text.replace("exposure;", "expo") } else { text };
         watched.tree.write(USER, &text);
     }
-    // Each of these is written, so the reader meets the writer.
+    // The program writes a picture for each of these while the reader reads.
     for gray in [200, 210, 220] {
         rename_over(&watched.tree.path(USER), &watched.text(gray));
         watched.shows(gray, "a storm of saves");
@@ -193,7 +193,7 @@ fn the_picture_is_never_half_written_and_a_storm_of_saves_ends_with_the_last() {
     assert!(reads > 10, "only {reads} reads");
 }
 
-/// Decodes a picture again and again until the sender is dropped; the thread counts, and panics at half a picture.
+/// Decodes a picture repeatedly until the sender is dropped. The thread counts the reads, and panics at an incomplete picture.
 fn read_all_the_time(path: PathBuf) -> (JoinHandle<usize>, Sender<()>) {
     let (stop, stopped) = channel();
     let reader = std::thread::spawn(move || {
@@ -216,7 +216,7 @@ fn two_hundred_files_at_once() {
     let value = format!("    return vec3((0.0 {sum}) / 255.0) / frame.exposure;");
     let text = watched.original.replace("    return radiance;", &value);
     let text = text.replace("#include \"common/color.glsl\"\n", &format!("#include \"common/color.glsl\"\n{includes}"));
-    // As git checkout does: in some order, each file as fast as the disk takes it.
+    // As in a git checkout: in any order, each file as fast as the disk allows.
     watched.tree.write(USER, &text);
     fs::create_dir(watched.tree.path("many")).unwrap();
     for i in 0..count {
@@ -246,7 +246,7 @@ fn the_tree_may_go_away_and_come_back() {
 
     watched.tree.write(USER, &watched.text(90));
     watched.shows(90, "an edit after the tree came back");
-    // A branch switch by whole folders: another tree takes the place at once.
+    // A branch switch that replaces the whole folder.
     let other = watched.tree.beside("other");
     specula::shader::source::embedded::write_to(&other).unwrap();
     fs::write(other.join(USER), watched.text(120)).unwrap();
@@ -266,7 +266,7 @@ fn the_model_is_watched_too() {
     };
     replace(&colored([1.0, 0.0, 0.0]));
     watched.until("red after the model was replaced", |[r, g, _]| r > 60 && g < r / 2);
-    // A model that is wrong keeps the last good one, and is read again when it is whole.
+    // A damaged model keeps the last good model on screen, and is read again once it is repaired.
     replace(b"glTF");
     replace(&colored([0.0, 1.0, 0.0]));
     watched.until("green after a damaged file", |[r, g, _]| g > 60 && r < g / 2);
@@ -343,7 +343,8 @@ fn without_notifications_changes_are_found_by_looking() {
     let mut watched = Watched::with(|_, command| {
         command.args(["--env", "none"]).env("SPECULA_POLL", "1");
     });
-    let told = "specula: no change notifications for shaders (SPECULA_POLL is set); looking every 500 ms instead";
+    let root = watched.tree.root();
+    let told = format!("for {} (SPECULA_POLL is set); looking every 500 ms instead\n", root.display());
     for gray in [150, 160] {
         watched.tree.write(USER, &watched.text(gray));
         watched.running.reload(true);
@@ -353,6 +354,6 @@ fn without_notifications_changes_are_found_by_looking() {
     watched.tree.write(USER, &watched.original);
     watched.until("red after the model was saved", |[r, g, _]| r > 60 && g < r / 2);
     let stderr = watched.running.stderr();
-    assert_eq!(stderr.matches(told).count(), 1, "{stderr}");
-    assert_eq!(stderr.matches("no change notifications").count(), 1, "{stderr}");
+    assert_eq!(stderr.matches(&told).count(), 1, "{stderr}");
+    assert_eq!(stderr.matches("specula: no change notifications").count(), 1, "{stderr}");
 }

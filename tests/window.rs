@@ -1,5 +1,5 @@
-//! The window, on a display of its own (Xvfb): open, resize, edit, break, screenshot, close. Keys and sizes come from
-//! xdotool, through the X server, as a person's do.
+//! The window on its own display (Xvfb): open, resize, edit, break, screenshot, close. xdotool sends keys and sizes through
+//! the X server, as a user would.
 
 mod support;
 mod window {
@@ -27,7 +27,7 @@ fn open_resize_edit_break_screenshot_close() {
     let first = viewer.screenshot();
     assert!(first.pixels().any(|pixel| pixel != first.get_pixel(0, 0)), "an empty picture");
 
-    // Without its panels the picture is the window.
+    // Without panels, the picture fills the window.
     viewer.key("h");
     assert_eq!(viewer.screenshot().dimensions(), (640, 480));
     viewer.resize(700, 500);
@@ -67,7 +67,7 @@ fn any_size_and_any_number_of_sizes() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let first = viewer.screenshot();
-    // Smaller than the panels, a single pixel, and a drag at a window's corner.
+    // Smaller than the panels, a single pixel, and extreme shapes.
     for (width, height) in [(90, 60), (1, 1), (1, 400), (400, 1)] {
         viewer.resize(width, height);
         let picture = viewer.screenshot();
@@ -81,13 +81,13 @@ fn any_size_and_any_number_of_sizes() {
     viewer.quit();
 }
 
-/// Nothing moves, nothing is drawn: the processor is the next save's.
+/// While nothing changes, the window draws nothing.
 #[test]
 fn a_window_in_which_nothing_happens_rests() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
     viewer.running.event("ready");
     let deadline = Instant::now() + PATIENCE;
-    // Shaders may still warm up. One second of rest is enough; a window that draws on and on has none.
+    // Pipelines may still be built. One idle second is enough: a window that draws continuously has none.
     loop {
         let before = viewer.running.ticks();
         std::thread::sleep(Duration::from_secs(1));
@@ -96,7 +96,7 @@ fn a_window_in_which_nothing_happens_rests() {
         }
         assert!(Instant::now() < deadline, "it never rests. {}", viewer.running.story());
     }
-    // It wakes again.
+    // Input wakes the window.
     let picture = viewer.screenshot();
     viewer.key("n");
     viewer.until("shading normals", |shot| *shot != picture);
@@ -127,7 +127,7 @@ fn shaders_that_are_broken_from_the_start_are_waited_for() {
     let original = tree.read(NDF);
     tree.write(NDF, &original.replace("alpha * alpha;", "alpha * alfa;"));
     let mut viewer = Viewer::open(tree, &["sphere-grid"]);
-    // The first compile may have failed before or after the window was found.
+    // The first compilation may have failed before or after the window was found.
     viewer.key("F5");
     viewer.running.reload(false);
     viewer.tree.write(NDF, &original);
@@ -181,7 +181,7 @@ fn the_environment_is_baked_and_a_damaged_one_costs_nothing() {
     viewer.until("a red model", |shot| brightest(shot).is_some_and(|[r, g, _]| r > 60 && g < r / 2));
     let red = viewer.screenshot();
     std::fs::write(&path, b"#?RADIANCE\n").unwrap();
-    // An edit after it that changes no pixel: by then the bad file was looked at.
+    // A later edit that changes no pixel. Once it is reported, the bad file has been handled.
     let user = viewer.tree.edited("user.glsl", "    return radiance;", "    return radiance * 1.0;");
     viewer.tree.write("user.glsl", &user);
     viewer.running.reload(true);
@@ -206,7 +206,7 @@ fn an_environment_in_a_linked_folder_is_baked_again() {
     viewer.quit();
 }
 
-/// The brightest pixel of the model: the background is darker.
+/// The brightest pixel of the model. The background is darker.
 fn brightest(shot: &RgbaImage) -> Option<[u8; 3]> {
     shot.pixels().map(|pixel| [pixel[0], pixel[1], pixel[2]]).max_by_key(|rgb| rgb.iter().max().copied())
 }

@@ -1,17 +1,17 @@
-//! What keys, panels and dropped files ask the viewer to do beyond changing a setting.
+//! Commands of keys, panels and dropped files to the viewer: everything that is not a setting.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::shader::is_specula_tree;
+use crate::file_kind::FileKind;
 
-/// A request to the viewer.
+/// A command to the viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
     /// Compile everything again.
     Reload,
-    /// Look at the whole model again.
+    /// Move the camera so that it sees the whole model.
     FrameModel,
-    /// Write the picture to a file.
+    /// Write the picture to `specula-N.png`.
     Screenshot,
     /// Close the window.
     Quit,
@@ -27,23 +27,21 @@ pub(super) enum Command {
     OpenMeasured(PathBuf),
 }
 
-/// The command that opens a file or folder, by its ending and content.
+/// The command that opens a dropped file or folder.
 ///
 /// # Errors
-/// Nothing that Specula opens, in words.
-pub(super) fn open_as(path: &Path) -> Result<Command, String> {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let path = path.to_owned();
-    match ending.as_str() {
-        _ if path.is_dir() && is_specula_tree(&path) => Ok(Command::OpenTree(path)),
-        _ if path.is_dir() => Err(format!(
+/// A message, if the window cannot open this kind of file.
+pub(super) fn open_as(path: PathBuf) -> Result<Command, String> {
+    match FileKind::of(&path) {
+        FileKind::ShaderTree => Ok(Command::OpenTree(path)),
+        FileKind::Model => Ok(Command::OpenModel(path)),
+        FileKind::Environment => Ok(Command::OpenEnvironment(path)),
+        FileKind::Measured => Ok(Command::OpenMeasured(path)),
+        FileKind::Folder => Err(format!(
             "{} is no Specula shader tree: it has no interface.glsl. `specula new DIR` writes one",
             path.display()
         )),
-        "gltf" | "glb" => Ok(Command::OpenModel(path)),
-        "hdr" | "exr" => Ok(Command::OpenEnvironment(path)),
-        "binary" | "bin" => Ok(Command::OpenMeasured(path)),
-        _ => Err(format!(
+        FileKind::Look | FileKind::Shader | FileKind::Other => Err(format!(
             "{}: expected a .gltf or .glb model, an .hdr or .exr environment, a measured .binary or .bin, or a folder with a \
              shader tree",
             path.display()

@@ -1,22 +1,22 @@
-//! Keys and mouse. What egui does not want is the picture's.
+//! Keys and mouse. Events that egui does not consume control the camera, the modes and the viewer.
 
 use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::camera::CameraController;
 use super::command::Command;
 use super::screen::Screen;
 use super::viewer::Viewer;
+use crate::scene::CameraController;
 use crate::session::Session;
 use crate::settings::LightSettings;
 
-/// The mouse over the picture.
+/// State of the mouse.
 #[derive(Default)]
 pub(super) struct Mouse {
-    /// Pixels of the window.
+    /// Position in pixels of the window.
     pub(super) at: Vec2,
-    /// Whether it is over the picture, and not over a panel.
+    /// Whether the mouse is over the picture, not over a panel.
     pub(super) over: bool,
     left: bool,
     middle: bool,
@@ -24,7 +24,7 @@ pub(super) struct Mouse {
     modifiers: ModifiersState,
 }
 
-/// Takes an event, unless egui has `taken` it; returns whether the picture changes.
+/// Handles an event, unless egui has consumed it (`taken`). Returns whether to redraw.
 pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: &mut Screen, taken: bool) -> bool {
     match event {
         WindowEvent::ModifiersChanged(modifiers) => {
@@ -94,7 +94,7 @@ fn drag(viewer: &mut Viewer, screen: &Screen, delta: Vec2) -> bool {
     true
 }
 
-/// W A S D E Q while the right button is held. A release always counts, so that no key sticks.
+/// Flies with W A S D E Q while the right button is held. A key's release always counts, so that no key gets stuck.
 fn fly_key(camera: &mut CameraController, code: KeyCode, pressed: bool) -> bool {
     let (axis, sign) = match code {
         KeyCode::KeyD => (0, 1.0),
@@ -149,7 +149,7 @@ fn on_character(viewer: &mut Viewer, key: char, control: bool) -> bool {
             else {
                 return false;
             };
-            // The same key again goes back to the picture.
+            // The key of the current mode returns to the final picture.
             let again = slug == session.settings.mode;
             session.settings.mode = if again { "final".into() } else { slug };
         }

@@ -1,9 +1,8 @@
-//! The window: an editor on one half of the screen, this on the other.
+//! The window, which runs beside an editor.
 //!
-//! [`viewer`] holds the session and the last complete picture, [`screen`] draws it, [`threads`] make what is missing. Panels, keys
-//! and dropped files change settings or send a [`command`].
+//! [`viewer`] holds the session and the last complete picture, [`screen`] draws frames, and [`threads`] create what is missing.
+//! Panels, keys and dropped files change settings or send a [`command`].
 
-mod camera;
 mod command;
 mod input;
 mod panels;
@@ -45,13 +44,13 @@ pub struct AppOptions {
     pub settings: Settings,
     /// Size of the window in pixels.
     pub size: (u32, u32),
-    /// Part of the device's name.
+    /// Part of the name of the device to use.
     pub device: Option<String>,
-    /// Validation layers.
+    /// Whether to enable the validation layers.
     pub validation: bool,
-    /// Models may read outside their folder.
+    /// Whether models may read files outside their folder.
     pub allow_outside: bool,
-    /// Print events.
+    /// Whether to print events.
     pub events: bool,
     /// Start of the program, for the events' times.
     pub start: Instant,
@@ -65,10 +64,10 @@ pub enum AppError {
         "no display to open a window on: {0}. Without one, `specula render --watch` writes a PNG again at every save"
     )]
     NoDisplay(String),
-    /// The device.
+    /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// The validation layers said something.
+    /// The validation layers reported messages.
     #[error("the validation layers reported {0} messages (above)")]
     Validation(usize),
 }
@@ -76,7 +75,7 @@ pub enum AppError {
 /// Opens the window and runs until it is closed.
 ///
 /// # Errors
-/// No display, no device, or a device that fails.
+/// No display, no device, or a device error.
 pub fn run(options: AppOptions) -> Result<(), AppError> {
     let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
     let outbox = Outbox::new(event_loop.create_proxy());
@@ -86,7 +85,7 @@ pub fn run(options: AppOptions) -> Result<(), AppError> {
     app.result
 }
 
-/// winit's reason without the place in its source that it puts in front.
+/// winit's reason, without the position in its source code that winit puts before it.
 fn no_display(error: winit::error::EventLoopError) -> AppError {
     let text = error.to_string();
     let reason =
@@ -94,7 +93,7 @@ fn no_display(error: winit::error::EventLoopError) -> AppError {
     AppError::NoDisplay(reason.trim_end_matches([')', '.']).to_owned())
 }
 
-/// What needs neither window nor device, and so is under way while those are made.
+/// Work that needs neither window nor device, and so starts before them.
 struct Early {
     watcher: Option<Watcher>,
     reading: Reading,
@@ -102,7 +101,7 @@ struct Early {
 
 impl Early {
     fn begin(options: &AppOptions, outbox: &Outbox) -> Self {
-        // Watched before it is read, so that no save falls between.
+        // Watch the file before reading it, so that no save is missed in between.
         let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
         let watcher = watch_files(&files, outbox).unwrap_or_else(|message| {
             crate::message::tell(message);
@@ -122,7 +121,7 @@ struct App {
     result: Result<(), AppError>,
 }
 
-/// Everything behind an open window. The screen goes before the device, the window last.
+/// The parts of an open window. The screen must be dropped before the device and before the window.
 struct Open {
     viewer: Viewer,
     screen: Screen,
@@ -152,7 +151,7 @@ impl App {
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
         if let Some(open) = self.open.take() {
             if let Err(AppError::Gpu(GpuError::DeviceLost(_))) = &result {
-                // A lost device may never again be idle: taking it down would wait for that forever.
+                // Destroying a lost device could wait forever for it to become idle.
                 std::mem::forget(open);
                 self.result = result;
                 return event_loop.exit();
@@ -200,7 +199,7 @@ impl ApplicationHandler<Message> for App {
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
         let response = open.screen.on_window_event(&open.window, &event);
-        // egui answers a redraw with the wish for another: the window would never rest.
+        // egui requests a repaint in response to every redraw, so the window would never be idle.
         if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {
             open.window.request_redraw();
         }
@@ -210,7 +209,7 @@ impl ApplicationHandler<Message> for App {
                 open.screen.resized();
                 open.window.request_redraw();
             }
-            WindowEvent::DroppedFile(path) => open.viewer.open_path(&path),
+            WindowEvent::DroppedFile(path) => open.viewer.open_path(path),
             WindowEvent::RedrawRequested => {
                 let drawn = open.screen.draw(&open.window, &mut open.viewer);
                 match drawn {

@@ -1,4 +1,4 @@
-//! The window's surface: swapchain, egui and the view. One call of [`Screen::draw`] is one frame on the screen.
+//! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,7 +8,6 @@ use winit::event::WindowEvent;
 use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
-use super::camera::CameraController;
 use super::input::Mouse;
 use super::panels::{self, Readings};
 use super::viewer::Viewer;
@@ -18,23 +17,21 @@ use crate::gpu::{
 };
 use crate::picture;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
-use crate::scene::CameraView;
+use crate::scene::{CameraController, CameraView};
 
-/// While the device draws one frame, the CPU prepares the next.
+/// The CPU prepares a frame while the device draws the one before.
 const FRAMES_IN_FLIGHT: usize = 2;
-/// Frames that an accumulating mode adds up: more change nothing that can be seen.
-const MOST_ACCUMULATED: u32 = 4096;
-/// A repaint that egui asks for later than this is none.
+/// A repaint delay of egui from which on no repaint is scheduled.
 const NEVER: Duration = Duration::from_secs(3600);
 
-/// The part of the window that shows the picture, pixels.
+/// The part of the window that shows the picture, in pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PictureRect {
     pub(super) at: (u32, u32),
     pub(super) size: (u32, u32),
 }
 
-/// The screen. Fields drop in order: what draws, then what it draws to.
+/// The screen. Fields drop in order, so renderers go before the swapchain and the surface.
 pub(super) struct Screen {
     ui: UiRenderer,
     view: View,
@@ -48,7 +45,7 @@ pub(super) struct Screen {
     /// Whether the swapchain no longer fits the window.
     stale: bool,
     first: bool,
-    /// The last frame whose images could be made: it is drawn on while there is no memory for another.
+    /// The last frame for which targets could be allocated. It is drawn again while memory is short.
     last: Option<BoundFrame>,
     /// The newest value under the mouse.
     pixel: Option<PixelAt>,
@@ -112,20 +109,20 @@ impl Screen {
         self.last.as_ref().map(|frame| frame.state.camera)
     }
 
-    /// Draws a frame; returns when the next one is due: `None` is not before something happens.
+    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event.
     ///
     /// # Errors
-    /// A device that is lost. Without memory the picture before stays, and the user is told.
+    /// A device error. If memory runs out, the last picture stays and the window says so.
     pub(super) fn draw(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         if !self.resize(window, viewer)? {
             return Ok(None);
         }
 
-        // The user interface, which also tells where the picture goes.
+        // The user interface, which determines the rectangle of the picture.
         let begin = Instant::now();
         let (primitives, pixels_per_point, delay) = self.run_ui(window, viewer)?;
 
-        // The picture that goes there.
+        // The picture.
         let moving = self.advance(viewer);
         viewer.watch_files();
         let frame = self.next_frame(viewer)?;
@@ -136,7 +133,7 @@ impl Screen {
             self.screenshot(viewer, frame)?;
         }
 
-        // Both, to an image of the window. The first wait is for a frame slot.
+        // Record both to a swapchain image. `begin` waits for a frame slot.
         let mut encoder = self.frames.begin()?;
         let slot = self.frames.current();
         let acquired = match &mut self.swapchain {
@@ -161,12 +158,12 @@ impl Screen {
         }
 
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let gets_better = viewer.accumulates() && self.view.accumulated() < MOST_ACCUMULATED;
+        let gets_better = viewer.accumulates() && self.view.accumulated() < View::MOST_ACCUMULATED;
         let again = self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better;
         Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
     }
 
-    /// Makes the swapchain anew if it does not fit the window; returns whether there is one.
+    /// Recreates the swapchain if it does not fit the window. Returns whether there is a swapchain.
     fn resize(&mut self, window: &Window, viewer: &mut Viewer) -> Result<bool, GpuError> {
         if self.stale || self.swapchain.is_none() {
             let size = window.inner_size();
@@ -183,7 +180,7 @@ impl Screen {
         Ok(self.swapchain.is_some())
     }
 
-    /// Runs the panels; returns what they draw, and when they want to be drawn again.
+    /// Runs the panels. Returns their primitives, the pixels per point, and the delay until egui wants a repaint.
     fn run_ui(
         &mut self,
         window: &Window,
@@ -228,17 +225,17 @@ impl Screen {
         Ok(())
     }
 
-    /// Moves a flying camera and orbiting lights on; returns whether the camera moved.
+    /// Moves a flying camera and orbiting lights. Returns whether the camera moved.
     fn advance(&mut self, viewer: &mut Viewer) -> bool {
         let seconds = self.last_frame.elapsed().as_secs_f32();
         self.last_frame = Instant::now();
-        // A pause is no movement: the first frame after one continues where the last one was.
+        // Limit the step, so that lights do not jump after a pause.
         viewer.turn_lights(seconds.min(0.5));
         let Some((view, model)) = self.camera_view().zip(viewer.session.model().cloned()) else { return false };
         self.camera.step(&mut viewer.session.settings.camera, &view, &model.bounds, seconds)
     }
 
-    /// The frame to draw, with images to draw it to. Without memory for these it is the frame before.
+    /// The frame to draw, with its targets allocated. If memory runs out, it is the last frame.
     fn next_frame(&mut self, viewer: &mut Viewer) -> Result<Option<BoundFrame>, GpuError> {
         let prepared = viewer.next_frame(self.rect.size).and_then(|frame| {
             frame.iter().try_for_each(|frame| self.view.prepare(frame))?;
@@ -246,7 +243,7 @@ impl Screen {
         });
         match prepared {
             Ok(frame) => self.last = frame,
-            Err(error @ GpuError::OutOfMemory(_)) => viewer.notices.keep(format!("{error}. The picture before stays.")),
+            Err(error @ GpuError::OutOfMemory(_)) => viewer.keep_saying(format!("{error}. The last picture stays.")),
             Err(error) => return Err(error),
         }
         Ok(self.last.clone())
@@ -255,10 +252,11 @@ impl Screen {
     /// The pixel of the picture under the mouse.
     fn mouse_pixel(&self) -> Option<(u32, u32)> {
         let (x, y) = (self.mouse.at.x - self.rect.at.0 as f32, self.mouse.at.y - self.rect.at.1 as f32);
-        (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32))
+        let (width, height) = self.last.as_ref()?.state.size;
+        (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32)).filter(|(x, y)| *x < width && *y < height)
     }
 
-    /// Takes the newest pixel that a finished frame has copied.
+    /// Reads the probed pixel of the newest finished frame.
     fn read_pixel(&mut self) {
         let newest_first =
             (0..FRAMES_IN_FLIGHT).map(|age| (self.frames.current() + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT);
@@ -268,29 +266,30 @@ impl Screen {
         }
     }
 
-    /// Whether the value under the mouse on screen is not that of the picture on screen.
+    /// Whether the value under the mouse does not belong to the current picture yet.
     fn awaits_pixel(&self) -> bool {
-        self.view.probe.is_some() && (self.view.redrawn() || self.pixel.map(|pixel| pixel.at) != self.view.probe)
+        let current = self.view.probe.map(|at| (at, self.view.picture()));
+        current.is_some() && self.pixel.map(|pixel| (pixel.at, pixel.picture)) != current
     }
 
-    /// Measures and reports the first frames; returns whether there was something to report, which the panels show.
+    /// Measures and reports the first frame of the window, of a reload and of the model. Returns whether panels must be redrawn.
     fn finished(&mut self, viewer: &mut Viewer, frame: Option<&BoundFrame>, begin: Instant) -> Result<bool, GpuError> {
         if std::mem::take(&mut self.first) {
-            // SYNC: once, so that the time is that of a finished frame.
+            // SYNC: once, so that the time includes the device's work.
             self.frames.wait_all()?;
             emit(viewer.events, &Event::Window { ms: viewer.start.elapsed().as_secs_f64() * 1e3 });
         }
         if !viewer.times_next_frame() {
             return Ok(false);
         }
-        // SYNC: once for each reload, so that the time is that of a finished frame.
+        // SYNC: once per reload, so that the time includes the device's work.
         self.frames.wait_all()?;
         viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3);
         Ok(!viewer.times_next_frame())
     }
 
-    /// Hands egui's textures to the device. SYNC: they change only with a new glyph or image, so waiting for the frames in flight
-    /// does not show.
+    /// Uploads egui's textures. SYNC: waits for the frames in flight; this is rare, because textures change only with a new glyph
+    /// or image.
     fn take_textures(&mut self, mut delta: egui::TexturesDelta) -> Result<(), GpuError> {
         if !delta.is_empty() || !self.textures_to_free.is_empty() {
             self.frames.wait_all()?;
@@ -312,7 +311,7 @@ impl Screen {
         self.view.draw(&mut encoder, self.frames.current(), frame, &output, Redraw::Always)?;
         let readback = self.view.read_back(&mut encoder, &image)?;
         self.frames.submit(encoder, Default::default())?;
-        // SYNC: the picture is read.
+        // SYNC: the CPU reads the picture.
         self.frames.wait()?;
         let Some(capture) = readback.map(|readback| readback.finish()) else { return Ok(()) };
         let free = (1..).map(|n| PathBuf::from(format!("specula-{n}.png"))).find(|path| !path.exists());
@@ -334,7 +333,7 @@ impl Drop for Screen {
     }
 }
 
-/// A rectangle of egui's points as whole pixels inside the window, at least one pixel large.
+/// Converts a rectangle from egui's points to pixels inside the window, with at least one pixel a side.
 fn pixels(rect: egui::Rect, pixels_per_point: f32, (width, height): (u32, u32)) -> PictureRect {
     let pixel = |points: f32, most: u32| ((points * pixels_per_point).round().max(0.0) as u32).min(most);
     let (x, y) = (pixel(rect.min.x, width - 1), pixel(rect.min.y, height - 1));

@@ -1,17 +1,17 @@
-//! What the panels show and nobody sets.
+//! State that the panels show but do not change.
 
 use std::time::{Duration, Instant};
 
 use crate::events::ReloadEvent;
 use crate::shader::Mode;
 
-/// How long a message is shown.
+/// Duration of a passing message.
 const NOTICE: Duration = Duration::from_secs(6);
 
 /// The state of the shader tree.
 #[derive(Default)]
 pub(super) struct ShaderStatus {
-    /// Folder, or the built-in tree.
+    /// Name of the tree: its folder, or that of the built-in tree.
     pub(super) tree: String,
     /// Whether a compile is under way.
     pub(super) compiling: bool,
@@ -22,7 +22,7 @@ pub(super) struct ShaderStatus {
 /// Messages over the picture.
 #[derive(Default)]
 pub(super) struct Notices {
-    /// Shown for a few seconds, with its time.
+    /// The passing message and the time it appeared.
     passing: Option<(String, Instant)>,
     /// Shown until it is dismissed.
     kept: Vec<String>,
@@ -34,33 +34,36 @@ impl Notices {
         self.passing = Some((text, Instant::now()));
     }
 
-    /// Shows a message until it is dismissed.
-    pub(super) fn keep(&mut self, text: String) {
-        if !self.kept.contains(&text) {
+    /// Shows a message until the user dismisses it.
+    /// Returns whether the message is new.
+    pub(super) fn keep(&mut self, text: String) -> bool {
+        let is_new = !self.kept.contains(&text);
+        if is_new {
             self.kept.push(text);
         }
+        is_new
     }
 
-    /// The last message, and how long it is still shown; without end if it `stays`.
+    /// The passing message and the time that it has left, which is endless if `stays`.
     pub(super) fn passing(&self, stays: bool) -> Option<(&str, Duration)> {
         let (text, since) = self.passing.as_ref()?;
         let left = if stays { Duration::MAX } else { NOTICE.saturating_sub(since.elapsed()) };
         (!left.is_zero()).then_some((text, left))
     }
 
-    /// The messages that stay.
+    /// The messages that the user has not dismissed.
     pub(super) fn kept(&self) -> &[String] {
         &self.kept
     }
 
-    /// Takes the messages that stay away.
+    /// Removes the kept messages.
     pub(super) fn dismiss(&mut self) {
         self.kept.clear();
     }
 }
 
-/// The title over the picture: its mode, and the one that is being built. The plain final picture needs no title. `frames` is
-/// how many frames an accumulating mode has added up.
+/// The title over the picture: the mode on screen and the selected mode that is being built. The final picture has no title.
+/// `frames` is the number of frames in the mean of an accumulating mode.
 pub(super) fn title(shown: &Mode, set: Option<&Mode>, frames: Option<u32>) -> Option<String> {
     match (set.filter(|set| set.slug != shown.slug), frames) {
         (Some(next), _) => Some(format!("{}  ➡  {} …", shown.name, next.name)),

@@ -1,61 +1,55 @@
-//! The window's thread: the session, what is on the device, and the last complete picture. Only this thread touches them.
+//! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+mod messages;
+
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::command::{Command, open_as};
 use super::panels::PanelState;
 use super::status::{Notices, ShaderStatus, title};
-use super::threads::baker::BakeMessage;
-use super::threads::loader::{self, Loaded};
-use super::threads::worker::{Snapshot, WorkerMessage};
-use super::threads::{Message, Outbox, Threads};
+use super::threads::loader;
+use super::threads::worker::Snapshot;
+use super::threads::{Outbox, Threads};
 use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
-use crate::render::{
-    BoundFrame, FrameInputs, FrameState, Outcome, PixelAt, Reload, Resources, Revisions, Scene, TargetFormat, View,
-    environment_files,
-};
+use crate::render::{BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Revisions, Scene, TargetFormat, View};
 use crate::scene::LoadOptions;
 use crate::session::Session;
-use crate::settings::{LightSource, Settings};
+use crate::settings::Settings;
 use crate::shader::{Change, Compiler, ShaderSet, Source};
 
-/// How often the worker is started again after panics in a row.
-const WORKER_RESTARTS: u32 = 3;
-
-/// The last complete picture, and what it was made from: it is drawn until the next one is complete.
-struct Shown {
+/// The last complete picture and its inputs. The window draws it until the next picture is complete.
+struct LastComplete {
     settings: Settings,
     scene: Option<Scene>,
     revisions: Revisions,
     frame: BoundFrame,
 }
 
-/// A reload whose first frame has not been drawn yet.
+/// A reload whose first frame has not finished.
 struct FirstFrame {
     shaders: Arc<ShaderSet>,
     event: ReloadEvent,
 }
 
-/// The model that is loaded, and the one that is being loaded.
+/// Files and state of the model on screen and of a model that is loading.
 #[derive(Default)]
 pub(super) struct ModelStatus {
     /// The file on screen; `None` is a built-in model.
     path: Option<PathBuf>,
-    /// The file that was asked for last.
+    /// The file that was requested last.
     requested: Option<PathBuf>,
-    /// The files that are watched: of the model, or those that a failed load tried.
+    /// The watched files: those of the model on screen, and after a failed load also those that it tried.
     files: Vec<PathBuf>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
 }
 
-/// Everything behind the window.
+/// The window's state apart from the screen.
 pub(super) struct Viewer {
     pub(super) session: Session,
     pub(super) panels: PanelState,
@@ -66,13 +60,13 @@ pub(super) struct Viewer {
     pub(super) start: Instant,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
-    /// Ends with the viewer: no thread may use the device after it.
+    /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
     layouts: Arc<SetLayouts>,
     compiler: Arc<Compiler>,
     source: Source,
     allow_outside: bool,
-    shown: Option<Shown>,
+    shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
     ready: bool,
     worker_restarts: u32,
@@ -124,8 +118,8 @@ impl Viewer {
         Ok(viewer)
     }
 
-    /// The frame to draw now: the picture that the settings ask for if it is complete; else the last complete one, seen from
-    /// where the camera is. What is missing is asked for. `None` before the first shaders.
+    /// The frame to draw: the picture that the settings describe if it is complete, otherwise the last complete picture with the
+    /// current camera. Requests what is missing from the threads. `None` before the first shaders.
     ///
     /// # Errors
     /// Out of memory.
@@ -135,19 +129,19 @@ impl Viewer {
         let Some(state) = self.session.frame_state(time_s, size, target) else { return Ok(None) };
         let state = Arc::new(state);
         self.request_missing(&state);
-        // Until the model has been seen, the first environment need not be there.
+        // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
         if let Some(frame) = self.resources.bind(&state, is_first)? {
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
-            self.shown = Some(Shown { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
+            self.shown = Some(LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
             return Ok(Some(frame));
         }
         Ok(self.shown.as_ref().map(|shown| self.interim(shown, time_s, size)))
     }
 
-    /// The last complete picture at this size and time. Its model may be looked at from elsewhere and its lights may go on
-    /// orbiting meanwhile, since neither needs anything new; all else is as it was.
-    fn interim(&self, shown: &Shown, time_s: f32, size: (u32, u32)) -> BoundFrame {
+    /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow the
+    /// current settings, since they need no new resources. All else is unchanged.
+    fn interim(&self, shown: &LastComplete, time_s: f32, size: (u32, u32)) -> BoundFrame {
         let mut settings = shown.settings.clone();
         let same_model = match (&shown.scene, self.session.model()) {
             (Some(scene), Some(model)) => Arc::ptr_eq(scene.model(), model),
@@ -171,7 +165,7 @@ impl Viewer {
         }))
     }
 
-    /// Asks the threads for what a state lacks.
+    /// Requests from the threads what a state lacks.
     fn request_missing(&mut self, state: &FrameState) {
         let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
         self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target });
@@ -189,47 +183,47 @@ impl Viewer {
         self.shown.as_ref().map(|shown| &*shown.frame.state)
     }
 
-    /// The title over a picture that is the mean of `frames` frames, and what comes after it.
+    /// The title over the picture: see [`title`].
     pub(super) fn title(&self, frames: u32) -> Option<String> {
         let shown = self.shown()?;
         title(shown.mode()?, self.session.mode(), shown.pipelines.accumulates.then_some(frames))
     }
 
-    /// The value of a pixel of the picture in words; `None` where nothing is.
+    /// The text of a pixel's value; `None` where nothing covers the pixel.
     pub(super) fn value_text(&self, pixel: &PixelAt) -> Option<String> {
-        let PixelAt { at: (x, y), value } = pixel;
+        let PixelAt { at: (x, y), value, .. } = pixel;
         let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
         let mode = self.shown().filter(|_| covered)?.mode()?;
         Some(format!("{}   at {x}, {y}", value.text(mode)))
     }
 
-    /// Whether the picture is the mean of frames, so that each one more makes it better.
+    /// Whether the mode on screen accumulates.
     pub(super) fn accumulates(&self) -> bool {
         self.shown().is_some_and(|state| state.pipelines.accumulates)
     }
 
-    /// Whether the picture moves by itself: the lights orbit, or a shader reads the time.
+    /// Whether the picture is animated: the lights orbit, or a shader reads the time.
     pub(super) fn moves(&self) -> bool {
         let animated = self.session.shaders.as_ref().is_some_and(|shaders| shaders.animated);
         self.session.settings.lights.spin != 0.0 || animated
     }
 
-    /// A picture that does not move is kept, so its time stands still.
+    /// Seconds since the start, or 0 for a still picture, so that it need not be redrawn.
     fn time_s(&self) -> f32 {
         if self.moves() { self.start.elapsed().as_secs_f32() } else { 0.0 }
     }
 
-    /// Whether the device draws faster than a screen shows, so that waiting for the screen saves work.
+    /// Whether the device is faster than the display, so that vertical sync saves work.
     pub(super) fn gpu_is_fast(&self) -> bool {
         self.gpu.info().kind != "cpu"
     }
 
-    /// Whether the duration of the next frame is of interest: it is the first of a generation, or of the model.
+    /// Whether to measure the next frame: the first of a shader generation, or of the model.
     pub(super) fn times_next_frame(&self) -> bool {
         self.first_frame.is_some() || (!self.ready && self.session.model().is_some())
     }
 
-    /// Notes that `frame` has finished, `ms` after it was begun.
+    /// Reports the first frame of a reload or of the model. `frame` has finished `ms` milliseconds after it began.
     pub(super) fn frame_done(&mut self, frame: Option<&BoundFrame>, ms: f64) {
         let Some(state) = frame.map(|frame| &frame.state) else { return };
         if let Some(first) = self.first_frame.take_if(|first| Arc::ptr_eq(&first.shaders, &state.shaders)) {
@@ -239,18 +233,25 @@ impl Viewer {
             self.ready = true;
             let ms = self.start.elapsed().as_secs_f64() * 1e3;
             emit(self.events, &Event::Ready { device: &self.gpu.info().name, ms });
-            // The worker goes on with the modes that are likely next.
+            // After this build the worker also builds the neighboring modes.
             if let Some(set) = self.resources.pipelines() {
                 self.threads.worker.build(set, &state.pipelines);
             }
         }
     }
 
-    /// Tells the user something for a few seconds.
+    /// Shows a message for a few seconds.
     pub(super) fn say(&mut self, text: impl Into<String>) {
         let text = text.into();
         message::tell(&text);
         self.notices.say(text);
+    }
+
+    /// Shows a message until the user dismisses it.
+    pub(super) fn keep_saying(&mut self, text: String) {
+        if self.notices.keep(text.clone()) {
+            message::tell(text);
+        }
     }
 
     pub(super) fn execute(&mut self, command: Command) {
@@ -282,178 +283,15 @@ impl Viewer {
         self.watch_files();
     }
 
-    /// Opens whatever was dropped on the window.
-    pub(super) fn open_path(&mut self, path: &Path) {
+    /// Opens a file or folder that was dropped on the window.
+    pub(super) fn open_path(&mut self, path: PathBuf) {
         match open_as(path) {
             Ok(command) => self.execute(command),
             Err(message) => self.say(message),
         }
     }
 
-    pub(super) fn on_message(&mut self, message: Message) {
-        match message {
-            Message::Worker(WorkerMessage::Built(Ok(()))) => self.threads.worker.built(),
-            Message::Worker(WorkerMessage::Built(Err(message))) => self.say(message),
-            Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, tree }) => {
-                self.shader.compiling = false;
-                self.shader.tree = tree;
-                self.worker_restarts = 0;
-                self.on_reload(&reload, detect_ms);
-            }
-            Message::Loaded(loaded) => self.on_loaded(*loaded),
-            Message::Bake(message) => self.on_bake(message),
-            Message::FilesChanged(paths) => self.on_files_changed(&paths),
-            Message::Panicked(thread, text) => self.on_panic(thread, &text),
-        }
-    }
-
-    fn on_reload(&mut self, reload: &Reload, detect_ms: f64) {
-        let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
-        match &reload.outcome {
-            Outcome::Unchanged { cleared: false } => {}
-            Outcome::Unchanged { cleared: true } => {
-                self.session.diagnostics.clear();
-                self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
-            }
-            Outcome::Failed(diagnostics) => {
-                for diagnostic in diagnostics {
-                    eprintln!("{}", diagnostic.full());
-                    emit(self.events, &Event::Diagnostic(diagnostic));
-                }
-                self.session.diagnostics.clone_from(diagnostics);
-                self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
-            }
-            Outcome::Ready(set) => {
-                self.session.diagnostics.clone_from(&set.shaders.warnings);
-                for warning in &self.session.diagnostics {
-                    eprintln!("{}", warning.full());
-                }
-                let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
-                self.first_frame = Some(FirstFrame { shaders: set.shaders.clone(), event });
-                let is_first = self.session.shaders.replace(set.shaders.clone()).is_none();
-                self.resources.set_pipelines(set);
-                self.check_names(is_first);
-            }
-        }
-    }
-
-    fn report(&mut self, event: ReloadEvent) {
-        emit(self.events, &Event::Reload(event.clone()));
-        self.shader.last = Some(event);
-    }
-
-    /// Tells of values and modes that the shaders do not have; they are kept for the next edit. Names from the command line that
-    /// never existed are told of once.
-    fn check_names(&mut self, is_first: bool) {
-        let mut problems = self.session.problems(is_first);
-        if self.session.mode().is_none() {
-            problems.push(format!("there is no mode '{}'; `specula modes` lists them all", self.session.settings.mode));
-        }
-        if !problems.is_empty() {
-            self.say(problems.join("\n"));
-        }
-    }
-
-    fn on_loaded(&mut self, loaded: Loaded) {
-        if loaded.number != self.threads.loader.newest {
-            return;
-        }
-        self.model.loading = false;
-        match loaded.result {
-            Ok(uploaded) => {
-                let model = uploaded.model();
-                for warning in &model.warnings {
-                    message::warn(format_args!("{}: {warning}", model.name));
-                }
-                if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
-                    self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
-                }
-                if loaded.path != self.model.path {
-                    self.execute(Command::FrameModel);
-                }
-                self.panels.show_model_warnings = true;
-                self.model.path = loaded.path;
-                self.model.load_ms = loaded.ms;
-                self.model.files.clone_from(&model.files);
-                self.session.set_model(model);
-                self.resources.set_model(&uploaded);
-            }
-            Err((message, tried)) => {
-                // The model on screen stays watched, and so is what must be repaired.
-                let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
-                self.model.files = on_screen.into_iter().chain(tried).collect();
-                self.say(message);
-            }
-        }
-        self.watch_files();
-    }
-
-    fn on_bake(&mut self, message: BakeMessage) {
-        match message {
-            BakeMessage::Progress(number, done, next) => {
-                self.threads.baker.set_progress(number, done, next);
-            }
-            BakeMessage::Environment(number, key, result) => {
-                if !self.threads.baker.ended(number) {
-                    return;
-                }
-                match result {
-                    Ok(environment) => {
-                        emit(self.events, &Event::Bake(&environment.report));
-                        self.resources.set_environment(key, Some(environment));
-                    }
-                    Err(error) => {
-                        self.resources.set_environment(key, None);
-                        self.say(format!("{error}\nThe environment before stays."));
-                    }
-                }
-            }
-            BakeMessage::Measured(key, result) => {
-                let result = result.map_err(|message| self.say(message));
-                self.resources.set_measured(key, result.ok());
-            }
-        }
-    }
-
-    /// Takes changed files in: each belongs to the environment, the measured BRDF or the model.
-    fn on_files_changed(&mut self, changed: &BTreeSet<PathBuf>) {
-        let (environment, measured) = self.setting_files();
-        let is_changed = |files: &[PathBuf]| files.iter().any(|file| changed.contains(file));
-        if is_changed(&environment) {
-            self.session.revisions.environment += 1;
-        }
-        if is_changed(&measured) {
-            self.session.revisions.measured += 1;
-        }
-        if is_changed(&self.model.files) {
-            let on_screen = self.session.model().is_some_and(|model| is_changed(&model.files));
-            let path = if on_screen && !self.model.loading { &self.model.path } else { &self.model.requested };
-            self.load_model(path.clone());
-        }
-    }
-
-    fn on_panic(&mut self, thread: &'static str, text: &str) {
-        let restarts = thread == "worker" && self.worker_restarts < WORKER_RESTARTS;
-        let then = if restarts { "; it was started again" } else { "" };
-        self.notices
-            .keep(format!("Specula's {thread} thread failed ({text}){then}. Please report this; your files are safe."));
-        message::tell(format_args!("the {thread} thread failed ({text}){then}"));
-        match thread {
-            "worker" if restarts => {
-                self.worker_restarts += 1;
-                self.restart_worker();
-            }
-            "baker" => {
-                if let Some(key) = self.threads.baker.abandon() {
-                    self.resources.set_environment(key, None);
-                }
-            }
-            "loader" => self.model.loading = false,
-            _ => self.shader.compiling = false,
-        }
-    }
-
-    /// Starts the worker again, from the files as they are now.
+    /// Starts a new worker, which compiles the current files.
     fn restart_worker(&mut self) {
         let (settings, scene) = (self.session.settings.clone(), self.session.scene());
         let snapshot = Snapshot { target: target(&self.gpu, &settings), settings, scene };
@@ -463,7 +301,7 @@ impl Viewer {
         self.watch_tree();
     }
 
-    /// Loads a model; the old one stays until it is ready.
+    /// Loads a model. The current model stays until the new one is ready.
     fn load_model(&mut self, path: Option<PathBuf>) {
         self.model.requested.clone_from(&path);
         self.model.loading = true;
@@ -476,23 +314,16 @@ impl Viewer {
         }
     }
 
-    /// The files of the environment and of the measured BRDF.
-    fn setting_files(&self) -> (Vec<PathBuf>, Vec<PathBuf>) {
-        let settings = &self.session.settings;
-        let measured = std::path::absolute(&settings.measured).ok().filter(|_| !settings.measured.is_empty());
-        (environment_files(&settings.environment.name), measured.into_iter().collect())
-    }
-
-    /// Watches the files of model, environment and measured BRDF.
+    /// Watches the files of the model, the environment and the measured BRDF.
     pub(super) fn watch_files(&mut self) {
-        let (environment, measured) = self.setting_files();
+        let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
         let files: Vec<PathBuf> = self.model.files.iter().chain(&environment).chain(&measured).cloned().collect();
         if let Err(message) = self.threads.watch_files(files) {
             self.say(message);
         }
     }
 
-    /// Lets the lights go on orbiting for `seconds`.
+    /// Moves the orbiting lights by `seconds`.
     pub(super) fn turn_lights(&mut self, seconds: f32) {
         let lights = &mut self.session.settings.lights;
         if lights.spin == 0.0 {
@@ -504,7 +335,7 @@ impl Viewer {
     }
 }
 
-/// Half floats with as many samples as the settings ask for and the device has.
+/// Half floats with the samples of the settings, or 1 if the device does not support them.
 fn target(gpu: &Gpu, settings: &Settings) -> TargetFormat {
     View::target_format(gpu, settings.view.msaa, false).unwrap_or(TargetFormat::half(1))
 }

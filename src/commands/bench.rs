@@ -1,4 +1,4 @@
-//! `specula bench reload|frame|load|bake`: times on this machine, with the name of the device.
+//! `specula bench reload|frame|load|bake`: measures times on this machine, and prints them with the device's name.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use specula::shader::{Batch, Compiler, Source, Watcher};
 use super::common::{Common, check_validation, compiler};
 use super::{Failure, print_json};
 
-/// What is measured.
+/// What to measure.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum What {
     /// Time from a save to the end of the first frame with the new shader
@@ -69,7 +69,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     check_validation(&gpu)
 }
 
-/// Saves an edited `pbr.frag` in a copy of the tree, waits for the watcher, reloads and renders; times every step.
+/// Saves an edited `pbr.frag` in a copy of the tree, waits for the watcher, reloads and renders. Times every step.
 fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
     let folder = TempFolder::new()?;
     copy_tree(&args.common.source()?, &folder.0)?;
@@ -89,7 +89,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     let names = ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms", "total_ms", "overhead_ms"];
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for sample in 0..args.samples {
-        // This code changes the shader but not the picture, since no fragment lies left of it.
+        // This edit changes the shader but not the picture: no fragment has a negative x.
         let edit = format!("void main() {{\n    if (gl_FragCoord.x < -{}.0) discard;", sample + 1);
         let text = original.replacen("void main() {", &edit, 1);
         let begin = Instant::now();
@@ -115,7 +115,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     Ok(Value::Object(table.collect()))
 }
 
-/// Times frames of the chosen mode, and for every mode the first frame and the second.
+/// Times frames of the selected mode, and the first and second frame of every mode.
 fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
@@ -132,7 +132,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         }
     }
     let passes: serde_json::Map<String, Value> = passes.into_iter().map(|(name, ms)| (name, summary(ms))).collect();
-    // A mode that was asked for is all that is of interest.
+    // With --mode, skip the other modes.
     let slugs: Vec<String> = match args.common.mode.is_empty() {
         false => Vec::new(),
         true => headless.shaders().modes.iter().map(|m| m.slug.clone()).collect(),
@@ -161,7 +161,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
     }))
 }
 
-/// Loads the model repeatedly. The first load is also timed from the start of the program.
+/// Loads the model repeatedly. Times the first load also from the start of the program.
 fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -> Result<Value, Failure> {
     let device_ms = ms(start);
     let names = [
@@ -209,7 +209,7 @@ fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -
     Ok(result)
 }
 
-/// Bakes the chosen environment repeatedly. The first bake includes the creation of its pipelines.
+/// Bakes the selected environment repeatedly. The first bake includes the creation of its pipelines.
 fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
@@ -243,8 +243,8 @@ fn round(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }
 
-/// Smallest value, median and 95th percentile; null without samples. On a shared machine, compare the smallest values: other
-/// work can only add time.
+/// Minimum, median and 95th percentile; null without samples. On a shared machine, compare the minimum, since other work can
+/// only add time.
 fn summary(mut values: Vec<f64>) -> Value {
     values.sort_by(f64::total_cmp);
     let at = |part: f64| values.get(((values.len() as f64 - 1.0).max(0.0) * part).round() as usize).copied();
@@ -273,7 +273,7 @@ fn print_table(result: &Value) {
     }
 }
 
-/// Writes every file of a tree into an empty folder.
+/// Copies every file of a tree into an empty folder.
 fn copy_tree(source: &Source, folder: &Path) -> Result<(), Failure> {
     for path in source.list() {
         let to = folder.join(path.as_str());
@@ -284,7 +284,7 @@ fn copy_tree(source: &Source, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A temporary folder, which is removed with everything in it when this is dropped.
+/// A temporary folder. Dropping this deletes it.
 struct TempFolder(PathBuf);
 
 impl TempFolder {

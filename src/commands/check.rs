@@ -1,4 +1,4 @@
-//! `specula check`: every stage with every declared choice, and every library alone; for CI.
+//! `specula check`: compiles every stage, and every library alone, and builds the pipelines of every declared choice. For CI.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ pub struct Args {
     common: Common,
 }
 
-/// Runs the command. Compiling needs no device. If there is a device, the pipelines of every mode and choice are built too.
+/// Runs the command. Compiling needs no device. If there is a device, this also builds the pipelines of every mode and choice.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let source = args.common.source()?;
     let mut library = Library::new(source, compiler()?, &specula::render::all_stages());
@@ -60,8 +60,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Builds the pipelines of every mode, and of the picture with every declared choice, since a shader that compiles can still fail for
-/// one value of a specialization constant. Returns the number of pipelines, or `None` without a device.
+/// Builds the pipelines of every mode, and of the picture with every declared choice, since a shader that compiles may still
+/// fail for one value of a specialization constant. Returns the number of pipelines, or `None` without a device.
 fn build_choices(
     args: &Args,
     shaders: &Arc<ShaderSet>,
@@ -76,7 +76,7 @@ fn build_choices(
     let settings = args.common.settings()?;
     let materials =
         BTreeSet::from([MaterialVariant { features: interface::FEATURE_NORMAL_TEXTURE, ..Default::default() }]);
-    // Each feature alone, including those that belong to a whole frame.
+    // Each feature alone, including the features of a whole frame.
     let features = std::iter::once(0).chain((0..=interface::LAST_FEATURE).map(|bit| 1 << bit));
     let all_materials: BTreeSet<_> =
         [ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND]
@@ -108,7 +108,7 @@ fn build_choices(
             );
         }
     };
-    // With lights that the frame counts; those of a known number are in all others.
+    // With a light count from the frame's uniforms. All other requests have a fixed number of lights.
     let every_material =
         PipelineRequest { materials: all_materials, target: TargetFormat::half(4), light_count: 0, ..plain.clone() };
     build(&every_material, &tree_name(&args.common.source()?), 1, "some kind of material".to_owned());

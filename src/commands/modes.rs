@@ -1,4 +1,4 @@
-//! `specula modes`: the debug modes, constants and parameters of a shader tree.
+//! `specula modes`: lists the debug modes, constants and parameters of a shader tree.
 
 use specula::shader::{Library, Update};
 

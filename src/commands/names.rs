@@ -3,15 +3,15 @@
 
 use std::path::Path;
 
+use specula::file_kind::FileKind;
 use specula::message::nearest;
 use specula::scene::{self, BUILT_IN};
-use specula::shader::is_specula_tree;
 
 use super::Failure;
 
-/// Whether a text looks like a name and not like a file: it has neither an ending nor a folder.
+/// Whether a text looks like a name: it is no option, and has neither an ending nor a folder as files do.
 pub fn is_word(text: &str) -> bool {
-    Path::new(text).extension().is_none() && !text.contains(std::path::is_separator)
+    !text.starts_with('-') && Path::new(text).extension().is_none() && !text.contains(std::path::is_separator)
 }
 
 /// Fails when there is neither such a file nor a built-in model of that name, and when the file is no model.
@@ -42,22 +42,24 @@ fn suggest(name: Option<&str>) -> String {
 fn check_kind(path: &Path) -> Result<(), Failure> {
     let shown = path.display();
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let message = match ending.as_str() {
-        _ if path.is_dir() && is_specula_tree(path) => format!("{shown} is a shader tree; use `--shaders {shown}`"),
-        _ if path.is_dir() => {
+    let message = match FileKind::of(path) {
+        FileKind::ShaderTree => format!("{shown} is a shader tree; use `--shaders {shown}`"),
+        FileKind::Folder => {
             let models = models_in(path);
             let list =
                 if models.is_empty() { "there is none".to_owned() } else { format!("it has {}", models.join(", ")) };
             format!("{shown} is a folder; expected a .gltf or .glb file in it ({list})")
         }
-        "hdr" | "exr" => format!("{shown} is an environment; use `--env {shown}`"),
-        "toml" => format!("{shown} is a look file; use `--look {shown}`"),
-        "binary" => format!("{shown} is a measured BRDF; use `--measured {shown}`"),
-        "glsl" | "vert" | "frag" | "comp" => {
+        FileKind::Environment => format!("{shown} is an environment; use `--env {shown}`"),
+        FileKind::Look => format!("{shown} is a look file; use `--look {shown}`"),
+        FileKind::Measured if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bin")) => {
+            format!("{shown} is a measured BRDF; use `--measured {shown}`")
+        }
+        FileKind::Shader => {
             format!("{shown} is a shader; use `--shaders {}`, the folder of its tree", folder.display())
         }
-        _ => return Ok(()),
+        // glTF names its buffers .bin, too; the loader says more.
+        FileKind::Measured | FileKind::Model | FileKind::Other => return Ok(()),
     };
     Err(Failure::Usage(message))
 }

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 use specula::headless::Headless;
 use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
-use specula::render::{FrameState, PixelValue};
+use specula::render::FrameState;
+use specula::shader::PixelValue;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};

@@ -1,4 +1,4 @@
-//! `specula render`: a picture, or one of every mode, in a file; again at every save with `--watch`.
+//! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -38,7 +38,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     }
     check_out(&args.out)?;
     let source = args.common.source()?;
-    // Watching starts before anything is read, so that no save falls between.
+    // Start watching before reading any file, so that no save is missed in between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
     let gpu = args.common.gpu()?;
     let model = args.common.model(args.model.as_deref())?;
@@ -62,13 +62,13 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
             check_validation(&gpu)?;
         }
     }
-    // What the layers find at the end counts too.
+    // Validation messages of the teardown count too.
     drop(headless);
     check_validation(&gpu)
 }
 
-/// Compiles until the shaders are good, waiting for saves if they are watched, and makes what the first frame needs. `false`:
-/// watching ended before.
+/// Compiles the shaders and creates what the first frame needs. If the shaders fail and are watched, waits for the next save.
+/// Returns `false` if watching has ended before.
 fn first_picture(headless: &mut Headless, args: &Args, watch: Option<&mut Watch>) -> Result<bool, Failure> {
     let mut reload = headless.update(Change::All);
     if let Some(watch) = watch {
@@ -90,7 +90,7 @@ fn first_picture(headless: &mut Headless, args: &Args, watch: Option<&mut Watch>
     }
 }
 
-/// Takes a batch of changes in and writes the picture again when anything in it has changed.
+/// Handles a batch of changes, and writes the picture again if it may have changed.
 fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, changes: &Changes) -> Result<(), Failure> {
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
     let new_files = take_files(headless, args, watch, changes)?;
@@ -100,7 +100,7 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
         let begin = Instant::now();
         let drawn = headless.draw().map_err(Failure::from);
         first_frame_ms = begin.elapsed().as_secs_f64() * 1e3;
-        // A value, a mode or a folder that this edit made wrong may be right after the next.
+        // Continue after a wrong value, mode or folder, since the next edit may correct it.
         match drawn.and_then(|()| write(headless, args, all)) {
             Err(Failure::Input(message) | Failure::Usage(message)) => message::tell(message),
             result => result?,
@@ -110,8 +110,8 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
     Ok(())
 }
 
-/// Takes changed files of model, environment and measured BRDF in; returns whether the picture may have changed. The last good
-/// one of each stays on failure.
+/// Handles changed files of the model, environment and measured BRDF. Returns whether the picture may have changed. On failure
+/// the last good one of each stays.
 fn take_files(headless: &mut Headless, args: &Args, watch: &mut Watch, changes: &Changes) -> Result<bool, Failure> {
     let new_model = changes.model && take_model(headless, args, watch)?;
     if changes.measured {
@@ -124,7 +124,7 @@ fn take_files(headless: &mut Headless, args: &Args, watch: &mut Watch, changes: 
     Ok(new_model || baked || changes.measured)
 }
 
-/// Loads the model again; on failure the last good one stays.
+/// Loads the model again. On failure the last good model stays.
 fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result<bool, Failure> {
     let loaded =
         args.common.model(args.model.as_deref()).and_then(|model| headless.set_model(model).map_err(Failure::from));
@@ -142,7 +142,7 @@ fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result
     }
 }
 
-/// Bakes the environment again; on failure the last good one stays.
+/// Bakes the environment again. On failure the last good environment stays.
 fn take_environment(headless: &mut Headless, args: &Args) -> bool {
     let baked = headless.bake(true);
     match &baked {
@@ -183,7 +183,7 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
     emit(args.common.emits(), &Event::Reload(ReloadEvent::new(reload, generation, detect_ms, first_frame_ms)));
 }
 
-/// Writes the picture, or one of each mode.
+/// Writes the picture, or a picture of each mode.
 fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure> {
     let out = args.out.as_path();
     if !all {

@@ -1,4 +1,4 @@
-//! `specula view`: the window.
+//! `specula view`: opens the window.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -9,7 +9,7 @@ use super::Failure;
 use super::common::{Common, compiler};
 use super::names::check_model_path;
 
-/// Largest width and height of a window in pixels: beyond any screen, and within what window systems can represent.
+/// Largest width and height of a window in pixels: larger than any screen, and within the limits of window systems.
 const LARGEST_WINDOW: u32 = 16384;
 
 /// Options of `view`.
@@ -22,7 +22,7 @@ pub struct Args {
 }
 
 impl Args {
-    /// The model as it was typed.
+    /// The model as given on the command line.
     pub fn model(&self) -> Option<&Path> {
         self.model.as_deref()
     }

@@ -1,4 +1,4 @@
-//! Waits for saves, for `render --watch`.
+//! Watches files for `render --watch`.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use specula::shader::{Batch, Source, Watcher};
 
 use super::Failure;
 
-/// Watches a shader tree, and the files of a model and an environment.
+/// Watches a shader tree, and the files of the model, the environment and the measured BRDF.
 pub struct Watch {
     watcher: Watcher,
     batches: Receiver<Batch>,
@@ -19,17 +19,17 @@ pub struct Watch {
     measured_files: BTreeSet<PathBuf>,
 }
 
-/// What changed together.
+/// A batch of changes.
 pub struct Changes {
-    /// Changed files, as the tree, the model and the environment name them.
+    /// Changed files, under the names that were given to the watcher.
     pub paths: BTreeSet<PathBuf>,
-    /// Whether the model has one of the files.
+    /// Whether a file of the model has changed.
     pub model: bool,
-    /// Whether the environment has one of the files.
+    /// Whether the environment's file has changed.
     pub environment: bool,
-    /// Whether one of them is the measured BRDF's.
+    /// Whether the measured BRDF's file has changed.
     pub measured: bool,
-    /// When the first event came.
+    /// Time of the first file event.
     pub first_event: Instant,
 }
 
@@ -45,10 +45,10 @@ impl Watch {
         Ok(Self { watcher, batches, model_files, environment_files, measured_files })
     }
 
-    /// Watches the files of the model, the environment and the measured BRDF too, in place of those before.
+    /// Also watches the current files of the model, the environment and the measured BRDF, instead of the previous ones.
     pub fn follow(&mut self, headless: &Headless) {
         let model = headless.model();
-        let (environment, measured) = (headless.environment_files(), headless.measured_files());
+        let (environment, measured) = (headless.session().environment_files(), headless.session().measured_files());
         let files: Vec<PathBuf> = model.files.iter().chain(&environment).chain(&measured).cloned().collect();
         self.watcher.set_files(&files);
         self.model_files = model.files.iter().cloned().collect();
@@ -56,7 +56,7 @@ impl Watch {
         self.measured_files = measured.into_iter().collect();
     }
 
-    /// Waits for the next changes; `None` when watching has ended.
+    /// Waits for the next changes. `None` if watching has ended.
     pub fn next(&mut self) -> Option<Changes> {
         let batch = self.batches.recv().ok()?;
         let changed = |files: &BTreeSet<PathBuf>| !batch.paths.is_disjoint(files);

@@ -1,52 +1,21 @@
-//! What the compute tasks share: their bindings, their workgroups, and the way of images in and out.
+//! Helpers that all compute tasks share: bindings, workgroup counts, samplers and image uploads.
 
 use std::sync::Arc;
 
 use crate::gpu::{
     Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, Use, one_shot, vk,
 };
-use crate::interface::{BINDINGS, SET_TASK, Task};
+use crate::interface::{BINDING_TASK, SET_TASK, Task};
 
-/// Invocations of a workgroup along x and y, where a stage does not say otherwise.
+/// Workgroup size along x and y of most compute stages.
 const GROUP: u32 = 8;
 
-/// Workgroups that cover `layers` squares of `side` texels.
+/// Workgroups that cover `layers` images of `side` x `side` texels.
 pub(crate) fn groups(side: u32, layers: u32) -> [u32; 3] {
     [side.div_ceil(GROUP), side.div_ceil(GROUP), layers]
 }
 
-/// Number of a binding of set 3 by its name in GLSL.
-fn binding(name: &str) -> u32 {
-    let found = BINDINGS.iter().find(|b| b.set == SET_TASK && b.name == name);
-    found.map_or(0, |b| b.binding)
-}
-
-/// Points BINDING_TARGET to a level.
-pub(crate) fn target(writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
-    writer.storage_level(binding("BINDING_TARGET"), image, level)
-}
-
-/// Points BINDING_LEVEL_ABOVE to a level.
-pub(crate) fn level_above(writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
-    writer.storage_level(binding("BINDING_LEVEL_ABOVE"), image, level)
-}
-
-/// Points BINDING_SOURCE to an image.
-pub(crate) fn source(writer: SetWriter, image: &Arc<Image>, sampler: &Arc<Sampler>) -> SetWriter {
-    writer.texture(binding("BINDING_SOURCE"), image, sampler)
-}
-
-/// Points BINDING_SOURCE_CUBE to a cube.
-pub(crate) fn source_cube(writer: SetWriter, image: &Arc<Image>, sampler: &Arc<Sampler>) -> SetWriter {
-    writer.texture(binding("BINDING_SOURCE_CUBE"), image, sampler)
-}
-
-/// Points BINDING_RESULTS to a buffer.
-pub(crate) fn results(writer: SetWriter, buffer: &Arc<Buffer>) -> SetWriter {
-    writer.buffer(binding("BINDING_RESULTS"), buffer)
-}
-
-/// Set 3 of one dispatch.
+/// Descriptor set 3 of one dispatch: the task's parameters, and what `more` binds.
 pub(crate) fn bindings(
     gpu: &Arc<Gpu>,
     layouts: &Arc<SetLayouts>,
@@ -56,11 +25,11 @@ pub(crate) fn bindings(
     let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
     let buffer = Buffer::new(gpu, "task", size_of::<Task>() as u64, usage, Memory::Upload)?;
     buffer.write(0, bytemuck::bytes_of(task));
-    let writer = SetWriter::default().buffer(binding("BINDING_TASK"), &buffer);
+    let writer = SetWriter::default().buffer(BINDING_TASK, &buffer);
     DescriptorSet::new(layouts, SET_TASK, more(writer))
 }
 
-/// A trilinear sampler: equirectangular maps repeat from left to right.
+/// A trilinear sampler, clamped vertically. `wrap_u` is REPEAT for an equirectangular map, whose left and right edges meet.
 pub(crate) fn linear(gpu: &Arc<Gpu>, wrap_u: vk::SamplerAddressMode) -> Result<Arc<Sampler>, GpuError> {
     Sampler::new(
         gpu,
@@ -76,7 +45,7 @@ pub(crate) fn linear(gpu: &Arc<Gpu>, wrap_u: vk::SamplerAddressMode) -> Result<A
     )
 }
 
-/// Fills images, all levels and layers, and leaves them in [`Use::Sampled`].
+/// Uploads all levels and layers of the images, and leaves them in [`Use::Sampled`].
 pub(crate) fn upload(gpu: &Arc<Gpu>, images: &[(&Arc<Image>, &[u8])]) -> Result<(), GpuError> {
     let place = |size: usize| (size as u64).next_multiple_of(16);
     let size = images.iter().map(|(_, bytes)| place(bytes.len())).sum();

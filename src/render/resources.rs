@@ -1,7 +1,6 @@
-//! Everything on the device that frames are drawn with, found by the keys of a [`FrameState`]. It can be dropped and made
-//! again from what the session holds.
+//! All device objects that frames are drawn with, found by the keys of a [`FrameState`]. They can be dropped and created
+//! again from the session.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts};
@@ -9,13 +8,11 @@ use crate::scene::{Measured, MeasuredError};
 
 use super::brdf::measured::measured_buffer;
 use super::environment::bake::{BakeControl, BakeError, GpuEnvironment};
-use super::environment::bake_named;
 use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};
-use super::state::{EnvironmentKey, FrameState, MeasuredKey, PipelineRequest, Scene};
+use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene};
 
-/// A [`FrameState`] with the pipelines and resources that it is drawn with: complete, so that it can be shown. It keeps them
-/// alive, whatever replaces them meanwhile.
+/// A [`FrameState`] with all the pipelines and resources that draw it. It keeps them alive after newer ones replace them.
 #[derive(Clone)]
 pub struct BoundFrame {
     /// The picture.
@@ -27,13 +24,13 @@ pub struct BoundFrame {
 }
 
 impl BoundFrame {
-    /// The same pipelines and resources under another state that asks for just these: one that differs in camera or time.
+    /// The same pipelines and resources with another state. It must need the same ones: only camera, lights or time may differ.
     #[must_use]
     pub fn with_state(&self, state: FrameState) -> Self {
         Self { state: Arc::new(state), ..self.clone() }
     }
 
-    /// Whether both give the same picture, bit for bit.
+    /// Whether both draw the same picture, bit for bit.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         let same_scene = match (&self.scene, &other.scene) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
@@ -48,10 +45,10 @@ impl BoundFrame {
     }
 }
 
-/// What a state still needs.
+/// What a state needs and [`Resources`] does not have yet.
 #[derive(Clone, Debug, Default)]
 pub struct Missing {
-    /// Pipelines of the newest set.
+    /// Whether the newest set lacks pipelines.
     pub pipelines: bool,
     /// An environment to bake.
     pub environment: Option<EnvironmentKey>,
@@ -59,11 +56,11 @@ pub struct Missing {
     pub measured: Option<MeasuredKey>,
 }
 
-/// A resource, the key that it was made for, and the newest key for which it could not be made.
+/// The last good resource with its key, and the key of the last failure.
 struct Slot<K, T> {
     made: Option<(K, Arc<T>)>,
     failed: Option<K>,
-    /// Stands for no resource.
+    /// The resource of a state without a key, and of a failure before the first success.
     none: Arc<T>,
 }
 
@@ -72,7 +69,7 @@ impl<K: PartialEq, T> Slot<K, T> {
         Self { made: None, failed: None, none }
     }
 
-    /// The resource of `key`. After a failure the last good one stays; `None` while nobody knows yet.
+    /// The resource of `key`, or the last good one if `key` has failed. `None` if `key` has not been tried yet.
     fn get(&self, key: Option<&K>) -> Option<&Arc<T>> {
         let Some(key) = key else { return Some(&self.none) };
         match &self.made {
@@ -106,7 +103,7 @@ pub struct Resources {
 }
 
 impl Resources {
-    /// Without any pipeline or model. `ambient` is the radiance from everywhere before the first environment is baked.
+    /// Resources without pipelines or model. `ambient` is the uniform radiance that stands for a missing environment.
     ///
     /// # Errors
     /// No memory left.
@@ -122,12 +119,12 @@ impl Resources {
         })
     }
 
-    /// The pipelines of the newest good shaders.
+    /// The pipelines of the last good shaders.
     pub fn pipelines(&self) -> Option<&Arc<PipelineSet>> {
         self.pipelines.as_ref()
     }
 
-    /// Replaces the pipelines by those of newer shaders.
+    /// Replaces the pipelines with those of newer shaders.
     pub fn set_pipelines(&mut self, set: &Arc<PipelineSet>) {
         self.pipelines = Some(set.clone());
     }
@@ -153,7 +150,7 @@ impl Resources {
         self.environment.last_good()
     }
 
-    /// What `state` still needs. A model is not among it: states are made of models that were uploaded.
+    /// What `state` still needs. The model is never missing, because states refer only to uploaded models.
     pub fn missing(&self, state: &FrameState) -> Missing {
         let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
         let environment = state.environment.as_ref();
@@ -165,8 +162,8 @@ impl Resources {
         }
     }
 
-    /// The frame of `state` if it is complete. `is_first` accepts flat ambient light in place of an environment that is still
-    /// being baked, so that a picture is there early.
+    /// Binds `state`, or returns `None` if a resource is missing. With `is_first`, the last environment (at first the ambient
+    /// light) may replace one that is still being baked, so that the first picture appears early.
     ///
     /// # Errors
     /// No memory left for the materials.
@@ -176,7 +173,8 @@ impl Resources {
         };
         let environment = match self.environment.get(state.environment.as_ref()) {
             Some(environment) => environment.clone(),
-            None if is_first => self.environment.last_good().clone(),
+            // An edit of the bake stages shows at once, in the light that the previous shaders baked.
+            None if is_first || self.has_baked(state) => self.environment.last_good().clone(),
             None => return Ok(None),
         };
         let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
@@ -190,10 +188,10 @@ impl Resources {
         Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, environment, measured }))
     }
 
-    /// Makes what `state` needs, on this thread, and binds it.
+    /// Creates everything that `state` lacks on this thread, and binds it.
     ///
     /// # Errors
-    /// A file that is bad, or a device that fails.
+    /// A bad file, or a device error.
     pub fn provide(&mut self, state: &Arc<FrameState>) -> Result<BoundFrame, ProvideError> {
         let missing = self.missing(state);
         let set = self.pipelines_of(state).cloned().ok_or(ProvideError::Stale)?;
@@ -210,15 +208,15 @@ impl Resources {
         self.bind(state, false)?.ok_or(ProvideError::Stale)
     }
 
-    /// Bakes an environment with the newest pipelines, on this thread. `from_disk`: a cached result will do. On failure the
-    /// last good environment stays.
+    /// Bakes an environment with the newest pipelines on this thread. `from_disk` allows a cached result. On failure the last
+    /// good environment stays.
     ///
     /// # Errors
     /// As [`GpuEnvironment::bake`].
     pub fn bake(&mut self, key: EnvironmentKey, from_disk: bool) -> Result<(), ProvideError> {
         let set = self.pipelines.clone().ok_or(ProvideError::Stale)?;
         let control = BakeControl { progress: &|_, _| {}, superseded: &|| false, from_disk };
-        match bake_named(&set, &key.name, &control) {
+        match GpuEnvironment::bake(&set, &key.name, &control) {
             Ok(environment) => self.set_environment(key, Some(environment)),
             Err(error) => {
                 self.set_environment(key, None);
@@ -228,7 +226,13 @@ impl Resources {
         Ok(())
     }
 
-    /// The newest set, if `state` was made of its shaders.
+    /// Whether the last bake was of the environment of `state`, possibly with other shaders or from an older version of the file.
+    fn has_baked(&self, state: &FrameState) -> bool {
+        let baked = self.environment.made.as_ref().map(|(key, _)| &key.name);
+        baked.is_some() && baked == state.environment.as_ref().map(|key| &key.name)
+    }
+
+    /// The newest set, if it has the shaders of `state`.
     fn pipelines_of(&self, state: &FrameState) -> Option<&Arc<PipelineSet>> {
         self.pipelines.as_ref().filter(|set| Arc::ptr_eq(&set.shaders, &state.shaders))
     }
@@ -244,47 +248,30 @@ impl Resources {
         self.scene = Some((scene.clone(), drawn.clone()));
         Ok(Some(drawn))
     }
-
-    /// Makes the pipelines of several requests in parallel: a driver compiles a pipeline on the thread that asks for it.
-    ///
-    /// # Errors
-    /// The driver refuses one.
-    pub fn build_all(&self, requests: &[&PipelineRequest]) -> Result<(), GpuError> {
-        use rayon::prelude::*;
-        let Some(set) = &self.pipelines else { return Ok(()) };
-        requests.par_iter().try_for_each(|request| set.build(request))
-    }
 }
 
-/// Why a resource could not be made.
+/// Why a resource could not be created.
 #[derive(Debug, thiserror::Error)]
 pub enum ProvideError {
-    /// The environment.
+    /// The environment could not be baked.
     #[error(transparent)]
     Bake(#[from] BakeError),
-    /// The measured BRDF.
+    /// The measured BRDF could not be read.
     #[error(transparent)]
     Measured(#[from] MeasuredError),
-    /// The device.
+    /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// The state was made of other shaders or of another model than the newest.
+    /// The state refers to shaders or a model that are no longer the newest.
     #[error("the frame was prepared for shaders or a model that have been replaced since")]
     Stale,
 }
 
-/// Reads a measured BRDF and uploads it. From any thread.
+/// Reads a measured BRDF and uploads it. Any thread may call this.
 ///
 /// # Errors
-/// A file that is bad, or no memory left.
+/// A bad file, or no memory left.
 pub fn read_measured(gpu: &Arc<Gpu>, key: &MeasuredKey) -> Result<Arc<Buffer>, ProvideError> {
     let measured = Measured::open(&key.path)?;
     Ok(measured_buffer(gpu, Some(&measured))?)
-}
-
-/// The files behind an environment's name, which are watched: none for a built-in one.
-pub fn environment_files(name: &str) -> Vec<PathBuf> {
-    use crate::scene::environment::BUILT_IN;
-    let is_file = name != "none" && (!BUILT_IN.contains(&name) || PathBuf::from(name).is_file());
-    is_file.then(|| std::path::absolute(name).ok()).flatten().into_iter().collect()
 }

@@ -1,4 +1,4 @@
-//! The models that are part of the program, so that it shows something from any directory.
+//! The models that are embedded in the program, so that it can show something from any directory.
 
 use super::{LoadError, Model, load_bytes};
 

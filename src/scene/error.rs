@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// A model that could not be loaded. Its message is one paragraph: the file, what was expected, what was found, what
+/// A model that could not be loaded. The message is one paragraph: the file, what was expected, what was found, and what
 /// to do.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {problem}", file.display())]
@@ -11,8 +11,8 @@ pub struct LoadError {
     pub file: PathBuf,
     /// What is wrong with it.
     pub problem: Box<Problem>,
-    /// Absolute paths of all files that were read or looked for, the model's own first: whoever waits for the repair
-    /// watches these. Empty for a model in memory.
+    /// Absolute paths of all files that were read or looked for, the model's own first. Watch these to notice a repair.
+    /// Empty for a model in memory.
     pub files: Vec<PathBuf>,
 }
 
@@ -39,12 +39,12 @@ pub enum Problem {
         "is a damaged GLB: expected {expected}, found {found}. The file may be cut short: copy or export it again."
     )]
     Container {
-        /// What a GLB has at this place.
+        /// What the GLB specification requires here.
         expected: String,
-        /// What it has instead.
+        /// What the file has instead.
         found: String,
     },
-    /// The JSON does not parse or is not glTF's.
+    /// The JSON does not parse, or is not glTF.
     #[error("has JSON that does not parse as glTF 2.0: {0}. Export the model again, or correct the line named here.")]
     Json(#[source] gltf::json::Error),
     /// Another major version.
@@ -55,20 +55,20 @@ pub enum Problem {
         /// `asset.version` or `asset.minVersion`.
         found: String,
     },
-    /// `extensionsRequired` names what Specula lacks.
+    /// `extensionsRequired` names extensions that Specula does not support.
     #[error(
         "requires {names}, which Specula does not support, so it would not look as its author meant. \
          Export it without {pronoun} (supported: {supported})."
     )]
     Extensions {
-        /// The missing ones, separated by commas.
+        /// The unsupported extensions, separated by commas.
         names: String,
         /// "it" or "them".
         pronoun: &'static str,
-        /// All that Specula supports, separated by commas.
+        /// The supported extensions, separated by commas.
         supported: String,
     },
-    /// The file contradicts the specification.
+    /// The file violates the specification.
     #[error(
         "is invalid at {place}: expected {expected}, found {found}. \
          Export the model again, or run it through the Khronos glTF validator."
@@ -76,12 +76,12 @@ pub enum Problem {
     Invalid {
         /// The object, as a path into the JSON with its name.
         place: String,
-        /// What glTF asks for.
+        /// What glTF requires.
         expected: String,
-        /// What is there.
+        /// What the file has.
         found: String,
     },
-    /// A URI that is never opened.
+    /// A URI with a scheme that is never opened.
     #[error(
         "names `{uri}` at {place}: expected a file beside the model or a data: URI, found the scheme `{scheme}:`, \
          which is never opened. Save that file beside the model and name it by its relative path."
@@ -94,7 +94,7 @@ pub enum Problem {
         /// Its scheme.
         scheme: String,
     },
-    /// A path out of the model's folder.
+    /// A path that leaves the model's folder.
     #[error(
         "names `{uri}` at {place}: expected a file in the model's folder, found {found}. \
          Give --allow-outside to read it if you trust this model."
@@ -104,7 +104,7 @@ pub enum Problem {
         place: String,
         /// The URI, decoded.
         uri: String,
-        /// How the path leaves the folder: as it is written, or through a link.
+        /// How the path leaves the folder: by its text, or through a link.
         found: String,
     },
     /// A file that the model names cannot be read.
@@ -121,16 +121,16 @@ pub enum Problem {
         /// Why it cannot be read.
         source: std::io::Error,
     },
-    /// Nothing visible.
+    /// The scene has no mesh.
     #[error(
         "has nothing to draw: expected a scene with at least one mesh, found {found}. \
          Check what was selected when it was exported."
     )]
     NothingToDraw {
-        /// What there is.
+        /// What the file has.
         found: String,
     },
-    /// A panic in the loader or a decoder, caught.
+    /// The loader or a decoder panicked.
     #[error(
         "was refused: the loader stopped at something it did not expect ({found}). \
          The file is most likely invalid; please report it with the file."

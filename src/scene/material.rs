@@ -5,7 +5,7 @@ use glam::{Affine2, Vec3, Vec4};
 use crate::interface::TEXTURE_COUNT;
 use crate::settings::MaterialOverride;
 
-/// Coverage, as in glTF.
+/// glTF's `alphaMode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AlphaMode {
@@ -14,7 +14,7 @@ pub enum AlphaMode {
     Opaque,
     /// Fragments below the cutoff are discarded.
     Mask,
-    /// Blended over what is behind.
+    /// Fragments are blended over the picture behind.
     Blend,
 }
 
@@ -29,19 +29,19 @@ pub struct TextureUse {
     pub uv_from_mesh: Affine2,
 }
 
-/// A metallic-roughness material with its extensions, or a specular-glossiness one. Every number is finite but
-/// [`Volume::attenuation_distance`], and in the range given here.
+/// A metallic-roughness material with its extensions, or a specular-glossiness material. All numbers are in the ranges
+/// given here, and finite except for [`Volume::attenuation_distance`].
 #[derive(Clone, Debug)]
 pub struct Material {
     /// Name, or empty.
     pub name: String,
-    /// RGBA factor. Specular-glossiness: the diffuse factor.
+    /// RGBA factor; with specular-glossiness, the diffuse factor.
     pub base_color_factor: Vec4,
     /// 0..1.
     pub metallic_factor: f32,
-    /// Perceptual roughness, 0..1. Specular-glossiness: the glossiness.
+    /// Perceptual roughness, 0..1; with specular-glossiness, the glossiness.
     pub roughness_factor: f32,
-    /// RGB factor, KHR_materials_emissive_strength multiplied in.
+    /// RGB factor times KHR_materials_emissive_strength.
     pub emissive_factor: Vec3,
     /// Scale of the normal texture.
     pub normal_scale: f32,
@@ -55,10 +55,10 @@ pub struct Material {
     pub double_sided: bool,
     /// KHR_materials_unlit.
     pub unlit: bool,
-    /// KHR_materials_pbrSpecularGlossiness: diffuse color and glossiness are where base color and roughness are
-    /// otherwise, the specular factor in `specular.color`; its texture in the place of metallic-roughness.
+    /// KHR_materials_pbrSpecularGlossiness. Diffuse color and glossiness replace base color and roughness, the specular factor
+    /// is in `specular.color`, and its texture replaces metallic-roughness.
     pub specular_glossiness: bool,
-    /// KHR_materials_ior: index of refraction, at least 1; or 0, which stands for infinity.
+    /// KHR_materials_ior: index of refraction, at least 1; 0 stands for infinity.
     pub ior: f32,
     /// KHR_materials_clearcoat.
     pub clearcoat: Clearcoat,
@@ -78,13 +78,13 @@ pub struct Material {
     pub dispersion: f32,
     /// KHR_materials_diffuse_transmission.
     pub diffuse_transmission: DiffuseTransmission,
-    /// The complex index of refraction of a metal, when it is known.
+    /// The complex index of refraction of a metal, if the file has it.
     pub conductor: Option<Conductor>,
     /// The textures, indexed by `interface::TEXTURE_*`.
     pub textures: [Option<TextureUse>; TEXTURE_COUNT],
 }
 
-/// KHR_materials_clearcoat: a thin dielectric layer on top.
+/// KHR_materials_clearcoat: a thin dielectric layer over the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearcoat {
     /// 0..1.
@@ -118,7 +118,7 @@ pub struct Sheen {
 pub struct Specular {
     /// 0..1.
     pub factor: f32,
-    /// RGB factor of F0, at least 0. Specular-glossiness: F0 itself, 0..1.
+    /// RGB factor of F0, at least 0; with specular-glossiness, F0 itself, 0..1.
     pub color: Vec3,
 }
 
@@ -129,24 +129,24 @@ pub struct Iridescence {
     pub factor: f32,
     /// Index of refraction of the film, at least 1.
     pub ior: f32,
-    /// Nanometers, where the thickness texture is 0.
+    /// Thickness in nanometers where the thickness texture is 0.
     pub thickness_min_nm: f32,
-    /// Nanometers, where the thickness texture is 1 or missing.
+    /// Thickness in nanometers where the thickness texture is 1 or missing.
     pub thickness_max_nm: f32,
 }
 
-/// KHR_materials_volume: what light passes beneath the surface.
+/// KHR_materials_volume: the medium beneath the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
-    /// Meters in object space; 0 is a thin wall.
+    /// Thickness in meters, in object space; 0 is a thin wall.
     pub thickness: f32,
-    /// Color that white light has after `attenuation_distance`, 0..1.
+    /// Color of white light after `attenuation_distance`, 0..1.
     pub attenuation_color: Vec3,
     /// Meters, above 0; infinite without attenuation.
     pub attenuation_distance: f32,
 }
 
-/// KHR_materials_diffuse_transmission: light that leaves on the other side in all directions.
+/// KHR_materials_diffuse_transmission: light that passes through and leaves diffusely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmission {
     /// 0..1.
@@ -155,8 +155,8 @@ pub struct DiffuseTransmission {
     pub color: Vec3,
 }
 
-/// A metal's complex index of refraction `n - ik` at about 650, 550 and 450 nm. glTF has no extension for it, so it is
-/// read from the material's `extras`: `{"specula": {"conductor_n": [r, g, b], "conductor_k": [r, g, b]}}`.
+/// A metal's complex index of refraction `n - ik` at about 650, 550 and 450 nm. glTF has no extension for it, so the
+/// loader reads it from `extras`: `{"specula": {"conductor_n": [r, g, b], "conductor_k": [r, g, b]}}`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
     /// Real part, above 0.
@@ -166,7 +166,7 @@ pub struct Conductor {
 }
 
 impl Default for Material {
-    /// glTF's default material: white, rough metal; no extension has an effect.
+    /// glTF's default material: a white, rough metal without extensions.
     fn default() -> Self {
         Self {
             name: String::new(),
@@ -197,7 +197,7 @@ impl Default for Material {
     }
 }
 
-/// The one material that the user's override stands for: no textures, opaque, single-sided.
+/// The material of the override: opaque, single-sided, without textures.
 pub fn override_material(settings: &MaterialOverride) -> Material {
     Material {
         name: "override".into(),
@@ -209,7 +209,7 @@ pub fn override_material(settings: &MaterialOverride) -> Material {
     }
 }
 
-/// An image with a way to read it.
+/// An image and its sampler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Texture {
     /// Index into `Model::images`.
@@ -218,12 +218,12 @@ pub struct Texture {
     pub sampler: Sampler,
 }
 
-/// glTF sampler. The default is linear with mips, repeating.
+/// A glTF sampler. The default is trilinear and repeats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Sampler {
-    /// Magnification is linear, not nearest.
+    /// Whether magnification is linear instead of nearest.
     pub mag_linear: bool,
-    /// Minification is linear, not nearest.
+    /// Whether minification is linear instead of nearest.
     pub min_linear: bool,
     /// Mip levels: none, nearest or linear.
     pub mip: Mip,
@@ -246,11 +246,11 @@ pub enum Mip {
     None,
     /// The nearest level.
     Nearest,
-    /// Between two levels.
+    /// Interpolates between two levels.
     Linear,
 }
 
-/// Texture coordinates outside 0..1.
+/// Handling of texture coordinates outside 0..1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Repeat.

@@ -1,5 +1,5 @@
-//! Mip levels of 8-bit images, made on the CPU: a software device would blit them seven times slower, and every device
-//! gets the same bytes.
+//! Computes the mip levels of 8-bit images on the CPU, so that every device gets the same bytes. A software device would take
+//! seven times as long to blit them.
 
 use std::sync::LazyLock;
 
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::settings::linear_from_srgb;
 
-/// Pixels of a level that one task makes.
+/// Pixels that one task computes.
 const PIXELS_A_TASK: usize = 1 << 14;
 
 /// Number of levels down to 1x1.
@@ -29,8 +29,8 @@ pub fn bytes(width: u32, height: u32) -> usize {
     (0..count(width, height)).map(pixels).sum::<usize>() * 4
 }
 
-/// Levels 1 and up of an RGBA image, one after the other: each pixel is the mean of up to 2x2 pixels above it, of the
-/// linear values when the image is sRGB-encoded. Alpha is always linear.
+/// Levels 1 and up of an RGBA image, one after the other. Each pixel is the mean of up to 2x2 pixels of the level above.
+/// sRGB-encoded colors are averaged as linear values; alpha is always linear.
 pub fn below(rgba8: &[u8], width: u32, height: u32, srgb: bool) -> Vec<u8> {
     let mut chain = vec![0; bytes(width, height) - rgba8.len()];
     let (mut above, mut rest) = (rgba8, chain.as_mut_slice());
@@ -51,7 +51,7 @@ fn halve(above: &[u8], (from_w, from_h): (u32, u32), to: &mut [u8], (to_w, _): (
     let row_bytes = from_w as usize * 4;
     let curve = srgb.then(|| &*CURVE);
     let halve_row = |(y, row): (usize, &mut [u8])| {
-        // A side of one pixel has no second one to average.
+        // A level of height 1 has a single row.
         let (top, bottom) = if from_h > 1 { (2 * y, 2 * y + 1) } else { (0, 0) };
         let top = &above[top * row_bytes..][..row_bytes];
         let bottom = &above[bottom * row_bytes..][..row_bytes];
@@ -79,7 +79,7 @@ fn mean_of_four(pixel: &mut [u8], taps: [&[u8]; 4], curve: Option<&Curve>) {
     }
 }
 
-/// The sRGB curve both ways (IEC 61966-2-1) as tables; 16 bits of linear light keep every dark step apart.
+/// Tables of the sRGB curve and its inverse (IEC 61966-2-1). 16 bits of linear light distinguish all dark values.
 struct Curve {
     linear: [u32; 256],
     encoded: Vec<u8>,

@@ -1,12 +1,12 @@
-//! CPU data only: models, lights, camera. Knows no Vulkan; what it makes, `render` uploads.
+//! CPU data: models, lights, camera. This module uses no Vulkan; `render` uploads its data.
 //!
-//! [`load`] turns a glTF file into a [`Model`] whose indices and numbers can be trusted: everything behind it may
-//! index and divide without checks of its own. All that a file can get wrong ends in a [`LoadError`] or a warning of
-//! the model.
+//! [`load`] turns a glTF file into a [`Model`] and checks all indices and numbers, so that later code may index and divide
+//! without checks. An error in the file becomes a [`LoadError`] or a warning of the model.
 
 mod built_in;
 mod camera;
-mod control;
+mod camera_controller;
+mod camera_motion;
 pub mod environment;
 mod error;
 mod features;
@@ -17,6 +17,7 @@ mod measured;
 pub mod mips;
 mod model;
 mod outline;
+mod pack;
 mod pick;
 mod texture_source;
 
@@ -24,24 +25,26 @@ use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
 pub use camera::{CameraView, frame};
-pub use control::{FlyCamera, OrbitCamera};
+pub use camera_controller::CameraController;
+pub use camera_motion::{FlyCamera, OrbitCamera};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
 pub use lights::{light_count, lights};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
+pub use pack::pack_material;
 pub use pick::near_pixel;
 pub use texture_source::{TextureSource, texture_sources};
 
-/// What a load may do.
+/// Options of a load.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
-    /// Read files that the model names by absolute paths or outside of its own folder (`--allow-outside`).
+    /// Whether the model may name files by absolute paths or outside its folder (`--allow-outside`).
     pub allow_outside: bool,
 }
 
-/// Loads what the user named: a file, or else a built-in model of that name; without a name the first of those.
+/// Loads a file, or else the built-in model of that name. Without a path, loads the first built-in model.
 ///
 /// # Errors
 /// As [`load`].
@@ -53,18 +56,18 @@ pub fn open(path: Option<&Path>, options: &LoadOptions) -> Result<Model, LoadErr
     }
 }
 
-/// Loads a `.gltf` or `.glb` file, told apart by content.
+/// Loads a `.gltf` or `.glb` file. The content decides which of the two it is.
 ///
 /// # Errors
-/// When the file or one that it names cannot be read, is invalid, or needs what Specula lacks. Never panics on any
-/// content.
+/// Fails if the file or a file that it names cannot be read or is invalid, or requires an unsupported extension. Never
+/// panics, whatever the content.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Model, LoadError> {
     let mut files = Vec::new();
     let loaded = gltf::load_file(path, options, &mut files);
     loaded.map_err(|problem| LoadError { file: path.to_owned(), problem: Box::new(problem), files })
 }
 
-/// Loads a self-contained model from memory: a `.glb`, or JSON with data URIs. `name` is for messages and the model.
+/// Loads a self-contained model from memory: a `.glb`, or JSON with data URIs. `name` becomes the model's name.
 ///
 /// # Errors
 /// As [`load`]; external files are refused.

@@ -1,4 +1,4 @@
-//! The scene as plain data: what a loader fills and what `render` uploads. No Vulkan, no file handles.
+//! The model as plain data, which a loader fills and `render` uploads. No Vulkan, no file handles.
 
 use std::path::PathBuf;
 
@@ -8,22 +8,22 @@ pub use super::material::*;
 pub use crate::interface::Vertex;
 use crate::message::did_you_mean;
 
-/// A loaded model. Indices into its vectors are always in range; a loader that cannot promise that returns an error.
+/// A loaded model. All indices into its vectors are in range; otherwise the loader returns an error.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
     /// File stem, or the built-in name.
     pub name: String,
-    /// Unique geometry.
+    /// Geometry, each primitive once.
     pub primitives: Vec<Primitive>,
-    /// At least one; index 0 is glTF's default material.
+    /// Materials; index 0 is glTF's default material.
     pub materials: Vec<Material>,
     /// Images paired with samplers.
     pub textures: Vec<Texture>,
     /// Decoded images.
     pub images: Vec<Image>,
-    /// KHR_materials_variants: their names.
+    /// Names of the variants (KHR_materials_variants).
     pub variants: Vec<String>,
-    /// What is drawn: primitives placed in the world.
+    /// Primitives placed in the world: the draws.
     pub instances: Vec<Instance>,
     /// KHR_lights_punctual, placed in the world.
     pub lights: Vec<Light>,
@@ -31,14 +31,14 @@ pub struct Model {
     pub cameras: Vec<Camera>,
     /// World bounds of all instances.
     pub bounds: Bounds,
-    /// The outermost vertices in world space, for framing; empty stands for the corners of `bounds`.
+    /// The outermost vertices in world space, for framing. If empty, framing uses the corners of `bounds`.
     pub outline: Vec<Vec3>,
-    /// Every file that was read, absolute: these are watched.
+    /// Absolute paths of all files that were read. The window watches them.
     pub files: Vec<PathBuf>,
-    /// What the loader tolerated or replaced, one sentence each: unknown extensions, images that cannot be decoded,
-    /// repaired tangents.
+    /// What the loader ignored or replaced, one sentence each: unknown extensions, images that cannot be decoded, repaired
+    /// tangents.
     pub warnings: Vec<String>,
-    /// Where the loading time went.
+    /// Loading times.
     pub timing: LoadTiming,
 }
 
@@ -47,9 +47,9 @@ pub struct Model {
 pub struct LoadTiming {
     /// Reading and parsing the file and its buffers.
     pub parse_ms: f64,
-    /// Decoding images (wall time; they decode in parallel).
+    /// Decoding images in parallel (wall time).
     pub decode_ms: f64,
-    /// Making tangents (wall time, in parallel with decoding).
+    /// Generating tangents, in parallel with decoding (wall time).
     pub tangents_ms: f64,
 }
 
@@ -69,13 +69,13 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// Grows to hold `point`.
+    /// Grows to contain `point`.
     pub fn include(&mut self, point: Vec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
     }
 
-    /// Whether nothing was included.
+    /// Whether the bounds contain no point.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
@@ -92,20 +92,20 @@ impl Bounds {
         })
     }
 
-    /// Middle of the box; the origin when empty.
+    /// Center of the box, or the origin if empty.
     pub fn center(&self) -> Vec3 {
         if self.is_empty() { Vec3::ZERO } else { (self.min + self.max) * 0.5 }
     }
 
-    /// Radius of the sphere around the box; 1 when empty or a single point.
+    /// Radius of the sphere around the box, or 1 if the box is empty or a single point.
     pub fn radius(&self) -> f32 {
         let radius = if self.is_empty() { 0.0 } else { (self.max - self.min).length() * 0.5 };
         if radius > 0.0 && radius.is_finite() { radius } else { 1.0 }
     }
 }
 
-/// How indices form primitives. The loader turns a line loop into a strip, and a triangle strip or fan into a list
-/// where it makes flat normals or tangents, since those split vertices.
+/// How indices form primitives. The loader turns a line loop into a strip. It turns a triangle strip or fan into a list if
+/// it generates flat normals or tangents, since these split vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Topology {
@@ -130,15 +130,15 @@ pub struct Primitive {
     pub name: String,
     /// Vertices, object space.
     pub vertices: Vec<Vertex>,
-    /// Indices into `vertices`; always present.
+    /// Indices into `vertices`; never empty.
     pub indices: Vec<u32>,
-    /// How the indices are read.
+    /// Topology of the indices.
     pub topology: Topology,
     /// Index into `Model::materials`: the material in the selected variant.
     pub material: usize,
     /// Index into `Model::materials`: the material without a variant.
     pub default_material: usize,
-    /// KHR_materials_variants: indices into `Model::variants` and `Model::materials`, each variant once at most.
+    /// KHR_materials_variants: indices into `Model::variants` and `Model::materials`. Each variant occurs at most once.
     pub variant_materials: Vec<(usize, usize)>,
     /// `interface::ATTRIBUTE_*` bits.
     pub attributes: u32,
@@ -147,7 +147,7 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    /// The primitive's material in a variant: the default one where the file names no other.
+    /// The primitive's material in a variant, or its default material if the file names no other.
     pub fn material_in(&self, variant: Option<usize>) -> usize {
         let named = self.variant_materials.iter().find(|(of, _)| Some(*of) == variant);
         named.map_or(self.default_material, |(_, material)| *material)
@@ -155,7 +155,7 @@ impl Primitive {
 }
 
 impl Model {
-    /// The first `most` warnings, and a sentence that counts the others, if any: few enough to show over the picture.
+    /// The first `most` warnings, and a sentence that counts the others.
     pub fn first_warnings(&self, most: usize) -> Vec<String> {
         let mut shown: Vec<String> = self.warnings.iter().take(most).cloned().collect();
         match self.warnings.len().saturating_sub(most) {
@@ -166,10 +166,10 @@ impl Model {
         shown
     }
 
-    /// Index of the variant of this name; `None` for the empty name, which stands for the default materials.
+    /// Index of the variant with this name; `None` for the empty name, which stands for the default materials.
     ///
     /// # Errors
-    /// A name that the model does not have. The message lists the names that it has.
+    /// The model has no such variant. The message lists its variants.
     pub fn variant(&self, name: &str) -> Result<Option<usize>, String> {
         if name.is_empty() {
             return Ok(None);
@@ -184,10 +184,10 @@ impl Model {
         })
     }
 
-    /// Gives every primitive its material in the variant of this name; the empty name selects the default materials.
+    /// Selects the variant with this name for every primitive; the empty name selects the default materials.
     ///
     /// # Errors
-    /// As [`Model::variant`]; the model stays unchanged then.
+    /// As [`Model::variant`]. The model is unchanged then.
     pub fn select_variant(&mut self, name: &str) -> Result<(), String> {
         let variant = self.variant(name)?;
         for primitive in &mut self.primitives {
@@ -202,7 +202,7 @@ impl Model {
 pub struct Instance {
     /// Index into `Model::primitives`.
     pub primitive: usize,
-    /// Object to world; finite; a negative determinant flips the winding.
+    /// Object to world. Finite; a negative determinant flips the winding.
     pub world_from_object: Mat4,
     /// Index of the glTF node.
     pub node: usize,
@@ -210,7 +210,7 @@ pub struct Instance {
     pub node_name: String,
 }
 
-/// A decoded image, RGBA, 8 bits a channel, rows top to bottom. Color space depends on the use, so it is not converted.
+/// A decoded image: RGBA, 8 bits per channel, rows from the top. The color space depends on the use, so it is not converted.
 #[derive(Clone, Debug)]
 pub struct Image {
     /// Name or URI, for messages.
@@ -219,11 +219,11 @@ pub struct Image {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// `width * height * 4` bytes; empty once the model has been uploaded, which frees the pixels.
+    /// `width * height * 4` bytes. The upload frees them, so this is empty afterwards.
     pub rgba8: Vec<u8>,
 }
 
-/// Kind of a light, which decides the unit of its intensity.
+/// Kind of a light, which determines the unit of its intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     /// Parallel light; intensity in lux.
@@ -232,9 +232,9 @@ pub enum LightKind {
     Point,
     /// Intensity in candela; cone half-angles in radians.
     Spot {
-        /// Where the falloff starts.
+        /// Angle where the falloff starts.
         inner: f32,
-        /// Where it ends.
+        /// Angle where the falloff ends.
         outer: f32,
     },
 }
@@ -248,11 +248,11 @@ pub struct Light {
     pub kind: LightKind,
     /// World position, meters.
     pub position: Vec3,
-    /// Where it shines to, unit.
+    /// Unit vector along which the light shines.
     pub direction: Vec3,
     /// Linear RGB times candela or lux.
     pub intensity: Vec3,
-    /// Distance at which it ends, meters; `None` is without end.
+    /// Distance in meters beyond which the light has no effect; `None` is unlimited.
     pub range: Option<f32>,
 }
 
@@ -263,11 +263,11 @@ pub struct Camera {
     pub name: String,
     /// Position.
     pub eye: Vec3,
-    /// Looks along this, unit.
+    /// View direction, unit.
     pub forward: Vec3,
-    /// Up, unit.
+    /// Up direction, unit.
     pub up: Vec3,
-    /// Vertical field of view in radians. An orthographic camera gives the one that frames the same height at the depth
-    /// of the model's center.
+    /// Vertical field of view in radians. For an orthographic camera, the angle that shows the same height at the depth of
+    /// the model's center.
     pub fovy: f32,
 }

@@ -1,21 +1,21 @@
-//! Which parts of a model can be seen at a pixel.
+//! Finds the instances of a model that may cover a pixel.
 
 use glam::{Mat4, Vec2, Vec4Swizzles as _};
 
 use super::model::{Model, Primitive, Topology};
 
-/// Pixels around a primitive that its points, lines and the neighbors that shaders take derivatives from may reach.
+/// Margin in pixels around a primitive: for the width of points and lines, and for the neighbors that derivatives use.
 const REACH: f32 = 4.0;
 
-/// For each instance of the model whether one of its triangles, lines or points comes near to a pixel of a picture of
-/// this size, hidden or not. It may be wrong in one direction only: true for what just misses the pixel.
+/// For each instance, whether one of its triangles, lines or points comes near the pixel `at` of a picture of this size,
+/// hidden or not. The test is conservative: it may be true for an instance that misses the pixel, but never the reverse.
 pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u32, u32)) -> Vec<bool> {
     let half = Vec2::new(size.0 as f32, size.1 as f32) * 0.5;
     let pixel = Vec2::new(at.0 as f32, at.1 as f32) + 0.5;
     let is_near = |instance: &super::Instance| {
         let primitive = &model.primitives[instance.primitive];
         let clip_from_object = clip_from_world * instance.world_from_object;
-        // Pixels from the one that is asked for; none for what lies behind the eye.
+        // Position in pixels, relative to `at`. `None` behind the eye.
         let place = |position: [f32; 3]| {
             let clip = clip_from_object * glam::Vec3::from(position).extend(1.0);
             (clip.w > 0.0).then(|| (clip.xy() / clip.w + 1.0) * half - pixel)
@@ -26,7 +26,7 @@ pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u
     model.instances.iter().map(is_near).collect()
 }
 
-/// The indices of each triangle, line or point; a fan counts as one.
+/// The indices of each triangle, line or point. A fan is one piece.
 fn pieces(primitive: &Primitive) -> Box<dyn Iterator<Item = &[u32]> + '_> {
     let indices = primitive.indices.as_slice();
     match primitive.topology {
@@ -39,7 +39,7 @@ fn pieces(primitive: &Primitive) -> Box<dyn Iterator<Item = &[u32]> + '_> {
     }
 }
 
-/// Whether the box around places, pixels from the origin, reaches the origin. What is partly behind the eye may.
+/// Whether the bounding box of `places`, with a margin, contains the origin. True if a place is behind the eye.
 fn reaches(places: impl Iterator<Item = Option<Vec2>>) -> bool {
     let (mut min, mut max) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     for place in places {
@@ -66,11 +66,11 @@ mod tests {
         let near = |model: &Model, at| near_pixel(model, view.clip_from_world(), (200, 200), at);
         assert!(near(&model, (100, 100)).contains(&true));
         assert!(!near(&model, (0, 0)).contains(&true));
-        // Moved to the right by the half of what the picture shows there.
+        // Moved to the right by half of the visible width.
         let shift = Mat4::from_translation(Vec3::X * radius * 4.0 * 0.3_f32.tan());
         model.instances.iter_mut().for_each(|i| i.world_from_object = shift * i.world_from_object);
         assert!(near(&model, (195, 100)).contains(&true));
-        // Nothing is known of what reaches behind the eye.
+        // An instance that reaches behind the eye may cover any pixel.
         model.instances.iter_mut().for_each(|i| i.world_from_object = Mat4::from_translation(view.eye - center));
         assert!(near(&model, (0, 0)).contains(&true));
     }

@@ -1,4 +1,4 @@
-//! Which images a model's materials read, and in which form they go to the device.
+//! Determines which textures the materials of a model need on the device, and their pixels.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -11,12 +11,12 @@ use crate::interface::{
 };
 use crate::scene::{Image, Material, Model, packs_occlusion};
 
-/// An image as materials read it. Indices are into `Model::images`.
+/// A texture as the materials read it. Indices are into `Model::images`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TextureSource {
-    /// Stands in for a missing texture, whose factor is all there is.
+    /// The default for a missing texture: only the factor counts.
     White,
-    /// Stands in for a missing normal texture.
+    /// The default for a missing normal texture.
     FlatNormal,
     /// One of the model's images.
     Image {
@@ -25,8 +25,8 @@ pub enum TextureSource {
         /// Whether its colors are sRGB-encoded.
         srgb: bool,
     },
-    /// A metallic-roughness image with the red channel of an occlusion image of the same size: one texture to read
-    /// for each pixel instead of two.
+    /// A metallic-roughness image with the red channel of an occlusion image of the same size, so that shaders read one
+    /// texture instead of two.
     Packed {
         /// The image of the other channels.
         metallic_roughness: usize,
@@ -35,11 +35,11 @@ pub enum TextureSource {
     },
 }
 
-/// Pixels that one task of the merge works on.
+/// Pixels that one task of the merge processes.
 const PIXELS_A_TASK: usize = 1 << 16;
 
 impl TextureSource {
-    /// What a material has in a slot, `interface::TEXTURE_*`.
+    /// The texture of a material in a slot, `interface::TEXTURE_*`.
     pub fn of(model: &Model, material: &Material, slot: usize) -> Self {
         let image_in = |slot: usize| material.textures[slot].map(|used| model.textures[used.texture].image);
         let is = |of: &[u32]| of.iter().any(|texture| *texture as usize == slot);
@@ -70,7 +70,7 @@ impl TextureSource {
         matches!(self, Self::Image { srgb: true, .. })
     }
 
-    /// The image that it has its name and size from; `None` for a stand-in, which is a pixel.
+    /// The image that gives the texture its name and size; `None` for a default, which has one pixel.
     pub fn image(self, model: &Model) -> Option<&Image> {
         match self {
             Self::White | Self::FlatNormal => None,
@@ -78,7 +78,7 @@ impl TextureSource {
         }
     }
 
-    /// The images that its pixels come from, as indices into `Model::images`.
+    /// The images that provide its pixels, as indices into `Model::images`.
     pub fn images(self) -> impl Iterator<Item = usize> {
         let [first, second] = match self {
             Self::White | Self::FlatNormal => [None, None],
@@ -88,7 +88,7 @@ impl TextureSource {
         first.into_iter().chain(second)
     }
 
-    /// Its pixels, RGBA, rows top to bottom. Reads `Image::rgba8`, which an upload empties.
+    /// Its pixels: RGBA, rows from the top. Call this before the upload, which empties `Image::rgba8`.
     pub fn pixels(self, model: &Model) -> Cow<'_, [u8]> {
         match self {
             Self::White => Cow::Borrowed(&[255; 4]),
@@ -110,7 +110,7 @@ impl TextureSource {
     }
 }
 
-/// Everything that the materials of a model read, the stand-ins first.
+/// All textures that the materials of a model read, the defaults first.
 pub fn texture_sources(model: &Model) -> BTreeSet<TextureSource> {
     let used = model
         .materials
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
     use crate::scene::{Sampler, Texture, TextureUse};
 
-    /// Images of these sizes, each with a texture, each pixel unlike all others.
+    /// Images of these sizes, each with a texture. All pixels are different.
     fn model(sizes: &[(u32, u32)]) -> Model {
         let image = |(index, &(width, height)): (usize, &(u32, u32))| {
             let rgba8 = (0..width * height * 4).map(|byte| (byte as usize * 7 + index * 101) as u8).collect();
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn occlusion_goes_into_the_red_channel_of_a_copy() {
-        // More pixels than a task has, and no multiple of them.
+        // More pixels than a task processes, and not a multiple.
         let size = (411, 333);
         let mut model = model(&[size, size]);
         let material = material(&[(TEXTURE_METALLIC_ROUGHNESS, 0), (TEXTURE_OCCLUSION, 1)]);
@@ -164,7 +164,7 @@ mod tests {
         for (merged, (roughness, occlusion)) in pixels.chunks_exact(4).zip(roughness.zip(occlusion)) {
             assert_eq!(merged, [occlusion[0], roughness[1], roughness[2], roughness[3]]);
         }
-        // The occlusion image itself is not uploaded; the other one is for its other user.
+        // The occlusion image alone is not uploaded. The other image also has another user.
         let image = TextureSource::Image { image: 0, srgb: true };
         assert_eq!(
             Vec::from_iter(texture_sources(&model)),

@@ -1,15 +1,16 @@
-//! Files to SPIR-V: shader trees, compilation, diagnostics, annotations and the check against the contract.
+//! Compiles files to SPIR-V: shader trees, compilation, diagnostics, annotations and the check against the contract.
 //!
-//! Knows no Vulkan device and no scene. The way of an edit:
-//! [`watch`] delivers settled sets of changed paths; [`library`] finds the dirty stages through the include graph, compiles
-//! them ([`compile`]), reflects the modules ([`spirv::reflect`]), holds them against the contract ([`contract`]) and reads the
-//! author's annotations ([`annotation`]); out comes either a whole new [`ShaderSet`] or [`Diagnostic`]s, never a mixture.
+//! This module uses no Vulkan device and no scene. An edit takes this path: [`watch`] delivers a settled set of changed paths.
+//! [`library`] finds the dirty stages in the include graph, compiles them ([`compile`]), reflects the modules
+//! ([`spirv::reflect`]), checks them against the contract ([`contract`]) and reads the annotations ([`annotation`]). The result
+//! is either a complete new [`ShaderSet`] or [`Diagnostic`]s.
 
 pub mod annotation;
 pub mod compile;
 pub mod contract;
 pub mod diagnostic;
 pub mod library;
+mod pixel;
 pub mod source;
 pub mod spirv;
 pub mod values;
@@ -19,6 +20,7 @@ pub use annotation::{Constant, DrawAs, Encode, Mode, Parameter};
 pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};
+pub use pixel::PixelValue;
 pub use source::{Source, SourceError, TreePath, embedded, is_specula_tree};
 pub use spirv::specialize;
 pub use watch::{Batch, Watcher};

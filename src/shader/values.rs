@@ -1,4 +1,4 @@
-//! Values of the shader tree's own constants and parameters: looked up by name in the settings and converted to the bits that the
+//! Looks up the values of the shader tree's constants and parameters in the settings, and converts them to the bits that the
 //! shader reads.
 
 use std::collections::BTreeMap;
@@ -14,15 +14,15 @@ type Values = BTreeMap<String, ShaderValue>;
 /// Specialization constants: ids and the bits of their values.
 type Specialization = Vec<(u32, u32)>;
 
-/// All specialization constants in the order of their ids, so that equal values give equal pipelines. A constant whose value does not
-/// fit has its default.
+/// The values of all specialization constants by ascending id, so that equal values give equal pipelines. A constant whose
+/// value does not fit has its default.
 pub(crate) fn constants(values: &Values, constants: &[Constant]) -> Specialization {
     let set = |c: &Constant| values.get(&c.name).and_then(|value| constant_bits(c, value).ok());
     constants.iter().map(|c| (c.id, set(c).unwrap_or(c.default))).collect()
 }
 
-/// A message for each value that does not fit its constant or parameter. The values are kept, since the next edit may make them
-/// fit again.
+/// A message for each value that does not fit its constant or parameter. The settings keep these values, since they may fit
+/// after the next edit.
 pub fn misfits(values: &Values, shaders: &ShaderSet) -> Vec<String> {
     let constants = shaders.constants.iter().filter_map(|c| constant_bits(c, values.get(&c.name)?).err());
     let parameters = shaders.parameters.iter().filter_map(|p| parameter_numbers(p, values.get(&p.name)).err());
@@ -41,7 +41,7 @@ fn constant_bits(constant: &Constant, value: &ShaderValue) -> Result<u32, String
     })
 }
 
-/// The bytes of the uniform block `Params`, `PARAMS_SIZE` of them. A parameter whose value does not fit has its default.
+/// The `PARAMS_SIZE` bytes of the uniform block `Params`. A parameter whose value does not fit has its default.
 pub(crate) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
     let mut block = vec![0; PARAMS_SIZE as usize];
     for parameter in parameters {
@@ -81,8 +81,8 @@ fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Resu
     Ok(numbers)
 }
 
-/// The number that a value stands for, if a constant or parameter of this type takes it. A choice takes its names and their numbers
-/// and nothing else.
+/// The number of a value, if it is valid for a constant or parameter of this type. Of a list of choices, only the names and
+/// their numbers are valid.
 fn fitting(value: &ShaderValue, scalar: Scalar, choices: &[(String, i64)]) -> Option<f64> {
     let number = number(value, choices)?;
     let is_bool = matches!(value, ShaderValue::Bool(_));
@@ -106,7 +106,7 @@ fn misfit(name: &str, value: &ShaderValue, takes: &str, choices: &[(String, i64)
     format!("{name} cannot be {}; it takes {takes}.{hint}", shown(value))
 }
 
-/// Refuses numbers outside of the declared range.
+/// Refuses numbers outside the declared range.
 fn within(name: &str, range: Option<(f64, f64)>, numbers: &[f64]) -> Result<(), String> {
     let Some((low, high)) = range else { return Ok(()) };
     let Some(at) = numbers.iter().position(|n| !(low..=high).contains(n)) else { return Ok(()) };
@@ -122,7 +122,7 @@ fn takes_parameter(parameter: &Parameter) -> String {
     takes(parameter.kind.scalar(), parameter.kind.components(), &parameter.choices, parameter.range)
 }
 
-/// What can be given to a constant or parameter: `GGX or Beckmann (0 or 1)`, `a number, 0 to 1`.
+/// The valid values of a constant or parameter: `GGX or Beckmann (0 or 1)`, `a number, 0 to 1`.
 fn takes(scalar: Scalar, components: usize, choices: &[(String, i64)], range: Option<(f64, f64)>) -> String {
     let within = range.map(|(low, high)| format!(", {low} to {high}")).unwrap_or_default();
     match scalar {
@@ -140,7 +140,7 @@ fn takes(scalar: Scalar, components: usize, choices: &[(String, i64)], range: Op
     }
 }
 
-/// The message about the first name in `values` that the tree does not have, with the nearest name; `None` when all exist.
+/// A message about the first name in `values` that the tree lacks, with the nearest name. `None` if all exist.
 pub fn unknown_names(values: &Values, shaders: &ShaderSet) -> Option<String> {
     let constants = shaders.constants.iter().map(|c| (c.name.as_str(), takes_constant(c)));
     let parameters = shaders.parameters.iter().map(|p| (p.name.as_str(), takes_parameter(p)));
@@ -151,7 +151,7 @@ pub fn unknown_names(values: &Values, shaders: &ShaderSet) -> Option<String> {
     Some(unknown_setting(unknown, &names, describe))
 }
 
-/// A value as one number; a name is looked up in `choices`, whatever the case of its letters. `None` for vectors and unknown names.
+/// A value as a number. A name is looked up in `choices`, ignoring case. `None` for vectors and unknown names.
 pub fn number(value: &ShaderValue, choices: &[(String, i64)]) -> Option<f64> {
     match value {
         ShaderValue::Bool(b) => Some(f64::from(u8::from(*b))),

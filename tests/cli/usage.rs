@@ -25,6 +25,7 @@ fn a_misspelled_command_or_model_gets_the_nearest() {
     for command in ["render", "info", "view"] {
         run(here, &[command, "Shader-Bal"]).expect(2, &["'Shader-Bal'", "Did you mean 'shader-ball'?"]);
     }
+    run(here, &["--siez", SMALL[1]]).expect(2, &["unexpected argument '--siez'", "'--size'"]);
     // A name with an ending is a file that is missing, not a word.
     run(here, &["nowhere.glb"]).expect(1, &["nowhere.glb", "no such file"]);
     fs::write(here.join("helmet.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();

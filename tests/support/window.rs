@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use super::process::{Finished, PATIENCE, Running, finish, specula};
 use super::{Tree, open_image};
 
-/// An X server that ends with the test.
+/// An X server. Dropping this ends it.
 pub struct Display {
     server: Child,
     name: String,
@@ -117,7 +117,7 @@ impl Viewer {
         running.event("window");
         let found = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
         let window = found.stdout.lines().next().unwrap().to_owned();
-        // There is no window manager to give it the keyboard.
+        // Without a window manager, nothing else gives the window the keyboard focus.
         display.xdotool(&["windowfocus", "--sync", &window]);
         Self { running, tree, window, display }
     }

@@ -1,4 +1,4 @@
-//! The environment: which map, its rotation and intensity, and whether it is visible.
+//! The panel Environment: the map, its rotation and intensity, and whether it is visible.
 
 use egui::{RichText, Slider, Ui};
 
@@ -7,11 +7,11 @@ use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::Settings;
 
-/// Shows the panel. `progress`: the part of a bake under way that is done, and what comes next.
+/// Shows the panel. `progress` is the fraction of the current bake that is done, and its next pass.
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, progress: Option<&(f32, String)>, report: &BakeReport) {
     section(ui, "Environment", true, |ui| {
         let environment = &mut settings.environment;
-        row(ui, "Map", "--env; drop an .hdr or .exr file on the window", |ui| {
+        row(ui, "Map", "Environment map (--env). Drop an .hdr or .exr file on the window to use it", |ui| {
             let shown = environment.name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
             egui::ComboBox::from_id_salt("environment").selected_text(shown).width(150.0).truncate().show_ui(
                 ui,
@@ -28,13 +28,13 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, progress: Option<&(f32,
             let from = if report.cached { "from the disk" } else { "baked" };
             ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));
         }
-        row(ui, "Rotation", "Around +Y", |ui| {
+        row(ui, "Rotation", "Rotation around +Y in degrees", |ui| {
             ui.add(Slider::new(&mut environment.rotation, -180.0..=180.0).suffix("°").max_decimals(0));
         });
-        row(ui, "Intensity", "Factor on its radiance", |ui| {
+        row(ui, "Intensity", "Factor on the map's radiance", |ui| {
             ui.add(Slider::new(&mut environment.intensity, 0.0..=8.0).max_decimals(2));
         });
-        row(ui, "Behind", "Seen behind the model (--background env)", |ui| {
+        row(ui, "Behind", "Show the map behind the model (--background env); blur 0 is sharp", |ui| {
             let mut seen = settings.view.background == "env";
             if ui.add_enabled(environment.is_lit(), egui::Checkbox::without_text(&mut seen)).changed() {
                 settings.view.background = if seen { "env".into() } else { "#1b1d21".into() };

@@ -1,14 +1,14 @@
-//! The lights: which shine, the three that orbit, and the ambient light.
+//! The panel Lights: which lights are on, the orbiting lights, the rectangle and the ambient light.
 
 use egui::{DragValue, Slider, Ui};
 
 use super::{color, row, section};
 use crate::settings::{LightSettings, LightSource, RectLight};
 
-/// Shows the panel of a model with `in_model` lights of its own.
+/// Shows the panel. `in_model` is the number of lights in the model.
 pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
     section(ui, "Lights", true, |ui| {
-        row(ui, "Source", "Which lights shine (--lights)", |ui| {
+        row(ui, "Source", "Which lights are on (--lights)", |ui| {
             ui.selectable_value(&mut lights.source, LightSource::Orbit, "Orbit");
             let model = egui::Button::selectable(lights.source == LightSource::Model, format!("Model ({in_model})"));
             if ui.add_enabled(in_model > 0, model).clicked() {
@@ -16,7 +16,7 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
             }
             ui.selectable_value(&mut lights.source, LightSource::None, "None");
         });
-        row(ui, "Terms of light", "Which light the BRDF term modes show", |ui| {
+        row(ui, "Terms of light", "The light whose BRDF terms the modes show", |ui| {
             ui.selectable_value(&mut lights.chosen, 0, "All");
             let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
             for light in 1..=count {
@@ -24,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
             }
         });
         if lights.source == LightSource::Orbit {
-            row(ui, "Orbit", "Degrees a second around the model (L)", |ui| {
+            row(ui, "Orbit", "Speed around the model in degrees per second (L)", |ui| {
                 ui.add(Slider::new(&mut lights.spin, -90.0..=90.0).suffix("°/s").max_decimals(0));
             });
             for (i, light) in lights.orbit.iter_mut().enumerate() {
@@ -33,19 +33,19 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
                     row(
                         ui,
                         &format!("Light {}", i + 1),
-                        "Color, and illuminance (lux) at a distance of one model radius",
+                        "Color, and illuminance in lux at a distance of one model radius",
                         |ui| {
                             color(ui, &mut light.color);
                             ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
                         },
                     );
-                    row(ui, "Distance", "In radii of the model", |ui| {
+                    row(ui, "Distance", "From the model center, in model radii", |ui| {
                         ui.add(Slider::new(&mut light.distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
                     });
-                    row(ui, "Azimuth", "Around +Y, from +Z towards +X", |ui| {
+                    row(ui, "Azimuth", "Degrees around +Y, from +Z towards +X", |ui| {
                         ui.add(Slider::new(&mut light.azimuth, -180.0..=360.0).suffix("°").max_decimals(0));
                     });
-                    row(ui, "Polar", "From +Y", |ui| {
+                    row(ui, "Polar", "Degrees from +Y", |ui| {
                         ui.add(Slider::new(&mut light.polar, 0.0..=180.0).suffix("°").max_decimals(0));
                     });
                 });
@@ -56,7 +56,7 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
             rect(ui, &mut lights.rect);
         }
         ui.separator();
-        row(ui, "Ambient", "Radiance from everywhere, where there is no environment", |ui| {
+        row(ui, "Ambient", "Color and radiance from every direction; off with an environment", |ui| {
             color(ui, &mut lights.ambient_color);
             ui.add(Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
         });
@@ -65,7 +65,7 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
 
 /// The rectangular light.
 fn rect(ui: &mut Ui, light: &mut RectLight) {
-    row(ui, "Rectangle", "A light with a size; color, and radiance at white", |ui| {
+    row(ui, "Rectangle", "One-sided area light: color, and radiance of white", |ui| {
         ui.checkbox(&mut light.enabled, "");
         if light.enabled {
             color(ui, &mut light.color);
@@ -76,17 +76,17 @@ fn rect(ui: &mut Ui, light: &mut RectLight) {
         return;
     }
     ui.push_id("rectangle", |ui| {
-        row(ui, "Size", "Width and height in radii of the model", |ui| {
+        row(ui, "Size", "Width and height in model radii", |ui| {
             ui.add(DragValue::new(&mut light.width).range(0.01..=20.0).speed(0.01).prefix("w "));
             ui.add(DragValue::new(&mut light.height).range(0.01..=20.0).speed(0.01).prefix("h "));
         });
-        row(ui, "Distance", "In radii of the model", |ui| {
+        row(ui, "Distance", "From the model center, in model radii", |ui| {
             ui.add(Slider::new(&mut light.distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
         });
-        row(ui, "Azimuth", "Around +Y, from +Z towards +X", |ui| {
+        row(ui, "Azimuth", "Degrees around +Y, from +Z towards +X", |ui| {
             ui.add(Slider::new(&mut light.azimuth, -180.0..=180.0).suffix("°").max_decimals(0));
         });
-        row(ui, "Polar", "From +Y", |ui| {
+        row(ui, "Polar", "Degrees from +Y", |ui| {
             ui.add(Slider::new(&mut light.polar, 0.0..=180.0).suffix("°").max_decimals(0));
         });
     });

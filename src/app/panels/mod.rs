@@ -1,5 +1,5 @@
-//! The panels: modes on the left, everything that can be set on the right, messages over the picture. One file per panel, and
-//! each gets only what it shows and sets.
+//! The panels: modes on the left, settings on the right, messages over the picture. Each panel has a file of its own and
+//! receives only what it shows and sets.
 
 mod camera;
 mod environment;
@@ -18,18 +18,18 @@ use super::command::Command;
 use super::viewer::Viewer;
 use crate::gpu::PassTime;
 
-/// Behind the panels.
+/// Background of the panels.
 const PANEL: Color32 = Color32::from_rgb(24, 25, 28);
-/// Names of things that can be chosen.
+/// Links.
 const ACCENT: Color32 = Color32::from_rgb(94, 182, 255);
 /// Errors.
 const ERROR: Color32 = Color32::from_rgb(255, 110, 100);
 /// Warnings.
 const WARNING: Color32 = Color32::from_rgb(255, 196, 92);
-/// Text that only explains.
+/// Explanations.
 const QUIET: Color32 = Color32::from_rgb(150, 154, 162);
 
-/// Sets the look of the user interface.
+/// Sets colors, fonts and spacing.
 pub(super) fn style(egui: &egui::Context) {
     egui.set_theme(egui::Theme::Dark);
     egui.all_styles_mut(|style| {
@@ -46,13 +46,13 @@ pub(super) fn style(egui: &egui::Context) {
     });
 }
 
-/// What the panels remember from frame to frame.
+/// State of the panels between frames.
 pub(super) struct PanelState {
     /// Whether the panels are shown (H).
     pub(super) visible: bool,
     /// Whether the warnings of the model are shown over the picture.
     pub(super) show_model_warnings: bool,
-    /// The mode that the list was last scrolled to.
+    /// Slug of the mode that the list was last scrolled to.
     scrolled_to: String,
     timing: timing::Timing,
 }
@@ -63,23 +63,23 @@ impl Default for PanelState {
     }
 }
 
-/// What was measured about the last frames.
+/// Measurements of the last frames.
 pub(super) struct Readings {
     /// Device time of the newest finished frame, milliseconds.
     pub(super) device_ms: Option<f64>,
-    /// The same for each of its passes.
+    /// Device time of each of its passes.
     pub(super) passes: Vec<PassTime>,
-    /// The value under the mouse, in words.
+    /// Text of the value under the mouse.
     pub(super) value: Option<String>,
-    /// What stands over the picture.
+    /// Title over the picture.
     pub(super) title: Option<String>,
 }
 
-/// Shows everything; returns the rectangle that is left for the picture.
+/// Shows all panels. Returns the rectangle that is left for the picture.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> egui::Rect {
     let whole = ui.max_rect();
     let frame = egui::Frame::new().fill(PANEL).inner_margin(Margin::symmetric(8, 6));
-    // On a window too narrow for both, the picture goes first.
+    // In a narrow window the picture has priority.
     if viewer.panels.visible && whole.width() > 460.0 {
         if whole.width() > 760.0 {
             let panel = egui::Panel::left("modes").frame(frame).default_size(170.0).min_size(120.0).max_size(320.0);
@@ -114,14 +114,14 @@ fn settings(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mu
     model::show(ui, settings, &model, &viewer.model);
 }
 
-/// A heading that folds what is below it.
+/// A collapsible section.
 fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
     let heading = egui::RichText::new(title).strong().size(14.0);
     egui::CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, body);
     ui.add_space(4.0);
 }
 
-/// A row: name on the left, control on the right.
+/// A row with its name on the left and its control on the right. `doc` is the hover text of the name.
 fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let size = egui::vec2(120.0, 18.0);
@@ -139,12 +139,12 @@ fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R
     .inner
 }
 
-/// "1 draw", "2 draws".
+/// A count with its noun, such as "1 draw" or "2 draws".
 fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// A color as linear RGB.
+/// A color picker for linear RGB.
 fn color(ui: &mut Ui, linear: &mut [f32; 3]) {
     egui::widgets::color_picker::color_edit_button_rgb(ui, linear);
 }

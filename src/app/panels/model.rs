@@ -1,4 +1,4 @@
-//! The model: what was loaded, and what the loader had to say.
+//! The panel Model: variant, material override, statistics, and the loader's warnings.
 
 use egui::{RichText, Slider, Ui};
 
@@ -17,10 +17,10 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, status: 
         });
         if !model.variants.is_empty() {
             let variant = &mut settings.variant;
-            row(ui, "Variant", "The file's sets of materials", |ui| {
-                let shown = if variant.is_empty() { "as it comes" } else { variant.as_str() }.to_owned();
+            row(ui, "Variant", "Variant of the model's materials (KHR_materials_variants)", |ui| {
+                let shown = if variant.is_empty() { "default materials" } else { variant.as_str() }.to_owned();
                 egui::ComboBox::from_id_salt("variant").selected_text(shown).show_ui(ui, |ui| {
-                    ui.selectable_value(variant, String::new(), "as it comes");
+                    ui.selectable_value(variant, String::new(), "default materials");
                     for name in &model.variants {
                         ui.selectable_value(variant, name.clone(), name);
                     }
@@ -53,9 +53,9 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, status: 
     });
 }
 
-/// One material over all.
+/// The material override.
 fn override_material(ui: &mut Ui, material: &mut MaterialOverride) {
-    row(ui, "Override", "One material without textures over all of the model's", |ui| {
+    row(ui, "Override", "Replace all materials with one that has no textures", |ui| {
         ui.checkbox(&mut material.enabled, "");
         if material.enabled {
             color(ui, &mut material.base_color);
@@ -64,11 +64,11 @@ fn override_material(ui: &mut Ui, material: &mut MaterialOverride) {
     if !material.enabled {
         return;
     }
-    row(ui, "Metallic", "", |ui| ui.add(Slider::new(&mut material.metallic, 0.0..=1.0).max_decimals(3)));
-    row(ui, "Roughness", "", |ui| ui.add(Slider::new(&mut material.roughness, 0.0..=1.0).max_decimals(3)));
-    row(ui, "Anisotropy", "", |ui| ui.add(Slider::new(&mut material.anisotropy, 0.0..=1.0).max_decimals(3)));
+    row(ui, "Metallic", "1 is metal", |ui| ui.add(Slider::new(&mut material.metallic, 0.0..=1.0).max_decimals(3)));
+    row(ui, "Roughness", "Perceptual", |ui| ui.add(Slider::new(&mut material.roughness, 0.0..=1.0).max_decimals(3)));
+    row(ui, "Anisotropy", "Strength", |ui| ui.add(Slider::new(&mut material.anisotropy, 0.0..=1.0).max_decimals(3)));
     if material.anisotropy > 0.0 {
-        row(ui, "Direction", "From the tangent towards the bitangent", |ui| {
+        row(ui, "Direction", "Angle from the tangent towards the bitangent, in degrees", |ui| {
             ui.add(Slider::new(&mut material.anisotropy_rotation, -90.0..=90.0).suffix("°").max_decimals(0))
         });
     }

@@ -1,11 +1,11 @@
-//! The debug modes of the tree, by group; the one on screen is marked.
+//! The list of debug modes by group, with the selected mode highlighted.
 
 use egui::{RichText, Ui};
 
 use super::QUIET;
 use crate::shader::ShaderSet;
 
-/// Shows the list; `current` is the slug of the mode, `scrolled_to` that of the mode the list was last scrolled to.
+/// Shows the list. `current` is the slug of the selected mode, and `scrolled_to` that of the mode last scrolled to.
 pub(super) fn show(ui: &mut Ui, shaders: Option<&ShaderSet>, current: &mut String, scrolled_to: &mut String) {
     let Some(shaders) = shaders else {
         ui.label(RichText::new("Compiling shaders…").color(QUIET));

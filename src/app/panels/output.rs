@@ -1,4 +1,4 @@
-//! From radiance to the screen: exposure, tone map, background, samples.
+//! The panel Output: exposure, tone map, background, samples.
 
 use clap::ValueEnum as _;
 use egui::{Slider, Ui};
@@ -10,10 +10,10 @@ use crate::settings::{Settings, Tonemap};
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
     section(ui, "Output", true, |ui| {
         let view = &mut settings.view;
-        row(ui, "Exposure", "EV100: exposure is 1 / (1.2 * 2^EV) (--ev)", |ui| {
+        row(ui, "Exposure", "EV100 (--ev): radiance is multiplied by 1 / (1.2 * 2^EV)", |ui| {
             ui.add(Slider::new(&mut view.ev, -10.0..=10.0).suffix(" EV").max_decimals(1));
         });
-        row(ui, "Tone map", "--tonemap", |ui| {
+        row(ui, "Tone map", "Curve from radiance to display range (--tonemap)", |ui| {
             let name = |tonemap: Tonemap| {
                 tonemap.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
             };
@@ -23,18 +23,18 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Comm
                 }
             });
         });
-        row(ui, "Background", "--background", |ui| {
+        row(ui, "Background", "Color behind the model (--background)", |ui| {
             let hex = u32::from_str_radix(view.background.trim_start_matches('#'), 16).unwrap_or(0);
             let mut srgb = [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8];
             if ui.color_edit_button_srgb(&mut srgb).changed() {
                 view.background = format!("#{:02x}{:02x}{:02x}", srgb[0], srgb[1], srgb[2]);
             }
         });
-        row(ui, "Samples", "Multisampling", |ui| {
+        row(ui, "Samples", "Multisampling: samples per pixel", |ui| {
             ui.selectable_value(&mut view.msaa, 1, "1x");
             ui.selectable_value(&mut view.msaa, 4, "4x");
         });
-        if ui.button("Copy as look file").on_hover_text("All settings as TOML, for --look").clicked() {
+        if ui.button("Copy as look file").on_hover_text("Copy all settings as TOML, for --look").clicked() {
             ui.ctx().copy_text(settings.to_toml());
             commands.push(Command::Say("copied: all settings as TOML".into()));
         }

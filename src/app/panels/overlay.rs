@@ -1,4 +1,4 @@
-//! What lies over the picture: diagnostics with their source line, a message for a while, and what is being loaded.
+//! The overlay: diagnostics with their source lines, messages, loading state, the mode and the value under the mouse.
 
 use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichText, Stroke, Ui};
 
@@ -6,7 +6,7 @@ use super::{ERROR, QUIET, Readings, WARNING, plural};
 use crate::app::viewer::Viewer;
 use crate::shader::{Diagnostic, Severity};
 
-/// More warnings of a model than these are counted only.
+/// Maximum number of model warnings to show. The rest is counted.
 const MODEL_WARNINGS: usize = 4;
 
 pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: egui::Rect) {
@@ -20,7 +20,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, readings: &Reading
     }
 }
 
-/// What went wrong for good, and what the model's loader tolerated, until it is dismissed.
+/// Kept messages and the model's warnings, until the user hides them.
 fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: egui::Rect) {
     let model = viewer.session.model().filter(|_| viewer.panels.show_model_warnings);
     let of_model: &[String] = model.map_or(&[], |model| &model.warnings);
@@ -50,10 +50,10 @@ fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: egui::Rect) {
     }
 }
 
-/// A message for a few seconds, or what is being loaded.
+/// The passing message, or that a model is loading.
 fn notice(egui: &egui::Context, viewer: &Viewer, picture: egui::Rect) {
     let has_model = viewer.session.model().is_some_and(|model| !model.instances.is_empty());
-    // Without a model the reason stays.
+    // If no model could be loaded, the message stays.
     let stays = !has_model && !viewer.model.loading;
     let notice = viewer.notices.passing(stays);
     if let Some((_, left)) = notice.filter(|_| !stays) {
@@ -70,7 +70,7 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: egui::Rect) {
     });
 }
 
-/// The mode of the picture, and the value under the mouse.
+/// The title with the mode, and the value under the mouse.
 fn label(egui: &egui::Context, readings: &Readings, picture: egui::Rect) {
     if readings.title.is_none() && readings.value.is_none() {
         return;
@@ -84,7 +84,7 @@ fn label(egui: &egui::Context, readings: &Readings, picture: egui::Rect) {
     });
 }
 
-/// Shows them; returns whether the user wants them away, which only warnings offer.
+/// Shows diagnostics. Returns whether the user hides them, which is possible only without errors.
 fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::Rect) -> bool {
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let mut hide = false;
@@ -97,7 +97,7 @@ fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::
             if diagnostics.len() > 1 || !failed {
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(counts(diagnostics)).strong());
-                    hide = !failed && ui.small_button("Hide").on_hover_text("Until the next reload").clicked();
+                    hide = !failed && ui.small_button("Hide").on_hover_text("Hide until the next reload").clicked();
                 });
             }
             egui::ScrollArea::vertical().max_height((picture.height() * 0.6).max(80.0)).show(ui, |ui| {
@@ -113,7 +113,7 @@ fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::
     hide
 }
 
-/// As "3 errors, 1 warning".
+/// A summary such as "3 errors, 1 warning".
 fn counts(diagnostics: &[Diagnostic]) -> String {
     let count = |severity: Severity| diagnostics.iter().filter(|d| d.severity == severity).count();
     let parts = [Severity::Error, Severity::Warning].map(|severity| (count(severity), severity));
@@ -128,11 +128,11 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
         None => diagnostic.file.clone(),
     };
     let response = ui.label(RichText::new(&place).monospace().color(color).strong());
-    if response.on_hover_text("Click to copy the place").interact(egui::Sense::click()).clicked() {
+    if response.on_hover_text("Click to copy the position").interact(egui::Sense::click()).clicked() {
         ui.ctx().copy_text(place);
     }
     let full = diagnostic.full();
-    // Without the first two lines: message and place stand above.
+    // Skip the first two lines, message and position, which are shown above.
     let rest = full.lines().skip(2).collect::<Vec<_>>().join("\n");
     ui.label(RichText::new(&diagnostic.message).monospace().color(Color32::WHITE));
     if !rest.is_empty() {

@@ -1,4 +1,4 @@
-//! The author's own constants and parameters: a control for each `//@ui`. Values are kept by name across reloads.
+//! The panel Parameters: a control for each `//@ui` constant and parameter. Reloads keep their values by name.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
 use crate::shader::{Constant, Parameter, ShaderSet};
 
-/// Shows the panel; `values` are those that are set, by name.
+/// Shows the panel. `values` holds the values that differ from the shader's defaults, by name.
 pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<String, ShaderValue>) {
     if shaders.constants.is_empty() && shaders.parameters.is_empty() {
         return;

@@ -1,5 +1,5 @@
-//! The state of the shader tree: what was rebuilt last, and how long each step took. Always as high, so that what is below it
-//! stays where it is when an error comes or goes.
+//! The panel Shaders: the last reload and the time of each step. Its height is constant, so that an error does not move the
+//! panels below.
 
 use egui::{Label, RichText, Ui};
 
@@ -9,7 +9,7 @@ use crate::app::status::ShaderStatus;
 use crate::events::ReloadEvent;
 use crate::shader::{Diagnostic, Severity};
 
-/// Shows the panel of shaders of this generation (0: none yet).
+/// Shows the panel. `generation` is 0 before the first shaders.
 pub(super) fn show(
     ui: &mut Ui,
     status: &ShaderStatus,
@@ -21,7 +21,7 @@ pub(super) fn show(
         ui.horizontal(|ui| {
             let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
             match (status.compiling, errors) {
-                // No spinner: on a software device its frames would slow down what they wait for.
+                // No spinner: on a software device its frames would slow the compilation down.
                 (true, _) => ui.label("Compiling…"),
                 (_, 0) if generation == 0 => ui.label("No shaders yet"),
                 (_, 0) => ui.label(format!("Generation {generation}")),
@@ -36,7 +36,7 @@ pub(super) fn show(
         ui.add(Label::new(RichText::new(&status.tree).small().color(QUIET)).truncate()).on_hover_text(&status.tree);
         let (edit, times, hover) = status.last.as_ref().map(lines).unwrap_or_default();
         for line in [edit, times] {
-            // A line without text is as high as one with.
+            // A space keeps the height of an empty line.
             let text = if line.is_empty() { " ".to_owned() } else { line };
             let response = ui.add(Label::new(RichText::new(text).monospace().small()).truncate());
             if !hover.is_empty() {
@@ -46,7 +46,7 @@ pub(super) fn show(
     });
 }
 
-/// What changed and was compiled, what each step took, and all of it at length.
+/// Three texts: the changed files with the compiled stages, the time of each step, and a hover text with the details.
 fn lines(last: &ReloadEvent) -> (String, String, String) {
     let name = |path: &String| path.rsplit('/').next().unwrap_or(path).to_owned();
     let changed =

@@ -1,10 +1,10 @@
-//! Device time of the last frame, pass by pass.
+//! The panel GPU time: device time of each pass of the last frame.
 
 use egui::{RichText, Ui};
 
 use super::{QUIET, Readings, section};
 
-/// The newest time of every pass that was ever drawn, so that rows do not come and go.
+/// The newest time of every pass drawn so far. Rows stay after their pass, so that the list does not jump.
 #[derive(Default)]
 pub(super) struct Timing {
     passes: Vec<(String, f64)>,
@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, timing: &mut Timing, readings: &Readings, device
             }
             if let Some(ms) = readings.device_ms {
                 ui.label("last frame")
-                    .on_hover_text("A frame in which only the panels change keeps the model's picture");
+                    .on_hover_text("If only the panels change, a frame skips the model and only tone maps");
                 ui.label(RichText::new(format!("{ms:>8.2} ms")).monospace());
                 ui.end_row();
             }

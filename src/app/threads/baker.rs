@@ -1,5 +1,5 @@
-//! The baker makes what files behind the settings hold: environments, pass by pass, and measured BRDFs. One thread for each; the
-//! window draws with the one before meanwhile, and the newest wins.
+//! The baker bakes environments and reads measured BRDFs, each on a thread of its own. The window keeps drawing with the previous
+//! one, and the newest request wins.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,13 +7,11 @@ use std::thread::JoinHandle;
 
 use super::{Message, Outbox};
 use crate::gpu::{Buffer, Gpu};
-use crate::render::{
-    BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, bake_named, read_measured,
-};
+use crate::render::{BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, read_measured};
 
-/// What the baker sends.
+/// Messages of the baker.
 pub(in crate::app) enum BakeMessage {
-    /// Number of the bake, the part that is done, 0..1, and what comes next.
+    /// Number of the bake, the fraction that is done, 0..1, and the next pass.
     Progress(u64, f32, String),
     /// The result of a bake.
     Environment(u64, EnvironmentKey, Result<Arc<GpuEnvironment>, BakeError>),
@@ -21,19 +19,19 @@ pub(in crate::app) enum BakeMessage {
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
 }
 
-/// A bake under way.
+/// A running bake.
 struct Bake {
     key: EnvironmentKey,
     progress: (f32, String),
 }
 
-/// Starts bakes, and calls off those that are no longer wanted.
+/// Starts bakes, and cancels outdated ones.
 pub(in crate::app) struct Baker {
     gpu: Arc<Gpu>,
     outbox: Outbox,
     bake: Option<Bake>,
     reading: Option<MeasuredKey>,
-    /// Number of the newest bake; an older one gives up between two passes.
+    /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
     threads: Vec<JoinHandle<()>>,
 }
@@ -44,12 +42,12 @@ impl Baker {
         Self { gpu: gpu.clone(), outbox: outbox.clone(), bake: None, reading: None, newest, threads }
     }
 
-    /// The part of the bake under way that is done, and what comes next.
+    /// The fraction of the running bake that is done, and its next pass.
     pub(in crate::app) fn progress(&self) -> Option<&(f32, String)> {
         self.bake.as_ref().map(|bake| &bake.progress)
     }
 
-    /// Bakes `key` with `set`, and nothing else; `None` calls off what is under way.
+    /// Bakes `key` with `set` and cancels any other bake. `None` only cancels.
     pub(in crate::app) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>) {
         if self.bake.as_ref().map(|bake| &bake.key) == key.as_ref() {
             return;
@@ -65,14 +63,14 @@ impl Baker {
             };
             let superseded = || newest.load(Ordering::SeqCst) != number;
             let control = BakeControl { progress: &progress, superseded: &superseded, from_disk: true };
-            let result = bake_named(&set, &key.name, &control);
-            // The window may hold the last pipelines that need this set.
+            let result = GpuEnvironment::bake(&set, &key.name, &control);
+            // Release the set before the window takes the result.
             drop(set);
             outbox.send(Message::Bake(BakeMessage::Environment(number, key, result)));
         });
     }
 
-    /// Reads a measured BRDF, unless that is under way.
+    /// Reads a measured BRDF, unless that was the last request.
     pub(in crate::app) fn read(&mut self, key: Option<MeasuredKey>) {
         let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
         self.reading = Some(key.clone());
@@ -84,7 +82,7 @@ impl Baker {
         });
     }
 
-    /// Notes how far a bake is; returns whether it is the newest.
+    /// Stores the progress of a bake. Returns whether it is the newest.
     pub(in crate::app) fn set_progress(&mut self, number: u64, done: f32, next: String) -> bool {
         let is_newest = self.newest.load(Ordering::SeqCst) == number;
         if let Some(bake) = self.bake.as_mut().filter(|_| is_newest) {
@@ -93,14 +91,14 @@ impl Baker {
         is_newest
     }
 
-    /// Notes that a bake has ended; returns whether it is the newest.
+    /// Marks a bake as ended. Returns whether it is the newest.
     pub(in crate::app) fn ended(&mut self, number: u64) -> bool {
         let is_newest = self.newest.load(Ordering::SeqCst) == number;
         self.bake = self.bake.take().filter(|_| !is_newest);
         is_newest
     }
 
-    /// Gives up the bake under way after a panic; returns its key.
+    /// Cancels the running bake after a panic. Returns its key.
     pub(in crate::app) fn abandon(&mut self) -> Option<EnvironmentKey> {
         self.newest.fetch_add(1, Ordering::SeqCst);
         self.bake.take().map(|bake| bake.key)

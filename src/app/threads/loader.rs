@@ -1,5 +1,5 @@
-//! The loader parses and decodes a model, then uploads it, on one thread for each model. The old model stays on screen meanwhile;
-//! the newest wins.
+//! The loader parses, decodes and uploads models, each on a thread of its own. The old model stays on screen until then, and the
+//! newest request wins.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Weak};
@@ -13,24 +13,24 @@ use crate::scene::{self, LoadError, LoadOptions, Model};
 
 /// A finished load.
 pub(in crate::app) struct Loaded {
-    /// Number of the load, as [`Loader::newest`] counts them.
+    /// Number of the load, counted by [`Loader::newest`].
     pub(in crate::app) number: u64,
     /// The file; `None` is the built-in model.
     pub(in crate::app) path: Option<PathBuf>,
-    /// The model on the device, or why not and the files that were tried.
+    /// The model on the device, or an error message and the files that were tried.
     pub(in crate::app) result: Result<Arc<GpuModel>, (String, Vec<PathBuf>)>,
     /// Duration in milliseconds.
     pub(in crate::app) ms: f64,
 }
 
-/// A model that is being read. Needs no device, so the first one is begun before there is a window.
+/// A model that is being read. This needs no device, so it starts before the window opens.
 pub(in crate::app) struct Reading {
     path: Option<PathBuf>,
     start: Instant,
     model: JoinHandle<Result<Model, LoadError>>,
 }
 
-/// Begins to read a model: parse, decode, tangents.
+/// Starts to read a model: parse, decode, generate tangents.
 pub(in crate::app) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
     let file = path.clone();
     let model = std::thread::spawn(move || {
@@ -40,9 +40,9 @@ pub(in crate::app) fn read(path: Option<PathBuf>, options: LoadOptions) -> Readi
     Reading { path, start: Instant::now(), model }
 }
 
-/// Starts loads and counts them.
+/// Uploads models and counts the loads.
 pub(in crate::app) struct Loader {
-    // Weak: a load that outlives the window must not keep the device alive.
+    // Weak, because a load that outlives the window must not keep the device alive.
     gpu: Weak<Gpu>,
     layouts: Weak<SetLayouts>,
     gate: Arc<DeviceGate>,
@@ -57,7 +57,7 @@ impl Loader {
         Self { gpu, layouts, gate: Arc::default(), outbox: outbox.clone(), newest: 0 }
     }
 
-    /// Uploads what was read; the result comes as a message.
+    /// Uploads a model once it has been read. Sends the result as a message.
     pub(in crate::app) fn upload(&mut self, reading: Reading) {
         self.newest += 1;
         let (gpu, layouts, gate, number) = (self.gpu.clone(), self.layouts.clone(), self.gate.clone(), self.newest);

@@ -1,5 +1,5 @@
-//! The threads beside the window's own. Each works for itself and sends what it made; only the window's thread touches what is
-//! on screen. ARCHITECTURE.md draws who sends what to whom.
+//! The background threads. Each sends its results to the window's thread, which alone changes what is on screen.
+//! ARCHITECTURE.md shows which thread sends what.
 
 pub(super) mod baker;
 pub(super) mod loader;
@@ -20,18 +20,18 @@ use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader, Reading};
 use worker::{Snapshot, Worker, WorkerMessage};
 
-/// What the threads send to the window.
+/// Messages of the threads to the window.
 pub(super) enum Message {
     Worker(WorkerMessage),
     Loaded(Box<Loaded>),
     Bake(BakeMessage),
-    /// Watched files beside the shader tree have changed.
+    /// Watched files outside the shader tree have changed.
     FilesChanged(BTreeSet<PathBuf>),
-    /// A thread ended by a panic: its name, and what the panic said.
+    /// A thread has panicked: its name, and the panic's message.
     Panicked(&'static str, String),
 }
 
-/// Sends messages to the window, which wakes up for them. The window may be gone; then nobody listens.
+/// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
 #[derive(Clone)]
 pub(super) struct Outbox(EventLoopProxy<Message>);
 
@@ -44,7 +44,7 @@ impl Outbox {
         let _ = self.0.send_event(message);
     }
 
-    /// Runs `body` on a thread of its own. A panic there is sent as a message.
+    /// Runs `body` on a new thread. If it panics, the window receives a message.
     fn spawn(&self, name: &'static str, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
         let outbox = self.clone();
         std::thread::spawn(move || {
@@ -60,12 +60,12 @@ fn panic_text(panic: &(dyn Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".to_owned())
 }
 
-/// Lets threads use the device until the window closes. A process must not end while a thread is inside its driver.
+/// Lets threads use the device until the window closes. The process must not end while a thread is inside the driver.
 #[derive(Default)]
 pub(super) struct DeviceGate(Mutex<bool>);
 
 impl DeviceGate {
-    /// Runs `work` unless the window is closing; closing waits for it.
+    /// Runs `work` unless the window is closing. Closing waits until `work` is done.
     fn pass<T>(&self, work: impl FnOnce() -> T) -> Option<T> {
         let closed = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         (!*closed).then(work)
@@ -76,10 +76,10 @@ impl DeviceGate {
     }
 }
 
-/// All threads. Dropping it ends those that use the device and waits for them; a model that is still being parsed is left
-/// behind.
+/// All threads. Dropping this ends those that use the device and waits for them, but not for a model that is still being
+/// parsed.
 pub(super) struct Threads {
-    // The watchers send to the worker, so they go first.
+    // The watcher sends to the worker, so it is dropped first.
     tree_watcher: Option<Watcher>,
     file_watcher: Option<Watcher>,
     watched: Vec<PathBuf>,
@@ -90,7 +90,7 @@ pub(super) struct Threads {
 }
 
 impl Threads {
-    /// Starts the worker, which compiles the tree at once. `file_watcher` watches the files of the model that is being read.
+    /// Starts the worker, which compiles the tree. `file_watcher` watches the files of the model that is being read.
     pub(super) fn start(
         device: (&Arc<Gpu>, &Arc<SetLayouts>),
         compiler: &Arc<Compiler>,
@@ -110,7 +110,7 @@ impl Threads {
         }
     }
 
-    /// Watches a shader tree in place of the one before; changes go to the worker.
+    /// Watches a shader tree instead of the previous one. Changes go to the worker.
     pub(super) fn watch_tree(&mut self, source: &Source) -> Result<(), String> {
         self.tree_watcher = None;
         let Some(root) = source.root().map(Path::to_owned) else { return Ok(()) };
@@ -125,7 +125,7 @@ impl Threads {
         Ok(())
     }
 
-    /// Watches these files in place of those before, if they are others.
+    /// Watches these files instead of the previous ones.
     pub(super) fn watch_files(&mut self, files: Vec<PathBuf>) -> Result<(), String> {
         if files == self.watched {
             return Ok(());
@@ -146,12 +146,12 @@ impl Threads {
         source: Source,
         snapshot: Snapshot,
     ) {
-        // The watcher sends to the old one.
+        // The watcher sends to the old worker.
         self.tree_watcher = None;
         self.worker = Worker::start(device, compiler, source, snapshot, &self.outbox);
     }
 
-    /// Takes up a model that was read before there was a device.
+    /// Uploads a model once it has been read.
     pub(super) fn upload(&mut self, reading: Reading) {
         self.loader.upload(reading);
     }

@@ -17,7 +17,7 @@ use crate::render::{
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, ShaderSet, Source};
 
-/// What the window would draw right now; a reload builds its pipelines.
+/// The settings, scene and target that the window draws now. A reload builds their pipelines.
 #[derive(Clone)]
 pub(in crate::app) struct Snapshot {
     pub(in crate::app) settings: Settings,
@@ -29,7 +29,7 @@ impl Snapshot {
     fn request(&self, shaders: &ShaderSet) -> PipelineRequest {
         let mut request = PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), self.target);
         if self.scene.is_none() {
-            // While the model loads, build what most models need.
+            // While the model loads, build the pipeline that most models need.
             let features = FEATURE_NORMAL_TEXTURE | FEATURE_PACKED_OCCLUSION;
             request.materials = BTreeSet::from([MaterialVariant { features, ..Default::default() }]);
         }
@@ -37,7 +37,7 @@ impl Snapshot {
     }
 }
 
-/// What the worker sends.
+/// Messages of the worker.
 pub(in crate::app) enum WorkerMessage {
     /// A reload is finished.
     Reloaded {
@@ -47,11 +47,11 @@ pub(in crate::app) enum WorkerMessage {
         /// Name of the tree.
         tree: String,
     },
-    /// The pipelines that [`Worker::build`] asked for last are there, or why not.
+    /// The result of the last [`Worker::build`].
     Built(Result<(), String>),
 }
 
-/// Files that have changed, and when.
+/// Changed files, and the times of the first event and of the settled set.
 struct Edit {
     change: Change,
     since: Instant,
@@ -66,7 +66,7 @@ enum Job {
     Build(Build),
 }
 
-/// Sends jobs, and counts those that make a reload under way stale.
+/// Sends jobs, and counts those that make a running reload stale.
 #[derive(Clone)]
 struct Jobs {
     sender: Sender<Job>,
@@ -78,7 +78,7 @@ impl Jobs {
         if !matches!(job, Job::Build(_)) {
             self.edits.fetch_add(1, Ordering::SeqCst);
         }
-        // The thread is gone only when the window is.
+        // Fails only after a panic of the thread, which the window learns from its own message.
         let _ = self.sender.send(job);
     }
 
@@ -91,13 +91,13 @@ impl Jobs {
 pub(in crate::app) struct Worker {
     jobs: Option<Jobs>,
     snapshot: Arc<Mutex<Snapshot>>,
-    /// The newest build that was asked for and has not succeeded yet.
+    /// The newest build request that has not succeeded yet.
     asked: Option<Build>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
-    /// Starts the thread, which compiles the whole tree at once.
+    /// Starts the thread, which first compiles the whole tree.
     pub(super) fn start(
         (gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>),
         compiler: &Arc<Compiler>,
@@ -125,12 +125,12 @@ impl Worker {
         worker
     }
 
-    /// Tells what the window would draw now.
+    /// Sets what the next reload builds pipelines for.
     pub(in crate::app) fn set_snapshot(&self, snapshot: Snapshot) {
         *self.snapshot.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
     }
 
-    /// Compiles what a change, first seen at `since`, makes dirty.
+    /// Compiles the stages that a change makes dirty. `since` is the time of its first file event.
     pub(in crate::app) fn change(&self, change: Change, since: Instant) {
         self.jobs.iter().for_each(|jobs| jobs.edit(change.clone(), since));
     }
@@ -141,7 +141,7 @@ impl Worker {
         move |change, since| jobs.iter().for_each(|jobs| jobs.edit(change.clone(), since))
     }
 
-    /// Builds pipelines. The newest request wins; one that is under way, or that failed, is not sent again.
+    /// Builds pipelines. The newest request wins. A request that is running or has failed is not sent again.
     pub(in crate::app) fn build(&mut self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
         let is_asked = |(asked, for_this): &Build| Arc::ptr_eq(asked, set) && for_this == request;
         if !self.asked.as_ref().is_some_and(is_asked) {
@@ -150,12 +150,12 @@ impl Worker {
         }
     }
 
-    /// Notes that the newest build succeeded.
+    /// Marks the newest build as successful.
     pub(in crate::app) fn built(&mut self) {
         self.asked = None;
     }
 
-    /// Takes another shader tree.
+    /// Opens another shader tree.
     pub(in crate::app) fn open_tree(&self, source: Source) {
         self.send(Job::OpenTree(source));
     }
@@ -170,11 +170,11 @@ impl Worker {
 impl Drop for Worker {
     fn drop(&mut self) {
         if let Some(jobs) = self.jobs.take() {
-            // Whatever is under way is stale now.
+            // Makes a running reload stale, so that it ends early.
             jobs.edits.fetch_add(1, Ordering::SeqCst);
         }
         if let Some(thread) = self.thread.take() {
-            // A panic there was sent as a message.
+            // The thread has already sent its panic as a message.
             let _ = thread.join();
         }
     }
@@ -194,8 +194,8 @@ struct Thread {
 }
 
 impl Thread {
-    /// Works until the window drops its end. Edits go first: of everything that waits, the edits are joined and compiled, then
-    /// the newest build request is carried out, whatever became of the edits.
+    /// Runs until the window drops its [`Jobs`]. Of all waiting jobs, the thread first joins and compiles the edits, then
+    /// builds the newest request, even if an edit has failed.
     fn run(&mut self) {
         let mut build: Option<Build> = None;
         while let Ok(first) = self.inbox.recv() {
@@ -211,10 +211,10 @@ impl Thread {
                     }
                 }
                 if let Some(set) = edit.and_then(|edit| self.reload(edit)) {
-                    // A build for the set before is void: the window asks again for the new one.
+                    // Drop a request for an older set. The window sends one for the new set.
                     build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
                 } else if self.is_stale() {
-                    // A newer edit was announced and is about to arrive; at the end, nothing is.
+                    // A newer edit has been counted and is about to arrive, or the window is closing.
                     match self.inbox.recv() {
                         Ok(job) => waiting.push(job),
                         Err(_) => return,
@@ -253,7 +253,7 @@ impl Thread {
         self.snapshot.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Compiles and builds; returns the new set, if there is one.
+    /// Compiles the edit and builds its pipelines. Returns the new set, if there is one.
     fn reload(&mut self, edit: Edit) -> Option<Arc<PipelineSet>> {
         assert!(!fault::strikes("worker-panic"), "the injected fault worker-panic");
         fault::delay("compile-delay-ms");
@@ -269,14 +269,14 @@ impl Thread {
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
         let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, tree };
         self.outbox.send(Message::Worker(message));
-        // At the start the model needs both cores; the window asks for more once it is there.
+        // At the start, leave the CPU to the loader. The window requests a build once the model is on screen.
         if let Some(set) = set.as_ref().filter(|set| set.shaders.generation > 1) {
             self.build_ahead(set);
         }
         set
     }
 
-    /// Builds the modes before and after the one on screen, which `[` and `]` ask for next, unless there is other work.
+    /// Builds the modes before and after the current one, which `[` and `]` select, unless other work waits.
     fn build_ahead(&self, set: &Arc<PipelineSet>) {
         let (snapshot, modes) = (self.snapshot(), &set.shaders.modes);
         let request = snapshot.request(&set.shaders);
@@ -285,7 +285,7 @@ impl Thread {
             if !self.inbox.is_empty() || self.is_stale() {
                 return;
             }
-            // A neighbor that the driver refuses is reported when it is asked for.
+            // An error is reported when the user selects the mode.
             let _ = set.build(&request.with_mode(&modes[neighbor], snapshot.settings.view.tonemap));
         }
     }

@@ -1,7 +1,7 @@
 //! `specula brdf furnace`: the directional albedo of a surface by roughness and angle.
 
 use serde_json::json;
-use specula::render::brdf::measure::{Claim, Grid, Surface};
+use specula::measure::{Claim, Grid, Surface};
 use specula::settings::ShaderValue;
 use specula::shader::Constant;
 

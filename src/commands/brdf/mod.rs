@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 use clap::Subcommand;
 use specula::gpu::Gpu;
+use specula::measure::{Bench, Claim, Surface, unclaimed};
 use specula::render::all_stages;
-use specula::render::brdf::measure::{Bench, Claim, Surface, unclaimed};
 use specula::settings::Settings;
 use specula::shader::values::{misfits, unknown_names};
 use specula::shader::{Change, Constant, Library, ShaderSet, Update};

@@ -1,7 +1,7 @@
 //! `specula brdf normalization`: checks that the integral of D NoH is 1, as for every distribution of microfacets.
 
 use serde_json::json;
-use specula::render::brdf::measure::Grid;
+use specula::measure::Grid;
 
 use super::{Opened, Options};
 use crate::commands::{Failure, print_json};

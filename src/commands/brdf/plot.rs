@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use specula::render::brdf::measure::{Bench, Claim, Grid, Lobe, Surface, choices};
+use specula::measure::{Bench, Claim, Grid, Lobe, Surface, choices};
 
 use super::canvas::{Anchor, Canvas, Ink, pen};
 use super::furnace::extremes;

@@ -1,7 +1,7 @@
 //! `specula brdf reciprocity`: checks that f(l, v) = f(v, l).
 
 use serde_json::json;
-use specula::render::brdf::measure::{Claim, Grid, Surface, Worst};
+use specula::measure::{Claim, Grid, Surface, Worst};
 
 use super::{Opened, Options, SurfaceOptions, direction, listed};
 use crate::commands::{Failure, print_json};

@@ -102,11 +102,12 @@ pub struct Encoder {
     pub(in crate::gpu) raw: vk::CommandBuffer,
     pub(in crate::gpu) kept: Vec<Arc<dyn Any + Send + Sync>>,
     pub(in crate::gpu) timer: Option<PassTimer>,
+    pub(in crate::gpu) is_rendering: bool,
 }
 
 impl Encoder {
     pub(in crate::gpu) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer, timer: Option<PassTimer>) -> Self {
-        Self { gpu: gpu.clone(), raw, kept: Vec::new(), timer }
+        Self { gpu: gpu.clone(), raw, kept: Vec::new(), timer, is_rendering: false }
     }
 
     /// Keeps `object` alive until the device has run the commands.
@@ -186,6 +187,7 @@ impl Encoder {
         }
         // SAFETY: this encoder records the command buffer; the images are kept.
         unsafe { self.gpu.device.cmd_begin_rendering(self.raw, &info) };
+        self.is_rendering = true;
         self.set_viewport(to.area);
     }
 
@@ -222,6 +224,7 @@ impl Encoder {
     pub fn end_rendering(&mut self) {
         // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_end_rendering(self.raw) };
+        self.is_rendering = false;
     }
 
     /// Binds a graphics pipeline.

@@ -3,7 +3,6 @@
 use ash::vk;
 
 use super::encoder::Encoder;
-use crate::gpu::Gpu;
 
 /// Number of passes of a submission that are timed. Passes beyond it have a label only.
 pub(in crate::gpu) const MAX_TIMED_PASSES: u32 = 64;
@@ -44,25 +43,32 @@ impl Encoder {
     /// Records `commands` as the pass `name`. GPU debuggers and validation messages show the name as a label, and
     /// [`crate::gpu::Frames::pass_times`] reports the pass's time once the frame is finished.
     ///
-    /// Passes may nest, and names may repeat. A pass inside [`Encoder::begin_rendering`] is valid but less exact: it makes a
-    /// software device finish the drawing before it, and a tiled GPU measures whole tiles.
+    /// Passes may nest, and names may repeat. Between [`Encoder::begin_rendering`] and [`Encoder::end_rendering`] a pass is valid,
+    /// but its time is not exact on a software device or a tiled GPU.
     pub fn pass<T>(&mut self, name: &str, commands: impl FnOnce(&mut Self) -> T) -> T {
         let timestamps = self.timer.as_mut().and_then(|timer| timer.reserve(name));
         self.gpu.begin_label(self.raw, name);
         if let Some((queries, first)) = timestamps {
-            write_timestamp(&self.gpu, self.raw, queries, first);
+            self.write_timestamp(queries, first);
         }
         let result = commands(self);
         if let Some((queries, first)) = timestamps {
-            write_timestamp(&self.gpu, self.raw, queries, first + 1);
+            self.write_timestamp(queries, first + 1);
         }
         self.gpu.end_label(self.raw);
         result
     }
-}
 
-/// Writes a timestamp when all earlier commands are finished.
-pub(in crate::gpu) fn write_timestamp(gpu: &Gpu, commands: vk::CommandBuffer, queries: vk::QueryPool, query: u32) {
-    // SAFETY: the command buffer is recording and has reset the query.
-    unsafe { gpu.device.cmd_write_timestamp2(commands, vk::PipelineStageFlags2::ALL_COMMANDS, queries, query) };
+    /// Writes a timestamp when all earlier commands are finished.
+    pub(in crate::gpu) fn write_timestamp(&mut self, queries: vk::QueryPool, query: u32) {
+        let device = &self.gpu.device;
+        // SAFETY: this encoder records the command buffer, which has reset the query.
+        unsafe { device.cmd_write_timestamp2(self.raw, vk::PipelineStageFlags2::ALL_COMMANDS, queries, query) };
+        // SYNC: lavapipe takes a timestamp when it next flushes its drawing, so copies and dispatches after the timestamp would
+        // count as before it. Any barrier flushes, even one that orders nothing.
+        if self.gpu.info().kind == "cpu" && !self.is_rendering {
+            // SAFETY: as above; barriers are valid outside of rendering.
+            unsafe { device.cmd_pipeline_barrier2(self.raw, &vk::DependencyInfo::default()) };
+        }
+    }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::encoder::Encoder;
-use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer, write_timestamp};
+use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer};
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
 
@@ -114,18 +114,19 @@ impl Slot {
         }
         // SAFETY: the buffer is recording, and no pending submission uses the queries.
         unsafe { device.cmd_reset_query_pool(self.buffer, self.queries, 0, MAX_TIMESTAMPS) };
-        write_timestamp(&self.gpu, self.buffer, self.queries, 0);
-        Ok(Encoder::new(&self.gpu, self.buffer, Some(PassTimer::new(self.queries))))
+        let mut encoder = Encoder::new(&self.gpu, self.buffer, Some(PassTimer::new(self.queries)));
+        encoder.write_timestamp(self.queries, 0);
+        Ok(encoder)
     }
 
     /// Submits the commands of the last [`Slot::begin`]. If that fails, the slot can begin again.
-    pub(in crate::gpu) fn submit(&mut self, encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
+    pub(in crate::gpu) fn submit(&mut self, mut encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
         let device = &self.gpu.device;
-        self.kept = encoder.kept;
-        let passes = encoder.timer.map(|timer| timer.names);
+        let passes = encoder.timer.take().map(|timer| timer.names);
         if passes.is_some() {
-            write_timestamp(&self.gpu, self.buffer, self.queries, 1);
+            encoder.write_timestamp(self.queries, 1);
         }
+        self.kept = encoder.kept;
         // SAFETY: the buffer is recording.
         unsafe { device.end_command_buffer(self.buffer) }.context("ending commands")?;
         let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];

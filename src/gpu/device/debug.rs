@@ -10,7 +10,7 @@ use ash::vk;
 use super::gpu::Gpu;
 
 impl Gpu {
-    /// Names a Vulkan object that this device owns.
+    /// Names a Vulkan object that belongs to the device, not to the instance as a surface does.
     pub(in crate::gpu) fn name<H: vk::Handle>(&self, object: H, name: &str) {
         let Some(utils) = &self.debug_utils else { return };
         let name = c_string(name);

@@ -1,9 +1,10 @@
 //! Device memory for images and buffers.
 
-use crate::gpu::{Gpu, GpuError, fault};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+
+use crate::gpu::{Gpu, GpuError, fault};
 
 /// The resource that memory is allocated for.
 pub(in crate::gpu) struct Resource<'a> {

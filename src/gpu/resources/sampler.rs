@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use ash::vk;
+
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
-use ash::vk;
 
 /// Filtering and addressing of texture reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

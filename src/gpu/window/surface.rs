@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::gpu::error::Context;
-use crate::gpu::{Gpu, GpuError};
 use ash::vk;
 use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
+
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
 
 /// A surface that shows images in a window.
 pub struct Surface {
@@ -23,7 +24,8 @@ impl Surface {
         // SAFETY: the handles come from a live window; the instance has the extensions of this display.
         let raw = unsafe { ash_window::create_surface(&gpu.instance.entry, &gpu.instance.raw, display, window, None) }
             .context("creating the window's surface")?;
-        // It gets no debug name: Mesa 22.3's lavapipe takes the loader's surface for an object of its own and crashes.
+        // It gets no debug name: the surface belongs to the instance, and lavapipe (22.3) crashes when it is named, as do the
+        // validation layers 1.3.239.
         let surface = Self { gpu: gpu.clone(), raw };
         // SAFETY: surface and device are live.
         let shown = unsafe { loader.get_physical_device_surface_support(gpu.physical, gpu.queue_family, raw) }

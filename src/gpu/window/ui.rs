@@ -3,10 +3,11 @@
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
-use crate::gpu::error::Context;
-use crate::gpu::{Encoder, Gpu, GpuError};
 use ash::vk;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, RendererError};
+
+use crate::gpu::error::Context;
+use crate::gpu::{Encoder, Gpu, GpuError};
 
 /// egui's renderer on our device.
 pub struct UiRenderer {

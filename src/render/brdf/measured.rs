@@ -1,4 +1,4 @@
-//! A measured BRDF on the device: see shaders/brdf/measured.glsl.
+//! Uploads a measured BRDF, which shaders/brdf/measured.glsl reads.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Memory, one_shot, vk};
 use crate::interface::{MEASURED_MERL, MEASURED_NONE, MEASURED_UTIA};
 use crate::scene::{Measured, MeasuredKind};
 
-/// The buffer of `measured`, or of none: the kind, then the values.
+/// The buffer of a measured BRDF: its kind, then its values. Without a BRDF, the kind is `MEASURED_NONE`.
 ///
 /// # Errors
 /// Out of memory.
@@ -16,7 +16,7 @@ pub fn measured_buffer(gpu: &Arc<Gpu>, measured: Option<&Measured>) -> Result<Ar
         Some(MeasuredKind::Merl) => MEASURED_MERL,
         Some(MeasuredKind::Utia) => MEASURED_UTIA,
     };
-    // One value stands for none: a block may not be empty.
+    // The block must not be empty.
     let values = measured.map_or(&[0.0][..], |m| &m.values);
     let bytes: &[u8] = bytemuck::cast_slice(values);
     let size = 4 + bytes.len() as u64;

@@ -1,6 +1,5 @@
-//! What the BRDF needs besides its formulas: tables of its albedo, measured data, and its measurement for `specula brdf`.
+//! Data that the BRDF reads on the device: tables of its albedo, the table of transformed cosines, measured BRDFs.
 
-pub(super) mod ltc;
-pub mod measure;
-pub(super) mod measured;
+pub(crate) mod ltc;
+pub(crate) mod measured;
 pub(super) mod tables;

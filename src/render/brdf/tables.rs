@@ -1,17 +1,17 @@
-//! Tables of the BRDF's albedo, made on the device for one choice of models: what the split sum and multiple scattering need.
+//! Tables of the BRDF's albedo for one choice of models, computed on the device. The split sum and multiple scattering read them.
 
 use std::sync::Arc;
 
 use crate::disk_cache;
 use crate::gpu::{Buffer, GpuError, Image, ImageDesc, Memory, Specialization, Use, one_shot, vk};
-use crate::interface::Task;
+use crate::interface::{BINDING_TARGET, Task};
 
 use crate::render::compute;
 use crate::render::pipeline::PipelineSet;
 
-/// Stage that makes the DFG table.
+/// Stage that computes the DFG table.
 pub(crate) const DFG: &str = "ibl/dfg.comp";
-/// Stage that makes the sheen's albedo table.
+/// Stage that computes the sheen's albedo table.
 pub(crate) const SHEEN_ALBEDO: &str = "ibl/sheen_albedo.comp";
 
 const DFG_SIZE: u32 = 128;
@@ -29,7 +29,7 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    /// Makes the tables with these values of the author's constants, or takes them from the disk.
+    /// Computes the tables with these values of the author's constants, or loads them from the disk cache.
     pub(crate) fn new(set: &PipelineSet, constants: &Specialization) -> Result<Arc<Self>, GpuError> {
         let rows = [1, DFG_SIZE, 1];
         let dfg = table(set, DFG, constants, DFG_SIZE, DFG_SAMPLES, rows)?;
@@ -62,7 +62,8 @@ fn table(
     let pipeline = set.compute(stage, constants)?;
     let readback = vk::BufferUsageFlags::TRANSFER_DST;
     let buffer = Buffer::new(set.gpu(), "table", desc.bytes(), readback, Memory::Readback)?;
-    let bindings = compute::bindings(set.gpu(), set.layouts(), &task, |writer| compute::target(writer, &image, 0))?;
+    let bindings =
+        compute::bindings(set.gpu(), set.layouts(), &task, |writer| writer.storage_level(BINDING_TARGET, &image, 0))?;
     one_shot(set.gpu(), |encoder| {
         encoder.transition(&image, Use::Undefined, Use::Storage);
         encoder.dispatch(set.layouts(), &pipeline, &[&bindings], groups);

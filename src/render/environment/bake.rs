@@ -1,5 +1,5 @@
-//! Image-based light: from an environment map to what the shaders read. Runs on any thread, pass by pass, so that frames get
-//! their turn between two passes.
+//! Bakes an environment map into the images that image-based lighting reads. Any thread may bake; each pass is a submission
+//! of its own, so that frames run in between.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,7 +17,7 @@ pub(crate) const DOWNSAMPLE: &str = "ibl/downsample.comp";
 pub(crate) const IRRADIANCE: &str = "ibl/irradiance.comp";
 const PREFILTER: &str = "ibl/prefilter.comp";
 const PREFILTER_SHEEN: &str = "ibl/prefilter_sheen.comp";
-/// The stages that an environment is baked with: when one changes, it is baked anew.
+/// The stages of a bake. If one of them changes, the environment is baked again.
 pub const BAKE_STAGES: [&str; 5] = [CUBE, DOWNSAMPLE, IRRADIANCE, PREFILTER, PREFILTER_SHEEN];
 
 const CUBE_SIDE: u32 = 512;
@@ -27,56 +27,56 @@ const PREFILTERED_LEVELS: u32 = 9;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 256;
-/// Irradiance changes as slowly as the cosine does, but for its kink where a sun sets.
+/// 32 texels are enough: irradiance varies as slowly as the cosine, except for a kink where a sun sets.
 const IRRADIANCE_SIDE: u32 = 32;
 const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 /// Largest half float.
 pub(crate) const LARGEST_HALF: f32 = 65504.0;
-/// A peak this many times brighter than a half float holds is clipped: scaled down further, the dark parts would be lost.
+/// A map is scaled down at most by this factor to fit half floats, and clipped beyond: more would lose its dark parts.
 const LARGEST_RANGE: f32 = 4096.0;
 
-/// Samples a texel of each prefiltered level: small, rough levels need more and have fewer texels.
+/// Samples per texel of each prefiltered level. Rougher levels need more samples and have fewer texels.
 const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512, 512, 512, 512];
 
-/// Why there is no image-based light.
+/// Why a bake failed.
 #[derive(Debug, thiserror::Error)]
 pub enum BakeError {
-    /// The map.
+    /// The map is missing or bad.
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
-    /// The device.
+    /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// The map does not fit the device.
+    /// The map exceeds the device's image size.
     #[error("{0}x{1} pixels are too many: this device has images of at most {2} a side")]
     TooLarge(u32, u32, u32),
-    /// Something newer is wanted.
+    /// The caller has canceled the bake for a newer one.
     #[error("a newer environment or shader came first")]
     Superseded,
 }
 
-/// Where the time of a bake went, wall milliseconds.
+/// The time of each part of a bake, in milliseconds of wall time.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct BakeReport {
     /// Name of the environment.
     pub environment: String,
-    /// Whether the result was on disk.
+    /// Whether the result came from the disk cache.
     pub cached: bool,
-    /// Reading or making the map.
+    /// Looking into the cache, then decoding the file or computing the built-in map.
     pub decode_ms: f64,
-    /// Making the compute pipelines.
+    /// Creating the compute pipelines.
     pub pipeline_ms: f64,
     /// Copying the map, or the cached result, to the device.
     pub upload_ms: f64,
-    /// The map to a cube with its mip levels.
+    /// Resampling the map to a cube map and its mip levels.
     pub cube_ms: f64,
-    /// The cube to irradiance.
+    /// Integrating irradiance.
     pub irradiance_ms: f64,
-    /// GGX prefilter, all levels.
+    /// GGX prefilter of all levels.
     pub prefilter_ms: f64,
-    /// Sheen prefilter, all levels.
+    /// Sheen prefilter of all levels.
     pub sheen_ms: f64,
-    /// Everything but writing the cache.
+    /// From the opened file to the last pass, without writing the cache.
     pub total_ms: f64,
 }
 
@@ -87,27 +87,27 @@ pub struct GpuEnvironment {
     pub(crate) sheen: Arc<Image>,
     pub(crate) irradiance: Arc<Image>,
     pub(crate) sampler: Arc<Sampler>,
-    /// What the images hold is radiance times this.
+    /// The images hold radiance times this factor.
     pub(crate) scale: f32,
-    /// What the bake took.
+    /// How long the bake took.
     pub report: BakeReport,
 }
 
-/// What the caller of a bake wants to know and to decide.
+/// Callbacks and options of a bake.
 pub struct BakeControl<'a> {
-    /// Told the part that is done, 0..1, and what is next.
+    /// Receives the fraction that is done, 0..1, and the name of the next pass.
     pub progress: &'a (dyn Fn(f32, &str) + Sync),
-    /// Asked between passes whether to give up.
+    /// Returns whether to cancel. Called before each pass.
     pub superseded: &'a (dyn Fn() -> bool + Sync),
-    /// Whether a result on disk will do; if not, it is made again and kept.
+    /// Whether a cached result may be used. Otherwise the bake replaces it.
     pub from_disk: bool,
 }
 
 impl GpuEnvironment {
-    /// The same radiance from everywhere, in images of one texel.
+    /// The same radiance from every direction, in images of one texel.
     ///
     /// # Errors
-    /// The device.
+    /// Out of memory.
     pub(crate) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let cube = |name: &str| Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage));
@@ -147,7 +147,7 @@ impl GpuEnvironment {
         self.images().iter().map(|image| image.desc().bytes()).sum()
     }
 
-    /// Copies everything in, in the order of [`Self::read`].
+    /// Uploads all images, in the order of [`Self::read`].
     fn fill(&self, gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<(), GpuError> {
         let mut rest = bytes;
         let mut images = Vec::new();
@@ -159,7 +159,7 @@ impl GpuEnvironment {
         compute::upload(gpu, &images)
     }
 
-    /// Copies everything out.
+    /// Reads all images back.
     fn read(&self, gpu: &Arc<Gpu>) -> Result<Vec<u8>, GpuError> {
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let out = Buffer::new(gpu, "baked", self.bytes(), usage, Memory::Readback)?;
@@ -177,17 +177,19 @@ impl GpuEnvironment {
         Ok(out.read())
     }
 
-    /// Bakes an environment with a set's stages, or takes the result from the disk.
+    /// Bakes an environment, built-in or a file, with the stages of `set`, or loads the result from the disk cache. Any thread
+    /// may call this.
     ///
     /// # Errors
-    /// A bad map, a device that fails, or `control` gave up.
-    pub fn bake(set: &PipelineSet, file: &EnvironmentFile, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
+    /// A bad map, a device error, or `control` has canceled the bake.
+    pub fn bake(set: &PipelineSet, name: &str, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
+        let file = &EnvironmentFile::open(name)?;
         let start = Instant::now();
         let gpu = set.gpu();
         let mut this = Self::new(gpu)?;
         this.report.environment.clone_from(&file.name);
         let key = key(set, file)?;
-        // The scale comes last.
+        // An entry holds the images, then the scale.
         if let Some(bytes) = disk_cache::load(&key, this.bytes() + 4).filter(|_| control.from_disk) {
             let upload = Instant::now();
             let (images, scale) = bytes.split_at(bytes.len() - 4);
@@ -245,7 +247,7 @@ impl GpuEnvironment {
         passes.irradiance(&self.cube, &self.irradiance)?;
         self.report.irradiance_ms = ms(time);
 
-        // On a software device frames get their turn between two levels; a GPU has done them all before anyone notices.
+        // A software device prefilters one level per submission, so that frames run in between. A GPU is fast enough for all.
         let at_once = if gpu.info().kind == "cpu" { 1 } else { PREFILTERED_LEVELS };
         let source = (&self.cube, &self.sampler);
         for first in (0..PREFILTERED_LEVELS).step_by(at_once as usize) {
@@ -263,7 +265,7 @@ impl GpuEnvironment {
     }
 }
 
-/// Named by the stages, the numbers that they are given, and the map.
+/// The cache key: a hash of the map, of all sizes and sample counts, and of the SPIR-V of the bake stages.
 fn key(set: &PipelineSet, file: &EnvironmentFile) -> Result<String, GpuError> {
     let numbers = [
         CUBE_SIDE,

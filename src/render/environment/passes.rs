@@ -1,10 +1,12 @@
-//! The passes of a bake, each recorded, submitted and waited for.
+//! The passes of a bake. Each method records, submits and waits.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, Use, one_shot, vk};
-use crate::interface::{BINDING_RESULTS, SET_TASK, Task};
+use crate::interface::{
+    BINDING_LEVEL_ABOVE, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, SET_TASK, Task,
+};
 
 use crate::render::compute;
 use crate::render::environment::bake::{BAKE_STAGES, CUBE, DOWNSAMPLE, IRRADIANCE};
@@ -12,7 +14,7 @@ use crate::render::pipeline::PipelineSet;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
 pub(crate) const IRRADIANCE_LEVEL: u32 = 5;
-/// The buffer that the passes share, all 0, as large as they declare it (ibl/small_lights.glsl).
+/// The zeroed buffer `BINDING_RESULTS`, as large as the largest declaration in the stages (ibl/small_lights.glsl).
 pub(crate) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer>, GpuError> {
     let stages = BAKE_STAGES.iter().filter_map(|path| set.shaders.stages.get(*path));
     let declared = stages.flat_map(|stage| &stage.reflection.descriptors);
@@ -32,22 +34,27 @@ pub(crate) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer
     Ok(results)
 }
 
-/// The passes, each recorded and waited for.
+/// What all passes need.
 pub(crate) struct Passes<'a> {
     pub(crate) gpu: &'a Arc<Gpu>,
     pub(crate) layouts: &'a Arc<SetLayouts>,
     pub(crate) set: &'a PipelineSet,
-    /// BINDING_RESULTS of all: what one finds and the next ones need, see ibl/small_lights.glsl.
+    /// `BINDING_RESULTS`: one pass stores here what the following ones read, see ibl/small_lights.glsl.
     pub(crate) results: &'a Arc<Buffer>,
 }
 
 impl Passes<'_> {
-    /// The map to level 0, then each level from the one above. The cube ends up in [`Use::Sampled`].
+    /// Binds the level that a pass writes, and the shared results.
+    fn to(&self, writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
+        writer.storage_level(BINDING_TARGET, image, level).buffer(BINDING_RESULTS, self.results)
+    }
+
+    /// Resamples the map to level 0, then each level from the level above. Leaves the cube in [`Use::Sampled`].
     pub(crate) fn cube(&self, map: &Arc<Image>, cube: &Arc<Image>, radiance_scale: f32) -> Result<(), GpuError> {
         let desc = *cube.desc();
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
-        // A texel of the cube's face center spans 2 / side; the map has width / 2 pi of its own in a radian. Two at
-        // least: with one the energy of a small lamp is off by 0.6 %.
+        // At the center of a face, a texel of the cube spans 2 / side radians; the map has width / 2 pi texels per radian.
+        // At least 2 x 2 samples: with one, the energy of a small lamp is off by 0.6 %.
         let finer = (map.desc().width as f32 / std::f32::consts::TAU * 2.0 / desc.width as f32).ceil().max(2.0);
         let first = Task {
             size: [desc.width; 2],
@@ -57,18 +64,18 @@ impl Passes<'_> {
             ..Task::default()
         };
         let bind = |task: &Task, more: &dyn Fn(SetWriter) -> SetWriter| {
-            let writer = |writer| more(compute::results(compute::target(writer, cube, task.level), self.results));
+            let writer = |writer| more(self.to(writer, cube, task.level));
             compute::bindings(self.gpu, self.layouts, task, writer)
         };
         let mut dispatches = vec![(
             self.set.compute(CUBE, &Vec::new())?,
-            bind(&first, &|w| compute::source(w, map, &sampler))?,
+            bind(&first, &|w| w.texture(BINDING_SOURCE, map, &sampler))?,
             desc.width,
         )];
         for level in 1..desc.mips {
             let side = (desc.width >> level).max(1);
             let task = Task { size: [side; 2], level, ..first };
-            let set = bind(&task, &|writer| compute::level_above(writer, cube, level - 1))?;
+            let set = bind(&task, &|writer| writer.storage_level(BINDING_LEVEL_ABOVE, cube, level - 1))?;
             dispatches.push((self.set.compute(DOWNSAMPLE, &Vec::new())?, set, side));
         }
         one_shot(self.gpu, |encoder| {
@@ -83,13 +90,12 @@ impl Passes<'_> {
         })
     }
 
-    /// The cube's light to each normal's. Both images end up in [`Use::Sampled`].
+    /// Integrates the radiance of the cube over the hemisphere of each normal. Leaves both images in [`Use::Sampled`].
     pub(crate) fn irradiance(&self, cube: &Arc<Image>, to: &Arc<Image>) -> Result<(), GpuError> {
         let side = to.desc().width;
         let task = Task { size: [side; 2], levels: 1, ..Task::default() };
         let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-            let writer = compute::level_above(compute::target(writer, to, 0), cube, IRRADIANCE_LEVEL);
-            compute::results(writer, self.results)
+            self.to(writer, to, 0).storage_level(BINDING_LEVEL_ABOVE, cube, IRRADIANCE_LEVEL)
         })?;
         let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
         one_shot(self.gpu, |encoder| {
@@ -102,7 +108,8 @@ impl Passes<'_> {
         })
     }
 
-    /// Some of the levels, with samples for each of the image's; the last one leaves the image in [`Use::Sampled`].
+    /// Prefilters `levels` of `to`. `samples` has an entry for every level of the image. The last level leaves the image in
+    /// [`Use::Sampled`].
     pub(crate) fn prefilter(
         &self,
         stage: &str,
@@ -119,7 +126,7 @@ impl Passes<'_> {
             let samples = samples.get(level as usize).copied().unwrap_or(1);
             let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
             let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-                compute::results(compute::target(compute::source_cube(writer, cube, sampler), to, level), self.results)
+                self.to(writer.texture(BINDING_SOURCE_CUBE, cube, sampler), to, level)
             })?;
             dispatches.push((level, bindings, compute::groups(side, desc.layers)));
         }

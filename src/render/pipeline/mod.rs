@@ -1,4 +1,4 @@
-//! From SPIR-V to pipelines: one set for each shader generation, and the reload that makes the next set.
+//! Pipelines: one set per shader generation, and the reload that creates the next set.
 
 mod reload;
 mod set;

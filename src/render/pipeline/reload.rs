@@ -1,4 +1,4 @@
-//! A reload: changed files in, a new pipeline set or diagnostics out. Nothing that works is touched on the way.
+//! A reload turns changed files into a new pipeline set or diagnostics. It never modifies the set in use.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -9,7 +9,7 @@ use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, So
 use super::set::{PipelineSet, stages};
 use crate::render::state::PipelineRequest;
 
-/// Compiles a shader tree and builds its pipelines. `app` holds it on a thread of its own; headless calls it directly.
+/// Compiles a shader tree and builds its pipelines. In the window the worker thread owns it; headless calls it directly.
 pub struct Reloader {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -18,16 +18,16 @@ pub struct Reloader {
     unbuilt: bool,
 }
 
-/// What a reload came to.
+/// The result of a reload.
 pub enum Outcome {
-    /// No stage changed. `cleared`: the tree is good again after a failed reload, so old diagnostics are void.
+    /// No stage changed.
     Unchanged {
-        /// Whether diagnostics on screen are void now.
+        /// Whether the tree compiles again after a failed reload, so that earlier diagnostics no longer apply.
         cleared: bool,
     },
     /// New pipelines.
     Ready(Arc<PipelineSet>),
-    /// Why there are none. The last good set stays.
+    /// Why there are no new pipelines. The last good set stays.
     Failed(Vec<Diagnostic>),
 }
 
@@ -37,12 +37,12 @@ pub struct Reload {
     pub report: Report,
     /// Time to create the pipelines, milliseconds.
     pub pipeline_ms: f64,
-    /// What it came to.
+    /// Its result.
     pub outcome: Outcome,
 }
 
 impl Reloader {
-    /// For the tree of `source`. Compiles nothing yet.
+    /// A reloader for the tree of `source`. Compiles nothing yet.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, compiler: &Arc<Compiler>, source: Source) -> Self {
         Self {
             gpu: gpu.clone(),
@@ -53,15 +53,15 @@ impl Reloader {
         }
     }
 
-    /// The tree.
+    /// The shader tree.
     pub fn library(&self) -> &Library {
         &self.library
     }
 
-    /// Compiles what `change` made dirty and builds the pipelines that `request` names for the new shaders.
+    /// Compiles the stages that `change` made dirty, and builds the pipelines that `request` returns for the new shaders.
     ///
-    /// `superseded` is asked between the steps; when it says that a newer edit waits, the work is dropped as unchanged and its
-    /// stages are built with that edit.
+    /// `superseded` returns whether a newer edit waits. If so, the update ends after compiling with [`Outcome::Unchanged`], and
+    /// the next update builds the pipelines.
     pub fn update(
         &mut self,
         change: Change,
@@ -104,7 +104,7 @@ impl Reloader {
     }
 }
 
-/// What a tree is called in messages.
+/// The name of a tree in messages.
 pub fn tree_name(source: &Source) -> String {
     source.root().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string())
 }

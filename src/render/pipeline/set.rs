@@ -1,4 +1,4 @@
-//! The pipelines of one shader generation. A frame is drawn with exactly one set, so it never mixes two generations.
+//! The pipelines of one shader generation. Each frame uses exactly one set, so no frame mixes two generations.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -12,23 +12,23 @@ use crate::render::environment::bake::BAKE_STAGES;
 use crate::render::state::{Pass, PipelineKey, PipelineRequest};
 use crate::shader::{ShaderSet, specialize};
 
-/// The stages that a picture is drawn with.
+/// The stages that draw a picture.
 const GRAPHICS: [&str; 7] =
     ["pbr.vert", "pbr.frag", "sky.vert", "sky.frag", "tonemap.vert", "tonemap.frag", "average.frag"];
 /// The stages that measure the BRDF, for `specula brdf`.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
 
-/// A set keeps the pipelines of this many requests, the newest: enough to go back to any recent mode at once, and no more
-/// memory after a day of dragging sliders.
+/// A set keeps the pipelines of its newest requests, this many. So recent modes return at once, and dragging sliders does not
+/// use ever more memory.
 const REQUESTS_KEPT: u64 = 64;
 
-/// The stages that a shader tree must have to be shown, as paths from its root.
+/// The stages that a shader tree must have, as paths from its root.
 pub fn stages() -> Vec<&'static str> {
     GRAPHICS.into_iter().chain([tables::DFG, tables::SHEEN_ALBEDO]).chain(BAKE_STAGES).collect()
 }
 
-/// [`stages`] and those that measure the BRDF: everything in a tree with a `main()`.
+/// [`stages`] and [`MEASURE_STAGES`]: every file of the built-in tree with a `main()`.
 pub fn all_stages() -> Vec<&'static str> {
     stages().into_iter().chain(MEASURE_STAGES).collect()
 }
@@ -38,7 +38,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Pass {
-    /// Vertex and fragment stage.
+    /// Paths of the vertex and fragment stages.
     fn stages(self) -> [&'static str; 2] {
         match self {
             Self::Model { .. } => [GRAPHICS[0], GRAPHICS[1]],
@@ -49,7 +49,7 @@ impl Pass {
     }
 }
 
-/// The pipelines of one [`PipelineRequest`], and the tables that go with its constants.
+/// The pipelines of one [`PipelineRequest`], and the tables for its constants.
 #[derive(Clone)]
 pub(crate) struct BoundPipelines {
     pipelines: HashMap<PipelineKey, Arc<Pipeline>>,
@@ -72,7 +72,7 @@ impl BoundPipelines {
     }
 }
 
-/// Objects by key, each with the number of the request that used it last.
+/// Objects by key, each with the number of the last request that used it.
 struct Recent<K, T> {
     entries: HashMap<K, (Arc<T>, u64)>,
 }
@@ -82,7 +82,7 @@ impl<K: std::hash::Hash + Eq, T> Recent<K, T> {
         self.entries.get(key).map(|(object, _)| object)
     }
 
-    /// Marks an entry as used by a request; returns whether it exists.
+    /// Marks an entry as used by a request. Returns whether the entry exists.
     fn touch(&mut self, key: &K, request: u64) -> bool {
         self.entries.get_mut(key).map(|entry| entry.1 = request).is_some()
     }
@@ -91,7 +91,7 @@ impl<K: std::hash::Hash + Eq, T> Recent<K, T> {
         self.entries.insert(key, (object, request));
     }
 
-    /// Drops what none of the newest requests used.
+    /// Drops the objects that none of the newest requests used.
     fn trim(&mut self, request: u64) {
         self.entries.retain(|_, (_, used)| *used + REQUESTS_KEPT > request);
     }
@@ -103,7 +103,7 @@ impl<K, T> Default for Recent<K, T> {
     }
 }
 
-/// Compiled shaders, and the pipelines that the newest requests needed.
+/// Compiled shaders, and the pipelines of the newest requests.
 pub struct PipelineSet {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -116,11 +116,11 @@ pub struct PipelineSet {
 }
 
 impl PipelineSet {
-    /// Makes the set and the pipelines of `request`, all or nothing. Pipelines whose stages are the same objects in `before`
-    /// are taken over from it.
+    /// Creates a set with the pipelines of `request`, all or nothing. Pipelines of `before` whose stages did not change are
+    /// taken over.
     ///
     /// # Errors
-    /// The driver refuses a stage or a pipeline.
+    /// The driver rejects a stage or a pipeline.
     pub fn new(
         gpu: &Arc<Gpu>,
         layouts: &Arc<SetLayouts>,
@@ -144,7 +144,7 @@ impl PipelineSet {
         Ok(Arc::new(set))
     }
 
-    /// Takes over what an edit left alone. Frames are drawn with `before` meanwhile, so its locks are held briefly.
+    /// Takes over the pipelines of unchanged stages. Frames may use `before` at the same time, so its locks are held briefly.
     fn take_over(&self, before: &Self) {
         let is_same = |path: &str| match (before.shaders.stages.get(path), self.shaders.stages.get(path)) {
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
@@ -166,10 +166,10 @@ impl PipelineSet {
         }
     }
 
-    /// Makes what `request` still lacks. From any thread; frames may be drawn meanwhile.
+    /// Creates the missing pipelines of `request`. Any thread may call this while frames use the set.
     ///
     /// # Errors
-    /// The driver refuses a pipeline; those made before it stay.
+    /// The driver rejects a pipeline. Pipelines created before it stay.
     pub fn build(&self, request: &PipelineRequest) -> Result<(), GpuError> {
         let number = {
             let mut requests = lock(&self.requests);
@@ -193,23 +193,13 @@ impl PipelineSet {
         Ok(())
     }
 
-    /// The pipelines of `request`; `None` while one is missing.
+    /// The pipelines of `request`, or `None` if one is missing.
     pub(crate) fn bind(&self, request: &PipelineRequest) -> Option<BoundPipelines> {
         let graphics = lock(&self.graphics);
         let pipelines = request.keys().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
         let pipelines = pipelines.collect::<Option<_>>()?;
         let tables = lock(&self.tables).get(&self.table_constants(&request.constants)).cloned()?;
         Some(BoundPipelines { pipelines, tables })
-    }
-
-    /// Number of graphics pipelines that are kept.
-    pub fn len(&self) -> usize {
-        lock(&self.graphics).entries.len()
-    }
-
-    /// Whether no graphics pipeline is kept.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     pub(crate) fn gpu(&self) -> &Arc<Gpu> {
@@ -220,24 +210,24 @@ impl PipelineSet {
         &self.layouts
     }
 
-    /// Those of the author's constants that the tables depend on.
+    /// The author's constants that the tables depend on.
     fn table_constants(&self, constants: &Specialization) -> Specialization {
         let stages = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().filter_map(|path| self.shaders.stages.get(path));
         let declared: Vec<u32> = stages.flat_map(|s| s.reflection.constants.iter().map(|c| c.id)).collect();
         constants.iter().filter(|(id, _)| declared.contains(id)).copied().collect()
     }
 
-    /// The module of a stage.
+    /// The SPIR-V of a stage.
     pub(crate) fn spirv(&self, path: &str) -> Result<&Vec<u32>, GpuError> {
         self.shaders.stages.get(path).map(|stage| &stage.spirv).ok_or_else(|| GpuError::NoStage(path.to_owned()))
     }
 
-    /// A stage with these values for its constants.
+    /// The module of a stage, specialized with these constants.
     fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
         ShaderModule::new(&self.gpu, path, &specialize(self.spirv(path)?, constants))
     }
 
-    /// A compute pipeline, made at its first use.
+    /// A compute pipeline, created at its first use.
     pub(crate) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
         let key = (path.to_owned(), constants.clone());
         let number = *lock(&self.requests);

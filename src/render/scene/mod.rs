@@ -1,4 +1,4 @@
-//! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set for each material.
+//! A model on the device: one vertex buffer, one index buffer, textures, and a descriptor set per material.
 
 mod materials;
 mod upload;
@@ -14,7 +14,7 @@ use crate::scene::{Instance, Model, Topology};
 use materials::{Textures, materials};
 use upload::{Range, Uploaded, upload};
 
-/// Why a model cannot be put on the device.
+/// Why a model cannot be uploaded.
 #[derive(Debug, thiserror::Error)]
 pub enum UploadError {
     /// An image is too large.
@@ -29,7 +29,7 @@ pub enum UploadError {
         /// The device's limit.
         most: u32,
     },
-    /// The device.
+    /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
@@ -48,22 +48,22 @@ pub(crate) struct GpuDraw {
     pub(crate) center_ws: glam::Vec3,
 }
 
-/// A model on the device: geometry, textures and a descriptor set for each material.
+/// A model on the device: geometry, textures and a descriptor set per material.
 pub struct GpuModel {
     model: Arc<Model>,
     vertices: Arc<Buffer>,
     indices: Arc<Buffer>,
     ranges: Vec<Range>,
     materials: Vec<Arc<DescriptorSet>>,
-    /// The images that are bound where a material has no texture.
+    /// The textures that are bound where a material has none.
     default_textures: Textures,
 }
 
 impl GpuModel {
-    /// Uploads a model and waits for it. From any thread. The model keeps everything but the pixels of its images.
+    /// Uploads a model and waits until that is done. Any thread may call this. The model keeps all but the pixels of its images.
     ///
     /// # Errors
-    /// An image beyond the device's limit, or no memory left.
+    /// An image that exceeds the device's limit, or no memory left.
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, mut model: Model) -> Result<Arc<Self>, UploadError> {
         let Uploaded { vertices, indices, ranges, textures } = upload(gpu, &mut model)?;
         let materials = materials(gpu, layouts, &model, &textures)?;
@@ -76,7 +76,7 @@ impl GpuModel {
         &self.model
     }
 
-    /// The draws of a scene of this model. Only a material override is uploaded.
+    /// The draws of a scene of this model. Uploads only a material override, if there is one.
     ///
     /// # Errors
     /// No memory left.
@@ -101,7 +101,7 @@ impl GpuModel {
     }
 }
 
-/// A [`Scene`] that can be drawn.
+/// A [`Scene`] on the device, ready to draw.
 pub struct GpuScene {
     pub(crate) vertices: Arc<Buffer>,
     pub(crate) indices: Arc<Buffer>,
@@ -120,8 +120,8 @@ fn draw(
     let world = instance.world_from_object;
     let linear = Mat3::from_mat4(world);
     let determinant = linear.determinant();
-    // The cofactors are the inverse transpose times the determinant. Unlike the inverse they exist for a flattened object,
-    // too. The shader normalizes, so only the sign of the determinant has to be applied.
+    // The cofactor matrix is the inverse transpose times the determinant. Unlike the inverse, it also exists for a flattened
+    // object. The shader normalizes, so only the sign of the determinant matters.
     let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
     let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
     let normals = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;

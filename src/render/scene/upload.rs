@@ -1,5 +1,5 @@
-//! Copies a model's geometry and textures to the device, through one staging buffer of bounded size. The CPU's pixels
-//! are freed on the way, so that they never exist next to a second copy of all of them.
+//! Uploads a model's geometry and textures through one staging buffer of bounded size. Frees the CPU's pixels as it goes,
+//! so that never two copies of all of them exist.
 
 use std::sync::Arc;
 
@@ -17,34 +17,34 @@ pub(super) struct Uploaded {
     pub(super) vertices: Arc<Buffer>,
     /// The indices of all primitives, one after the other, each relative to its primitive's first vertex.
     pub(super) indices: Arc<Buffer>,
-    /// Where each primitive lies in these buffers.
+    /// The location of each primitive in these buffers.
     pub(super) ranges: Vec<Range>,
-    /// What the materials read, and the stand-ins for missing textures.
+    /// The textures of the materials, and the defaults for missing ones.
     pub(super) textures: Textures,
 }
 
-/// Where a primitive lies in the shared buffers.
+/// The location of a primitive in the shared buffers.
 pub(super) struct Range {
     pub(super) first_vertex: u64,
     pub(super) first_index: u32,
 }
 
-/// Size of the staging buffer in bytes, unless the model needs less, or one of its images more.
+/// Size of the staging buffer in bytes. It is smaller if the model needs less, and larger if one image needs more.
 const STAGING_BYTES: u64 = 32 << 20;
-/// A copy to an image starts at a multiple of this: Vulkan asks for the texel size, and devices like 16.
+/// Alignment of image copies in the staging buffer, in bytes. Vulkan requires the texel size; 16 suits all devices.
 const ALIGNMENT: u64 = 16;
-/// Bytes that one task writes to the staging buffer. The first write to a page costs as much as the copy itself, so
-/// even one image is shared out.
+/// Bytes that one task writes to the staging buffer. The first write to a page costs as much as the copy itself, so even
+/// a single image is split into tasks.
 const BYTES_A_TASK: usize = 1 << 20;
 
 const TEXTURE_USAGE: vk::ImageUsageFlags =
     vk::ImageUsageFlags::from_raw(vk::ImageUsageFlags::SAMPLED.as_raw() | vk::ImageUsageFlags::TRANSFER_DST.as_raw());
 
-/// Uploads a model and waits for it. Afterwards `rgba8` of each of its images is empty; the rest of the model is as it
-/// was, since picking and framing read it.
+/// Uploads a model and waits until that is done. Then `rgba8` of each image is empty. Picking and framing read the rest of
+/// the model, so the rest stays.
 ///
 /// # Errors
-/// An image beyond the device's limit, or no memory left. Some pixels may be gone then.
+/// An image that exceeds the device's limit, or no memory left. Some pixels may be freed by then.
 pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, UploadError> {
     let sources: Vec<TextureSource> = texture_sources(model).into_iter().collect();
     check_sizes(gpu, model, &sources)?;
@@ -77,7 +77,7 @@ fn check_sizes(gpu: &Gpu, model: &Model, sources: &[TextureSource]) -> Result<()
     }
 }
 
-/// Memory that the CPU fills and the device copies from, again and again.
+/// A buffer that the CPU fills and the device copies from, as often as needed.
 struct Staging<'a> {
     gpu: &'a Arc<Gpu>,
     buffer: Arc<Buffer>,
@@ -94,7 +94,7 @@ impl<'a> Staging<'a> {
         Ok(Self { gpu, buffer })
     }
 
-    /// Makes a buffer of slices that follow each other.
+    /// Creates a buffer that holds the slices in order.
     fn buffer<T: bytemuck::Pod>(
         &self,
         name: &str,
@@ -134,8 +134,8 @@ impl<'a> Staging<'a> {
         Ok(())
     }
 
-    /// Makes all textures, as many at a time as the staging buffer holds, and frees each image's pixels after the last
-    /// texture that is made of them.
+    /// Creates all textures, as many at a time as fit into the staging buffer. Frees each image's pixels after the last
+    /// texture that reads them.
     fn textures(&self, model: &mut Model, sources: &[TextureSource]) -> Result<Textures, UploadError> {
         let mut readers = vec![0u32; model.images.len()];
         sources.iter().flat_map(|source| source.images()).for_each(|image| readers[image] += 1);
@@ -152,7 +152,7 @@ impl<'a> Staging<'a> {
         Ok(textures)
     }
 
-    /// How many of the first sources fit into the staging buffer; at least 1, as it holds the largest.
+    /// How many of the first sources fit into the staging buffer together. At least 1, since the buffer holds the largest.
     fn fitting(&self, sources: &[TextureSource], model: &Model) -> usize {
         let mut free = self.buffer.size();
         let fits = |source: &&TextureSource| {
@@ -186,7 +186,7 @@ impl<'a> Staging<'a> {
         Ok(())
     }
 
-    /// Writes all levels of a texture to `offset`, one after the other.
+    /// Writes all levels of a texture in order, starting at `offset`.
     fn fill(&self, source: TextureSource, model: &Model, offset: u64) {
         let (width, height) = size(&source, model);
         let pixels = source.pixels(model);
@@ -201,13 +201,13 @@ impl<'a> Staging<'a> {
     }
 }
 
-/// Frees the pixels of images that no texture is still to be made of.
+/// Frees the pixels of images that no remaining texture reads.
 fn free_unread(model: &mut Model, readers: &[u32]) {
     let unread = model.images.iter_mut().zip(readers).filter(|(_, readers)| **readers == 0);
     unread.for_each(|(image, _)| image.rgba8 = Vec::new());
 }
 
-/// Makes the image of a texture, without content.
+/// Creates the image of a texture, without content.
 fn make_image(gpu: &Arc<Gpu>, source: &TextureSource, model: &Model) -> Result<Arc<Image>, UploadError> {
     let name = source.image(model).map_or("default", |image| &image.name);
     let format = if source.is_srgb() { vk::Format::R8G8B8A8_SRGB } else { vk::Format::R8G8B8A8_UNORM };
@@ -216,7 +216,7 @@ fn make_image(gpu: &Arc<Gpu>, source: &TextureSource, model: &Model) -> Result<A
     Ok(Image::new(gpu, name, ImageDesc { mips, ..ImageDesc::new(width, height, format, TEXTURE_USAGE) })?)
 }
 
-/// Bytes of the staging buffer that all levels of a texture take.
+/// Bytes that all levels of a texture take in the staging buffer.
 fn staged_bytes(source: &TextureSource, model: &Model) -> u64 {
     let (width, height) = size(source, model);
     (mips::bytes(width, height) as u64).next_multiple_of(ALIGNMENT)

@@ -1,7 +1,7 @@
-//! One picture as a value: what it shows, and the keys of the pipelines and resources that draw it.
+//! A picture as a value: its uniforms, and the keys of the pipelines and resources that draw it.
 //!
-//! [`FrameState::new`] is a pure function. A frame is drawn from one state as a whole, so no picture ever mixes the settings,
-//! shaders or resources of two.
+//! [`FrameState::new`] is a pure function. Each frame draws exactly one state, so no picture mixes two versions of settings,
+//! shaders or resources.
 
 mod pipelines;
 mod scene;
@@ -21,39 +21,39 @@ use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet, Stage, values};
 
-/// Paths traced for each pixel in each frame of an accumulating mode.
+/// Paths per pixel and frame in an accumulating mode.
 const PATHS_PER_FRAME: u32 = 8;
 
 /// Everything that a picture depends on.
 #[derive(Clone, Copy)]
 pub struct FrameInputs<'a> {
-    /// What the user set. A mode that the tree lacks falls back to the tree's first; a value that does not fit its shader
-    /// parameter falls back to the parameter's default.
+    /// The user's settings. A mode that the tree lacks falls back to the tree's first mode. A value that does not fit its
+    /// shader parameter falls back to the parameter's default.
     pub settings: &'a Settings,
     /// One generation of shaders.
     pub shaders: &'a Arc<ShaderSet>,
     /// The model as the settings show it; `None` draws the background alone.
     pub scene: Option<&'a Scene>,
-    /// How often the files behind `settings.environment.name` and `settings.measured` have changed.
+    /// How often the files of `settings.environment.name` and `settings.measured` have changed.
     pub revisions: Revisions,
-    /// Seconds since the start, for shaders that move.
+    /// Seconds since the start, for animated shaders.
     pub time_s: f32,
     /// Width and height of the picture, pixels.
     pub size: (u32, u32),
-    /// What the model is drawn to.
+    /// Format of the HDR target.
     pub target: TargetFormat,
 }
 
-/// Counts how often watched files have changed on disk, so that the same name is loaded again.
+/// Counts the changes of watched files on disk, so that the same name is loaded again after a change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Revisions {
-    /// Of the environment map.
+    /// Changes of the environment map.
     pub environment: u64,
-    /// Of the measured BRDF.
+    /// Changes of the measured BRDF.
     pub measured: u64,
 }
 
-/// An environment baked with certain shaders.
+/// Identifies a baked environment: its name, the revision of its file, and the bake stages.
 #[derive(Clone, Debug)]
 pub struct EnvironmentKey {
     /// Built-in name or file.
@@ -72,7 +72,7 @@ impl PartialEq for EnvironmentKey {
     }
 }
 
-/// A measured BRDF.
+/// Identifies a measured BRDF.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredKey {
     /// MERL or UTIA file.
@@ -89,7 +89,7 @@ pub struct FrameState {
     pub pipelines: PipelineRequest,
     /// The model and its materials.
     pub scene: Option<Scene>,
-    /// Image-based light; `None` is the flat ambient light of the settings.
+    /// Image-based light. Without it, the settings' ambient light is used.
     pub environment: Option<EnvironmentKey>,
     /// Measured BRDF, for the modes that show one.
     pub measured: Option<MeasuredKey>,
@@ -162,7 +162,7 @@ impl FrameState {
         self.shaders.modes.iter().find(|mode| mode.id == self.pipelines.mode)
     }
 
-    /// Whether both states give the same picture, bit for bit.
+    /// Whether both states draw the same picture, bit for bit.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.shaders, &other.shaders)
             && bytemuck::bytes_of(&self.constants) == bytemuck::bytes_of(&other.constants)
@@ -174,13 +174,13 @@ impl FrameState {
             && self.measured == other.measured
     }
 
-    /// The author's parameter block, `PARAMS_SIZE` bytes.
+    /// The content of the author's parameter block, `PARAMS_SIZE` bytes.
     pub(super) fn params(&self) -> &[u8] {
         &self.params
     }
 
-    /// The frame's uniforms for a picture at `rect` in the output, under an environment whose images hold radiance times
-    /// `scale`. `sample_index` counts the frames of one accumulated picture.
+    /// The frame constants for a picture at `rect` of the output. The environment's images hold radiance times `scale`.
+    /// `sample_index` counts the frames of an accumulated picture from 0.
     pub(super) fn constants(&self, rect: Rect, scale: f32, sample_index: u32) -> Frame {
         Frame {
             environment_intensity: self.constants.environment_intensity / scale,

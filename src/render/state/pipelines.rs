@@ -1,4 +1,4 @@
-//! Which pipelines a picture is drawn with: by debug mode, the author's constants, and the kinds of material in the scene.
+//! Selects the pipelines of a picture by debug mode, the author's constants, and the kinds of material in the scene.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::scene::light_count;
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::{DrawAs, Encode, Mode, ShaderSet, values};
 
-/// What distinguishes the pipelines of two materials.
+/// The properties of a material and its primitive that select a pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialVariant {
     /// `interface::ALPHA_*`.
@@ -23,7 +23,7 @@ pub struct MaterialVariant {
     pub class: PrimitiveClass,
 }
 
-/// What the model is drawn to.
+/// Format of the HDR target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TargetFormat {
     /// Format of the HDR color target.
@@ -33,17 +33,17 @@ pub struct TargetFormat {
 }
 
 impl TargetFormat {
-    /// Half floats: all that a picture needs, at half the cost.
+    /// Half floats: precise enough for a picture, at half the bandwidth.
     pub fn half(samples: u32) -> Self {
         Self { color: vk::Format::R16G16B16A16_SFLOAT, samples }
     }
 
-    /// Full floats: what is read back is what the shader wrote.
+    /// Full floats, so that readback returns exactly what the shader wrote.
     pub fn full(samples: u32) -> Self {
         Self { color: vk::Format::R32G32B32A32_SFLOAT, samples }
     }
 
-    /// Whether values beyond 65504 overflow.
+    /// Whether the target holds half floats, in which values beyond 65504 overflow.
     pub fn is_half(self) -> bool {
         self.color == vk::Format::R16G16B16A16_SFLOAT
     }
@@ -58,23 +58,23 @@ pub struct PipelineRequest {
     pub draw: DrawAs,
     /// Values of the author's specialization constants.
     pub constants: Specialization,
-    /// `TONEMAP_*` in common/tonemap.glsl; off for a mode that shows no light.
+    /// `TONEMAP_*` in common/tonemap.glsl; [`TONEMAP_OFF`] for a mode that shows data.
     pub tonemap: u32,
     /// `interface::ENCODE_*`.
     pub encode: u32,
-    /// What the model is drawn to.
+    /// Format of the HDR target.
     pub target: TargetFormat,
     /// Kinds of material in the scene.
     pub materials: BTreeSet<MaterialVariant>,
     /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_RECT_LIGHTS`.
     pub shared_features: u32,
-    /// Number of lights, if they are few enough to unroll the loop over them; else 0.
+    /// Number of lights, if there are few enough to unroll the loop over them; otherwise 0.
     pub light_count: u32,
     /// Whether the environment is visible behind the model.
     pub sky: bool,
     /// Whether the picture is the mean of all frames since it last changed.
     pub accumulates: bool,
-    /// Whether transmissive surfaces show the final picture behind them, not this mode of it.
+    /// Whether transmissive surfaces look up the final picture behind them instead of this mode's.
     pub through: bool,
 }
 
@@ -87,21 +87,21 @@ pub(crate) struct PipelineKey {
     pub(crate) specialization: Specialization,
 }
 
-/// What a pipeline draws, and with which stages.
+/// The pass that a pipeline belongs to. It determines the stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Pass {
     /// The model: `pbr.vert`, `pbr.frag`.
     Model { raster: Raster, class: PrimitiveClass },
     /// The environment behind it: `sky.vert`, `sky.frag`.
     Sky,
-    /// A frame added to the mean: `tonemap.vert`, `average.frag`.
+    /// Adds a frame to the mean: `tonemap.vert`, `average.frag`.
     Average,
     /// HDR to picture: `tonemap.vert`, `tonemap.frag`.
     Tonemap,
 }
 
 impl PipelineRequest {
-    /// The pipelines that `settings` ask for. A mode that the tree lost falls back to its first.
+    /// The pipelines that `settings` select. A mode that the tree lacks falls back to the tree's first mode.
     pub fn new(settings: &Settings, shaders: &ShaderSet, scene: Option<&Scene>, target: TargetFormat) -> Self {
         let mode = find_mode(shaders, &settings.mode);
         let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
@@ -121,7 +121,7 @@ impl PipelineRequest {
         }
     }
 
-    /// The same request for another mode, tone mapped by `tonemap` if that mode shows light.
+    /// The same request for another mode, with `tonemap` if that mode shows light.
     pub fn with_mode(&self, mode: &Mode, tonemap: Tonemap) -> Self {
         Self {
             mode: mode.id,
@@ -148,7 +148,7 @@ impl PipelineRequest {
             DrawAs::Layers => Raster::Added,
             DrawAs::Surfaces if material.alpha == interface::ALPHA_BLEND => match self.mode {
                 interface::MODE_FINAL => Raster::Blended,
-                // A debug mode has coverage 1, and its flags in alpha must not blend.
+                // A debug mode stores flags in alpha, which must not be blended.
                 _ => Raster::Replaced,
             },
             DrawAs::Surfaces => Raster::Solid,
@@ -161,14 +161,14 @@ impl PipelineRequest {
         }
     }
 
-    /// Whether opaque surfaces are drawn twice: as in the final picture, to be seen through transmissive surfaces, and as this
-    /// mode shows them.
+    /// Whether opaque surfaces are drawn twice: as in the final picture for transmissive surfaces to look up, and as this mode
+    /// shows them.
     pub(crate) fn draws_opaque_twice(&self) -> bool {
         let transmissive = self.materials.iter().any(|material| is_transmissive(*material));
         transmissive && self.through && self.mode != interface::MODE_FINAL
     }
 
-    /// The pipeline that draws a material where transmissive surfaces show it.
+    /// The pipeline that draws a material in the pass `behind`.
     pub(crate) fn behind_key(&self, material: MaterialVariant) -> PipelineKey {
         let is_opaque = material.alpha != interface::ALPHA_BLEND && !is_transmissive(material);
         if !is_opaque || !self.draws_opaque_twice() {
@@ -183,7 +183,7 @@ impl PipelineRequest {
         PipelineKey { pass: Pass::Tonemap, format: Swapchain::FORMAT, samples: 1, specialization }
     }
 
-    /// The pipeline of the environment behind the model, when it is visible.
+    /// The pipeline of the environment behind the model, if it is visible.
     pub(crate) fn sky_key(&self) -> Option<PipelineKey> {
         self.sky.then(|| PipelineKey {
             pass: Pass::Sky,
@@ -229,7 +229,7 @@ fn shared_features(settings: &Settings) -> u32 {
     features
 }
 
-/// The mode of this slug, or the tree's first mode.
+/// The mode with this slug, or the tree's first mode.
 fn find_mode<'a>(shaders: &'a ShaderSet, slug: &str) -> Option<&'a Mode> {
     shaders.modes.iter().find(|m| m.slug == slug).or_else(|| shaders.modes.first())
 }

@@ -1,4 +1,4 @@
-//! The model as the settings show it: which variant (KHR_materials_variants), and whether one material replaces all others.
+//! The model with the selected variant (KHR_materials_variants) and material override.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ pub struct Scene {
     model: Arc<Model>,
     variant: Option<usize>,
     material_override: Option<MaterialOverride>,
-    /// Which instances are drawn; all of them without.
+    /// Whether each instance is drawn. `None` draws all.
     visible: Option<Arc<[bool]>>,
     materials: Arc<BTreeSet<MaterialVariant>>,
 }
@@ -40,13 +40,13 @@ pub(crate) struct Appearance {
 }
 
 impl Scene {
-    /// The scene that `settings` select. A variant that the model lacks counts as none: see [`Model::variant`].
+    /// The scene that `settings` select. A variant that the model lacks is ignored: see [`Model::variant`].
     pub fn new(model: &Arc<Model>, settings: &Settings) -> Self {
         Self::with(model, model.variant(&settings.variant).unwrap_or(None), override_of(settings), None)
     }
 
-    /// [`Scene::new`], or a clone of `previous` when that is the same scene: finding out which materials a large model uses
-    /// takes a while.
+    /// [`Scene::new`], or a clone of `previous` if that is the same scene. Collecting the materials of a large model takes
+    /// time.
     pub fn update(previous: Option<&Self>, model: &Arc<Model>, settings: &Settings) -> Self {
         let variant = model.variant(&settings.variant).unwrap_or(None);
         let is_same = |scene: &&Self| {
@@ -56,7 +56,7 @@ impl Scene {
         previous.filter(is_same).cloned().unwrap_or_else(|| Self::new(model, settings))
     }
 
-    /// The same scene without the instances whose entry is `false`.
+    /// The same scene with only the instances whose entry is `true`.
     pub fn only(&self, visible: Vec<bool>) -> Self {
         Self::with(&self.model, self.variant, self.material_override, Some(visible.into()))
     }
@@ -79,12 +79,12 @@ impl Scene {
         &self.model
     }
 
-    /// The kinds of material that are drawn.
+    /// The kinds of material in use.
     pub fn materials(&self) -> &BTreeSet<MaterialVariant> {
         &self.materials
     }
 
-    /// Whether light passes through a surface, so that what lies behind it must be drawn first.
+    /// Whether a material is transmissive, so that the surfaces behind it must be drawn first.
     pub fn is_transmissive(&self) -> bool {
         self.materials.iter().any(|material| material.features & FEATURE_TRANSMISSION != 0)
     }
@@ -95,7 +95,7 @@ impl Scene {
         self.model.instances.iter().enumerate().filter(move |(index, _)| is_visible(*index)).map(|(_, i)| i)
     }
 
-    /// The material that replaces all others, if one does.
+    /// The material override, if it is enabled.
     pub(crate) fn replacement(&self) -> Option<Material> {
         self.material_override.as_ref().map(override_material)
     }
@@ -105,7 +105,7 @@ impl Scene {
         let primitive = &self.model.primitives[instance.primitive];
         let own = primitive.material_in(self.variant);
         let material = replacement.unwrap_or(&self.model.materials[own]);
-        // Vertex colors belong to the material that is replaced.
+        // Vertex colors belong to the replaced material.
         let attributes =
             if replacement.is_some() { primitive.attributes & !ATTRIBUTE_COLOR } else { primitive.attributes };
         Appearance {

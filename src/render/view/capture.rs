@@ -1,25 +1,25 @@
-//! A frame read back: the picture and the raw values behind it.
+//! Reads a frame back: the picture and the raw values before tone mapping.
 
 use std::sync::Arc;
 
 use super::PixelAt;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, vk};
-use crate::render::pixel::PixelValue;
+use crate::shader::PixelValue;
 
-/// A frame in memory.
+/// A frame in CPU memory.
 #[derive(Clone, Debug, Default)]
 pub struct Capture {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// The picture: RGBA, straight alpha, 8 bits, rows from the top.
+    /// The picture: RGBA, 8 bits, straight alpha, rows from the top.
     pub rgba8: Vec<u8>,
     /// The values before exposure, tone map and encoding: RGBA, premultiplied alpha, rows from the top.
     pub raw: Vec<[f32; 4]>,
-    /// Whether the mode has no data at a pixel, as [`PixelValue::no_data`]; in the order of `raw`.
+    /// [`PixelValue::no_data`] of each pixel, in the order of `raw`.
     pub no_data: Vec<bool>,
-    /// Whether the value of a pixel is NaN or infinite, as [`PixelValue::not_finite`]; in the order of `raw`.
+    /// [`PixelValue::not_finite`] of each pixel, in the order of `raw`.
     pub not_finite: Vec<bool>,
 }
 
@@ -40,7 +40,7 @@ pub struct Readback {
 }
 
 impl Readback {
-    /// Records the copies. Both images are in `Use::CopyFrom`.
+    /// Records the copies. Both images must be in [`Use::CopyFrom`].
     pub(super) fn record(
         gpu: &Arc<Gpu>,
         encoder: &mut Encoder,
@@ -78,10 +78,11 @@ impl Readback {
     }
 }
 
-/// One pixel of each frame of a slot, copied within the frame.
+/// Copies one pixel per frame of a slot, as part of the frame.
 pub(super) struct PixelReadback {
     buffer: Arc<Buffer>,
-    copied: Option<((u32, u32), bool)>,
+    /// Pixel position, whether the target holds half floats, and the picture's number.
+    copied: Option<((u32, u32), bool, u64)>,
 }
 
 impl PixelReadback {
@@ -90,11 +91,11 @@ impl PixelReadback {
         Ok(Self { buffer, copied: None })
     }
 
-    /// Records the copy of a pixel of an HDR image, which is in [`Use::Sampled`] before and after.
-    pub(super) fn record(&mut self, encoder: &mut Encoder, hdr: &Arc<Image>, at: Option<(u32, u32)>) {
+    /// Records the copy of a pixel of an HDR image. The image is in [`Use::Sampled`] before and after.
+    pub(super) fn record(&mut self, encoder: &mut Encoder, hdr: &Arc<Image>, at: Option<(u32, u32)>, picture: u64) {
         let desc = hdr.desc();
         let at = at.filter(|(x, y)| *x < desc.width && *y < desc.height);
-        self.copied = at.map(|at| (at, desc.format == vk::Format::R16G16B16A16_SFLOAT));
+        self.copied = at.map(|at| (at, desc.format == vk::Format::R16G16B16A16_SFLOAT, picture));
         if let Some(at) = at {
             encoder.transition(hdr, Use::Sampled, Use::CopyFrom);
             encoder.copy_pixel(hdr, at, &self.buffer);
@@ -105,12 +106,16 @@ impl PixelReadback {
 
     /// The pixel of the last frame that recorded one. SYNC: after that frame's fence.
     pub(super) fn read(&self) -> Option<PixelAt> {
-        let (at, half) = self.copied?;
-        texels(self.buffer.content(), half).next().map(|texel| PixelAt { at, value: PixelValue::decode(texel) })
+        let (at, half, picture) = self.copied?;
+        texels(self.buffer.content(), half).next().map(|texel| PixelAt {
+            at,
+            value: PixelValue::decode(texel),
+            picture,
+        })
     }
 }
 
-/// RGBA pixels of half or full floats.
+/// Decodes RGBA pixels of half or full floats.
 fn texels(bytes: &[u8], half: bool) -> impl Iterator<Item = [f32; 4]> + '_ {
     let decode = move |texel: &[u8]| -> [f32; 4] {
         std::array::from_fn(|c| match half {

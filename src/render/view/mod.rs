@@ -1,5 +1,5 @@
-//! A view draws [`BoundFrame`]s. It owns the images between the model and the picture, what they hold, and the mean of an
-//! accumulating mode, so that several views share nothing but the resources of their frames.
+//! A view draws [`BoundFrame`]s. It owns the render targets, tracks what they hold, and keeps the mean of an accumulating mode,
+//! so that views share nothing but the resources of their frames.
 
 mod capture;
 mod passes;
@@ -11,60 +11,62 @@ use std::sync::Arc;
 pub use capture::Capture;
 use capture::{PixelReadback, Readback};
 use targets::{TargetDesc, Targets};
-pub(super) use uniforms::{SharedImages, Sources, Uniforms};
+pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use super::brdf::ltc;
 use super::compute;
-use super::pixel::PixelValue;
 use super::resources::BoundFrame;
 use super::state::TargetFormat;
 use crate::gpu::{
     Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };
+use crate::shader::PixelValue;
 
 /// Where a view puts its picture.
 pub struct Output<'a> {
-    /// The image. It is left in [`Use::Color`].
+    /// The image. [`View::draw`] leaves it in [`Use::Color`].
     pub image: &'a Arc<Image>,
-    /// What the image was used for before: [`Use::Undefined`], or [`Use::Acquired`] from a swapchain.
+    /// The use that the image is in: [`Use::Undefined`], or [`Use::Acquired`] from a swapchain.
     pub before: Use,
-    /// Upper left corner of the picture in the image. What the picture does not cover becomes black.
+    /// Upper left corner of the picture in the image. The rest of the image becomes black.
     pub at: (u32, u32),
 }
 
-/// How much of a frame is drawn.
+/// How much of a frame [`View::draw`] draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Redraw {
-    /// The model is drawn only if the picture has changed since the last frame.
+    /// Draws the model only if the picture has changed since the last frame; otherwise only tone maps.
     IfChanged,
-    /// Everything.
+    /// Draws everything.
     Always,
-    /// Everything, but only one pixel is shaded, counted from the upper left corner.
+    /// Draws everything, but shades only this pixel, counted from the upper left corner.
     Pixel(u32, u32),
 }
 
-/// The raw value of a pixel.
+/// The value of one pixel before tone mapping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelAt {
     /// Pixels from the left and upper edge of the picture.
     pub at: (u32, u32),
     /// Its value.
     pub value: PixelValue,
+    /// [`View::picture`] of the picture that the pixel belongs to.
+    pub picture: u64,
 }
 
-/// What the HDR target holds.
+/// The frame that the HDR target holds.
 struct Drawn {
     frame: BoundFrame,
     only: Option<Rect>,
 }
 
-/// What belongs to a frame in flight.
+/// The resources of one frame in flight.
 struct InFlight {
     uniforms: Uniforms,
     pixel: PixelReadback,
 }
 
-/// Draws frames of one picture after another.
+/// Draws frames, and redraws only what has changed.
 pub struct View {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -73,17 +75,20 @@ pub struct View {
     in_flight: Vec<InFlight>,
     targets: Option<Targets>,
     drawn: Option<Drawn>,
-    redrawn: bool,
+    /// How often the model was drawn.
+    picture: u64,
     sample_index: u32,
     /// The pixel whose value each frame reports.
     pub probe: Option<(u32, u32)>,
 }
 
 impl View {
+    /// An accumulating mode stops after this many frames, unless the caller redraws always. More make no visible difference.
+    pub const MOST_ACCUMULATED: u32 = 4096;
     /// Format of every picture.
     pub const OUTPUT_FORMAT: vk::Format = Swapchain::FORMAT;
 
-    /// A view for a renderer with this many frames in flight.
+    /// Creates a view for this many frames in flight.
     ///
     /// # Errors
     /// Out of memory.
@@ -102,13 +107,13 @@ impl View {
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,
-            redrawn: false,
+            picture: 0,
             sample_index: 0,
             probe: None,
         })
     }
 
-    /// Makes the images that `frame` is drawn to, if those at hand do not fit. If that fails, these stay.
+    /// Replaces the targets if they do not fit `frame`. On failure the old targets stay.
     ///
     /// # Errors
     /// Out of memory.
@@ -128,7 +133,7 @@ impl View {
         Ok(())
     }
 
-    /// Draws `frame`, for which [`View::prepare`] was called, with the uniforms of frame slot `slot`.
+    /// Draws `frame` with the uniforms of frame slot `slot`. Call [`View::prepare`] for the frame first.
     ///
     /// # Errors
     /// Out of memory.
@@ -148,13 +153,17 @@ impl View {
             Redraw::IfChanged | Redraw::Always => None,
         };
 
-        // An accumulating mode adds a frame to the mean of the same picture, and starts again with another.
+        // An accumulating mode adds a frame to the mean while the picture is the same, and starts again when it changes.
         let accumulates = frame.state.pipelines.accumulates;
         let unchanged = self.drawn.as_ref().is_some_and(|drawn| drawn.only == only && drawn.frame.is_same(frame));
-        self.sample_index = if unchanged && accumulates { self.sample_index.saturating_add(1) } else { 0 };
-        self.redrawn = !unchanged || accumulates || redraw != Redraw::IfChanged;
+        let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
+        let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
+        if redrawn {
+            self.picture += 1;
+            self.sample_index = if unchanged && accumulates { self.sample_index.saturating_add(1) } else { 0 };
+        }
 
-        // What the shaders read.
+        // Uniforms and set 0.
         let in_flight = &mut self.in_flight[slot];
         let constants = frame.state.constants(rect, frame.environment.scale, self.sample_index);
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
@@ -165,47 +174,47 @@ impl View {
         };
         encoder.bind_set(&self.layouts, &in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?);
 
-        // The model, to HDR.
+        // The model to the HDR target.
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, only };
-        if self.redrawn {
+        if redrawn {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
             passes.accumulate(encoder, self.sample_index);
         }
         self.drawn = Some(Drawn { frame: frame.clone(), only });
 
-        // The value of one pixel, for whoever asks for it once the frame has finished.
-        in_flight.pixel.record(encoder, targets.picture(), self.probe);
+        // The probed pixel, which `pixel` reads once the frame has finished.
+        in_flight.pixel.record(encoder, targets.picture(), self.probe, self.picture);
 
-        // HDR to the picture: exposure, tone map, sRGB.
+        // The HDR target to the picture: exposure, tone map, sRGB.
         encoder.transition(output.image, output.before, Use::Color);
         encoder.pass("tone map", |encoder| passes.tone_map(encoder, output.image, rect));
         Ok(())
     }
 
-    /// Fills an output with black, when there is no frame to draw yet.
+    /// Fills an output with black while there is no frame to draw.
     pub fn clear(encoder: &mut Encoder, output: &Output<'_>) {
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
     }
 
-    /// Whether the last frame drew the model, and not only the tone map over what the HDR target held.
-    pub fn redrawn(&self) -> bool {
-        self.redrawn
+    /// The number of the current picture. It increases when the model is drawn, not when only the tone map runs.
+    pub fn picture(&self) -> u64 {
+        self.picture
     }
 
-    /// Number of frames that the picture is the mean of.
+    /// The number of frames in the mean.
     pub fn accumulated(&self) -> u32 {
         self.sample_index + 1
     }
 
-    /// The probed pixel as it was in the last frame of slot `slot`; `None` without one. SYNC: that frame has finished.
+    /// The probed pixel of the last frame of slot `slot`, if that frame had one. SYNC: after that frame's fence.
     pub fn pixel(&self, slot: usize) -> Option<PixelAt> {
         self.in_flight.get(slot).and_then(|in_flight| in_flight.pixel.read())
     }
 
-    /// Records the copy of picture and HDR target to memory, for [`Readback::finish`] once the frame has finished. `output` is
-    /// where [`View::draw`] put the picture.
+    /// Records the readback of the picture in `output`, which [`View::draw`] has drawn, and of the HDR target. Call
+    /// [`Readback::finish`] once the frame has finished.
     ///
     /// # Errors
     /// Out of memory.
@@ -218,7 +227,7 @@ impl View {
         Ok(Some(readback))
     }
 
-    /// An image for pictures that are read back.
+    /// Creates an output image that can be read back.
     ///
     /// # Errors
     /// Out of memory.
@@ -227,10 +236,10 @@ impl View {
         Image::new(&self.gpu, "picture", ImageDesc::new(width, height, Self::OUTPUT_FORMAT, usage))
     }
 
-    /// Samples per pixel as `msaa` asks, if the device can.
+    /// The target format for `msaa` samples per pixel, with full or half floats.
     ///
     /// # Errors
-    /// A count that is neither 1 nor 4, or that the device lacks, in words.
+    /// A message, if `msaa` is neither 1 nor 4 or the device does not support it.
     pub fn target_format(gpu: &Gpu, msaa: u32, full: bool) -> Result<TargetFormat, String> {
         match msaa {
             samples @ (1 | 4) if gpu.supports_samples(samples) => {

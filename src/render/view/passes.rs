@@ -1,11 +1,4 @@
-//! The passes of a frame, in the order in which they run.
-//!
-//! | pass | reads | draws to |
-//! |---|---|---|
-//! | behind | | HDR color; then copied and blurred level by level |
-//! | model | behind | HDR color: opaque, transmissive, sky, blended |
-//! | accumulate | HDR color | mean |
-//! | tone map | HDR color, or mean | the output |
+//! The passes of a frame, in the order in which they run: `behind`, `model`, `accumulate`, `tone map`.
 
 use std::sync::Arc;
 
@@ -18,28 +11,28 @@ use crate::render::resources::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
 use crate::render::state::{MaterialVariant, PipelineKey, PipelineRequest};
 
-/// What all passes of a frame share.
+/// What all passes of a frame need.
 pub(super) struct Passes<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) targets: &'a Targets,
     pub(super) frame: &'a BoundFrame,
-    /// The part of the picture that is shaded; all of it without.
+    /// The part of the picture to shade; `None` is all of it.
     pub(super) only: Option<Rect>,
 }
 
-/// Draws by the order that they need.
+/// Draws, sorted by the order that they require.
 #[derive(Default)]
 struct Sorted<'a> {
-    /// Opaque and masked, front to back, which saves shading.
+    /// Opaque and masked, front to back, so that the depth test rejects hidden fragments.
     opaque: Vec<&'a GpuDraw>,
-    /// Surfaces that light passes through, back to front.
+    /// Transmissive, back to front.
     transmissive: Vec<&'a GpuDraw>,
     /// Alpha-blended, back to front.
     blended: Vec<&'a GpuDraw>,
 }
 
 impl Passes<'_> {
-    /// Draws the scene to the HDR target and resolves it, which leaves color in [`Use::Color`].
+    /// Draws the scene to the HDR target and resolves it. Leaves `color` in [`Use::Color`].
     pub(super) fn model(&self, encoder: &mut Encoder) {
         let targets = self.targets;
         encoder.transition(&targets.color, Use::Undefined, Use::Color);
@@ -58,8 +51,8 @@ impl Passes<'_> {
     /// Draws the surfaces that `behind` has not drawn, and the sky.
     fn surfaces(&self, encoder: &mut Encoder, sorted: &Sorted<'_>) {
         let targets = self.targets;
-        // After `behind` the opaque surfaces are there, unless this mode shows them otherwise than they are seen through
-        // transmissive ones.
+        // If `behind` has drawn the opaque surfaces, they are not drawn again, unless it drew them as in the final picture
+        // and this mode differs.
         let has_opaque = targets.behind.is_some() && !self.request().draws_opaque_twice();
         let clear = (!has_opaque).then_some([0.0; 4]);
         encoder.begin_rendering(&Attachments { clear, ..self.hdr() });
@@ -76,7 +69,7 @@ impl Passes<'_> {
         encoder.end_rendering();
     }
 
-    /// Draws the opaque surfaces and copies them, blurred level by level: what transmissive surfaces show behind them.
+    /// Draws the opaque surfaces and copies them with mip levels, for transmissive surfaces to look up.
     fn behind(&self, encoder: &mut Encoder, opaque: &[&GpuDraw], behind: &Arc<Image>) {
         let targets = self.targets;
         encoder.transition(behind, Use::Undefined, Use::Sampled);
@@ -105,7 +98,7 @@ impl Passes<'_> {
         encoder.draw(3);
     }
 
-    /// Adds the newest frame to the mean of those before it, and leaves the mean in [`Use::Sampled`].
+    /// Adds the newest frame to the mean, and leaves the mean in [`Use::Sampled`].
     pub(super) fn accumulate(&self, encoder: &mut Encoder, index: u32) {
         let Some(mean) = &self.targets.mean else { return };
         let Some(pipeline) = self.request().average_key().and_then(|key| self.pipeline(&key)) else { return };
@@ -133,12 +126,12 @@ impl Passes<'_> {
         encoder.transition(mean, Use::Color, Use::Sampled);
     }
 
-    /// HDR to the picture at `rect` in `output`, which is black elsewhere.
+    /// Tone maps the HDR target to `rect` of `output`. The rest of `output` becomes black.
     pub(super) fn tone_map(&self, encoder: &mut Encoder, output: &Arc<Image>, rect: Rect) {
         encoder.begin_rendering(&cleared(output));
         if let Some(pipeline) = self.pipeline(&self.request().tonemap_key()) {
             encoder.set_viewport(rect);
-            // A picture larger than its output, drawn while a smaller one is being made, is cut off.
+            // After a resize, the previous picture may be larger than its output.
             encoder.set_scissor(self.only.unwrap_or(within(rect, whole(output))));
             encoder.bind_pipeline(pipeline);
             encoder.bind_set(self.layouts, &self.targets.picture_set);
@@ -155,7 +148,7 @@ impl Passes<'_> {
         self.frame.pipelines.get(key)
     }
 
-    /// The HDR target, cleared.
+    /// Attachments of the HDR target, cleared.
     fn hdr(&self) -> Attachments<'_> {
         let targets = self.targets;
         let (color, resolve) = match &targets.multisampled {
@@ -186,7 +179,7 @@ impl Passes<'_> {
     fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
         encoder.bind_set(self.layouts, &draw.material);
         encoder.push(self.layouts, &draw.push);
-        // Both faces of a transparent surface are blended in order: the far one, seen from inside, first.
+        // A blended double-sided surface is drawn back faces first, since they lie behind.
         let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {
             (true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
             (true, _) => &[vk::CullModeFlags::NONE],
@@ -214,7 +207,7 @@ fn whole(image: &Image) -> Rect {
     Rect { x: 0, y: 0, width: image.desc().width, height: image.desc().height }
 }
 
-/// The part of `rect` inside `area`, which begins at 0, 0.
+/// The part of `rect` inside `area`, which starts at 0, 0.
 fn within(rect: Rect, area: Rect) -> Rect {
     Rect {
         width: rect.width.min(area.width.saturating_sub(rect.x)),

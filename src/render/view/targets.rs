@@ -1,4 +1,4 @@
-//! The images that a frame draws to before the picture: HDR color, its multisampled twin, depth, and what some pictures need more.
+//! The render targets of a view: HDR color, multisampled color, depth, the copy behind transmissive surfaces, and the mean.
 
 use std::sync::Arc;
 
@@ -7,37 +7,37 @@ use crate::interface::SET_PASS;
 use crate::render::state::TargetFormat;
 use crate::scene::mips;
 
-/// What the targets are for.
+/// The properties of a picture that determine its targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TargetDesc {
     /// Width and height, pixels.
     pub(super) size: (u32, u32),
     /// HDR color and samples.
     pub(super) format: TargetFormat,
-    /// Whether transmissive surfaces show what lies behind them.
+    /// Whether the scene has transmissive surfaces.
     pub(super) transmission: bool,
-    /// Whether the picture is the mean of frames.
+    /// Whether the mode accumulates.
     pub(super) accumulates: bool,
 }
 
-/// The images of one [`TargetDesc`]. Replaced as a whole; frames in flight keep the old ones.
+/// The images of one [`TargetDesc`], replaced as a whole. Frames in flight keep the old ones alive.
 pub(super) struct Targets {
     pub(super) desc: TargetDesc,
     /// Resolved HDR color.
     pub(super) color: Arc<Image>,
-    /// Multisampled color, when there is more than one sample.
+    /// Multisampled color, if there is more than one sample per pixel.
     pub(super) multisampled: Option<Arc<Image>>,
     /// Depth.
     pub(super) depth: Arc<Image>,
-    /// The opaque surfaces with mip levels, which transmissive surfaces read.
+    /// The opaque surfaces with mip levels, for transmissive surfaces to look up.
     pub(super) behind: Option<Arc<Image>>,
     /// Mean of the frames so far.
     pub(super) mean: Option<Arc<Image>>,
-    /// What the model pass reads.
+    /// Set of the model pass: [`Self::behind`].
     pub(super) model_set: Arc<DescriptorSet>,
-    /// What the accumulation pass reads: the newest frame.
+    /// Set of the accumulation pass: the newest frame.
     pub(super) color_set: Arc<DescriptorSet>,
-    /// What the tone map reads.
+    /// Set of the tone map: [`Self::picture`].
     pub(super) picture_set: Arc<DescriptorSet>,
 }
 
@@ -85,7 +85,7 @@ impl Targets {
         })
     }
 
-    /// What the tone map shows: the mean, or the newest frame.
+    /// The image that the tone map reads: the mean of an accumulating mode, otherwise the newest frame.
     pub(super) fn picture(&self) -> &Arc<Image> {
         self.mean.as_ref().unwrap_or(&self.color)
     }

@@ -1,4 +1,4 @@
-//! Set 0, one for every frame slot, so that the CPU never writes what a frame in flight reads.
+//! Descriptor set 0. Each frame slot has its own, so that the CPU never writes what a frame in flight reads.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::interface::{self, Frame, Light};
 use crate::render::brdf::tables::Tables;
 use crate::render::environment::bake::GpuEnvironment;
 
-/// The resources in set 0 that change now and then.
+/// The resources in set 0 that are replaced at times.
 #[derive(Clone)]
 pub(crate) struct Sources {
     pub(crate) environment: Arc<GpuEnvironment>,
@@ -28,7 +28,7 @@ impl Sources {
 pub(crate) struct SharedImages {
     /// Table of the rectangular lights.
     pub(crate) ltc: Arc<Image>,
-    /// Linear, clamped.
+    /// Trilinear, clamped.
     pub(crate) linear: Arc<Sampler>,
 }
 
@@ -50,14 +50,14 @@ impl Uniforms {
         Ok(Self { frame, lights, params, set: None })
     }
 
-    /// Writes everything. The slot's fence has signaled.
+    /// Writes the buffers. SYNC: after the slot's fence.
     pub(crate) fn write(&self, frame: &Frame, lights: &[Light], params: &[u8]) {
         self.frame.write(0, bytemuck::bytes_of(frame));
         self.lights.write(0, bytemuck::cast_slice(lights));
         self.params.write(0, params);
     }
 
-    /// The set over these sources; made anew when one of them is another.
+    /// The set with these sources. It is created again when one of them has been replaced.
     pub(crate) fn set(
         &mut self,
         layouts: &Arc<SetLayouts>,

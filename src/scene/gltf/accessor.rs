@@ -1,5 +1,5 @@
-//! Reads accessors of any component type, stride and sparseness, with checked arithmetic throughout: nothing is
-//! allocated before the buffer is known to hold it.
+//! Reads accessors of any component type, stride and sparseness. All arithmetic is checked, and nothing is allocated before
+//! the buffer is known to hold the data.
 
 use gltf::json;
 use json::accessor::{Accessor, ComponentType, Type};
@@ -9,7 +9,7 @@ use super::super::error::Problem;
 use super::buffers::Buffers;
 use super::place;
 
-/// Most elements of an accessor that has no buffer view, hence no data that would bound it.
+/// Maximum number of elements of an accessor without a buffer view, which no data limits.
 const MAX_ZEROS: u64 = 1 << 22;
 
 type Index = json::Index<Accessor>;
@@ -23,27 +23,27 @@ pub struct Reader<'a> {
     pub buffers: &'a Buffers<'a>,
 }
 
-/// What a semantic may be stored as.
+/// The formats in which a semantic may be stored.
 #[derive(Clone, Copy)]
 pub struct Format {
     /// Allowed types.
     pub types: &'static [Type],
-    /// Allowed component types, each with whether it may be, or must be, normalized.
+    /// Allowed component types, and for each whether it is normalized.
     pub components: &'static [(ComponentType, Normalized)],
 }
 
-/// Whether integers stand for fractions.
+/// Whether integers are normalized.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Normalized {
-    /// They must.
+    /// They must be.
     Yes,
-    /// They must not (floats, indices).
+    /// They must not be (floats, indices).
     No,
     /// Both are allowed (KHR_mesh_quantization).
     Either,
 }
 
-/// An accessor whose header was checked.
+/// An accessor with a checked header.
 struct Checkup<'a> {
     accessor: &'a Accessor,
     place: String,
@@ -53,8 +53,8 @@ struct Checkup<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Reads floats, integers converted as the specification says. Missing components are filled with `fill`
-    /// (RGB colors read as RGBA). `place` names who asks.
+    /// Reads floats, and converts integers as the specification says. `fill` replaces missing components (RGB colors read as
+    /// RGBA).
     pub fn floats<const N: usize>(
         &self,
         index: Index,
@@ -117,7 +117,7 @@ impl<'a> Reader<'a> {
         if count == 0 {
             return Err(Problem::invalid(place, "a count of at least 1", "0"));
         }
-        // On 32 bits a count may not fit; no buffer could hold it then.
+        // On a 32-bit system the count may not fit, and no buffer could hold it.
         let count = usize::try_from(count)
             .map_err(|_| Problem::invalid(&place, "a count that fits memory", count.to_string()))?;
         Ok(Checkup { accessor, place, count, kind, component })
@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The elements of a buffer view, each at least `size` bytes long, after checking that all of them lie inside.
+/// The elements of a buffer view, at least `size` bytes each. Checks first that all of them lie inside the view.
 fn strided<'b>(
     bytes: &'b [u8],
     offset: u64,
@@ -203,7 +203,7 @@ fn strided<'b>(
     }
 }
 
-/// One component as a float: integers as they are, or normalized to 0..1 and -1..1 (glTF 2.0, section 3.6.2.2).
+/// Converts a component to float. Normalized integers become 0..1 or -1..1 (glTF 2.0, section 3.6.2.2).
 fn to_float(component: ComponentType, normalized: bool, bytes: &[u8]) -> f32 {
     let (value, largest) = match (component, bytes) {
         (ComponentType::I8, &[a]) => (f32::from(a as i8), f32::from(i8::MAX)),

@@ -1,4 +1,4 @@
-//! Buffers and the files they come from.
+//! Reads buffers and the files that contain them.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use super::super::error::Problem;
 use super::place;
 use super::uri::{self, Target};
 
-/// Where a model's files are, and which of them were asked for.
+/// The model's folder, and the files that the loader tried.
 pub struct Files<'t> {
     /// The model's folder; `None` for a model in memory, which has no files.
     pub folder: Option<PathBuf>,
@@ -20,7 +20,7 @@ pub struct Files<'t> {
 }
 
 impl Files<'_> {
-    /// The bytes that a URI names. `place` is for messages.
+    /// Loads the bytes of a URI. `place` is for messages.
     pub fn load(&mut self, uri: &str, place: &str) -> Result<Vec<u8>, Problem> {
         let named = match uri::parse(uri, place, self.allow_outside)? {
             Target::Data(bytes) => return Ok(bytes),
@@ -34,7 +34,7 @@ impl Files<'_> {
         if !self.tried.contains(&path) {
             self.tried.push(path.clone());
         }
-        // The words of a path say nothing of the links on its way.
+        // The text of a path does not show where its links lead.
         match linked_outside(folder, &path) {
             Ok(Some(end)) if !self.allow_outside => {
                 let found = format!("a link to {}", end.display());
@@ -49,19 +49,19 @@ impl Files<'_> {
     }
 }
 
-/// Where `path` really is, when links lead it out of `folder`.
+/// The real location of `path`, if links lead it out of `folder`.
 fn linked_outside(folder: &Path, path: &Path) -> std::io::Result<Option<PathBuf>> {
     let end = path.canonicalize()?;
     Ok(if end.starts_with(folder.canonicalize()?) { None } else { Some(end) })
 }
 
-/// Reads a file, but no device or pipe, which might never end.
+/// Reads a regular file. Reading a device or pipe might never end.
 pub fn read_regular(path: &Path) -> std::io::Result<Vec<u8>> {
     let kind = std::fs::metadata(path)?;
     if kind.is_file() { std::fs::read(path) } else { Err(std::io::Error::other("it is not a regular file")) }
 }
 
-/// The contents of all buffers. A buffer without data is only an error when something reads it.
+/// The contents of all buffers. A buffer without data is an error only when something reads it.
 pub struct Buffers<'a>(Vec<Option<Cow<'a, [u8]>>>);
 
 impl<'a> Buffers<'a> {
@@ -105,7 +105,7 @@ impl<'a> Buffers<'a> {
             let expected = format!("buffers[{buffer_index}] to have a uri or to be the binary chunk of a GLB");
             return Err(Problem::invalid(place, expected, "neither"));
         };
-        // `byteLength` holds, not the data's length: what is behind it is padding.
+        // `byteLength` is the limit. Data beyond it is padding.
         let limit = root.buffers[buffer_index].byte_length.0.min(bytes.len() as u64);
         let start = view.byte_offset.map_or(0, |offset| offset.0);
         let end = start.checked_add(view.byte_length.0).filter(|&end| end <= limit);

@@ -1,4 +1,4 @@
-//! From bytes to JSON: the GLB container, the version, the extensions.
+//! Parses the file: the GLB container, the JSON, the version, the extensions.
 
 use gltf::json;
 
@@ -32,17 +32,17 @@ const CHUNK_HEADER_SIZE: usize = 8;
 const CHUNK_JSON: u32 = 0x4e4f_534a;
 const CHUNK_BIN: u32 = 0x004e_4942;
 
-/// A parsed file, before anything in it is trusted.
+/// A parsed file. Its content has not been checked.
 pub struct Document<'a> {
     /// The JSON.
     pub root: json::Root,
     /// The GLB's binary chunk.
     pub bin: Option<&'a [u8]>,
-    /// Tolerated oddities.
+    /// Warnings, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Parses a `.gltf` or `.glb`, told apart by content.
+/// Parses a `.gltf` or `.glb` file. The content decides which of the two it is.
 pub fn parse(bytes: &[u8]) -> Result<Document<'_>, Problem> {
     if bytes.is_empty() {
         return Err(Problem::Empty);
@@ -54,7 +54,7 @@ pub fn parse(bytes: &[u8]) -> Result<Document<'_>, Problem> {
     Ok(Document { root, bin, warnings })
 }
 
-/// Cuts a GLB into its JSON and binary chunks. Unknown chunks are skipped, as the specification asks.
+/// Splits a GLB into its JSON and binary chunks. Skips unknown chunks, as the specification requires.
 fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     let broken = |expected: String, found: String| Err(Problem::Container { expected, found });
     if bytes.len() < HEADER_SIZE {
@@ -94,7 +94,7 @@ fn u32_at(bytes: &[u8], offset: usize) -> u32 {
     u32::from_le_bytes([bytes[offset], bytes[offset + 1], bytes[offset + 2], bytes[offset + 3]])
 }
 
-/// Refuses what cannot be JSON text with words that help more than a parser's "line 1 column 1".
+/// Refuses content that cannot be JSON, with a better message than a parser's "line 1 column 1".
 fn json_text(bytes: &[u8]) -> Result<&[u8], Problem> {
     // A byte order mark is forbidden by glTF and common in practice.
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -112,7 +112,7 @@ fn parse_json(text: &[u8]) -> Result<json::Root, Problem> {
     json::deserialize::from_slice(text).or_else(|error| repair(text).ok_or(Problem::Json(error)))
 }
 
-/// A scene without `nodes` is valid, but not for the parser: gives it an empty list.
+/// Adds an empty list to scenes without `nodes`, which are valid although the parser refuses them.
 fn repair(text: &[u8]) -> Option<json::Root> {
     let mut value: json::Value = json::deserialize::from_slice(text).ok()?;
     for scene in value.get_mut("scenes")?.as_array_mut()? {
@@ -121,7 +121,7 @@ fn repair(text: &[u8]) -> Option<json::Root> {
     json::deserialize::from_value(value).ok()
 }
 
-/// Accepts 2.x; `minVersion`, when present, must be one that this loader implements.
+/// Accepts version 2.x. `minVersion`, if present, must be a version that this loader implements.
 fn check_version(asset: &json::Asset) -> Result<(), Problem> {
     let number = |text: &str| {
         let (major, minor) = text.split_once('.')?;
@@ -135,7 +135,7 @@ fn check_version(asset: &json::Asset) -> Result<(), Problem> {
     if accepted { Ok(()) } else { Err(Problem::Version { found: format!("`{}`", named.escape_default()) }) }
 }
 
-/// Required extensions that are missing are an error; used ones a warning each.
+/// An unsupported extension is an error if the file requires it, otherwise a warning.
 fn check_extensions(root: &json::Root) -> Result<Vec<String>, Problem> {
     let missing = |names: &[String]| {
         let mut names: Vec<String> = names.iter().filter(|n| !SUPPORTED.contains(&n.as_str())).cloned().collect();

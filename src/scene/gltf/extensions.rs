@@ -1,4 +1,4 @@
-//! The material extensions, and what a material's `extras` say to Specula.
+//! Reads the material extensions, and Specula's data in a material's `extras`.
 
 use glam::{Vec3, Vec4};
 use gltf::json;
@@ -11,19 +11,19 @@ use super::textures::Collector;
 use super::values::{self, Fields};
 use crate::interface as contract;
 
-/// Far above any matter; its square is still a float.
+/// Far above any real material. Its square is still finite in `f32`.
 const LARGEST_IOR: f32 = 1e4;
 const SPECULAR: &str = "KHR_materials_specular";
 const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// What a reader of one extension has at hand.
+/// The arguments of a function that reads an extension.
 struct Reader<'a, 'root> {
     material: &'a mut Material,
     collector: &'a mut Collector<'root>,
     fields: Fields<'a>,
 }
 
-/// How one extension is read.
+/// A function that reads an extension.
 type Read = fn(&mut Reader<'_, '_>) -> Result<(), Problem>;
 
 const READERS: &[(&str, Read)] = &[
@@ -38,7 +38,7 @@ const READERS: &[(&str, Read)] = &[
     ("KHR_materials_volume", volume),
 ];
 
-/// Reads all extensions of a material but specular-glossiness and those that the parser knows.
+/// Reads all extensions of a material except specular-glossiness and those that the parser knows.
 pub fn read(
     material: &mut Material,
     source: &json::Material,
@@ -60,7 +60,7 @@ pub fn read(
     conductor(material, source, place)
 }
 
-/// Reads specular-glossiness. `false` when the material does not have it.
+/// Reads specular-glossiness. Returns `false` if the material does not have it.
 pub fn specular_glossiness(
     material: &mut Material,
     source: &json::Material,
@@ -146,8 +146,8 @@ fn specular(reader: &mut Reader<'_, '_>) -> Result<(), Problem> {
     reader.texture("specularColorTexture", contract::TEXTURE_SPECULAR_COLOR)
 }
 
-/// The extension's 0 stands for an infinite index, whose Fresnel factor is 1, so that the specular color is the whole
-/// reflectance. That is for materials converted from specular-glossiness; anywhere else it would be a white mirror.
+/// In KHR_materials_ior, 0 stands for an infinite index, whose Fresnel factor is 1. The specular color is then the whole
+/// reflectance. This is for materials converted from specular-glossiness; others would become white mirrors.
 fn ior(reader: &mut Reader<'_, '_>, reflects: bool) -> Result<(), Problem> {
     let value = reader.fields.number("ior", 1.5)?;
     let place = reader.fields.at("ior");
@@ -211,7 +211,7 @@ fn diffuse_transmission(reader: &mut Reader<'_, '_>) -> Result<(), Problem> {
     reader.texture("diffuseTransmissionColorTexture", contract::TEXTURE_DIFFUSE_TRANSMISSION_COLOR)
 }
 
-/// What is Specula's in `extras`. The rest belongs to others, and is not even parsed to numbers.
+/// Specula's part of `extras`. All other members are ignored.
 #[derive(serde::Deserialize)]
 struct Extras {
     specula: Option<json::Value>,

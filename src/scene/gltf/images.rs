@@ -1,5 +1,5 @@
-//! Finds and decodes the images that materials use. What is wrong with one image costs that image and not the model:
-//! `placeholder` takes its place.
+//! Finds and decodes the images that materials use. A bad image does not prevent the model from loading: `placeholder`
+//! replaces it.
 
 use std::borrow::Cow;
 use std::io::{Cursor, ErrorKind};
@@ -15,34 +15,34 @@ use super::buffers::{Buffers, Files};
 use super::textures::Origin;
 use super::{place, placeholder};
 
-/// Widest and highest image: what every Vulkan device with 16k textures takes.
+/// Maximum width and height of an image, in pixels.
 const MAX_SIZE: u32 = 16384;
-/// Most bytes that a decoder may ask for.
+/// Maximum number of bytes that a decoder may allocate.
 const MAX_DECODED_BYTES: u64 = 512 << 20;
-/// Longest quote of a decoder's message, characters.
+/// Maximum length of a quoted decoder message, in characters.
 const LONGEST_REASON: usize = 120;
 
-/// How files of other formats begin.
+/// The first bytes of other formats, and their names.
 const OTHER_FORMATS: [(&[u8], &str); 4] =
     [(b"\xabKTX 20\xbb", "KTX2"), (b"\xabKTX 11\xbb", "KTX"), (b"DDS ", "DDS"), (b"sB", "Basis Universal")];
 
 /// An image before decoding.
 pub struct Encoded<'a> {
     name: String,
-    /// How messages name it: `image 'a.png'`.
+    /// The image in messages: `image 'a.png'`.
     title: String,
     bytes: Result<Cow<'a, [u8]>, String>,
 }
 
-/// An image after decoding: the placeholder if that failed.
+/// An image after decoding, or the placeholder if decoding failed.
 pub struct Decoded {
     /// The image.
     pub image: Image,
-    /// Which image failed and why, as the middle of a sentence.
+    /// If decoding failed: the image and the reason, as part of a sentence.
     pub failure: Option<String>,
 }
 
-/// Reads the encoded bytes of an image. Files outside of the model's folder are not opened unless that is allowed.
+/// Reads the encoded bytes of an image. Opens no file outside the model's folder unless the options allow it.
 pub fn find<'a>(root: &json::Root, buffers: &'a Buffers<'_>, files: &mut Files<'_>, origin: Origin) -> Encoded<'a> {
     let (index, lacking) = match origin {
         Origin::Image(index) => (Some(index), None),
@@ -66,7 +66,7 @@ pub fn find<'a>(root: &json::Root, buffers: &'a Buffers<'_>, files: &mut Files<'
     Encoded { name: name.or(file).cloned().unwrap_or(number), title, bytes }
 }
 
-/// Why a texture has no image that Specula can decode, and the one that it has instead.
+/// For a texture without an image that Specula can decode: the unsupported image, if any, and the reason.
 fn lacking(root: &json::Root, texture: usize) -> (Option<usize>, Option<String>) {
     let extensions = root.textures.get(texture).and_then(|texture| texture.extensions.as_ref());
     let named = extensions.and_then(|extensions| extensions.others.iter().next());
@@ -93,7 +93,7 @@ fn read<'a>(
     }
 }
 
-/// What is wrong, in fewer words than the message of a model that cannot be loaded.
+/// A short form of a problem, for a warning.
 fn reason(problem: Problem) -> String {
     match problem {
         Problem::External { source, .. } if source.kind() == ErrorKind::NotFound => "there is no such file".into(),
@@ -107,7 +107,7 @@ fn reason(problem: Problem) -> String {
     }
 }
 
-/// Decodes images in parallel. The bytes of each are freed as soon as it is decoded.
+/// Decodes images in parallel, and frees the encoded bytes of each as soon as it is decoded.
 pub fn decode(encoded: Vec<Encoded<'_>>) -> Vec<Decoded> {
     encoded.into_par_iter().map(decode_one).collect()
 }
@@ -115,7 +115,7 @@ pub fn decode(encoded: Vec<Encoded<'_>>) -> Vec<Decoded> {
 fn decode_one(encoded: Encoded<'_>) -> Decoded {
     let Encoded { name, title, bytes } = encoded;
     let pixels = bytes.and_then(|bytes| {
-        // A decoder that panics at a damaged image costs no more than that image.
+        // A decoder that panics at a damaged image fails only that image.
         let pixels = catch_unwind(AssertUnwindSafe(|| pixels(&bytes)));
         let pixels = pixels.unwrap_or_else(|_| Err("the decoder failed".into()));
         pixels.map_err(|reason| format!("{title} cannot be decoded ({})", shorten(&reason)))
@@ -126,10 +126,10 @@ fn decode_one(encoded: Encoded<'_>) -> Decoded {
     }
 }
 
-/// Width, height and pixels, or why there are none.
+/// Width, height and pixels, or the reason of a failure.
 fn pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
     let other = OTHER_FORMATS.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name);
-    // The content decides: mimeType and file endings are often wrong, and may be absent.
+    // Trust only the content: mimeType and file endings are often wrong or absent.
     let format = match image::guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => format,
         _ if bytes.is_empty() => return Err("it is empty".into()),
@@ -152,7 +152,7 @@ fn pixels(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
     Ok((width, height, decoded.into_raw()))
 }
 
-/// One line that fits into a sentence.
+/// Shortens a message to one line that fits into a sentence.
 fn shorten(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     match line.char_indices().nth(LONGEST_REASON) {

@@ -1,4 +1,4 @@
-//! Reads materials: the core properties here, the extensions in `extensions`.
+//! Reads the core properties of materials. `extensions` reads the rest.
 
 use glam::{Vec3, Vec4};
 use gltf::json;
@@ -20,7 +20,7 @@ pub struct Materials {
     pub textures: Vec<Texture>,
     /// Where the used images are. `Texture::image` counts these.
     pub images: Vec<Origin>,
-    /// Values that were corrected, one sentence each.
+    /// Corrected values, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ fn read_one(source: &json::Material, place: &str, collector: &mut Collector<'_>)
         let place = format!("{place}.alphaCutoff");
         material.alpha_cutoff = clamp(cutoff.0, 0.0..=f32::MAX, &place, &mut collector.warnings)?;
     }
-    // A material with specular-glossiness has metallic-roughness only as a fallback, and uses the same members here.
+    // If a material has specular-glossiness, its metallic-roughness is only a fallback. Both use the same members.
     if !extensions::specular_glossiness(&mut material, source, place, collector)? {
         metallic_roughness(&mut material, &source.pbr_metallic_roughness, place, collector)?;
     }
@@ -79,7 +79,7 @@ fn metallic_roughness(
     collector.bind(material, contract::TEXTURE_METALLIC_ROUGHNESS, slot, &at("metallicRoughnessTexture"))
 }
 
-/// Normal and occlusion textures.
+/// Reads the normal and occlusion textures.
 fn relief(
     material: &mut Material,
     source: &json::Material,

@@ -1,4 +1,4 @@
-//! Primitives: attributes, indices, flat normals.
+//! Reads primitives: attributes, indices, flat normals.
 
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json;
@@ -13,7 +13,7 @@ use super::triangles::{self, Corners};
 use super::{LARGEST_COORDINATE, get, place, variants};
 use crate::interface as contract;
 
-/// A primitive and what was tolerated in it.
+/// A primitive and its warnings.
 pub struct Geometry {
     /// The primitive; `tangents::complete` finishes it.
     pub primitive: Primitive,
@@ -21,7 +21,7 @@ pub struct Geometry {
     pub warnings: Vec<String>,
 }
 
-// The integer types of positions, normals, tangents and texture coordinates are those of KHR_mesh_quantization.
+// Integer positions, normals, tangents and texture coordinates are from KHR_mesh_quantization.
 const POSITION: Format = Format {
     types: &[Type::Vec3],
     components: &[(C::F32, N::No), (C::I8, N::Either), (C::U8, N::Either), (C::I16, N::Either), (C::U16, N::Either)],
@@ -33,7 +33,8 @@ const TEXCOORD: Format = Format { types: &[Type::Vec2], components: POSITION.com
 const COLOR: Format =
     Format { types: &[Type::Vec3, Type::Vec4], components: &[(C::F32, N::No), (C::U8, N::Yes), (C::U16, N::Yes)] };
 
-/// Most indices of a primitive: strips and fans grow threefold as lists, and each corner may become a vertex.
+/// Maximum number of indices of a primitive. As lists, strips and fans become three times as long, and each corner may become
+/// a vertex.
 const MAX_INDICES: usize = 1 << 30;
 
 /// Reads the drawable primitives of a mesh.
@@ -54,7 +55,7 @@ pub fn read(
             None => 0,
             Some(material) => {
                 get(&reader.root.materials, material, &place, "materials")?;
-                // The default material comes first.
+                // Index 0 is the default material.
                 material.value() + 1
             }
         };
@@ -93,7 +94,7 @@ impl Source<'_> {
             let bad = repair_normals(&mut vertices, topology, &indices);
             self.note(bad, "normals are zero or not finite: those of their faces are used", &mut warnings);
         }
-        // Without normals, the file's tangents are to be ignored as well (glTF 2.0, section 3.7.2.1).
+        // Without normals, tangents must be ignored as well (glTF 2.0, section 3.7.2.1).
         if attributes & contract::ATTRIBUTE_NORMAL != 0
             && let Some(tangents) = self.attribute::<4>(Semantic::Tangents, "TANGENT", &TANGENT, Some(count))?
         {
@@ -121,7 +122,7 @@ impl Source<'_> {
         Ok(Geometry { primitive, warnings })
     }
 
-    /// Reads an attribute when there is one; all must have as many elements as POSITION.
+    /// Reads an attribute, if present. It must have as many elements as POSITION.
     fn attribute<const K: usize>(
         &self,
         semantic: Semantic,
@@ -133,7 +134,7 @@ impl Source<'_> {
             return Ok(None);
         };
         let user = format!("{}.{name}", self.place);
-        // The count first: reading a large mismatch would be wasted.
+        // Check the count before reading the data.
         let found = self.reader.root.accessors.get(accessor.value()).map(|accessor| accessor.count.0);
         if let (Some(count), Some(found)) = (count, found)
             && count as u64 != found
@@ -148,7 +149,7 @@ impl Source<'_> {
     }
 
     fn check_positions(&self, positions: &[[f32; 3]]) -> Result<(), Problem> {
-        // The comparison is false for NaN too.
+        // The comparison is also false for NaN.
         let bad = positions.iter().position(|position| !position.iter().all(|x| x.abs() <= LARGEST_COORDINATE));
         match bad {
             None => Ok(()),
@@ -160,7 +161,7 @@ impl Source<'_> {
         }
     }
 
-    /// The topology and its indices: in range, whole, enough to draw; a loop closed into a strip.
+    /// The topology and its indices: in range, without incomplete primitives, enough to draw, and with loops as strips.
     fn indices(&self, vertices: usize, warnings: &mut Vec<String>) -> Result<(Topology, Vec<u32>), Problem> {
         let place = format!("{}.indices", self.place);
         let mut indices = match self.primitive.indices {
@@ -250,7 +251,7 @@ impl Source<'_> {
     }
 }
 
-/// Makes all normals unit. One that cannot be takes that of the faces around it, or +Z. Tells how many.
+/// Normalizes all normals. A zero or non-finite normal becomes that of the faces around it, or +Z. Returns their number.
 fn repair_normals(vertices: &mut [Vertex], topology: Topology, indices: &[u32]) -> usize {
     let mut broken = Vec::new();
     for (index, vertex) in vertices.iter_mut().enumerate() {
@@ -276,7 +277,7 @@ fn repair_normals(vertices: &mut [Vertex], topology: Topology, indices: &[u32]) 
     broken.len()
 }
 
-/// Gives every triangle its own normal, for which it may share vertices with its coplanar neighbors alone.
+/// Gives every triangle a flat normal. It then shares vertices only with coplanar neighbors.
 fn make_flat(primitive: &mut Primitive) {
     let triangles = triangles::triangles(primitive.topology, &primitive.indices);
     if triangles.is_empty() {

@@ -1,5 +1,5 @@
-//! Reads glTF 2.0 into a [`Model`]. The `gltf` crate parses the JSON. Everything that the JSON refers to is checked and
-//! read here, since the crate's own readers panic on invalid files and refuse some valid ones.
+//! Reads glTF 2.0 into a [`Model`]. The `gltf` crate parses the JSON. This module checks and reads all other data, since the
+//! crate's own readers panic on invalid files and refuse some valid ones.
 
 mod accessor;
 mod buffers;
@@ -36,10 +36,10 @@ use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
 
-/// Largest coordinate of a mesh and of the scene, meters: a camera that frames it can still be squared in `f32`.
+/// Largest coordinate of a mesh and of the scene, in meters. The square of the camera's distance is still finite in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
 
-/// Loads a file. Every file that was read or looked for is added to `tried`, also when the load fails.
+/// Loads a file. Adds every file that it reads or looks for to `tried`, even if the load fails.
 pub fn load_file(path: &Path, options: &LoadOptions, tried: &mut Vec<PathBuf>) -> Result<Model, Problem> {
     let start = Instant::now();
     let path = std::path::absolute(path).map_err(Problem::Read)?;
@@ -55,8 +55,8 @@ pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
     guarded(name, bytes, Files { folder: None, allow_outside: false, tried: &mut Vec::new() }, Instant::now())
 }
 
-/// Builds the model and turns a panic into an error. A panic here is a bug of Specula, and the file that triggers it must
-/// not end the session.
+/// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
+/// the session.
 fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result<Model, Problem> {
     catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start))).unwrap_or_else(|panic| {
         let words =
@@ -117,7 +117,7 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
 
 type Meshes = Vec<(usize, Vec<Geometry>)>;
 
-/// Reads every mesh that the scene places, once.
+/// Reads every mesh that the scene uses, once each.
 fn read_meshes(
     reader: Reader<'_>,
     scene: &nodes::Scene,
@@ -166,7 +166,7 @@ fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
 }
 
-/// How messages name an object of the file: `materials[3] "Visor"`.
+/// The name of an object in messages: `materials[3] "Visor"`.
 fn place(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
         Some(name) if !name.is_empty() => format!("{kind}[{index}] \"{}\"", name.escape_debug()),
@@ -183,7 +183,7 @@ fn out_of_range(place: &str, kind: &str, index: usize, count: usize) -> Problem 
     Problem::invalid(place, expected, index.to_string())
 }
 
-/// Looks up an index of the file. `place` names the object that holds the index, for the message.
+/// Looks up an index. `place` names the object that holds the index, for the message.
 fn get<'a, T>(items: &'a [T], index: json::Index<T>, place: &str, kind: &str) -> Result<&'a T, Problem> {
     items.get(index.value()).ok_or_else(|| out_of_range(place, kind, index.value(), items.len()))
 }

@@ -1,4 +1,4 @@
-//! The node hierarchy: where meshes, lights and cameras are.
+//! Walks the node hierarchy and places meshes, lights and cameras.
 
 use glam::{Mat4, Quat, Vec3};
 use gltf::json;
@@ -9,7 +9,7 @@ use super::super::error::Problem;
 use super::super::model::{Bounds, Camera, Light, LightKind};
 use super::{get, out_of_range, place};
 
-/// What a scene places.
+/// The objects of a scene.
 #[derive(Default)]
 pub struct Scene {
     /// Meshes, in the order of the hierarchy.
@@ -18,7 +18,7 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Cameras.
     pub cameras: Vec<PlacedCamera>,
-    /// Tolerated oddities.
+    /// Warnings, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ enum Lens {
     Orthographic { half_height: f32 },
 }
 
-/// Walks the default scene, else the first, else all nodes that have no parent.
+/// Walks the default scene, or the first scene, or all nodes without a parent.
 pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
     let has_parent = check_hierarchy(root)?;
     let mut scene = Scene::default();
@@ -55,7 +55,7 @@ pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
         (None, Some(first)) => scene_roots(first, root, &has_parent)?,
         (None, None) => (0..root.nodes.len()).filter(|&node| !has_parent[node]).collect(),
     };
-    // A stack of our own: files may nest deeper than the thread's.
+    // An explicit stack, since files may nest deeper than the thread's stack allows.
     let mut stack: Vec<(usize, Mat4)> = start.into_iter().rev().map(|node| (node, Mat4::IDENTITY)).collect();
     while let Some((index, world_from_parent)) = stack.pop() {
         let node = &root.nodes[index];
@@ -94,7 +94,7 @@ fn scene_roots(scene: &json::Scene, root: &json::Root, has_parent: &[bool]) -> R
     Ok(roots)
 }
 
-/// Holds the nodes to be a forest: children in range, one parent at most, no cycle. Tells which have a parent.
+/// Checks that the nodes form a forest: children in range, at most one parent, no cycle. Returns which nodes have a parent.
 fn check_hierarchy(root: &json::Root) -> Result<Vec<bool>, Problem> {
     let count = root.nodes.len();
     let mut has_parent = vec![false; count];
@@ -110,7 +110,7 @@ fn check_hierarchy(root: &json::Root) -> Result<Vec<bool>, Problem> {
             }
         }
     }
-    // With one parent at most, only what hangs on a cycle is out of reach of every parentless node.
+    // With at most one parent each, the nodes that no root reaches are on a cycle or below one.
     let mut reached = vec![false; count];
     let mut stack: Vec<usize> = (0..count).filter(|&node| !has_parent[node]).collect();
     while let Some(node) = stack.pop() {
@@ -183,7 +183,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Says what stands still here although the file would move it.
+    /// Warns of animations, skins and morph targets, which are not supported.
     fn note_motion(&mut self, root: &json::Root) {
         if !root.animations.is_empty() {
             self.warnings.push(format!("{} animations are not played: the rest pose is shown.", root.animations.len()));
@@ -205,7 +205,7 @@ fn read_light(
 ) -> Result<Light, Problem> {
     let place = place("KHR_lights_punctual.lights", index, light.name.as_deref());
     let color = Vec3::from(light.color);
-    // Each by itself: two that are negative would have a product that is not.
+    // Check both factors, since the product of two negative numbers is positive.
     if !(light.intensity >= 0.0 && light.intensity.is_finite()) {
         let (place, found) = (format!("{place}.intensity"), light.intensity.to_string());
         return Err(Problem::invalid(place, "a finite number of at least 0", found));
@@ -269,8 +269,8 @@ fn read_lens(camera: &json::Camera, index: usize) -> Result<Lens, Problem> {
 }
 
 impl PlacedCamera {
-    /// The camera in a scene of these bounds: an orthographic one becomes the perspective one that sees the same
-    /// height at the depth of their center.
+    /// The camera in a scene with these bounds. An orthographic camera becomes a perspective camera that shows the same
+    /// height at the depth of the center.
     pub fn place(&self, bounds: &Bounds) -> Camera {
         let world = &self.world_from_object;
         let eye = world.w_axis.truncate();
@@ -287,7 +287,7 @@ impl PlacedCamera {
                 2.0 * (half_height / depth).atan()
             }
         };
-        // The extremes of an orthographic camera's angle are of no use to a perspective one.
+        // Avoid the extreme angles that an orthographic camera may yield.
         Camera { name: self.name.clone(), eye, forward, up, fovy: fovy.clamp(1e-3, 3.1) }
     }
 }

@@ -1,18 +1,18 @@
-//! What a material shows in place of an image that cannot be read or decoded: a checkerboard as the base color, and
-//! in every other slot what the material would show if the file had no texture there.
+//! Replaces images that cannot be read or decoded: by a checkerboard as the base color, and in every other slot as if the
+//! material had no texture there.
 
 use glam::Vec3;
 
 use super::super::model::{Image, Material, Texture};
 use crate::interface as contract;
 
-/// Pixels along a side of the checkerboard.
-const SIDE: u32 = 64;
-/// Pixels along a side of one of its squares.
+/// Side of the checkerboard, in pixels.
+const SIDE: u32 = 256;
+/// Side of one of its squares, in pixels: small enough that the pieces of a texture atlas show several squares.
 const SQUARE: u32 = 8;
-/// Its two grays around the middle, sRGB-encoded.
-const GRAYS: [u8; 2] = [104, 152];
-/// Most materials that a warning names.
+/// Its two grays, sRGB-encoded.
+const GRAYS: [u8; 2] = [72, 184];
+/// Maximum number of materials that a warning names.
 const MOST_NAMES: usize = 3;
 
 /// The placeholder for a base color: an opaque checkerboard in mid-gray.
@@ -22,9 +22,9 @@ pub fn checkerboard(name: String) -> Image {
     Image { name, width: SIDE, height: SIDE, rgba8 }
 }
 
-/// Takes failed images away from the materials, except for base colors, which show the checkerboard. Returns a warning
-/// for each image and slot. `failures` has an entry for each of the model's images, `None` for those that are good.
-/// The default material comes first and has no textures.
+/// Removes failed images from the materials, except for base colors, which show the checkerboard. Returns a warning for each
+/// image and slot. `failures` has an entry for each image of the model, `None` if it is good. The default material, which
+/// comes first, has no textures.
 pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Option<String>]) -> Vec<String> {
     let mut warnings = Vec::new();
     for (image, failure) in failures.iter().enumerate() {
@@ -47,14 +47,14 @@ pub fn replace(materials: &mut [Material], textures: &[Texture], failures: &[Opt
 fn clear(material: &mut Material, slot: u32) {
     match slot {
         contract::TEXTURE_BASE_COLOR => return,
-        // Emissive textures are dark but for a few lamps: the factor alone would make everything shine.
+        // Most of an emissive texture is black. The factor alone would make the whole surface emit.
         contract::TEXTURE_EMISSIVE => material.emissive_factor = Vec3::ZERO,
         _ => {}
     }
     material.textures[slot as usize] = None;
 }
 
-/// The name of a slot, and what is shown in it.
+/// The name of a slot, and what replaces its texture.
 fn words(slot: u32, material: &Material) -> (&'static str, &'static str) {
     const FACTOR: &str = "its factor is used alone";
     const NORMAL: &str = "the normals of the mesh are used";
@@ -86,8 +86,8 @@ fn words(slot: u32, material: &Material) -> (&'static str, &'static str) {
 
 const CHECKERBOARD: &str = "a checkerboard is shown in its place";
 
-/// Materials as a message names them: `material 'Visor'`, or a few and how many more. One without a name has its index
-/// in the file.
+/// Materials in a message: `material 'Visor'`, or a few names and the number of others. A material without a name is
+/// given by its index in the file.
 fn names(users: &[usize], materials: &[Material]) -> String {
     let name = |&index: &usize| match materials[index].name.as_str() {
         "" => index.saturating_sub(1).to_string(),

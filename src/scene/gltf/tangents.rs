@@ -1,4 +1,4 @@
-//! Tangent frames: the file's, or MikkTSpace's, or around the Y axis.
+//! Completes tangents: from the file, from MikkTSpace, or around the Y axis.
 
 use bevy_mikktspace::{TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
@@ -8,7 +8,8 @@ use super::mesh::Geometry;
 use super::triangles::{self, Corners};
 use crate::interface as contract;
 
-/// Gives every vertex a unit tangent orthogonal to its normal (as far as the file's own are), and notes those replaced.
+/// Gives every vertex a unit tangent, and warns of replaced tangents. Tangents of the file are normalized, but not made
+/// orthogonal to the normal.
 pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
     let primitive = &mut geometry.primitive;
     let from_file = primitive.attributes & contract::ATTRIBUTE_TANGENT != 0;
@@ -25,7 +26,7 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
         ));
     }
     let replaced = primitive.vertices.iter_mut().filter_map(repair).count();
-    // A few made ones fail where texture coordinates meet in a point; that is the author's business only when it shows.
+    // A few generated tangents fail where texture coordinates meet in a point. Warn only if there are enough to be visible.
     let shows = replaced * 100 > primitive.vertices.len();
     if replaced > 0 && (from_file || (made && shows)) {
         let (name, total) = (&primitive.name, primitive.vertices.len());
@@ -36,12 +37,12 @@ pub fn complete(geometry: &mut Geometry, materials: &[Material]) {
     }
 }
 
-/// Normalizes a tangent and its sign. `Some` when it had to be replaced.
+/// Normalizes a tangent and its sign. Returns `Some` if the tangent had to be replaced.
 fn repair(vertex: &mut Vertex) -> Option<()> {
     let [x, y, z, w] = vertex.tangent;
     let sign = if w < 0.0 { -1.0 } else { 1.0 };
     let valid = Vec3::new(x, y, z).try_normalize();
-    // Around the Y axis, as a lathe would brush it; at the poles, where that is no direction, any.
+    // Around the Y axis, as if brushed on a lathe. At the poles any direction.
     let normal = Vec3::from(vertex.normal);
     let around_y = Vec3::Y.cross(normal).try_normalize();
     let tangent = valid.or(around_y).unwrap_or_else(|| normal.any_orthonormal_vector());
@@ -55,8 +56,8 @@ fn materials_of(primitive: &Primitive) -> impl Iterator<Item = usize> {
     std::iter::once(primitive.default_material).chain(others)
 }
 
-/// MikkTSpace on the texture coordinates of the first texture that has directions in it, before its
-/// KHR_texture_transform. `false` when there are no faces or texture coordinates.
+/// Generates MikkTSpace tangents from the texture coordinates of the first texture that holds directions, before its
+/// KHR_texture_transform. Returns `false` without faces or texture coordinates.
 fn make(primitive: &mut Primitive, materials: &[Material]) -> bool {
     let directions = [contract::TEXTURE_NORMAL, contract::TEXTURE_CLEARCOAT_NORMAL, contract::TEXTURE_ANISOTROPY];
     let directed = |m: &Material| directions.iter().find_map(|texture| m.textures[*texture as usize]);
@@ -111,8 +112,8 @@ impl bevy_mikktspace::Geometry for Mesh {
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
-        // MikkTSpace's bitangent follows +v, which glTF has point down; glTF's bitangent points up the image, so it
-        // is negated.
+        // MikkTSpace's bitangent follows +v, which points down in glTF. glTF's bitangent points up, so the sign is
+        // negated.
         let [x, y, z, sign] = space.map_or([0.0; 4], |space| space.tangent_encoded());
         self.corners.vertices[face * 3 + vertex].tangent = Vec4::new(x, y, z, -sign).to_array();
     }

@@ -13,7 +13,7 @@ use super::super::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
 use super::place;
 use super::values::{self, Extensions};
 
-/// The highest TEXCOORD set that a vertex carries.
+/// The highest TEXCOORD set of a vertex.
 const LAST_UV_SET: u32 = 1;
 
 /// Collects the textures and images that the materials of a file use, each once.
@@ -22,7 +22,7 @@ pub struct Collector<'a> {
     pub textures: Vec<Texture>,
     /// Where the used images are. `Texture::image` counts these.
     pub images: Vec<Origin>,
-    /// Values that were corrected, one sentence each.
+    /// Corrected values, one sentence each.
     pub warnings: Vec<String>,
     root: &'a json::Root,
     /// Indices into `images`.
@@ -31,12 +31,12 @@ pub struct Collector<'a> {
     texture_of: HashMap<(usize, Sampler), usize>,
 }
 
-/// Where an image of a texture is.
+/// The source of a texture's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Origin {
     /// Index of an image of the file; in range.
     Image(usize),
-    /// Index of a texture that names no image which Specula could decode.
+    /// Index of a texture without an image that Specula can decode.
     Texture(usize),
 }
 
@@ -54,7 +54,7 @@ impl Slot {
         Self { texture: info.index.value(), uv_set: info.tex_coord, transform }
     }
 
-    /// Makes a slot whose extensions are raw JSON: that of a normal or occlusion texture, or of a material extension.
+    /// Reads a slot whose extensions are raw JSON: that of a normal or occlusion texture, or of a material extension.
     pub fn raw(texture: usize, uv_set: u32, others: Option<&Extensions>, place: &str) -> Result<Self, Problem> {
         let raw = others.and_then(|others| others.get("KHR_texture_transform"));
         let transform = raw.map(|raw| json::deserialize::from_value(raw.clone())).transpose().map_err(|error| {
@@ -66,13 +66,13 @@ impl Slot {
 }
 
 impl<'a> Collector<'a> {
-    /// A collector that is empty.
+    /// An empty collector.
     pub fn new(root: &'a json::Root) -> Self {
         let (textures, images, warnings) = (Vec::new(), Vec::new(), Vec::new());
         Self { textures, images, warnings, root, image_of: HashMap::new(), texture_of: HashMap::new() }
     }
 
-    /// Gives a material the texture of a slot, `interface::TEXTURE_*`.
+    /// Sets the texture of a material's slot, `interface::TEXTURE_*`.
     pub fn bind(
         &mut self,
         material: &mut Material,
@@ -115,12 +115,12 @@ impl<'a> Collector<'a> {
         Ok(TextureUse { texture, uv_set, uv_from_mesh })
     }
 
-    /// Where the image of a texture is: the WebP one of EXT_texture_webp, or the core one.
+    /// The source of a texture's image: EXT_texture_webp's, or that of the core texture.
     fn origin(&self, texture: &json::Texture, index: usize) -> Result<Origin, Problem> {
         let place = place("textures", index, texture.name.as_deref());
         let webp =
             texture.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp")).and_then(|e| e.get("source"));
-        // The parser says u32::MAX for "absent".
+        // The parser returns u32::MAX if the source is absent.
         let core = Some(texture.source.value()).filter(|&source| source != u32::MAX as usize);
         let source = match webp {
             Some(source) => Some(values::index(Some(source), &place, "images")?),
@@ -136,8 +136,8 @@ impl<'a> Collector<'a> {
     }
 }
 
-/// KHR_texture_transform: translation * rotation * scale. Its rotation is counter-clockwise as seen with v pointing
-/// down, hence the minus.
+/// KHR_texture_transform: translation * rotation * scale. The rotation is counter-clockwise while v points down, hence the
+/// minus.
 fn affine(transform: &TextureTransform, place: &str) -> Result<Affine2, Problem> {
     let (offset, scale, rotation) = (transform.offset.0, transform.scale.0, transform.rotation.0);
     let affine = Affine2::from_scale_angle_translation(scale.into(), -rotation, offset.into());

@@ -1,10 +1,10 @@
-//! Topologies: index lists made whole, triangles of any kind as lists, flat normals, welding.
+//! Helpers for topologies: incomplete primitives, triangle lists, flat normals, welding.
 
 use glam::Vec3;
 
 use super::super::model::{Topology, Vertex};
 
-/// How many indices a list loses to be whole: no half lines or triangles.
+/// The number of indices after the last complete primitive.
 pub fn excess(topology: Topology, count: usize) -> usize {
     match topology {
         Topology::Points | Topology::LineStrip | Topology::TriangleStrip | Topology::TriangleFan => 0,
@@ -13,7 +13,7 @@ pub fn excess(topology: Topology, count: usize) -> usize {
     }
 }
 
-/// Least number of indices that draws anything.
+/// The smallest number of indices that draws anything.
 pub fn least(topology: Topology) -> usize {
     match topology {
         Topology::Points => 1,
@@ -27,8 +27,8 @@ pub fn has_faces(topology: Topology) -> bool {
     least(topology) == 3
 }
 
-/// The triangles of a list, strip or fan, in the winding of Vulkan and glTF; none of points and lines. Triangles that
-/// use a vertex twice, as strips do to turn, are left out.
+/// The triangles of a list, strip or fan, with glTF's winding; empty for points and lines. Omits triangles that use a vertex
+/// twice, as strips do to turn.
 pub fn triangles(topology: Topology, indices: &[u32]) -> Vec<[u32; 3]> {
     let all: Vec<[u32; 3]> = match topology {
         Topology::Triangles => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
@@ -48,13 +48,13 @@ pub fn triangles(topology: Topology, indices: &[u32]) -> Vec<[u32; 3]> {
     all.into_iter().filter(|[a, b, c]| a != b && b != c && c != a).collect()
 }
 
-/// Normal of a triangle, its length twice the area; zero when degenerate.
+/// Normal of a triangle. Its length is twice the area, so it is zero for a degenerate triangle.
 pub fn face_normal(vertices: &[Vertex], triangle: [u32; 3]) -> Vec3 {
     let [a, b, c] = triangle.map(|index| Vec3::from(vertices[index as usize].position));
     (b - a).cross(c - a)
 }
 
-/// A mesh as separate corners, each with the vertex that it came from.
+/// A mesh as separate corners, each with its former vertex.
 pub struct Corners {
     /// Index of the former vertex.
     pub source: Vec<u32>,
@@ -63,27 +63,27 @@ pub struct Corners {
 }
 
 impl Corners {
-    /// Takes triangles apart.
+    /// Splits triangles into corners.
     pub fn new(vertices: &[Vertex], triangles: &[[u32; 3]]) -> Self {
         let source: Vec<u32> = triangles.as_flattened().to_vec();
         let vertices = source.iter().map(|&index| vertices[index as usize]).collect();
         Self { source, vertices }
     }
 
-    /// Gives every triangle its flat normal; `fallback` where it has none.
+    /// Gives every triangle its flat normal, or `fallback` if it is degenerate.
     pub fn flatten(&mut self, fallback: Vec3) {
         for corners in self.vertices.chunks_exact_mut(3) {
-            // Adding zero turns -0 into 0, so that coplanar neighbors are welded.
+            // Adding zero turns -0 into 0, so that `weld` joins coplanar neighbors.
             let normal = (face_normal(corners, [0, 1, 2]).normalize_or(fallback) + Vec3::ZERO).to_array();
             corners.iter_mut().for_each(|corner| corner.normal = normal);
         }
     }
 
-    /// Puts corners that came from one vertex and are still alike together again: vertices and a triangle list.
+    /// Merges corners that come from the same vertex and are still equal. Returns vertices and a triangle list.
     pub fn weld(&self) -> (Vec<Vertex>, Vec<u32>) {
         const NONE: u32 = u32::MAX;
         let sources = self.source.iter().max().map_or(0, |&last| last as usize + 1);
-        // For each source the last vertex made from it, for each vertex the one made before from the same source.
+        // Linked lists: `last` has the newest vertex of each source, `previous` the one before it.
         let mut last = vec![NONE; sources];
         let mut previous = Vec::new();
         let mut vertices: Vec<Vertex> = Vec::with_capacity(sources);
@@ -95,7 +95,7 @@ impl Corners {
                 at = previous[at as usize];
             }
             if at == NONE {
-                // A count of corners fits u32: indices do.
+                // The number of corners fits u32, as indices do.
                 at = vertices.len() as u32;
                 vertices.push(*corner);
                 previous.push(*head);

@@ -1,10 +1,10 @@
-//! URIs in glTF: data, relative paths, and those that are refused.
+//! Parses URIs: data URIs and paths. Refuses all others.
 
 use std::path::PathBuf;
 
 use super::super::error::Problem;
 
-/// Where a URI points to.
+/// The target of a URI.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Target {
     /// The bytes of a data URI.
@@ -13,7 +13,7 @@ pub enum Target {
     File(PathBuf),
 }
 
-/// Reads a URI. Schemes but `data:` are always refused; ways out of the model's folder unless `allow_outside`.
+/// Parses a URI. Refuses all schemes except `data:`, and paths out of the model's folder unless `allow_outside`.
 pub fn parse(uri: &str, place: &str, allow_outside: bool) -> Result<Target, Problem> {
     if let Some(scheme) = scheme(uri) {
         if scheme.eq_ignore_ascii_case("data") {
@@ -32,7 +32,7 @@ pub fn parse(uri: &str, place: &str, allow_outside: bool) -> Result<Target, Prob
     Ok(Target::File(PathBuf::from(path)))
 }
 
-/// The scheme before the colon. One letter is a Windows drive, not a scheme.
+/// The scheme before the colon. A single letter is a Windows drive.
 fn scheme(uri: &str) -> Option<&str> {
     let (scheme, _) = uri.split_once(':')?;
     let valid = scheme.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -40,7 +40,7 @@ fn scheme(uri: &str) -> Option<&str> {
     (valid && scheme.len() > 1).then_some(scheme)
 }
 
-/// Whether a path is absolute or climbs above where it starts, on any system: a model made on one is opened on another.
+/// Whether a path is absolute or leaves its folder on any system, since a model may come from another system.
 fn leaves_folder(path: &str) -> bool {
     let drive = path.as_bytes().get(1) == Some(&b':');
     if drive || path.starts_with(['/', '\\']) {
@@ -60,7 +60,7 @@ fn leaves_folder(path: &str) -> bool {
     false
 }
 
-/// Decodes what follows `data:`.
+/// Decodes the text after `data:`.
 fn decode_data(data: &str, place: &str) -> Result<Vec<u8>, Problem> {
     let Some((header, body)) = data.split_once(',') else {
         return Err(Problem::invalid(
@@ -77,7 +77,7 @@ fn decode_data(data: &str, place: &str) -> Result<Vec<u8>, Problem> {
     decoded.ok_or_else(|| Problem::invalid(place, format!("{kind} data in a data URI"), "characters that are not"))
 }
 
-/// Decodes `%XX`; `None` when digits are missing.
+/// Decodes `%XX`. Returns `None` if digits are missing.
 fn percent_decode(text: &str) -> Option<Vec<u8>> {
     let mut out = Vec::with_capacity(text.len());
     let mut bytes = text.bytes();
@@ -92,7 +92,7 @@ fn percent_decode(text: &str) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// Decodes base64 in the standard or the URL alphabet, padded or not; `None` on anything else.
+/// Decodes base64 in the standard or URL alphabet, padded or not. Returns `None` on anything else.
 fn base64_decode(text: &str) -> Option<Vec<u8>> {
     let text = text.trim_end_matches('=').as_bytes();
     if text.len() % 4 == 1 {
@@ -118,7 +118,7 @@ fn base64_decode(text: &str) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// A URI short enough for a message.
+/// Shortens a URI for a message.
 fn shorten(uri: &str) -> String {
     match uri.char_indices().nth(120) {
         Some((end, _)) => format!("{}...", &uri[..end]),

@@ -1,5 +1,5 @@
-//! Numbers of the file, checked: what is not finite or makes no sense is an error, what is a little off is moved into
-//! its range with a warning. And the raw JSON of the extensions that the parser does not know.
+//! Checks numbers: one that is not finite or makes no sense is an error, and one outside its range is clamped with a warning.
+//! Also reads the raw JSON of extensions that the parser does not know.
 
 use std::ops::RangeInclusive;
 
@@ -11,15 +11,15 @@ use super::textures::Slot;
 /// Extensions that the parser does not know, by name.
 pub type Extensions = serde_json::Map<String, json::Value>;
 
-/// Longest piece of JSON in a message, characters.
+/// Maximum length of JSON in a message, in characters.
 const LONGEST_QUOTE: usize = 40;
 
-/// Refuses infinities and NaN.
+/// Refuses infinity and NaN.
 pub fn finite(value: f32, place: &str) -> Result<f32, Problem> {
     if value.is_finite() { Ok(value) } else { Err(Problem::invalid(place, "a finite number", value.to_string())) }
 }
 
-/// A number inside of its range; one outside is moved there and told of.
+/// Clamps a number to its range, with a warning.
 pub fn clamp(value: f32, range: RangeInclusive<f32>, place: &str, warnings: &mut Vec<String>) -> Result<f32, Problem> {
     let clamped = finite(value, place)?.clamp(*range.start(), *range.end());
     if clamped != value {
@@ -28,7 +28,8 @@ pub fn clamp(value: f32, range: RangeInclusive<f32>, place: &str, warnings: &mut
     Ok(clamped)
 }
 
-/// A roughness or glossiness: outside of 0..1 it is more likely another unit (an exponent, an angle) than a slip.
+/// Checks a roughness or glossiness. A value outside 0..1 is an error and not clamped, since it probably has another unit
+/// (an exponent, an angle).
 pub fn roughness(value: f32, place: &str) -> Result<f32, Problem> {
     match finite(value, place)? {
         value @ 0.0..=1.0 => Ok(value),
@@ -36,15 +37,15 @@ pub fn roughness(value: f32, place: &str) -> Result<f32, Problem> {
     }
 }
 
-/// An object of raw JSON and its place in the file.
+/// An object of raw JSON with its path.
 pub struct Fields<'a> {
     object: &'a Extensions,
-    /// Where it is in the file, for messages.
+    /// Path of the object in the file, for messages.
     pub place: String,
 }
 
 impl<'a> Fields<'a> {
-    /// The member `name` of `parent` when it is there; it must be an object.
+    /// The member `name` of `parent`, if present. It must be an object.
     pub fn open(parent: &'a Extensions, name: &str, place: &str) -> Result<Option<Self>, Problem> {
         parent.get(name).map(|value| Self::new(value, format!("{place}.{name}"))).transpose()
     }
@@ -57,17 +58,17 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The place of a member, for messages.
+    /// The path of a member, for messages.
     pub fn at(&self, key: &str) -> String {
         format!("{}.{key}", self.place)
     }
 
-    /// A member that must be an object when it is there.
+    /// A member, if present. It must be an object.
     pub fn open_member(&self, key: &str) -> Result<Option<Self>, Problem> {
         Self::open(self.object, key, &self.place)
     }
 
-    /// A member as it is.
+    /// The JSON of a member.
     pub fn get(&self, key: &str) -> Option<&'a json::Value> {
         self.object.get(key)
     }
@@ -125,7 +126,7 @@ impl<'a> Fields<'a> {
         roughness(self.number(key, default)?, &self.at(key))
     }
 
-    /// An index, which must be there.
+    /// A required index.
     pub fn index(&self, key: &str, kind: &str) -> Result<usize, Problem> {
         index(self.get(key), &self.at(key), kind)
     }
@@ -144,7 +145,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// An index, which must be there, into a list of the file.
+/// A required index into a list of the file.
 pub fn index(value: Option<&json::Value>, place: &str, kind: &str) -> Result<usize, Problem> {
     let found = || value.map_or_else(|| "none".to_owned(), quote);
     value.and_then(whole).ok_or_else(|| Problem::invalid(place, format!("an index into {kind}"), found()))
@@ -161,7 +162,7 @@ fn number(value: &json::Value, place: &str) -> Result<f32, Problem> {
     }
 }
 
-/// JSON as a message shows it: shortened.
+/// JSON, shortened for a message.
 pub fn quote(value: &json::Value) -> String {
     let text = value.to_string();
     match text.char_indices().nth(LONGEST_QUOTE) {

@@ -1,4 +1,4 @@
-//! KHR_materials_variants: other materials for the same primitives, by name.
+//! Reads KHR_materials_variants: named sets of materials for the same primitives.
 
 use gltf::json;
 
@@ -7,7 +7,7 @@ use super::values::{self, Fields};
 
 const NAME: &str = "KHR_materials_variants";
 
-/// The names of a file's variants; a name that is there twice is warned of.
+/// The names of a file's variants. Warns of duplicates.
 pub fn names(root: &json::Root, warnings: &mut Vec<String>) -> Result<Vec<String>, Problem> {
     let Some(others) = root.extensions.as_ref().map(|extensions| &extensions.others) else { return Ok(Vec::new()) };
     let Some(fields) = Fields::open(others, NAME, "extensions")? else { return Ok(Vec::new()) };
@@ -27,7 +27,7 @@ pub fn names(root: &json::Root, warnings: &mut Vec<String>) -> Result<Vec<String
     Ok(names)
 }
 
-/// What a primitive has instead of its material: (variant, material), by the file's own indices.
+/// The materials of a primitive by variant: (variant, material), as indices of the file.
 pub fn mapping(
     primitive: &json::mesh::Primitive,
     variants: usize,

@@ -1,25 +1,25 @@
-//! Walks along the text of one annotation and says where in it something is wrong.
+//! Reads the text of one annotation from left to right, and reports errors at their column.
 
 use std::ops::Range;
 
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::is_word;
 
-/// Where an annotation stands.
+/// Location of an annotation.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// File as printed.
+    /// Path of the file for messages.
     pub file: String,
-    /// 1-based.
+    /// Line number, from 1.
     pub line: u32,
     /// The whole line.
     pub raw: String,
-    /// Byte range of the annotation in it.
+    /// Byte range of the annotation in `raw`.
     pub bytes: Range<usize>,
 }
 
 impl Place {
-    /// An error here; the caret goes under `bytes`, else under the whole annotation.
+    /// An error on this line, with the caret under `bytes` or else under the whole annotation.
     pub fn error(&self, bytes: Option<Range<usize>>, message: impl Into<String>) -> Box<Diagnostic> {
         let bytes = bytes.unwrap_or_else(|| self.bytes.clone());
         Box::new(Diagnostic::error(&self.file, message).on_line(self.line, Some(&self.raw)).under(bytes))
@@ -34,7 +34,7 @@ pub struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// Starts at byte `at` of `raw`, the annotation's line.
+    /// A cursor at byte `at` of `raw`, the annotation's line.
     pub fn new(place: &'a Place, raw: &'a str, at: usize) -> Self {
         Self { place, raw, at }
     }
@@ -44,14 +44,14 @@ impl<'a> Cursor<'a> {
         self.place
     }
 
-    /// Byte offset in the line.
+    /// Byte offset of the cursor in the line.
     pub fn position(&self) -> usize {
         self.at
     }
 
-    /// An error under `bytes`, or under the whole annotation when they are empty.
+    /// An error under `bytes`, or under the whole annotation if `bytes` is empty.
     pub fn error(&self, bytes: Range<usize>, message: impl Into<String>) -> Box<Diagnostic> {
-        // At the end of the line there is nothing to mark but the annotation itself.
+        // At the end of the line there is no word to mark.
         self.place.error(Some(bytes).filter(|bytes| !bytes.is_empty()), message)
     }
 
@@ -85,7 +85,7 @@ impl<'a> Cursor<'a> {
         self.raw[self.at..].starts_with(text)
     }
 
-    /// Passes over `sign` if it comes next.
+    /// Skips `sign` if it comes next. Returns whether it did.
     pub fn take(&mut self, sign: char) -> bool {
         let found = self.peek(sign);
         if found {
@@ -103,12 +103,12 @@ impl<'a> Cursor<'a> {
         (bytes, &rest[..length])
     }
 
-    /// Everything up to white space; empty at the end.
+    /// The text up to the next white space; empty at the end.
     pub fn word(&mut self) -> (Range<usize>, &'a str) {
         self.take_while(|c| !c.is_whitespace())
     }
 
-    /// A key before `=`; any other sign alone.
+    /// A key before `=`, or the next word if there is no key.
     pub fn key(&mut self) -> (Range<usize>, &'a str) {
         let key = self.take_while(|c| is_word(c) || c == '-');
         if key.1.is_empty() { self.word() } else { key }
@@ -131,7 +131,7 @@ impl<'a> Cursor<'a> {
         Ok((bytes, word.to_owned()))
     }
 
-    /// A string in quotes, if one begins here.
+    /// A quoted string, if one begins here.
     pub fn string(&mut self) -> Result<Option<String>, Box<Diagnostic>> {
         self.skip();
         let start = self.at;

@@ -1,4 +1,4 @@
-//! What the shader author declares for people: debug modes, constants and parameters, read from `//@` comments.
+//! Reads the `//@` comments with which shader authors declare debug modes, constants and parameters.
 //!
 //! ```glsl
 //! //@mode d "Normal distribution D" group="BRDF terms" encode=data doc="GGX"
@@ -10,7 +10,7 @@
 //! };
 //! ```
 //!
-//! An annotation stands behind its declaration or on the line before it.
+//! An annotation follows its declaration on the same line, or is on the line before it.
 
 mod cursor;
 mod parse;
@@ -29,7 +29,7 @@ use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::{Reflection, Scalar};
 use parse::{Declared, Found, Ui, outside_of_choices, parse_file};
 
-/// How a mode's values become 8-bit pixels.
+/// How the tone map stores a mode's values as 8-bit pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Encode {
@@ -57,12 +57,12 @@ impl Encode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DrawAs {
-    /// As it is.
+    /// Its surfaces.
     #[default]
     Surfaces,
     /// The edges of its triangles.
     Lines,
-    /// Every fragment added to those before it, whatever lies in front: overdraw.
+    /// The sum of all fragments, hidden or not: overdraw.
     Layers,
 }
 
@@ -73,29 +73,29 @@ pub struct Mode {
     pub id: u32,
     /// Name on the command line and in file names.
     pub slug: String,
-    /// Name for people.
+    /// Display name.
     pub name: String,
-    /// Heading in lists; empty when none was given.
+    /// Heading in lists; empty if the annotation has none.
     pub group: String,
     /// How its values are stored.
     pub encode: Encode,
-    /// How many numbers a value has, 1 to 3. The shader repeats a scalar in all channels.
+    /// Number of components of a value, 1 to 3. The shader repeats a scalar in all channels.
     #[serde(skip)]
     pub components: u8,
-    /// Unit of the value before exposure; empty where it has none.
+    /// Unit of the value before exposure; empty for none.
     #[serde(skip)]
     pub unit: String,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
-    /// Whether frames add up to a mean: each is a noisy sample of the picture.
+    /// Whether the view averages frames, each of which is a noisy estimate.
     pub accumulate: bool,
-    /// What is seen through glass is the picture, not this mode of it.
+    /// Whether transmissive surfaces show the final picture behind them instead of this mode.
     pub through: bool,
     /// How the model is drawn.
     pub draw: DrawAs,
     /// Key in the window.
     pub key: Option<char>,
-    /// What it shows.
+    /// What the mode shows.
     pub doc: String,
     /// File as printed.
     #[serde(skip)]
@@ -105,7 +105,7 @@ pub struct Mode {
     pub line: u32,
 }
 
-/// A specialization constant of the author's: changing it builds pipelines.
+/// A specialization constant of the author. A change builds new pipelines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Constant {
     /// Name in GLSL; the key in `settings.shader`.
@@ -119,14 +119,14 @@ pub struct Constant {
     pub scalar: Scalar,
     /// Bits of the default; 0 or 1 for `bool`.
     pub default: u32,
-    /// Smallest and largest value to offer.
+    /// Smallest and largest value.
     pub range: Option<(f64, f64)>,
-    /// Named values; empty for free choice.
+    /// Named values; empty if all values are allowed.
     pub choices: Vec<(String, i64)>,
-    /// Choices that are claimed never to reflect more light than arrives; `None` where the constant has no part in that.
+    /// Choices that claim never to reflect more light than arrives. `None` if the constant does not affect that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conserves: Option<Vec<String>>,
-    /// Choices that are claimed to be the same with light and eye exchanged; `None` as above.
+    /// Choices that claim to be reciprocal: the same with light and eye exchanged. `None` if the constant does not affect that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reciprocal: Option<Vec<String>>,
     /// File as printed.
@@ -147,7 +147,7 @@ pub enum ParameterType {
     Int,
     /// `uint`
     Uint,
-    /// `bool`, four bytes in a block
+    /// `bool`, four bytes in a block.
     Bool,
     /// `vec2`
     Vec2,
@@ -158,7 +158,7 @@ pub enum ParameterType {
 }
 
 impl ParameterType {
-    /// The type of each of its numbers.
+    /// The type of its components.
     pub fn scalar(self) -> Scalar {
         match self {
             Self::Int => Scalar::Int,
@@ -168,7 +168,7 @@ impl ParameterType {
         }
     }
 
-    /// How many numbers a value has.
+    /// Number of components.
     pub fn components(self) -> usize {
         match self {
             Self::Vec2 => 2,
@@ -179,7 +179,7 @@ impl ParameterType {
     }
 }
 
-/// A member of the author's `Params` block: changing it costs nothing.
+/// A member of the author's `Params` block. A change only updates a uniform buffer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
     /// Name in GLSL; the key in `settings.shader`.
@@ -191,11 +191,11 @@ pub struct Parameter {
     /// Type.
     #[serde(rename = "type")]
     pub kind: ParameterType,
-    /// Smallest and largest value to offer.
+    /// Smallest and largest value.
     pub range: Option<(f64, f64)>,
-    /// One number for each component; `bool` is 0 or 1.
+    /// One number per component; a `bool` is 0 or 1.
     pub default: Vec<f64>,
-    /// Show a color picker (linear RGB).
+    /// Whether the panel shows a color picker (linear RGB).
     pub color: bool,
     /// Named values; empty for free choice.
     pub choices: Vec<(String, i64)>,
@@ -218,10 +218,10 @@ pub struct Annotations {
     pub parameters: Vec<Parameter>,
 }
 
-/// Reads the annotations of `files`; ids, defaults and offsets come from the compiled modules, so they are the real ones.
+/// Reads the annotations of `files`. Ids, defaults and offsets come from the compiled modules.
 ///
 /// # Errors
-/// Every annotation that does not parse, every name, slug or id given twice, every `//@ui` on what no module has.
+/// Annotations that do not parse, duplicate names, slugs or ids, and a `//@ui` on a declaration that no module has.
 pub fn read<'p>(
     snapshot: &Snapshot<'_>,
     files: impl IntoIterator<Item = &'p TreePath>,
@@ -254,7 +254,7 @@ pub fn read<'p>(
     if errors.is_empty() { Ok(out) } else { Err(errors) }
 }
 
-/// Where each name was first given.
+/// The first occurrence of each name.
 #[derive(Default)]
 struct Seen(BTreeMap<(&'static str, String), (String, u32)>);
 
@@ -270,7 +270,7 @@ impl Seen {
     }
 
     fn ui(&mut self, ui: &Ui) -> Result<(), Box<Diagnostic>> {
-        // Constants and parameters share one name space: the settings file has one table for both.
+        // Constants and parameters share a name space, since `Settings::shader` has one table for both.
         self.first("//@ui name", &ui.name, &ui.place)
     }
 
@@ -286,7 +286,7 @@ impl Seen {
     }
 }
 
-/// Joins a `//@ui` with its declaration in the compiled modules.
+/// Combines a `//@ui` with its declaration in the compiled modules.
 fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(), Box<Diagnostic>> {
     let Ui { name, label, range, choices, conserves, reciprocal, color, default, declared, place } = ui;
     let (file, line) = (place.file.clone(), place.line);
@@ -321,7 +321,7 @@ fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(),
         Declared::Member(kind) => {
             let offset = offset_in_params(&name, modules, &place)?;
             let default = default.unwrap_or_else(|| match choices.first() {
-                // Without a word of the author's it is 0, where that may be chosen.
+                // Without a default it is 0, or the first choice if 0 is not a choice.
                 Some((_, first)) if outside_of_choices(&choices, 0.0).is_some() => vec![*first as f64],
                 _ => vec![0.0; kind.components()],
             });
@@ -331,7 +331,7 @@ fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(),
     Ok(())
 }
 
-/// Every module that has the member must have it at the same place: one buffer serves them all.
+/// The offset of a member of `Params`. It must be the same in every module, since all share one buffer.
 fn offset_in_params(name: &str, modules: &[&Reflection], place: &Place) -> Result<u32, Box<Diagnostic>> {
     let params = interface::BINDINGS.iter().find(|binding| binding.name == "BINDING_PARAMS");
     let blocks = modules.iter().filter_map(|module| module.descriptor(params?.set, params?.binding)?.block.as_ref());
@@ -356,6 +356,6 @@ fn offset_in_params(name: &str, modules: &[&Reflection], place: &Place) -> Resul
     }
 }
 
-// Run against the compiler; see `annotation_tests.rs`.
+// These tests run the compiler.
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! The grammar of `//@` comments. Whatever does not parse is an error with its column and what was expected.
+//! Parses `//@` comments. An error has a column and says what was expected.
 
 use super::cursor::{Cursor, Place};
 use super::value::{choices, claim, claimed, default, range};
@@ -7,10 +7,10 @@ use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, is_word, lines, tokens};
 use crate::shader::spirv::reflect::Scalar;
 
-/// The keys that the window uses itself.
+/// The keys that the window reserves.
 const WINDOW_KEYS: &str = "h r l q 0-9 [ ]";
 
-/// An annotation with its declaration's text.
+/// A parsed annotation.
 #[derive(Debug)]
 pub enum Found {
     /// `//@mode`
@@ -19,10 +19,10 @@ pub enum Found {
     Ui(Ui),
 }
 
-/// What a `//@ui` stands on.
+/// The declaration that a `//@ui` belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Declared {
-    /// A specialization constant of a type.
+    /// A specialization constant of this type.
     Constant(Scalar),
     /// A member of `Params`.
     Member(ParameterType),
@@ -33,7 +33,7 @@ pub enum Declared {
 pub struct Ui {
     /// Name in GLSL.
     pub name: String,
-    /// As given, or made of the name.
+    /// The given label, or one derived from the name.
     pub label: String,
     /// `lo..hi`
     pub range: Option<(f64, f64)>,
@@ -45,11 +45,11 @@ pub struct Ui {
     pub reciprocal: Option<Vec<String>>,
     /// `color`
     pub color: bool,
-    /// `= ...`, one number for each component.
+    /// `= ...`, one number per component.
     pub default: Option<Vec<f64>>,
-    /// What it stands on.
+    /// The annotated declaration.
     pub declared: Declared,
-    /// Where.
+    /// Location of the annotation.
     pub place: Place,
 }
 
@@ -170,7 +170,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
     Ok(mode)
 }
 
-/// Whether a mode may have this key. The window compares without case, and takes its own keys first.
+/// Checks that a mode may have this key. The window ignores case and reserves some keys.
 fn check_key(key: char) -> Result<(), String> {
     let taken = match key {
         'a'..='z' if !WINDOW_KEYS.contains(key) => return Ok(()),
@@ -277,7 +277,7 @@ fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box
     Err(cursor.place().error(None, message))
 }
 
-/// What to say when choices are given and a default is none of them.
+/// A message if there are choices and `default` is not one of them.
 pub fn outside_of_choices(choices: &[(String, i64)], default: f64) -> Option<String> {
     if choices.is_empty() || choices.iter().any(|(_, value)| *value as f64 == default) {
         return None;
@@ -286,7 +286,7 @@ pub fn outside_of_choices(choices: &[(String, i64)], default: f64) -> Option<Str
     Some(format!("expected a default among the choices {}, found {default}", list.join(" ")))
 }
 
-/// `layout(constant_id = ...) const TYPE NAME` or the member `TYPE NAME;`.
+/// Parses `layout(constant_id = ...) const TYPE NAME` or the member `TYPE NAME;`.
 fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(Declared, String), Box<Diagnostic>> {
     let error = |message: String| Err(cursor.place().error(None, message));
     let words: Vec<&str> = declaration.map(|line| tokens(&line.code)).unwrap_or_default().iter().map(|t| t.1).collect();
@@ -333,7 +333,7 @@ fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result
     Ok((Declared::Member(kind), (*name).to_owned()))
 }
 
-/// `Rim strength` of `rim_strength`, `Wrap diffuse` of `WRAP_DIFFUSE`.
+/// Turns a name into a label: `rim_strength` into `Rim strength`, `WRAP_DIFFUSE` into `Wrap diffuse`.
 fn label_of(name: &str) -> String {
     let words = name.replace('_', " ").to_lowercase();
     let mut chars = words.trim().chars();

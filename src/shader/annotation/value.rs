@@ -1,4 +1,4 @@
-//! The numbers of a `//@ui`: its range, choices and default, held against the type that they are for.
+//! Parses the range, choices and default of a `//@ui`, and checks that its type can hold them.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use super::cursor::Cursor;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::spirv::reflect::Scalar;
 
-/// What a number of a scalar type can be: its name in GLSL, the smallest and the largest.
+/// A scalar type's name in GLSL, and its smallest and largest value.
 pub fn limits(scalar: Scalar) -> (&'static str, f64, f64) {
     match scalar {
         Scalar::Bool => ("bool", 0.0, 1.0),
@@ -17,7 +17,7 @@ pub fn limits(scalar: Scalar) -> (&'static str, f64, f64) {
     }
 }
 
-/// A number that is none of the type's, as an error under `bytes`.
+/// Reports an error under `bytes` if the type cannot hold `value`.
 fn check(cursor: &Cursor<'_>, bytes: &Range<usize>, scalar: Scalar, value: f64) -> Result<(), Box<Diagnostic>> {
     let (name, least, most) = limits(scalar);
     if (least..=most).contains(&value) {
@@ -31,7 +31,7 @@ fn check(cursor: &Cursor<'_>, bytes: &Range<usize>, scalar: Scalar, value: f64) 
     Err(cursor.error(bytes.clone(), message))
 }
 
-/// The numbers after `=`: one for each component, with the bytes where they stand.
+/// The numbers after `=`, one per component, with their byte range.
 pub fn default(cursor: &mut Cursor<'_>, kind: ParameterType) -> Result<(Range<usize>, Vec<f64>), Box<Diagnostic>> {
     let start = cursor.position();
     let mut out = Vec::new();
@@ -59,15 +59,15 @@ pub fn default(cursor: &mut Cursor<'_>, kind: ParameterType) -> Result<(Range<us
     Ok((bytes, out))
 }
 
-/// The words that say of which choices something is claimed.
+/// The keys of claims.
 const CLAIMS: [&str; 2] = ["conserves=", "reciprocal="];
 
-/// Which of the claims comes next, without its `=`.
+/// The claim that comes next, without its `=`.
 pub fn claim(cursor: &mut Cursor<'_>) -> Option<&'static str> {
     CLAIMS.into_iter().find(|claim| cursor.peek_text(claim)).map(|claim| claim.trim_end_matches('='))
 }
 
-/// `"A B"` after `conserves=` or `reciprocal=`: names among `choices`.
+/// Parses `"A B"` after `conserves=` or `reciprocal=`. The names must be among `choices`.
 pub fn claimed(cursor: &mut Cursor<'_>, choices: &[(String, i64)]) -> Result<Vec<String>, Box<Diagnostic>> {
     let (_, key) = cursor.key();
     let (bytes, value) = cursor.value(key)?;
@@ -81,7 +81,7 @@ pub fn claimed(cursor: &mut Cursor<'_>, choices: &[(String, i64)]) -> Result<Vec
     }
 }
 
-/// `A=0 B=1` up to something that is no choice; values of the type.
+/// Parses `A=0 B=1` and so on, with values of the type.
 pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Vec<(String, i64)>, Box<Diagnostic>> {
     let mut out: Vec<(String, i64)> = Vec::new();
     while !cursor.at_end() && !cursor.peek('=') && claim(cursor).is_none() {
@@ -93,14 +93,14 @@ pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Vec<(String, i
         if out.iter().any(|(known, number)| known == name || *number == value) {
             return Err(cursor.error(bytes, format!("choice `{word}` repeats a name or a number")));
         }
-        // Every number that a type can have is exact in f64, and rounding makes none of one that it cannot.
+        // All values of the type are exact in f64, and rounding never moves another value into its range.
         check(cursor, &bytes, scalar, value as f64)?;
         out.push((name.to_owned(), value));
     }
     if out.is_empty() { Err(cursor.expected("NAME=NUMBER after `choice`")) } else { Ok(out) }
 }
 
-/// `lo..hi` in `word`; both ends are values of the type.
+/// Parses `lo..hi` in `word`. The type must be able to hold both ends.
 pub fn range(
     cursor: &Cursor<'_>,
     bytes: Range<usize>,

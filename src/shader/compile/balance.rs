@@ -1,7 +1,7 @@
 //! Finds `#if` without `#endif`, and the reverse, in single files.
 //!
 //! glslang counts conditionals across includes. If a file lacks an `#endif`, all files after it are skipped, and glslang reports
-//! errors in these. So the compiler looks for the cause here when a stage fails.
+//! errors in these. A stray `#else` may even compile, without the rest of the file that includes it. So every file is checked here.
 
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, lines, tokens};
@@ -9,7 +9,7 @@ use crate::shader::source::text::{Line, lines, tokens};
 /// A conditional directive and its line.
 struct Directive<'a> {
     keyword: &'a str,
-    /// What follows the keyword.
+    /// The text after the keyword.
     condition: &'a str,
     line: &'a Line<'a>,
 }
@@ -30,7 +30,7 @@ impl Directive<'_> {
 pub fn unbalanced(file: &str, text: &str) -> Option<Diagnostic> {
     let lines = lines(text);
     let directives = directives(&lines);
-    // The last #endif of a file with an include guard is the guard's, so one that is missing is missing inside.
+    // In a file with an include guard, the last #endif belongs to the guard, so a missing #endif is missing inside.
     match guarded(&lines, &directives) {
         Some(inside) => check(file, inside).map(|error| {
             let guard = &directives[0];
@@ -40,6 +40,20 @@ pub fn unbalanced(file: &str, text: &str) -> Option<Diagnostic> {
         }),
         None => check(file, &directives),
     }
+}
+
+/// A quick look, which takes comments for code and does not count `#else`.
+pub fn looks_balanced(text: &str) -> bool {
+    let mut depth = 0_u32;
+    for directive in text.lines().filter_map(|line| line.trim_start().strip_prefix('#')) {
+        match directive.trim_start().get(..2) {
+            Some("if") => depth += 1,
+            Some("en") if depth > 0 => depth -= 1,
+            Some("en" | "el") if depth == 0 => return false,
+            _ => {}
+        }
+    }
+    depth == 0
 }
 
 fn check(file: &str, directives: &[Directive<'_>]) -> Option<Diagnostic> {
@@ -133,7 +147,7 @@ mod tests {
         let cases = [
             ("float a;\n#ifdef X\n", 2, "`#ifdef X`"),
             ("#if A\n#endif\n  #if B > 1 // why\n", 3, "`#if B > 1`"),
-            // The guard itself, and a block inside of a guard.
+            // The guard itself, and a block inside the guard.
             ("// A.\n#ifndef A\n#define A\nfloat a;\n", 2, "`#ifndef A`"),
             ("#ifndef A\n#define A\n#if X\nfloat a;\n#endif\nfloat b;\n", 1, "`#ifndef A`"),
             ("#ifndef A\n#define A\n#if X\nfloat a;\n\n#endif\n", 3, "`#if X`"),

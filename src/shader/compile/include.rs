@@ -1,4 +1,4 @@
-//! Resolves `#include` while glslang reads, and records every path the outcome depends on.
+//! Resolves `#include` for glslang, and records every path that the result depends on.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
 
-/// How deep includes may nest; glslang itself knows no limit.
+/// Maximum depth of includes. glslang itself has no limit.
 pub const MAX_DEPTH: usize = 32;
 
 /// The include state of one compilation.
@@ -19,17 +19,17 @@ pub struct Includes<'a> {
 }
 
 impl<'a> Includes<'a> {
-    /// Starts at an outermost file.
+    /// Starts with the outermost file.
     pub fn new(snapshot: &'a Snapshot<'a>, outermost: TreePath) -> Self {
         let dependencies = BTreeSet::from([outermost.clone()]);
         Self { snapshot, stack: RefCell::new(vec![outermost]), dependencies: RefCell::new(dependencies) }
     }
 
-    /// Finds `name`, included at `depth` (1: from the outermost file): beside the including file, else from the root.
-    /// Returns the file's tree path and text.
+    /// Finds `name`, included at `depth` (1 is an include of the outermost file): relative to the including file, or else to
+    /// the root. Returns the file's tree path and text.
     ///
     /// # Errors
-    /// The message for the `#include` line, complete but for the line's own place.
+    /// The message for the `#include` line, without file and line.
     pub fn resolve(&self, name: &str, depth: usize) -> Result<(TreePath, String), String> {
         let mut stack = self.stack.borrow_mut();
         stack.truncate(depth.max(1));
@@ -60,7 +60,7 @@ impl<'a> Includes<'a> {
         Err(format!("\"{name}\" not found; looked for {}", looked.join(" and ")))
     }
 
-    /// Every file that was read and every path that was looked for in vain.
+    /// All files that were read, and all paths where no file was found.
     pub fn into_dependencies(self) -> BTreeSet<TreePath> {
         self.dependencies.into_inner()
     }
@@ -109,7 +109,7 @@ mod tests {
         includes.resolve("b.glsl", 2).unwrap();
         let error = includes.resolve("a.glsl", 3).unwrap_err();
         assert_eq!(error, "include cycle: m.frag -> a.glsl -> b.glsl -> a.glsl");
-        // Back in the outermost file, the same file may be included again: guards are its own matter.
+        // Back in the outermost file, the same file may be included again.
         assert!(includes.resolve("a.glsl", 1).is_ok());
     }
 }

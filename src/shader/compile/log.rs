@@ -1,4 +1,4 @@
-//! Reads the compiler's log. glslang gives lines but no columns: the caret goes under the token that the message names.
+//! Parses the compiler's log. glslang reports lines but no columns, so the caret goes under the token that the message names.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::text::{Line, find_word, is_word, lines, tokens};
 
-/// Splits a log, whose file names are tree paths, into errors and warnings. `stage` is the outermost file;
+/// Splits a log into errors and warnings. File names in the log are tree paths. `stage` is the outermost file, and
 /// `dependencies` are the files that may appear.
 pub fn parse(
     log: &str,
@@ -19,7 +19,7 @@ pub fn parse(
     let mut out: Vec<Diagnostic> = Vec::new();
     for row in log.lines() {
         let Some((severity, place, message)) = split(row) else {
-            // Linker messages go on below: "FILE:     f(f1; calling g(f1;".
+            // Linker messages continue on the next lines: "FILE:     f(f1; calling g(f1;".
             let rest = row.strip_prefix(stage.as_str()).and_then(|rest| rest.strip_prefix(": ")).unwrap_or(row).trim();
             match out.last_mut() {
                 Some(last) if !rest.is_empty() && !is_summary(rest) => last.notes.push(rest.to_owned()),
@@ -61,7 +61,7 @@ fn is_summary(row: &str) -> bool {
     row.starts_with(|c: char| c.is_ascii_digit()) && row.ends_with("generated.")
 }
 
-/// glslang goes on with a made-up `float` after an unknown name, and then complains about that `float`.
+/// After an unknown name, glslang assumes a `float` and reports errors about that `float`.
 fn is_consequence(first: &Diagnostic, next: &Diagnostic) -> bool {
     let unknown =
         ["undeclared identifier", "no matching overloaded function found", "out of range", "swizzle selection"];
@@ -106,7 +106,7 @@ fn split_token(message: &str) -> (&str, &str) {
     split.map_or(("", message), |(token, said)| (token.trim(), said.trim()))
 }
 
-/// Where the token of a message stands in its line.
+/// The position of a message's token in its line.
 fn locate(line: &Line<'_>, token: &str, said: &str) -> Option<Range<usize>> {
     match token {
         "assign" | "=" => assignment(&line.code),
@@ -141,7 +141,7 @@ fn not_ascii(file: String, line: u32, source: Option<&Line<'_>>) -> Diagnostic {
     }
 }
 
-/// Errors of the whole stage. Linker messages name functions as `f(f1;`.
+/// Builds an error of the whole stage. Linker messages write functions as `f(f1;`.
 fn without_line(file: String, said: &str, lines: &[Line<'_>]) -> Diagnostic {
     let said =
         said.strip_prefix("Linking ").and_then(|rest| rest.split_once(" stage: ")).map_or(said, |(_, said)| said);
@@ -160,7 +160,7 @@ fn without_line(file: String, said: &str, lines: &[Line<'_>]) -> Diagnostic {
     diagnostic
 }
 
-/// "unexpected X, expecting Y or Z", in the parser's names for the tokens.
+/// Builds a syntax error from "unexpected X, expecting Y or Z", where X, Y and Z are the parser's token names.
 fn syntax_error(file: String, line: u32, rest: &str, lines: &[Line<'_>], index: usize) -> Diagnostic {
     let (unexpected, expecting) = rest.split_once(", expecting ").unwrap_or((rest, ""));
     let mut message = format!("syntax error, unexpected {}", spelled(unexpected));
@@ -185,7 +185,7 @@ fn syntax_error(file: String, line: u32, rest: &str, lines: &[Line<'_>], index: 
     }
 }
 
-/// The line before `index`, blank lines and directives aside, when it looks like a statement without its end.
+/// The last line of code before `index`, if it looks like a statement without `;`. Skips blank lines and directives.
 fn unterminated_before(lines: &[Line<'_>], index: usize) -> Option<u32> {
     let is_code = |line: &&Line<'_>| !line.code.trim().is_empty() && !line.code.trim_start().starts_with('#');
     let before = lines.get(..index)?.iter().rev().find(is_code)?;
@@ -196,7 +196,7 @@ fn unterminated_before(lines: &[Line<'_>], index: usize) -> Option<u32> {
     (ends_value && !opens_block).then_some(before.number)
 }
 
-/// Whether `word` can be what the parser calls `name`.
+/// Whether `word` can be the token that the parser calls `name`.
 fn is_a(name: &str, word: &str) -> bool {
     match name {
         "IDENTIFIER" | "TYPE_NAME" => word.starts_with(|c: char| is_word(c) && !c.is_ascii_digit()),
@@ -207,14 +207,14 @@ fn is_a(name: &str, word: &str) -> bool {
     }
 }
 
-/// The likely culprit within the line: a value that follows a value, or the named sign where it last stands.
+/// The likely cause in the line: a value that follows a value, or the last occurrence of the named sign.
 fn suspect(code: &str, name: &str) -> Option<Range<usize>> {
     let tokens = tokens(code);
     let value = |word: &str| word.starts_with(is_word) || matches!(word, ")" | "]");
     let fits = |at: &usize| is_a(name, tokens[*at].1);
     let at = if is_a(name, "x") || is_a(name, "1") {
         let follows = |at: &usize| {
-            // `type name` is no pair of values: the first of the pair must itself be part of an expression.
+            // `type name` is not a pair of values: the first of a pair must be part of an expression.
             let inside =
                 *at >= 2 && (!tokens[at - 2].1.starts_with(is_word) && !matches!(tokens[at - 2].1, ";" | "{" | "}"));
             *at >= 1 && value(tokens[at - 1].1) && (inside || is_a("INTCONSTANT", tokens[at - 1].1))
@@ -226,7 +226,7 @@ fn suspect(code: &str, name: &str) -> Option<Range<usize>> {
     Some(tokens[at].0.clone())
 }
 
-/// The sign or word behind the parser's name of a token.
+/// The spelling of a token that the parser calls `name`.
 fn spelled(name: &str) -> String {
     let name = name.trim();
     if let Some((_, sign)) = SIGNS.iter().find(|(known, _)| *known == name) {
@@ -287,7 +287,7 @@ const SIGNS: &[(&str, &str)] = &[
     ("SUB_ASSIGN", "-="),
 ];
 
-// The tests run the compiler itself, so its words are the real ones; see `log_tests.rs`.
+// These tests run the compiler, so they see its real messages.
 #[cfg(test)]
 #[path = "log_tests.rs"]
 mod tests;

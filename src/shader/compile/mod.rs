@@ -1,4 +1,4 @@
-//! One stage to SPIR-V, with shaderc.
+//! Compiles a stage to SPIR-V with shaderc.
 
 mod balance;
 pub mod include;
@@ -15,7 +15,7 @@ use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use include::Includes;
 
-/// The stages that exist here; the file's extension says which.
+/// Kind of a stage, given by the file's extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StageKind {
@@ -28,7 +28,7 @@ pub enum StageKind {
 }
 
 impl StageKind {
-    /// The stage that a file's extension names.
+    /// The kind of a file, by its extension.
     pub fn of(path: &TreePath) -> Option<Self> {
         match path.extension()? {
             "vert" => Some(Self::Vertex),
@@ -47,20 +47,20 @@ impl StageKind {
     }
 }
 
-/// What compiling one file gave.
+/// The result of compiling a file.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    /// The module, unoptimized and with names, or the errors in the order of the log.
+    /// The unoptimized module with names, or the errors in the order of the log.
     pub result: Result<Vec<u32>, Vec<Diagnostic>>,
-    /// Warnings, whether it compiled or not.
+    /// Warnings, whether or not the file compiled.
     pub warnings: Vec<Diagnostic>,
-    /// Every path the outcome depends on, those looked for in vain included.
+    /// All paths that the result depends on, including paths where no include was found.
     pub dependencies: BTreeSet<TreePath>,
     /// Wall time of the compilation in milliseconds.
     pub ms: f64,
 }
 
-/// A shaderc compiler; one serves any number of threads.
+/// A shaderc compiler. Threads can share it.
 pub struct Compiler {
     shaderc: shaderc::Compiler,
 }
@@ -73,13 +73,13 @@ impl std::fmt::Debug for Compiler {
 
 impl Compiler {
     /// # Errors
-    /// shaderc's own words when it cannot be set up (out of memory).
+    /// shaderc's message if it cannot be set up (out of memory).
     pub fn new() -> Result<Self, String> {
         Ok(Self { shaderc: shaderc::Compiler::new().map_err(|error| error.to_string())? })
     }
 
-    /// Compiles something trivial: glslang parses its built-in declarations at the first use, 100 to 200 ms that no
-    /// edit should wait for. The tables are per stage kind.
+    /// Compiles trivial stages, so that no edit waits for glslang to parse its built-in declarations. It does that at the first
+    /// use of each stage kind, in 100 to 200 ms.
     pub fn warm(&self) {
         let trivial = "#version 460\nvoid main() {}\n";
         for kind in [ShaderKind::Fragment, ShaderKind::Vertex] {
@@ -89,7 +89,7 @@ impl Compiler {
         }
     }
 
-    /// Compiles a file with a `main()`; the extension gives the stage.
+    /// Compiles a file with a `main()`. Its extension gives the kind of stage.
     pub fn compile(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Compiled {
         let file = || snapshot.display_path(stage);
         let dependencies = BTreeSet::from([stage.clone()]);
@@ -105,14 +105,14 @@ impl Compiler {
         }
     }
 
-    /// Compiles a library alone, as if a shader of this kind included nothing else: it must include what it uses.
+    /// Compiles a library as if a stage of this kind included nothing else, so the library must include what it uses.
     pub fn compile_library(&self, snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> Compiled {
-        // It holds no text of the user's; `rename` below keeps its name from the messages.
+        // The wrapper has no text of the user. `rename` below keeps its name out of messages.
         let wrapper = TreePath::from("(library)");
         let text = format!("#version 460\n#include \"{library}\"\nvoid main() {{}}\n");
         let mut compiled = self.compile_text(snapshot, &wrapper, &text, kind);
         compiled.dependencies.remove(&wrapper);
-        // What is wrong with the library as a whole is reported under its own name.
+        // An error of the whole library is reported under the library's name.
         let file = snapshot.display_path(&wrapper);
         let rename = |diagnostic: &mut Diagnostic| {
             if diagnostic.file == file {
@@ -138,18 +138,18 @@ impl Compiler {
             Err(text) => (Err(()), text),
         };
         let (mut errors, warnings) = log::parse(&text, path, snapshot, &dependencies);
-        if result.is_err() {
-            let causes = unbalanced(snapshot, &dependencies);
-            if !causes.is_empty() {
-                errors = causes;
-            } else if errors.is_empty() {
-                errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
-            }
+        // A stray `#else` can hide the rest of the file that includes it, and still compile.
+        let causes = unbalanced(snapshot, &dependencies, result.is_ok());
+        let result = if causes.is_empty() { result } else { Err(()) };
+        if !causes.is_empty() {
+            errors = causes;
+        } else if errors.is_empty() {
+            errors.push(Diagnostic::error(snapshot.display_path(path), text.trim()));
         }
         Compiled { result: result.map_err(|()| errors), warnings, dependencies, ms }
     }
 
-    /// The module and the log of warnings, or the log of errors. Names in the log are tree paths.
+    /// Returns the module and the log of warnings, or the log of errors. File names in the log are tree paths.
     fn run(
         &self,
         includes: &Includes<'_>,
@@ -170,14 +170,17 @@ impl Compiler {
     }
 }
 
-/// The conditionals without a partner in these files: one error for each file that has any. All other errors of the stage may
-/// follow from them.
-fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>) -> Vec<Diagnostic> {
-    let check = |path: &TreePath| balance::unbalanced(&snapshot.display_path(path), &snapshot.read(path).ok()?);
+/// Reports the first unbalanced conditional of each file. It may be the cause of all other errors of the stage. A stage that
+/// compiled gets a `quick` look.
+fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>, quick: bool) -> Vec<Diagnostic> {
+    let check = |path: &TreePath| {
+        let text = snapshot.read(path).ok().filter(|text| !quick || !balance::looks_balanced(text))?;
+        balance::unbalanced(&snapshot.display_path(path), &text)
+    };
     files.iter().filter_map(check).collect()
 }
 
-/// Unoptimized: five times faster to compile, and the names that reflection needs stay in.
+/// Compile options: unoptimized, which is five times faster and keeps the names that reflection needs.
 fn options<'a>() -> Result<CompileOptions<'a>, String> {
     let mut options = CompileOptions::new().map_err(|error| error.to_string())?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);

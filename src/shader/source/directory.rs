@@ -1,14 +1,13 @@
-//! Walks the files below a directory. The walk follows symbolic links, but never in circles.
+//! Walks the files below a directory. The walk follows symbolic links, but no cycles.
 
 use std::path::{Path, PathBuf};
 
-/// Deep enough for any tree.
+/// Maximum depth of the walk.
 const MAX_DEPTH: usize = 16;
-/// A link inside a linked directory is followed; a link inside that one is not. Directories that link to each other
-/// crosswise have exponentially many paths, although none of the paths is a circle.
+/// Maximum number of links on a path. Directories that link to each other have exponentially many paths even without cycles.
 const MAX_NESTED_LINKS: usize = 2;
 
-/// What [`walk`] meets. `path` is the walk's directory joined with the names on the way.
+/// An entry that [`walk`] visits. `path` is the walk's directory joined with the names on the way.
 #[derive(Clone, Copy, Debug)]
 pub enum Entry<'a> {
     /// A directory, before its entries are read. The walk's own directory comes first.
@@ -18,7 +17,7 @@ pub enum Entry<'a> {
         /// The same directory without symbolic links.
         real: &'a Path,
     },
-    /// A symbolic link, whether or not it leads anywhere. If the walk follows it, the directory or file comes next.
+    /// A symbolic link, dangling or not. If the walk follows it, its directory or file comes next.
     Link {
         /// The name under which the walk reached it.
         path: &'a Path,
@@ -32,15 +31,15 @@ pub enum Entry<'a> {
     },
 }
 
-/// Visits everything below `directory`, in no particular order. `keep` decides by the name of an entry whether the walk
-/// visits the entry. A link to a directory is followed unless it leads back to a directory that contains the link.
+/// Visits everything below `directory`, in no particular order. `keep` decides by name whether the walk visits an entry. The
+/// walk follows a link to a directory unless that directory contains the link.
 pub fn walk(directory: &Path, keep: impl Fn(&str) -> bool, visit: &mut dyn FnMut(Entry<'_>)) {
     let Ok(real) = directory.canonicalize() else { return };
     visit(Entry::Directory { path: directory, real: &real });
     Walk { keep, above: vec![real], links: 0 }.descend(directory, visit);
 }
 
-/// The files that [`walk`] meets.
+/// The files that [`walk`] visits.
 pub fn files(directory: &Path, keep: impl Fn(&str) -> bool) -> Vec<PathBuf> {
     let mut out = Vec::new();
     walk(directory, keep, &mut |entry| {
@@ -53,7 +52,7 @@ pub fn files(directory: &Path, keep: impl Fn(&str) -> bool) -> Vec<PathBuf> {
 
 struct Walk<F> {
     keep: F,
-    /// The current directory and the directories that the walk came through, without symbolic links.
+    /// The current directory and its ancestors in the walk, without symbolic links.
     above: Vec<PathBuf>,
     /// Number of links on the way to the current directory.
     links: usize,
@@ -81,7 +80,7 @@ impl<F: Fn(&str) -> bool> Walk<F> {
 
     fn enter(&mut self, directory: &Path, is_link: bool, visit: &mut dyn FnMut(Entry<'_>)) {
         let Ok(real) = directory.canonicalize() else { return };
-        // A link may lead to a parent of the directory that the walk started from, so comparing for equality is not enough.
+        // A link may lead to a parent of the walk's first directory, so comparing for equality is not enough.
         let is_circle = self.above.iter().any(|above| above.starts_with(&real));
         if is_link && (is_circle || self.links >= MAX_NESTED_LINKS) {
             return;

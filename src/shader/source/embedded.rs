@@ -1,4 +1,4 @@
-//! The shader tree inside the binary, and `specula new`, which writes it out.
+//! The shader tree that is embedded in the binary. `specula new` writes it to a directory.
 
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write as _};
@@ -32,11 +32,11 @@ fn collect(directory: &Dir<'_>, out: &mut Vec<TreePath>) {
     }
 }
 
-/// Writes the tree into `directory`, which is made when absent, and returns the files in order.
+/// Writes the tree into `directory`, creating it if needed. Returns the files in order.
 ///
 /// # Errors
-/// `AlreadyExists` when the directory holds anything: what the user has is never overwritten. Else what the system says,
-/// with the path in the message.
+/// `AlreadyExists` if the directory is not empty, so that no file of the user is overwritten. Otherwise the system's error
+/// with the path.
 pub fn write_to(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let named = |path: &Path, error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", path.display()));
     fs::create_dir_all(directory).map_err(|error| named(directory, error))?;

@@ -1,4 +1,4 @@
-//! Where shader text comes from: a directory, the tree inside the binary, or memory (tests).
+//! Sources of shader text: a directory, the tree inside the binary, or memory (for tests).
 
 pub(super) mod directory;
 pub mod embedded;
@@ -13,15 +13,15 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-/// Files beyond this many bytes are refused: no shader is that long, and shaderc would hold several copies.
+/// Maximum size of a file in bytes. No shader is longer, and shaderc would hold several copies.
 pub const MAX_FILE_BYTES: u64 = 4 << 20;
 
-/// A file of a shader tree: relative to the tree's root, normalized, with forward slashes.
+/// The path of a file in a shader tree: relative to the root, normalized, with forward slashes.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct TreePath(String);
 
 impl TreePath {
-    /// Normalizes `.` and `..`. `None` when the path is absolute, leaves the root, or names the root itself.
+    /// Normalizes `.` and `..`. `None` if the path is absolute, leaves the root, or is the root itself.
     pub fn parse(path: &str) -> Option<Self> {
         if path.starts_with('/') {
             return None;
@@ -39,7 +39,7 @@ impl TreePath {
         if parts.is_empty() { None } else { Some(Self(parts.join("/"))) }
     }
 
-    /// `relative` as seen from the directory that holds this file; `None` when it leaves the root.
+    /// Resolves `relative` from the directory of this file. `None` if the result leaves the root.
     pub fn sibling(&self, relative: &str) -> Option<Self> {
         match self.0.rsplit_once('/') {
             Some((directory, _)) if !relative.starts_with('/') => Self::parse(&format!("{directory}/{relative}")),
@@ -52,7 +52,7 @@ impl TreePath {
         &self.0
     }
 
-    /// What follows the last dot of the file name.
+    /// The text after the last dot of the file name.
     pub fn extension(&self) -> Option<&str> {
         let name = self.0.rsplit('/').next()?;
         name.rsplit_once('.').map(|(_, extension)| extension)
@@ -68,8 +68,8 @@ impl TreePath {
 }
 
 impl From<&str> for TreePath {
-    /// For paths written in source code: a `..` that would leave the root stays at the root. Paths from outside go
-    /// through [`TreePath::parse`], which refuses them.
+    /// Converts paths in source code. A `..` that would leave the root stays at the root. Use [`TreePath::parse`], which refuses
+    /// such a path, for input.
     fn from(path: &str) -> Self {
         let mut parts: Vec<&str> = Vec::new();
         for part in path.split('/') {
@@ -91,22 +91,22 @@ impl fmt::Display for TreePath {
     }
 }
 
-/// Why a file of a tree cannot be used. The message completes the sentence "FILE ...".
+/// Why a file of a tree cannot be used. The message continues "FILE ...".
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SourceError {
     /// No such file.
     #[error("does not exist")]
     Missing,
-    /// A directory stands where a file was expected.
+    /// A directory instead of a file.
     #[error("is a directory, expected a GLSL file")]
     Directory,
-    /// The bytes are not UTF-8 from this line on.
+    /// The file is not UTF-8.
     #[error("is not UTF-8 text (line {line}); save it as UTF-8")]
     NotUtf8 {
-        /// 1-based.
+        /// First bad line, from 1.
         line: u32,
     },
-    /// A NUL byte, which the compiler would take for the end of the text.
+    /// A NUL byte, which the compiler would treat as the end of the text.
     #[error("holds a NUL byte (line {line}); is it a binary file, or still being written?")]
     Nul {
         /// 1-based.
@@ -118,7 +118,7 @@ pub enum SourceError {
         /// Size found.
         bytes: u64,
     },
-    /// Anything else the system reports.
+    /// Any other error of the system.
     #[error("cannot be read: {0}")]
     Io(String),
 }
@@ -126,9 +126,9 @@ pub enum SourceError {
 /// A shader tree.
 #[derive(Clone, Debug)]
 pub enum Source {
-    /// A directory; read again at every update.
+    /// A directory, read again at every update.
     Disk(PathBuf),
-    /// The tree that was compiled into the binary.
+    /// The tree inside the binary.
     Embedded,
     /// Text in memory.
     Memory(BTreeMap<TreePath, String>),
@@ -145,7 +145,7 @@ impl Source {
         Self::Memory(files.into_iter().map(|(path, text)| (path.into(), text.to_owned())).collect())
     }
 
-    /// The text of a file. A UTF-8 byte order mark is dropped: glslang would call it an unexpected token.
+    /// The text of a file, without a UTF-8 byte order mark, which glslang would refuse.
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
         match self {
             Self::Disk(root) => read_file(&root.join(path.as_str())),
@@ -154,7 +154,7 @@ impl Source {
         }
     }
 
-    /// The path that error lines print: for a directory, what an editor can open from where the user stands.
+    /// The path for messages. For a directory, an editor can open it from the working directory.
     pub fn display_path(&self, path: &TreePath) -> String {
         match self {
             Self::Disk(root) if root == Path::new(".") => path.to_string(),
@@ -164,7 +164,7 @@ impl Source {
         }
     }
 
-    /// All files, sorted. Hidden files and directories (editors' and git's) are left out.
+    /// All files, sorted, without hidden files and directories (of editors and git).
     pub fn list(&self) -> Vec<TreePath> {
         match self {
             Self::Disk(root) => {
@@ -182,7 +182,7 @@ impl Source {
         }
     }
 
-    /// The directory to watch; none for trees that cannot change on disk.
+    /// The directory to watch; `None` for a tree that is not on disk.
     pub fn root(&self) -> Option<&Path> {
         match self {
             Self::Disk(root) => Some(root),
@@ -212,7 +212,7 @@ fn read_file(path: &Path) -> Result<String, SourceError> {
 
 fn io_error(error: io::Error) -> SourceError {
     match error.kind() {
-        // A file in the middle of the path is the same to the user: there is no such file.
+        // NotADirectory means that a part of the path is a file. To the user, the path does not exist.
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => SourceError::Missing,
         io::ErrorKind::IsADirectory => SourceError::Directory,
         _ => SourceError::Io(error.to_string()),

@@ -1,4 +1,4 @@
-//! A tree at one moment: each file is read once, so all stages of one update see the same text.
+//! A snapshot of a tree. It reads each file once, so all stages of an update see the same text.
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Source, SourceError, TreePath};
 
-/// What reading a file gave.
+/// The result of reading a file.
 pub type Read = Result<Arc<str>, SourceError>;
 
-/// A lazily filled copy of a tree; shared by the compile threads.
+/// A lazily filled copy of a tree, which the compile threads share.
 #[derive(Debug)]
 pub struct Snapshot<'a> {
     source: &'a Source,
@@ -17,12 +17,12 @@ pub struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// An empty snapshot: files are read when first asked for.
+    /// An empty snapshot. It reads a file at its first use.
     pub fn new(source: &'a Source) -> Self {
         Self { source, files: Mutex::default() }
     }
 
-    /// The text of a file, as it was at the first call.
+    /// The text of a file at the first call.
     pub fn read(&self, path: &TreePath) -> Read {
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = files.get(path) {
@@ -33,12 +33,12 @@ impl<'a> Snapshot<'a> {
         read
     }
 
-    /// The path to print for a file.
+    /// The path of a file for messages.
     pub fn display_path(&self, path: &TreePath) -> String {
         self.source.display_path(path)
     }
 
-    /// A hash of paths and their contents, absence and errors included: equal hashes compile to equal modules.
+    /// A hash of paths and their contents, including missing files and errors. Equal hashes compile to equal modules.
     pub fn closure_hash<'p>(&self, paths: impl IntoIterator<Item = &'p TreePath>) -> u64 {
         let mut hasher = DefaultHasher::new();
         for path in paths {

@@ -1,4 +1,4 @@
-//! GLSL text as lines of code and annotations. Line numbers agree with glslang's; nothing here changes the text.
+//! Splits GLSL text into lines with code and annotations. Line numbers are the same as glslang's.
 
 use std::ops::Range;
 
@@ -7,15 +7,15 @@ use std::ops::Range;
 pub struct Line<'a> {
     /// 1-based.
     pub number: u32,
-    /// As written, without the line end.
+    /// The line without its line break.
     pub raw: &'a str,
-    /// `raw` with every byte of a comment replaced by a space: byte offsets agree.
+    /// `raw` with every byte of a comment replaced by a space, so that byte offsets are the same.
     pub code: String,
     /// Byte offset of a `//@` that is not inside another comment.
     pub annotation: Option<usize>,
 }
 
-/// Splits a file, following block comments across lines.
+/// Splits a file into lines. Block comments may span lines.
 pub fn lines(text: &str) -> Vec<Line<'_>> {
     let mut in_block = false;
     let mut out = Vec::new();
@@ -45,7 +45,7 @@ pub fn lines(text: &str) -> Vec<Line<'_>> {
                 at += 1;
             }
         }
-        // Comments begin and end at ASCII characters, so what remains is whole characters.
+        // Comments begin and end at ASCII characters, so no character is split.
         out.push(Line { number, raw, code: String::from_utf8_lossy(&code).into_owned(), annotation });
     }
     out
@@ -56,7 +56,7 @@ pub fn is_word(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// Byte range of `word` in `code`, as a whole word when it is one.
+/// Byte range of `word` in `code`. If `word` is an identifier, it must be a whole word there.
 pub fn find_word(code: &str, word: &str) -> Option<Range<usize>> {
     if word.is_empty() {
         return None;
@@ -70,7 +70,7 @@ pub fn find_word(code: &str, word: &str) -> Option<Range<usize>> {
     })
 }
 
-/// Words, numbers and single signs of a line of code, with their byte ranges.
+/// The words, numbers and single signs of a line of code, with their byte ranges.
 pub fn tokens(code: &str) -> Vec<(Range<usize>, &str)> {
     let mut out = Vec::new();
     let mut at = 0;

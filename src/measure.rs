@@ -1,4 +1,4 @@
-//! The BRDF as it stands in the user's shaders, measured on the device: albedo, reciprocity, integral of D, lobes.
+//! Measures the BRDF of the user's shaders on the device: albedo, reciprocity, the integral of D, lobes.
 
 use std::sync::Arc;
 
@@ -6,18 +6,14 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
+use crate::render::{
+    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, TargetFormat, Uniforms,
+    compute, ltc, measured_buffer,
+};
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
 
-use crate::render::brdf::ltc;
-use crate::render::brdf::measured::measured_buffer;
-use crate::render::compute;
-use crate::render::environment::bake::GpuEnvironment;
-use crate::render::pipeline::{MEASURE_STAGES, PipelineSet};
-use crate::render::state::{PipelineRequest, TargetFormat};
-use crate::render::view::{SharedImages, Sources, Uniforms};
-
-/// What is measured. All else has glTF's defaults.
+/// The measured surface. All other properties have glTF's defaults.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Linear RGB.
@@ -26,18 +22,18 @@ pub struct Surface {
     pub metallic: f32,
 }
 
-/// Rows of roughness and columns of angles, even steps, first and last included.
+/// Rows of roughness and columns of angles, in even steps from first to last, both included.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
-    /// How many values of roughness.
+    /// Number of roughness values.
     pub rows: u32,
-    /// First and last.
+    /// First and last roughness.
     pub roughness: (f32, f32),
-    /// How many angles.
+    /// Number of angles.
     pub columns: u32,
     /// First and last angle to the normal, degrees.
     pub theta: (f32, f32),
-    /// Samples for each cell.
+    /// Samples per cell.
     pub samples: u32,
 }
 
@@ -53,26 +49,26 @@ impl Grid {
     }
 }
 
-/// To six digits, since 0.05 as a float is 0.05000000074505806.
+/// A value of the grid, rounded to six decimals, since 0.05 as a float is 0.05000000074505806.
 fn step((first, last): (f32, f32), index: u32, count: u32) -> f64 {
     let (first, last) = (f64::from(first), f64::from(last));
     let value = first + (last - first) * f64::from(index) / f64::from(count.max(2) - 1);
     (value * 1e6).round() / 1e6
 }
 
-/// A pair of directions, and how much f differs when they change places.
+/// A pair of directions, and how much f changes when they are swapped.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Worst {
-    /// |f(l, v) - f(v, l)| over their mean, the worst channel; 1e30 where one is no number.
+    /// |f(l, v) - f(v, l)| divided by their mean, in the worst channel; 1e30 if one of them is not finite.
     pub error: f32,
-    /// Towards the light; z is the normal.
+    /// Direction to the light; z is the normal.
     pub l: [f32; 3],
-    /// Towards the eye.
+    /// Direction to the eye.
     pub v: [f32; 3],
 }
 
-/// f NoV by lobe: what leaves into a solid angle, of light that arrives with an irradiance of 1; 1/sr, linear RGB.
+/// f NoV of each lobe, in 1/sr, linear RGB: the intensity that leaves per unit area under an irradiance of 1.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Lobe {
@@ -84,17 +80,17 @@ pub struct Lobe {
     pub multiple: [f32; 3],
 }
 
-/// What a choice of the author's may be claimed to do: see brdf/models.glsl.
+/// A property that an annotation claims for a choice: see brdf/models.glsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Claim {
-    /// A white surface reflects no more light than it gets.
+    /// A white surface reflects no more light than it receives.
     Conserves,
     /// f(l, v) = f(v, l)
     Reciprocal,
 }
 
 impl Claim {
-    /// The choices of a constant that make this claim; `None` where the constant has no part in it.
+    /// The choices of a constant that make this claim. `None` if the constant does not affect it.
     pub fn of(self, constant: &Constant) -> Option<&Vec<String>> {
         match self {
             Self::Conserves => constant.conserves.as_ref(),
@@ -103,12 +99,11 @@ impl Claim {
     }
 }
 
-/// The author's constants in the order of their ids, each with what `settings` choose of it: a choice's name, or a
-/// number.
+/// The author's constants by ascending id, each with its value in `settings`: the name of a choice, or a number.
 pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
     let chosen = values::constants(&settings.shader, &shaders.constants);
     let name = |constant: &Constant, bits: u32| {
-        // Choices are whole numbers: of an int they may be negative.
+        // Choices of an `int` may be negative.
         let is = |value: i64| value == i64::from(bits) || value == i64::from(bits.cast_signed());
         let found = constant.choices.iter().find(|(_, value)| is(*value));
         found.map_or_else(|| bits.to_string(), |(name, _)| name.clone())
@@ -116,14 +111,14 @@ pub fn choices<'a>(settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Cons
     shaders.constants.iter().zip(chosen).map(|(constant, (_, bits))| (constant, name(constant, bits))).collect()
 }
 
-/// Those of the [`choices`] that do not make `claim`: when there are none, the combination claims it.
+/// The [`choices`] that do not make `claim`. If there are none, the combination makes it.
 pub fn unclaimed<'a>(claim: Claim, settings: &Settings, shaders: &'a ShaderSet) -> Vec<(&'a Constant, String)> {
     let lacks =
         |(constant, chosen): &(&Constant, String)| claim.of(constant).is_some_and(|names| !names.contains(chosen));
     choices(settings, shaders).into_iter().filter(lacks).collect()
 }
 
-/// What measurements of one shader set share, whatever models are chosen.
+/// What all measurements of one shader set share.
 struct Shared {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -133,7 +128,7 @@ struct Shared {
     images: SharedImages,
 }
 
-/// Measures with the stages of one shader set and one choice of models.
+/// Measures one shader set with one choice of models.
 pub struct Bench {
     shared: Arc<Shared>,
     constants: Specialization,
@@ -141,10 +136,10 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// For shaders that hold [`crate::render::all_stages`], with the author's constants and parameters as `settings` have them.
+    /// Prepares shaders with [`crate::render::all_stages`]. The author's constants and parameters come from `settings`.
     ///
     /// # Errors
-    /// The device refuses a stage.
+    /// The driver rejects a stage, or no memory is left.
     pub fn new(gpu: &Arc<Gpu>, shaders: &Arc<ShaderSet>, settings: &Settings) -> Result<Self, GpuError> {
         let layouts = SetLayouts::new(gpu)?;
         let set = PipelineSet::new(gpu, &layouts, shaders.clone(), &request(settings, shaders), None)?;
@@ -160,7 +155,7 @@ impl Bench {
         Self::on(Arc::new(shared), settings)
     }
 
-    /// The same shaders with other choices.
+    /// The same shaders with other settings.
     ///
     /// # Errors
     /// As [`Bench::new`].
@@ -171,7 +166,7 @@ impl Bench {
     fn on(shared: Arc<Shared>, settings: &Settings) -> Result<Self, GpuError> {
         let request = request(settings, &shared.set.shaders);
         shared.set.build(&request)?;
-        let bound = shared.set.bind(&request).ok_or_else(|| GpuError::NoStage(super::tables::DFG.to_owned()))?;
+        let bound = shared.set.bind(&request).ok_or_else(|| GpuError::NoStage("ibl/dfg.comp".to_owned()))?;
         let environment = shared.environment.clone();
         let sources = Sources { environment, tables: bound.tables, measured: shared.measured.clone() };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
@@ -184,32 +179,32 @@ impl Bench {
     /// Albedo (linear RGB) of each cell, row by row.
     ///
     /// # Errors
-    /// The device.
+    /// A device error.
     pub fn furnace(&self, surface: Surface, grid: Grid) -> Result<Vec<[f32; 3]>, GpuError> {
         self.run(MEASURE_STAGES[0], surface, grid)
     }
 
-    /// The worst pair of directions of each cell; columns only share the work.
+    /// The worst pair of directions of each cell. Columns only split the work; they have no angle.
     ///
     /// # Errors
-    /// The device.
+    /// A device error.
     pub fn reciprocity(&self, surface: Surface, grid: Grid) -> Result<Vec<Worst>, GpuError> {
         self.run(MEASURE_STAGES[1], surface, grid)
     }
 
-    /// Integral of D NoH for each roughness; of `grid` only rows and samples count.
+    /// The integral of D NoH for each roughness. Columns and angles of `grid` are ignored.
     ///
     /// # Errors
-    /// The device.
+    /// A device error.
     pub fn normalization(&self, grid: Grid) -> Result<Vec<f32>, GpuError> {
         self.run(MEASURE_STAGES[2], Surface { base_color: [1.0; 3], metallic: 1.0 }, Grid { columns: 1, ..grid })
     }
 
-    /// Lobes in the plane of incidence: the eye goes from -90 to 90 degrees, by the centers of the columns; the light
-    /// stands at `grid.theta.0` degrees on the negative side.
+    /// Lobes in the plane of incidence. The columns split -90 to 90 degrees evenly, and the eye is at their centers; the light
+    /// is at `grid.theta.0` degrees on the negative side.
     ///
     /// # Errors
-    /// The device.
+    /// A device error.
     pub fn lobes(&self, surface: Surface, grid: Grid) -> Result<Vec<Lobe>, GpuError> {
         self.run(MEASURE_STAGES[3], surface, grid)
     }
@@ -229,7 +224,7 @@ impl Bench {
         };
         let size = (grid.columns * grid.rows) as usize * size_of::<T>();
         let results = Buffer::new(gpu, "results", size as u64, vk::BufferUsageFlags::STORAGE_BUFFER, Memory::Readback)?;
-        let writer = |writer: SetWriter| compute::results(writer, &results);
+        let writer = |writer: SetWriter| writer.buffer(interface::BINDING_RESULTS, &results);
         let bindings = compute::bindings(gpu, layouts, &task, writer)?;
         let pipeline = set.compute(stage, &self.constants)?;
         let groups = [grid.columns.div_ceil(8), grid.rows.div_ceil(8), 1];

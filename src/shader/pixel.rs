@@ -1,34 +1,34 @@
-//! The value of one pixel as the HDR target holds it: color, coverage and flags. `shaders/common/pixel.glsl` writes it.
+//! Decodes a pixel of the HDR target: color, coverage and flags. `shaders/common/pixel.glsl` encodes it.
 
+use super::Mode;
 use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE};
-use crate::shader::Mode;
 
-/// The most samples of a pixel whose mean keeps coverage and flags apart.
+/// Maximum number of samples per pixel for which the mean still separates coverage and flags.
 const MOST_SAMPLES: f32 = 8.0;
-/// The smallest part of a flag in such a mean: that of one sample.
+/// The share of a flag in the mean if one sample has it.
 const ONE_NO_DATA: f32 = FLAG_NO_DATA as f32 / MOST_SAMPLES;
 const ONE_NOT_FINITE: f32 = FLAG_NOT_FINITE as f32 / MOST_SAMPLES;
 /// Characters of a number in [`PixelValue::text`].
 const NUMBER_WIDTH: usize = 10;
 
-/// What a debug mode, or the picture, has at one pixel.
+/// The value of a pixel in the picture or a debug mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelValue {
-    /// Linear RGB times coverage, before exposure; and coverage, 0..1. NaN counts as 0 here, and infinity as the largest value
-    /// that the HDR target holds.
+    /// Linear RGB times coverage, before exposure, and coverage, 0..1. The shader replaces NaN by 0 and infinity by the largest
+    /// value of the HDR target.
     pub value: [f32; 4],
-    /// The mode has no data at one of the pixel's samples at least; the sample shows a checkerboard.
+    /// Whether the mode has no data at one of the pixel's samples or more. The picture shows a checkerboard there.
     pub no_data: bool,
-    /// The value is NaN or infinite at one of the pixel's samples at least.
+    /// Whether the value is NaN or infinite at one of the pixel's samples or more.
     pub not_finite: bool,
 }
 
 impl PixelValue {
-    /// Takes a texel of the HDR target apart: one sample, or the mean of up to 8.
+    /// Decodes a texel of the HDR target: one sample, or the mean of up to 8.
     ///
-    /// Coverage of the picture is exact unless something transparent is blended over a flag.
+    /// Coverage is exact unless a transparent surface is blended over a flag.
     pub fn decode([r, g, b, alpha]: [f32; 4]) -> Self {
-        // A tree that stores no flags may store NaN itself.
+        // The shaders of a tree that stores no flags may write NaN.
         if ![r, g, b, alpha].iter().all(|number| number.is_finite()) {
             return Self { value: [r, g, b, alpha.clamp(0.0, 1.0)], no_data: false, not_finite: true };
         }
@@ -40,8 +40,8 @@ impl PixelValue {
         }
     }
 
-    /// The value in words, padded to a width that depends on the mode alone: as many numbers as the mode has components, their
-    /// unit, and whether they are from before exposure; or `no data`; or `NaN`, which stands for infinity too.
+    /// The value as text: one number per component of the mode, the unit, and whether the value is before exposure; or
+    /// `no data`; or `NaN`, which also stands for infinity. The width depends only on the mode.
     pub fn text(&self, mode: &Mode) -> String {
         let count = usize::from(mode.components).clamp(1, 3);
         let width = count * (NUMBER_WIDTH + 1) - 1;
@@ -69,7 +69,7 @@ impl PixelValue {
     }
 }
 
-/// Six significant digits in [`NUMBER_WIDTH`] characters; in powers of ten where fewer than three would be left.
+/// A number in [`NUMBER_WIDTH`] characters, with six significant digits. Uses powers of ten if fewer than three would be left.
 fn text_of(number: f32) -> String {
     let magnitude = number.abs();
     if magnitude != 0.0 && !(1e-3..1e6).contains(&magnitude) {
@@ -89,7 +89,7 @@ mod tests {
     const NO_DATA: f32 = FLAG_NO_DATA as f32;
     const NOT_FINITE: f32 = FLAG_NOT_FINITE as f32;
 
-    /// The mean of samples as a half-float target resolves them.
+    /// The mean of samples, resolved to a half-float target.
     fn resolved(samples: &[f32]) -> f32 {
         let sum: f32 = samples.iter().map(|alpha| f16::from_f32(*alpha).to_f32()).sum();
         f16::from_f32(sum / samples.len() as f32).to_f32()

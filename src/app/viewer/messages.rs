@@ -1,0 +1,183 @@
+//! Applies the results of the threads to the viewer.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use super::{FirstFrame, Viewer};
+use crate::app::command::Command;
+use crate::app::threads::Message;
+use crate::app::threads::baker::BakeMessage;
+use crate::app::threads::loader::Loaded;
+use crate::app::threads::worker::WorkerMessage;
+use crate::events::{Event, ReloadEvent, emit};
+use crate::message;
+use crate::render::{Outcome, Reload};
+use crate::settings::LightSource;
+
+/// Maximum number of worker restarts after consecutive panics.
+const WORKER_RESTARTS: u32 = 3;
+
+impl Viewer {
+    pub(in crate::app) fn on_message(&mut self, message: Message) {
+        match message {
+            Message::Worker(WorkerMessage::Built(Ok(()))) => self.threads.worker.built(),
+            Message::Worker(WorkerMessage::Built(Err(message))) => self.say(message),
+            Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, tree }) => {
+                self.shader.compiling = false;
+                self.shader.tree = tree;
+                self.worker_restarts = 0;
+                self.on_reload(&reload, detect_ms);
+            }
+            Message::Loaded(loaded) => self.on_loaded(*loaded),
+            Message::Bake(message) => self.on_bake(message),
+            Message::FilesChanged(paths) => self.on_files_changed(&paths),
+            Message::Panicked(thread, text) => self.on_panic(thread, &text),
+        }
+    }
+
+    fn on_reload(&mut self, reload: &Reload, detect_ms: f64) {
+        let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        match &reload.outcome {
+            Outcome::Unchanged { cleared: false } => {}
+            Outcome::Unchanged { cleared: true } => {
+                self.session.diagnostics.clear();
+                self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
+            }
+            Outcome::Failed(diagnostics) => {
+                for diagnostic in diagnostics {
+                    eprintln!("{}", diagnostic.full());
+                    emit(self.events, &Event::Diagnostic(diagnostic));
+                }
+                self.session.diagnostics.clone_from(diagnostics);
+                self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
+            }
+            Outcome::Ready(set) => {
+                self.session.diagnostics.clone_from(&set.shaders.warnings);
+                for warning in &self.session.diagnostics {
+                    eprintln!("{}", warning.full());
+                }
+                let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
+                self.first_frame = Some(FirstFrame { shaders: set.shaders.clone(), event });
+                let is_first = self.session.shaders.replace(set.shaders.clone()).is_none();
+                self.resources.set_pipelines(set);
+                self.check_names(is_first);
+            }
+        }
+    }
+
+    pub(super) fn report(&mut self, event: ReloadEvent) {
+        emit(self.events, &Event::Reload(event.clone()));
+        self.shader.last = Some(event);
+    }
+
+    /// Reports settings and modes that the shaders lack. The settings stay, because the next edit may declare them. Unknown names
+    /// are reported only for the first shaders.
+    fn check_names(&mut self, is_first: bool) {
+        let mut problems = self.session.problems(is_first);
+        if self.session.mode().is_none() {
+            problems.push(format!("there is no mode '{}'; `specula modes` lists them all", self.session.settings.mode));
+        }
+        if !problems.is_empty() {
+            self.say(problems.join("\n"));
+        }
+    }
+
+    fn on_loaded(&mut self, loaded: Loaded) {
+        if loaded.number != self.threads.loader.newest {
+            return;
+        }
+        self.model.loading = false;
+        match loaded.result {
+            Ok(uploaded) => {
+                let model = uploaded.model();
+                for warning in &model.warnings {
+                    message::warn(format_args!("{}: {warning}", model.name));
+                }
+                if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
+                    self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
+                }
+                if loaded.path != self.model.path {
+                    self.execute(Command::FrameModel);
+                }
+                self.panels.show_model_warnings = true;
+                self.model.path = loaded.path;
+                self.model.load_ms = loaded.ms;
+                self.model.files.clone_from(&model.files);
+                self.session.set_model(model);
+                self.resources.set_model(&uploaded);
+            }
+            Err((message, tried)) => {
+                // Watch the model on screen as well as the files that must be repaired.
+                let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
+                self.model.files = on_screen.into_iter().chain(tried).collect();
+                self.say(message);
+            }
+        }
+        self.watch_files();
+    }
+
+    fn on_bake(&mut self, message: BakeMessage) {
+        match message {
+            BakeMessage::Progress(number, done, next) => {
+                self.threads.baker.set_progress(number, done, next);
+            }
+            BakeMessage::Environment(number, key, result) => {
+                if !self.threads.baker.ended(number) {
+                    return;
+                }
+                match result {
+                    Ok(environment) => {
+                        emit(self.events, &Event::Bake(&environment.report));
+                        self.resources.set_environment(key, Some(environment));
+                    }
+                    Err(error) => {
+                        self.resources.set_environment(key, None);
+                        self.say(format!("{error}\nThe previous environment stays."));
+                    }
+                }
+            }
+            BakeMessage::Measured(key, result) => {
+                let result = result.map_err(|message| self.say(message));
+                self.resources.set_measured(key, result.ok());
+            }
+        }
+    }
+
+    /// Handles changed files of the environment, the measured BRDF or the model.
+    fn on_files_changed(&mut self, changed: &BTreeSet<PathBuf>) {
+        let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
+        let is_changed = |files: &[PathBuf]| files.iter().any(|file| changed.contains(file));
+        if is_changed(&environment) {
+            self.session.revisions.environment += 1;
+        }
+        if is_changed(&measured) {
+            self.session.revisions.measured += 1;
+        }
+        if is_changed(&self.model.files) {
+            let on_screen = self.session.model().is_some_and(|model| is_changed(&model.files));
+            let path = if on_screen && !self.model.loading { &self.model.path } else { &self.model.requested };
+            self.load_model(path.clone());
+        }
+    }
+
+    fn on_panic(&mut self, thread: &'static str, text: &str) {
+        let restarts = thread == "worker" && self.worker_restarts < WORKER_RESTARTS;
+        let then = if restarts { "; it was started again" } else { "" };
+        self.keep_saying(format!(
+            "Specula's {thread} thread failed ({text}){then}. Please report this; your files are safe"
+        ));
+        match thread {
+            "worker" if restarts => {
+                self.worker_restarts += 1;
+                self.restart_worker();
+            }
+            "baker" => {
+                if let Some(key) = self.threads.baker.abandon() {
+                    self.resources.set_environment(key, None);
+                }
+            }
+            "loader" => self.model.loading = false,
+            _ => self.shader.compiling = false,
+        }
+    }
+}
