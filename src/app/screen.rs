@@ -127,8 +127,10 @@ impl Screen {
         viewer.watch_files();
         let frame = self.next_frame(viewer)?;
         self.view.probe = self.mouse.over.then(|| self.mouse_pixel()).flatten();
-        if std::mem::take(&mut viewer.screenshot) {
-            self.screenshot(viewer, frame.as_ref())?;
+        // A screenshot that was asked for before the first picture waits for it.
+        if let Some(frame) = frame.as_ref().filter(|_| viewer.screenshot) {
+            viewer.screenshot = false;
+            self.screenshot(viewer, frame)?;
         }
 
         // Record both to a swapchain image. `begin` waits for a frame slot.
@@ -302,8 +304,7 @@ impl Screen {
     }
 
     /// Writes the picture, without panels, to `specula-N.png` in the working directory.
-    fn screenshot(&mut self, viewer: &mut Viewer, frame: Option<&BoundFrame>) -> Result<(), GpuError> {
-        let Some(frame) = frame else { return Ok(()) };
+    fn screenshot(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
         let image = self.view.output_image(frame.state.size)?;
         let mut encoder = self.frames.begin()?;
         let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };

@@ -26,7 +26,7 @@ impl Display {
         }
         let frame_buffer = tempfile::tempdir().unwrap();
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-fbdir"]);
+        command.args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-noreset", "-fbdir"]);
         let mut server = command
             .arg(frame_buffer.path())
             .stdin(Stdio::null())
@@ -37,7 +37,10 @@ impl Display {
         let mut line = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
         assert!(!line.trim().is_empty(), "Xvfb ended before it had a display");
-        Self { server, name: format!(":{}", line.trim()), frame_buffer }
+        let display = Self { server, name: format!(":{}", line.trim()), frame_buffer };
+        // The mouse starts in the middle of the screen, where it would hover over a control.
+        display.xdotool(&["mousemove", "1023", "767"]);
+        display
     }
 
     /// `specula view` on this display, in the folder of `tree`.

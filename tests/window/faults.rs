@@ -42,12 +42,12 @@ fn a_panic_of_the_worker_costs_nothing() {
     // The worker fails at this edit, starts again and compiles all files as they are.
     viewer.tree.write(NDF, &edited);
     viewer.running.until_stderr("the worker thread failed");
-    viewer.until("the edit, by the new worker", |shot| *shot != first);
     viewer.running.reload(true);
+    assert!(viewer.screenshot() != first, "the edit does not show");
     // The new worker sees saves as the old one did.
     viewer.tree.write(NDF, &original);
     let reload = viewer.running.reload(true);
-    assert_eq!(reload["changed"], serde_json::json!([format!("shaders/{NDF}")]), "{reload}");
+    assert!(reload["changed"][0].as_str().is_some_and(|file| file.ends_with(NDF)), "{reload}");
     assert!(viewer.screenshot() == first, "the first text no longer shows the first picture");
     let stderr = viewer.quit();
     assert_eq!(stderr.matches("thread failed").count(), 1, "{stderr}");
