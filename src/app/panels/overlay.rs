@@ -23,12 +23,8 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, readings: &Reading
 /// Kept messages and the model's warnings, until the user hides them.
 fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: egui::Rect) {
     let model = viewer.session.model().filter(|_| viewer.panels.show_model_warnings);
-    let of_model: &[String] = model.map_or(&[], |model| &model.warnings);
     let mut lines: Vec<String> = viewer.notices.kept().to_vec();
-    lines.extend(of_model.iter().take(MODEL_WARNINGS).cloned());
-    if of_model.len() > MODEL_WARNINGS {
-        lines.push(format!("and {} more in the panel Model", of_model.len() - MODEL_WARNINGS));
-    }
+    lines.extend(model.map(|model| model.first_warnings(MODEL_WARNINGS)).unwrap_or_default());
     if lines.is_empty() {
         return;
     }
