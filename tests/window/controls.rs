@@ -44,11 +44,11 @@ pub(super) fn choose_environment(viewer: &Viewer, left: u32, entry: u32) {
     // The open list lies over the rows below the button. The first of them may change color with the button.
     let below =
         |screen: &RgbaImage| (2 * ENTRY..4 * ENTRY).map(|row| *screen.get_pixel(x + 12, y + row)).collect::<Vec<_>>();
-    viewer.until_screen("the open list of environments", |now| below(now) != below(&screen));
+    let open = viewer.until_screen("the open list of environments", |now| below(now) != below(&screen));
     viewer.click((x + 20, y + ENTRY + 3 + ENTRY * entry));
     // Over a control or a name, the mouse would change its color or open a tooltip.
     viewer.display.park_mouse();
-    viewer.until_screen("the closed list of environments", |now| below(now) == below(&screen));
+    viewer.until_screen("the closed list of environments", |now| below(now) != below(&open));
 }
 
 /// Drags the slider in row `y` of the panel with the left edge `left` to `value`: 0 and 1 are its ends.
