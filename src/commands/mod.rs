@@ -125,6 +125,7 @@ impl From<HeadlessError> for Failure {
 /// Runs the program that started at `start`.
 pub fn main(start: Instant) -> ExitCode {
     use tracing_subscriber::EnvFilter;
+    specula::gpu::return_large_blocks();
     // winit warns of every oddity of a display at every start.
     let filter = EnvFilter::try_from_env("SPECULA_LOG").unwrap_or_else(|_| EnvFilter::new("warn,winit=error"));
     let color = std::io::stderr().is_terminal();

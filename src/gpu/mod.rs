@@ -19,7 +19,7 @@ pub use commands::slot::Submission;
 pub use device::adapter::{AdapterInfo, adapters};
 pub use device::gpu::{Gpu, GpuOptions};
 pub use error::GpuError;
-pub use heap::return_freed_memory;
+pub use heap::{return_freed_memory, return_large_blocks};
 pub use resources::buffer::{Buffer, Memory};
 pub use resources::descriptor::{DescriptorSet, SetLayouts, SetWriter};
 pub use resources::image::{Image, ImageDesc};
