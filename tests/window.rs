@@ -167,7 +167,6 @@ fn a_model_saved_while_it_loads_is_shown_as_saved() {
     let path = tree.beside("model.glb");
     std::fs::write(&path, &quad).unwrap();
     let mut viewer = Viewer::with_fault(tree, &["model.glb"], "load-delay-ms:3000");
-    viewer.running.event("window");
     std::fs::write(&path, &sphere).unwrap();
     viewer.until("the saved model", |shot| *shot == saved);
     viewer.quit();
