@@ -38,9 +38,14 @@ impl Display {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
         assert!(!line.trim().is_empty(), "Xvfb ended before it had a display");
         let display = Self { server, name: format!(":{}", line.trim()), frame_buffer };
-        // The mouse starts in the middle of the screen, where it would hover over a control.
-        display.xdotool(&["mousemove", "1023", "767"]);
+        display.park_mouse();
         display
+    }
+
+    /// Moves the mouse to the screen's corner, where it hovers over no control. It starts in the middle.
+    #[track_caller]
+    pub fn park_mouse(&self) {
+        self.xdotool(&["mousemove", "1023", "767"]);
     }
 
     /// `specula view` on this display, in the folder of `tree`.
@@ -93,8 +98,9 @@ pub struct Viewer {
     pub running: Running,
     /// Its shader tree.
     pub tree: Tree,
+    /// Its X server.
+    pub display: Display,
     window: String,
-    display: Display,
 }
 
 impl Viewer {

@@ -41,13 +41,14 @@ pub(super) fn choose_environment(viewer: &Viewer, left: u32, entry: u32) {
     let screen = viewer.until_screen("the list of environments", |screen| row(screen).is_some());
     let y = row(&screen).unwrap() + ENTRY / 2;
     viewer.click((x + 20, y));
-    // The open list lies over the rows below the button.
+    // The open list lies over the rows below the button. The first of them may change color with the button.
     let below =
-        |screen: &RgbaImage| (0..4 * ENTRY).map(|i| *screen.get_pixel(x + 12, y + ENTRY / 2 + i)).collect::<Vec<_>>();
-    viewer.until_screen("the open list of environments", |now| below(now) != below(&screen));
+        |screen: &RgbaImage| (2 * ENTRY..4 * ENTRY).map(|row| *screen.get_pixel(x + 12, y + row)).collect::<Vec<_>>();
+    let open = viewer.until_screen("the open list of environments", |now| below(now) != below(&screen));
     viewer.click((x + 20, y + ENTRY + 3 + ENTRY * entry));
-    // The mouse leaves the list's button, so that its color is as before.
-    viewer.move_mouse((left + 20, y));
+    // Over a control or a name, the mouse would change its color or open a tooltip.
+    viewer.display.park_mouse();
+    viewer.until_screen("the closed list of environments", |now| below(now) != below(&open));
 }
 
 /// Drags the slider in row `y` of the panel with the left edge `left` to `value`: 0 and 1 are its ends.

@@ -41,7 +41,7 @@ fn a_panic_of_the_worker_costs_nothing() {
     let original = viewer.tree.read(NDF);
     // The worker fails at this edit, starts again and compiles all files as they are.
     viewer.tree.write(NDF, &edited);
-    viewer.running.until_stderr("the worker thread failed");
+    viewer.running.until_stderr("worker thread failed");
     viewer.running.reload(true);
     assert!(viewer.screenshot() != first, "the edit does not show");
     // The new worker sees saves as the old one did.
