@@ -46,7 +46,7 @@ impl Finished {
 
 /// The program, to be run in `directory`.
 pub fn specula(directory: &Path) -> Command {
-    let mut command = Command::new(std::env::var("TMP_OLD_BIN").unwrap_or(env!("CARGO_BIN_EXE_specula").into()));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_specula"));
     command.current_dir(directory).stdin(Stdio::null());
     command
 }

@@ -19,13 +19,7 @@ fn an_environment_comes_and_goes_in_one_step() {
 
     let lit = [&size[..], &["--env", "furnace"]].concat();
     let mut viewer = Viewer::with_fault(Tree::new(), &lit, "compile-delay-ms:500");
-    // The model and the light appear in either order.
-    let (mut ready, mut baked) = (false, false);
-    viewer.running.until("model and environment", |event| {
-        ready |= event["event"] == "ready";
-        baked |= event["event"] == "bake";
-        ready && baked
-    });
+    viewer.ready_and_baked();
     let with = viewer.screenshot();
     assert!(with != without, "the environment gives no light");
     let left = with.width();
@@ -56,10 +50,6 @@ fn a_mode_asked_for_during_a_broken_edit_is_shown() {
     let mut last = viewer.screenshot();
     for (number, key) in "cznwbmudgvfktijxp".chars().enumerate() {
         viewer.tree.write(NDF, &original.replace("alpha * alpha;", &format!("alpha * alfa{number};")));
-        if std::env::var("TMP_OLD_BIN").is_ok() {
-            let t = viewer.tree.read("common/color.glsl");
-            viewer.tree.write("common/color.glsl", &format!("{t}\n// {number}\n"));
-        }
         viewer.key(&key.to_string());
         viewer.running.reload(false);
         viewer.until(&format!("the mode of the key {key}"), |shot| *shot != last);
