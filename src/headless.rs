@@ -88,8 +88,6 @@ impl Headless {
         }
         this.check_settings()?;
         this.provide()?;
-        // Decoding and compiling are done. Return the freed memory, which a software device needs for the frame.
-        return_freed_memory();
         Ok((this, reload))
     }
 
@@ -136,7 +134,10 @@ impl Headless {
     /// # Errors
     /// A bad file, or a device error.
     pub fn provide(&mut self) -> Result<(), HeadlessError> {
-        self.bind().map(|_| ())
+        self.bind()?;
+        // Decoding and compiling are done. Return the freed memory, which a software device needs for the frame.
+        return_freed_memory();
+        Ok(())
     }
 
     /// Bakes the environment of the settings again. `from_disk` allows a cached result.

@@ -130,7 +130,8 @@ impl Screen {
         // A screenshot that was asked for before the first picture waits for it.
         if let Some(frame) = frame.as_ref().filter(|_| viewer.screenshot) {
             viewer.screenshot = false;
-            self.screenshot(viewer, frame)?;
+            let written = self.screenshot(viewer, frame);
+            survive(viewer, written)?;
         }
 
         // Record both to a swapchain image. `begin` waits for a frame slot.
@@ -169,12 +170,9 @@ impl Screen {
             let size = window.inner_size();
             let old = self.swapchain.take();
             let vsync = viewer.gpu_is_fast();
-            match Swapchain::new(&self.surface, (size.width, size.height), FRAMES_IN_FLIGHT, vsync, old) {
-                Ok(swapchain) => self.swapchain = swapchain,
-                // The next event tries again.
-                Err(error @ GpuError::OutOfMemory(_)) => viewer.say(error.to_string()),
-                Err(error) => return Err(error),
-            }
+            let made = Swapchain::new(&self.surface, (size.width, size.height), FRAMES_IN_FLIGHT, vsync, old);
+            // Without memory, the next event tries again.
+            self.swapchain = survive(viewer, made)?.flatten();
             self.stale = false;
         }
         Ok(self.swapchain.is_some())
@@ -241,10 +239,8 @@ impl Screen {
             frame.iter().try_for_each(|frame| self.view.prepare(frame))?;
             Ok(frame)
         });
-        match prepared {
-            Ok(frame) => self.last = frame,
-            Err(error @ GpuError::OutOfMemory(_)) => viewer.keep_saying(format!("{error}. The last picture stays.")),
-            Err(error) => return Err(error),
+        if let Some(frame) = survive(viewer, prepared)? {
+            self.last = frame;
         }
         Ok(self.last.clone())
     }
@@ -330,6 +326,17 @@ impl Screen {
 impl Drop for Screen {
     fn drop(&mut self) {
         self.textures_to_free.clear();
+    }
+}
+
+/// Turns out of memory into a message that stays, and `None`.
+fn survive<T>(viewer: &mut Viewer, result: Result<T, GpuError>) -> Result<Option<T>, GpuError> {
+    match result {
+        Err(error @ GpuError::OutOfMemory(_)) => {
+            viewer.keep_saying(format!("{error}. The last picture stays."));
+            Ok(None)
+        }
+        result => result.map(Some),
     }
 }
 

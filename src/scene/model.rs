@@ -160,8 +160,8 @@ impl Model {
         let mut shown: Vec<String> = self.warnings.iter().take(most).cloned().collect();
         match self.warnings.len().saturating_sub(most) {
             0 => {}
-            1 => shown.push("1 more warning is in the terminal.".into()),
-            more => shown.push(format!("{more} more warnings are in the terminal.")),
+            1 => shown.push("1 more warning is in the panel Model.".into()),
+            more => shown.push(format!("{more} more warnings are in the panel Model.")),
         }
         shown
     }

@@ -173,6 +173,31 @@ impl Diagnostic {
         format!("{}\n{rest}", self.one_line()).trim_end().to_owned()
     }
 
+    /// The same diagnostic with at most `characters` (at least 8) of its source line, so that the caret is in them.
+    #[must_use]
+    pub fn within(mut self, characters: usize) -> Self {
+        let excerpt: Vec<char> = self.excerpt.iter().flat_map(|excerpt| excerpt.trim_end().chars()).collect();
+        let characters = characters.max(8);
+        if excerpt.len() <= characters {
+            return self;
+        }
+        let from = self.column.map_or(0, |column| column.saturating_sub(1) as usize).min(excerpt.len());
+        let end = (from + self.length as usize + 1).min(excerpt.len());
+        // The caret is at the end, unless its token is longer than all.
+        let start = end.saturating_sub(characters - 1).min(from.saturating_sub(1));
+        let mut cut: String = excerpt[start..(start + characters).min(excerpt.len())].iter().collect();
+        if start > 0 {
+            cut = cut.chars().enumerate().map(|(at, c)| if at == 0 { '…' } else { c }).collect();
+            self.column = self.column.map(|column| column - start as u32);
+        }
+        if start + characters < excerpt.len() {
+            cut.pop();
+            cut.push('…');
+        }
+        self.excerpt = Some(cut);
+        self
+    }
+
     /// The bytes that the caret spans: the token, or the line without its indentation.
     fn caret_bytes(&self) -> Option<Range<usize>> {
         let excerpt = self.excerpt.as_deref()?;
@@ -236,6 +261,24 @@ impl<'a> Files<'a> for OneLine<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_narrow_window_cuts_a_line_around_its_caret() {
+        let line = "    vec3 color = first_function(a) * second_function(b) * thrid_function(c);";
+        let at = line.find("thrid").unwrap() as u32 + 1;
+        let error = Diagnostic::error("a.frag", "'thrid_function' : no matching overloaded function found");
+        let error = Diagnostic { length: 14, column: Some(at), ..error.on_line(7, Some(line)) };
+        assert_eq!(error.clone().within(200), error);
+        for width in [8, 20, 40, 60, 75] {
+            let cut = error.clone().within(width);
+            let excerpt: Vec<char> = cut.excerpt.unwrap().chars().collect();
+            assert!(excerpt.len() <= width, "{width}: {excerpt:?}");
+            let from = cut.column.unwrap() as usize - 1;
+            assert!(excerpt[from..].iter().collect::<String>().starts_with("thrid"), "{width}: {excerpt:?}");
+        }
+        let start = Diagnostic { length: 4, column: Some(5), ..error }.within(30).excerpt.unwrap();
+        assert!(start.starts_with("    vec3 color") && start.ends_with('…'), "{start}");
+    }
 
     #[test]
     fn one_line_is_what_editors_parse() {

@@ -158,11 +158,13 @@ impl Viewer {
         self.display.xdotool(&["click", "1"]);
     }
 
-    /// Drags from one pixel of the window to another.
+    /// Drags from one pixel of the window to another. A frame is drawn in between: a press and a release in the same frame drag
+    /// nothing.
     #[track_caller]
-    pub fn drag(&self, from: (u32, u32), to: (u32, u32)) {
+    pub fn drag(&mut self, from: (u32, u32), to: (u32, u32)) {
         self.move_mouse(from);
         self.display.xdotool(&["mousedown", "1"]);
+        self.screenshot();
         self.move_mouse(to);
         self.display.xdotool(&["mouseup", "1"]);
     }

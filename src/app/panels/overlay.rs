@@ -23,12 +23,8 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, readings: &Reading
 /// Kept messages and the model's warnings, until the user hides them.
 fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: egui::Rect) {
     let model = viewer.session.model().filter(|_| viewer.panels.show_model_warnings);
-    let of_model: &[String] = model.map_or(&[], |model| &model.warnings);
     let mut lines: Vec<String> = viewer.notices.kept().to_vec();
-    lines.extend(of_model.iter().take(MODEL_WARNINGS).cloned());
-    if of_model.len() > MODEL_WARNINGS {
-        lines.push(format!("and {} more in the panel Model", of_model.len() - MODEL_WARNINGS));
-    }
+    lines.extend(model.map(|model| model.first_warnings(MODEL_WARNINGS)).unwrap_or_default());
     if lines.is_empty() {
         return;
     }
@@ -131,7 +127,9 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
     if response.on_hover_text("Click to copy the position").interact(egui::Sense::click()).clicked() {
         ui.ctx().copy_text(place);
     }
-    let full = diagnostic.full();
+    // A monospace character is 7.6 points wide; the number of the line and its bar take up to 8.
+    let columns = (ui.available_width() / 7.6) as usize;
+    let full = diagnostic.clone().within(columns.saturating_sub(8)).full();
     // Skip the first two lines, message and position, which are shown above.
     let rest = full.lines().skip(2).collect::<Vec<_>>().join("\n");
     ui.label(RichText::new(&diagnostic.message).monospace().color(Color32::WHITE));

@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use super::{DeviceGate, Message, Outbox, panic_text};
-use crate::gpu::{Gpu, SetLayouts, fault};
+use crate::gpu::{Gpu, SetLayouts, fault, return_freed_memory};
 use crate::render::GpuModel;
 use crate::scene::{self, LoadError, LoadOptions, Model};
 
@@ -79,6 +79,7 @@ impl Loader {
                 Ok(model) => gate.pass(|| upload(model)).flatten(),
                 Err(error) => Some(Err(error)),
             };
+            return_freed_memory();
             if let Some(result) = result {
                 let ms = start.elapsed().as_secs_f64() * 1e3;
                 outbox.send(Message::Loaded(Box::new(Loaded { number, path, result, ms })));

@@ -92,7 +92,8 @@ impl Image {
             .array_layers(desc.layers)
             .samples(vk::SampleCountFlags::from_raw(desc.samples))
             .usage(desc.usage);
-        let what = format!("`{name}` ({} x {}, {} samples)", desc.width, desc.height, desc.samples);
+        let samples = if desc.samples > 1 { format!(", {} samples", desc.samples) } else { String::new() };
+        let what = format!("`{name}` ({} x {}{samples})", desc.width, desc.height);
         // SAFETY: the device is live.
         let raw = unsafe { gpu.device.create_image(&info, None) }.context_of("creating the image", &what)?;
         // From here on, `Drop` frees what is already there when a later step fails.

@@ -25,7 +25,7 @@ pub(in crate::gpu) struct Resource<'a> {
 /// Allocates memory for a resource. The caller binds it once, and frees it after the resource.
 pub(in crate::gpu) fn allocate(gpu: &Gpu, resource: &Resource<'_>) -> Result<Allocation, GpuError> {
     let mib = resource.requirements.size as f64 / f64::from(1 << 20);
-    let action = format!("{} ({mib:.1} MiB)", resource.action);
+    let action = format!("{}, which needs {mib:.1} MiB", resource.action);
     if fault::value(resource.limit).is_some_and(|most| resource.requirements.size > most) {
         return Err(GpuError::OutOfMemory(action));
     }

@@ -54,12 +54,6 @@ pub struct PixelAt {
     pub picture: u64,
 }
 
-/// The frame that the HDR target holds.
-struct Drawn {
-    frame: BoundFrame,
-    only: Option<Rect>,
-}
-
 /// The resources of one frame in flight.
 struct InFlight {
     uniforms: Uniforms,
@@ -74,7 +68,8 @@ pub struct View {
     shared: SharedImages,
     in_flight: Vec<InFlight>,
     targets: Option<Targets>,
-    drawn: Option<Drawn>,
+    /// The frame that the HDR target holds, and the part of it.
+    drawn: Option<(BoundFrame, Option<Rect>)>,
     /// How often the model was drawn.
     picture: u64,
     sample_index: u32,
@@ -85,8 +80,6 @@ pub struct View {
 impl View {
     /// An accumulating mode stops after this many frames, unless the caller redraws always. More make no visible difference.
     pub const MOST_ACCUMULATED: u32 = 4096;
-    /// Format of every picture.
-    pub const OUTPUT_FORMAT: vk::Format = Swapchain::FORMAT;
 
     /// Creates a view for this many frames in flight.
     ///
@@ -155,7 +148,7 @@ impl View {
 
         // An accumulating mode adds a frame to the mean while the picture is the same, and starts again when it changes.
         let accumulates = frame.state.pipelines.accumulates;
-        let unchanged = self.drawn.as_ref().is_some_and(|drawn| drawn.only == only && drawn.frame.is_same(frame));
+        let unchanged = self.drawn.as_ref().is_some_and(|(drawn, part)| *part == only && drawn.is_same(frame));
         let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
         let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
         if redrawn {
@@ -181,7 +174,7 @@ impl View {
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
             passes.accumulate(encoder, self.sample_index);
         }
-        self.drawn = Some(Drawn { frame: frame.clone(), only });
+        self.drawn = Some((frame.clone(), only));
 
         // The probed pixel, which `pixel` reads once the frame has finished.
         in_flight.pixel.record(encoder, targets.picture(), self.probe, self.picture);
@@ -233,7 +226,7 @@ impl View {
     /// Out of memory.
     pub fn output_image(&self, (width, height): (u32, u32)) -> Result<Arc<Image>, GpuError> {
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
-        Image::new(&self.gpu, "picture", ImageDesc::new(width, height, Self::OUTPUT_FORMAT, usage))
+        Image::new(&self.gpu, "picture", ImageDesc::new(width, height, Swapchain::FORMAT, usage))
     }
 
     /// The target format for `msaa` samples per pixel, with full or half floats.
