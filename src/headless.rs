@@ -7,14 +7,13 @@ use rayon::prelude::*;
 
 use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, ProvideError,
-    Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View,
+    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineSet,
+    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::PixelValue;
-use crate::shader::{Change, Compiler, Diagnostic, Mode, ShaderSet, Source};
+use crate::shader::{Change, Compiler, Diagnostic, Mode, PixelValue, ShaderSet, Source};
 
 /// Why rendering failed.
 #[derive(Debug, thiserror::Error)]
@@ -297,19 +296,22 @@ impl Headless {
             })
         };
         let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
-        if let Some(set) = self.resources.pipelines() {
-            // A driver compiles a pipeline on the calling thread.
-            states.par_iter().try_for_each(|state| set.build(&state.pipelines))?;
-        }
         self.view.probe = Some(at);
         let mut values = Vec::new();
-        for state in &states {
-            let frame = self.resources.provide(state)?;
-            let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
-            for _ in 0..frames {
-                self.draw_frame(&frame, Redraw::Pixel(at.0, at.1))?;
+        // A set keeps the pipelines of its newest requests only.
+        for states in states.chunks(PipelineSet::REQUESTS_KEPT as usize / 2) {
+            if let Some(set) = self.resources.pipelines() {
+                // A driver compiles a pipeline on the calling thread.
+                states.par_iter().try_for_each(|state| set.build(&state.pipelines))?;
             }
-            values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
+            for state in states {
+                let frame = self.resources.provide(state)?;
+                let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
+                for _ in 0..frames {
+                    self.draw_frame(&frame, Redraw::Pixel(at.0, at.1))?;
+                }
+                values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
+            }
         }
         self.view.probe = None;
         Ok(values)

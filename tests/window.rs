@@ -154,6 +154,26 @@ fn the_model_is_watched_and_a_damaged_one_costs_nothing() {
 }
 
 #[test]
+fn a_model_saved_while_it_loads_is_shown_as_saved() {
+    let [quad, sphere] = [glb::quad(1.0), glb::sphere(8, 16)].map(|mesh| glb::model(&mesh, &glb::gray()));
+    let tree = Tree::new();
+    std::fs::write(tree.beside("model.glb"), &sphere).unwrap();
+    let mut viewer = Viewer::open(tree, &["model.glb"]);
+    viewer.running.event("ready");
+    let saved = viewer.screenshot();
+    viewer.quit();
+
+    let tree = Tree::new();
+    let path = tree.beside("model.glb");
+    std::fs::write(&path, &quad).unwrap();
+    let mut viewer = Viewer::with_fault(tree, &["model.glb"], "load-delay-ms:3000");
+    viewer.running.event("window");
+    std::fs::write(&path, &sphere).unwrap();
+    viewer.until("the saved model", |shot| *shot == saved);
+    viewer.quit();
+}
+
+#[test]
 fn names_that_do_not_exist_are_told() {
     for (option, name) in [("--mode", "metal-ness"), ("--set", "no_such_name=1"), ("--set", "TOON_BANDS=Nine")] {
         let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", option, name]);

@@ -137,10 +137,7 @@ impl Screen {
         // Record both to a swapchain image. `begin` waits for a frame slot.
         let mut encoder = self.frames.begin()?;
         let slot = self.frames.current();
-        let acquired = match &mut self.swapchain {
-            Some(swapchain) => swapchain.acquire()?,
-            None => None,
-        };
+        let acquired = self.swapchain.as_mut().map(Swapchain::acquire).transpose()?.flatten();
         let Some(acquired) = acquired else {
             self.frames.submit(encoder, Default::default())?;
             self.stale = true;
@@ -159,7 +156,8 @@ impl Screen {
         }
 
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let gets_better = viewer.accumulates() && self.view.accumulated() < View::MOST_ACCUMULATED;
+        let accumulates = frame.is_some_and(|frame| frame.state.pipelines.accumulates);
+        let gets_better = accumulates && self.view.accumulated() < View::MOST_ACCUMULATED;
         let again = self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better;
         Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
     }
@@ -235,10 +233,7 @@ impl Screen {
 
     /// The frame to draw, with its targets allocated. If memory runs out, it is the last frame.
     fn next_frame(&mut self, viewer: &mut Viewer) -> Result<Option<BoundFrame>, GpuError> {
-        let prepared = viewer.next_frame(self.rect.size).and_then(|frame| {
-            frame.iter().try_for_each(|frame| self.view.prepare(frame))?;
-            Ok(frame)
-        });
+        let prepared = viewer.next_frame(self.rect.size, |frame| self.view.prepare(frame));
         if let Some(frame) = survive(viewer, prepared)? {
             self.last = frame;
         }

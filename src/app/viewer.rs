@@ -9,7 +9,7 @@ use std::time::Instant;
 use super::command::{Command, open_as};
 use super::panels::PanelState;
 use super::status::{Notices, ShaderStatus, title};
-use super::threads::loader;
+use super::threads::loader::{self, Reading};
 use super::threads::worker::Snapshot;
 use super::threads::{Outbox, Threads};
 use super::{AppOptions, Early};
@@ -94,7 +94,7 @@ impl Viewer {
             session,
             panels: PanelState::default(),
             shader: ShaderStatus { compiling: true, ..Default::default() },
-            model: ModelStatus { path: options.model.clone(), requested: options.model, ..Default::default() },
+            model: ModelStatus { path: options.model.clone(), ..Default::default() },
             notices: Notices::default(),
             events: options.events,
             start: options.start,
@@ -113,17 +113,21 @@ impl Viewer {
             quit: false,
         };
         viewer.watch_tree();
-        viewer.model.loading = true;
-        viewer.threads.upload(early.reading);
+        viewer.begin_loading(options.model, early.reading);
         Ok(viewer)
     }
 
     /// The frame to draw: the picture that the settings describe if it is complete, otherwise the last complete picture with the
-    /// current camera. Requests what is missing from the threads. `None` before the first shaders.
+    /// current camera. Requests what is missing from the threads. `None` before the first shaders. `prepare` allocates the targets;
+    /// a picture for which that fails is not taken as shown.
     ///
     /// # Errors
     /// Out of memory.
-    pub(super) fn next_frame(&mut self, size: (u32, u32)) -> Result<Option<BoundFrame>, GpuError> {
+    pub(super) fn next_frame(
+        &mut self,
+        size: (u32, u32),
+        mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
+    ) -> Result<Option<BoundFrame>, GpuError> {
         let time_s = self.time_s();
         let target = target(&self.gpu, &self.session.settings);
         let Some(state) = self.session.frame_state(time_s, size, target) else { return Ok(None) };
@@ -132,11 +136,14 @@ impl Viewer {
         // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
         if let Some(frame) = self.resources.bind(&state, is_first)? {
+            prepare(&frame)?;
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
             self.shown = Some(LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
             return Ok(Some(frame));
         }
-        Ok(self.shown.as_ref().map(|shown| self.interim(shown, time_s, size)))
+        let interim = self.shown.as_ref().map(|shown| self.interim(shown, time_s, size));
+        interim.iter().try_for_each(prepare)?;
+        Ok(interim)
     }
 
     /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow the
@@ -197,11 +204,6 @@ impl Viewer {
         Some(format!("{}   at {x}, {y}", value.text(mode)))
     }
 
-    /// Whether the mode on screen accumulates.
-    pub(super) fn accumulates(&self) -> bool {
-        self.shown().is_some_and(|state| state.pipelines.accumulates)
-    }
-
     /// Whether the picture is animated: the lights orbit, or a shader reads the time.
     pub(super) fn moves(&self) -> bool {
         let animated = self.session.shaders.as_ref().is_some_and(|shaders| shaders.animated);
@@ -257,6 +259,11 @@ impl Viewer {
     pub(super) fn execute(&mut self, command: Command) {
         match command {
             Command::Reload => {
+                if self.threads.worker.has_ended() {
+                    self.restart_worker();
+                }
+                // A build that failed, for example without memory, is tried again.
+                self.threads.worker.built();
                 self.shader.compiling = true;
                 self.threads.worker.change(Change::All, Instant::now());
             }
@@ -285,10 +292,7 @@ impl Viewer {
 
     /// Opens a file or folder that was dropped on the window.
     pub(super) fn open_path(&mut self, path: PathBuf) {
-        match open_as(path) {
-            Ok(command) => self.execute(command),
-            Err(message) => self.say(message),
-        }
+        self.execute(open_as(path).unwrap_or_else(Command::Say));
     }
 
     /// Starts a new worker, which compiles the current files.
@@ -303,9 +307,16 @@ impl Viewer {
 
     /// Loads a model. The current model stays until the new one is ready.
     fn load_model(&mut self, path: Option<PathBuf>) {
-        self.model.requested.clone_from(&path);
+        let reading = loader::read(path.clone(), LoadOptions { allow_outside: self.allow_outside });
+        self.begin_loading(path, reading);
+    }
+
+    /// Loads the model of `path`, and watches the file while it is read.
+    fn begin_loading(&mut self, path: Option<PathBuf>, reading: Reading) {
+        self.model.files.extend(path.iter().filter_map(|path| std::path::absolute(path).ok()));
+        self.model.requested = path;
         self.model.loading = true;
-        self.threads.upload(loader::read(path, LoadOptions { allow_outside: self.allow_outside }));
+        self.threads.upload(reading);
     }
 
     fn watch_tree(&mut self) {

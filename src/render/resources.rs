@@ -199,8 +199,9 @@ impl Resources {
             self.bake(key, true)?;
         }
         if let Some(key) = missing.measured {
-            let buffer = read_measured(&self.gpu, &key)?;
-            self.set_measured(key, Some(buffer));
+            let read = read_measured(&self.gpu, &key);
+            self.set_measured(key, read.as_ref().ok().cloned());
+            read?;
         }
         if missing.pipelines {
             set.build(&state.pipelines)?;

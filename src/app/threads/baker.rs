@@ -30,7 +30,8 @@ pub(in crate::app) struct Baker {
     gpu: Arc<Gpu>,
     outbox: Outbox,
     bake: Option<Bake>,
-    reading: Option<MeasuredKey>,
+    /// The newest read. The window takes its result, and ignores those of older ones.
+    pub(in crate::app) reading: Option<MeasuredKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
     threads: Vec<JoinHandle<()>>,
@@ -57,7 +58,7 @@ impl Baker {
         let Some(key) = key else { return };
         self.bake = Some(Bake { key: key.clone(), progress: (0.0, String::new()) });
         let (set, newest) = (set.clone(), self.newest.clone());
-        self.spawn(move |outbox| {
+        self.spawn("baker", move |outbox| {
             let progress = |done: f32, next: &str| {
                 outbox.send(Message::Bake(BakeMessage::Progress(number, done, next.to_owned())));
             };
@@ -70,25 +71,23 @@ impl Baker {
         });
     }
 
-    /// Reads a measured BRDF, unless that was the last request.
+    /// Reads a measured BRDF, unless it is being read.
     pub(in crate::app) fn read(&mut self, key: Option<MeasuredKey>) {
         let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
         self.reading = Some(key.clone());
         let gpu = self.gpu.clone();
-        self.spawn(move |outbox| {
+        self.spawn("reader", move |outbox| {
             let result = read_measured(&gpu, &key).map_err(|error| error.to_string());
             drop(gpu);
             outbox.send(Message::Bake(BakeMessage::Measured(key, result)));
         });
     }
 
-    /// Stores the progress of a bake. Returns whether it is the newest.
-    pub(in crate::app) fn set_progress(&mut self, number: u64, done: f32, next: String) -> bool {
-        let is_newest = self.newest.load(Ordering::SeqCst) == number;
-        if let Some(bake) = self.bake.as_mut().filter(|_| is_newest) {
+    /// Stores the progress of a bake, if it is the newest.
+    pub(in crate::app) fn set_progress(&mut self, number: u64, done: f32, next: String) {
+        if let Some(bake) = self.bake.as_mut().filter(|_| self.newest.load(Ordering::SeqCst) == number) {
             bake.progress = (done, next);
         }
-        is_newest
     }
 
     /// Marks a bake as ended. Returns whether it is the newest.
@@ -99,14 +98,14 @@ impl Baker {
     }
 
     /// Cancels the running bake after a panic. Returns its key.
-    pub(in crate::app) fn abandon(&mut self) -> Option<EnvironmentKey> {
+    pub(in crate::app) fn abandon_bake(&mut self) -> Option<EnvironmentKey> {
         self.newest.fetch_add(1, Ordering::SeqCst);
         self.bake.take().map(|bake| bake.key)
     }
 
-    fn spawn(&mut self, body: impl FnOnce(&Outbox) + Send + 'static) {
+    fn spawn(&mut self, name: &'static str, body: impl FnOnce(&Outbox) + Send + 'static) {
         self.threads.retain(|thread| !thread.is_finished());
-        self.threads.push(self.outbox.spawn("baker", body));
+        self.threads.push(self.outbox.spawn(name, body));
     }
 }
 

@@ -34,8 +34,9 @@ pub(in crate::app) struct Reading {
 pub(in crate::app) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
     let file = path.clone();
     let model = std::thread::spawn(move || {
+        let model = scene::open(file.as_deref(), &options);
         fault::delay("load-delay-ms");
-        scene::open(file.as_deref(), &options)
+        model
     });
     Reading { path, start: Instant::now(), model }
 }

@@ -150,7 +150,12 @@ impl Worker {
         }
     }
 
-    /// Marks the newest build as successful.
+    /// Whether the thread has ended, after a panic.
+    pub(in crate::app) fn has_ended(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Marks the newest build as successful, or lets a failed one be tried again.
     pub(in crate::app) fn built(&mut self) {
         self.asked = None;
     }

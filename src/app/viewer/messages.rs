@@ -118,9 +118,7 @@ impl Viewer {
 
     fn on_bake(&mut self, message: BakeMessage) {
         match message {
-            BakeMessage::Progress(number, done, next) => {
-                self.threads.baker.set_progress(number, done, next);
-            }
+            BakeMessage::Progress(number, done, next) => self.threads.baker.set_progress(number, done, next),
             BakeMessage::Environment(number, key, result) => {
                 if !self.threads.baker.ended(number) {
                     return;
@@ -136,10 +134,12 @@ impl Viewer {
                     }
                 }
             }
-            BakeMessage::Measured(key, result) => {
+            BakeMessage::Measured(key, result) if self.threads.baker.reading.as_ref() == Some(&key) => {
+                self.threads.baker.reading = None;
                 let result = result.map_err(|message| self.say(message));
                 self.resources.set_measured(key, result.ok());
             }
+            BakeMessage::Measured(..) => {}
         }
     }
 
@@ -172,8 +172,13 @@ impl Viewer {
                 self.restart_worker();
             }
             "baker" => {
-                if let Some(key) = self.threads.baker.abandon() {
+                if let Some(key) = self.threads.baker.abandon_bake() {
                     self.resources.set_environment(key, None);
+                }
+            }
+            "reader" => {
+                if let Some(key) = self.threads.baker.reading.take() {
+                    self.resources.set_measured(key, None);
                 }
             }
             "loader" => self.model.loading = false,

@@ -50,23 +50,23 @@ fn table(
     use vk::ImageUsageFlags as Usage;
     let usage = Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
     let desc = ImageDesc::new(size, size, FORMAT, usage);
-    let image = Image::new(set.gpu(), stage, desc)?;
+    let image = Image::new(&set.gpu, stage, desc)?;
     let task = Task { size: [size; 2], levels: 1, samples, ..Task::default() };
     let values: Vec<u32> = constants.iter().flat_map(|(id, value)| [*id, *value]).collect();
     let spirv = bytemuck::cast_slice(set.spirv(stage)?);
     let key = disk_cache::key(&[spirv, bytemuck::cast_slice(&values), bytemuck::bytes_of(&task)]);
     if let Some(bytes) = disk_cache::load(&key, desc.bytes()) {
-        compute::upload(set.gpu(), &[(&image, &bytes)])?;
+        compute::upload(&set.gpu, &[(&image, &bytes)])?;
         return Ok(image);
     }
     let pipeline = set.compute(stage, constants)?;
     let readback = vk::BufferUsageFlags::TRANSFER_DST;
-    let buffer = Buffer::new(set.gpu(), "table", desc.bytes(), readback, Memory::Readback)?;
+    let buffer = Buffer::new(&set.gpu, "table", desc.bytes(), readback, Memory::Readback)?;
     let bindings =
-        compute::bindings(set.gpu(), set.layouts(), &task, |writer| writer.storage_level(BINDING_TARGET, &image, 0))?;
-    one_shot(set.gpu(), |encoder| {
+        compute::bindings(&set.gpu, &set.layouts, &task, |writer| writer.storage_level(BINDING_TARGET, &image, 0))?;
+    one_shot(&set.gpu, |encoder| {
         encoder.transition(&image, Use::Undefined, Use::Storage);
-        encoder.dispatch(set.layouts(), &pipeline, &[&bindings], groups);
+        encoder.dispatch(&set.layouts, &pipeline, &[&bindings], groups);
         encoder.transition(&image, Use::Storage, Use::CopyFrom);
         encoder.copy_levels_from_image(&image, &buffer, 0);
         encoder.transition(&image, Use::CopyFrom, Use::Sampled);

@@ -185,7 +185,7 @@ impl GpuEnvironment {
     pub fn bake(set: &PipelineSet, name: &str, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
         let file = &EnvironmentFile::open(name)?;
         let start = Instant::now();
-        let gpu = set.gpu();
+        let gpu = &set.gpu;
         let mut this = Self::new(gpu)?;
         this.report.environment.clone_from(&file.name);
         let key = key(set, file)?;
@@ -213,7 +213,7 @@ impl GpuEnvironment {
 
     /// All passes, each a submission of its own.
     fn run(&mut self, set: &PipelineSet, map: &Environment, control: &BakeControl<'_>) -> Result<(), BakeError> {
-        let (gpu, layouts) = (set.gpu(), set.layouts());
+        let (gpu, layouts) = (&set.gpu, &set.layouts);
         let begin = |done: f32, next: &str| -> Result<Instant, BakeError> {
             (control.progress)(done, next);
             tracing::debug!("bake: {next}");

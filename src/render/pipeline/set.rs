@@ -1,6 +1,7 @@
 //! The pipelines of one shader generation. Each frame uses exactly one set, so no frame mixes two generations.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::gpu::{
@@ -18,10 +19,6 @@ const GRAPHICS: [&str; 7] =
 /// The stages that measure the BRDF, for `specula brdf`.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
-
-/// A set keeps the pipelines of its newest requests, this many. So recent modes return at once, and dragging sliders does not
-/// use ever more memory.
-const REQUESTS_KEPT: u64 = 64;
 
 /// The stages that a shader tree must have, as paths from its root.
 pub fn stages() -> Vec<&'static str> {
@@ -93,7 +90,7 @@ impl<K: std::hash::Hash + Eq, T> Recent<K, T> {
 
     /// Drops the objects that none of the newest requests used.
     fn trim(&mut self, request: u64) {
-        self.entries.retain(|_, (_, used)| *used + REQUESTS_KEPT > request);
+        self.entries.retain(|_, (_, used)| *used + PipelineSet::REQUESTS_KEPT > request);
     }
 }
 
@@ -105,17 +102,20 @@ impl<K, T> Default for Recent<K, T> {
 
 /// Compiled shaders, and the pipelines of the newest requests.
 pub struct PipelineSet {
-    gpu: Arc<Gpu>,
-    layouts: Arc<SetLayouts>,
+    pub(crate) gpu: Arc<Gpu>,
+    pub(crate) layouts: Arc<SetLayouts>,
     /// The shaders of this generation, with their modes and parameters.
     pub shaders: Arc<ShaderSet>,
     graphics: Mutex<Recent<PipelineKey, Pipeline>>,
     computes: Mutex<Recent<(String, Specialization), ComputePipeline>>,
     tables: Mutex<Recent<Specialization, Tables>>,
-    requests: Mutex<u64>,
+    requests: AtomicU64,
 }
 
 impl PipelineSet {
+    /// A set keeps the pipelines of this many newest requests, so recent modes return at once and memory stays bounded.
+    pub const REQUESTS_KEPT: u64 = 64;
+
     /// Creates a set with the pipelines of `request`, all or nothing. Pipelines of `before` whose stages did not change are
     /// taken over.
     ///
@@ -135,7 +135,7 @@ impl PipelineSet {
             graphics: Mutex::default(),
             computes: Mutex::default(),
             tables: Mutex::default(),
-            requests: Mutex::default(),
+            requests: AtomicU64::default(),
         };
         if let Some(before) = before {
             set.take_over(before);
@@ -150,7 +150,7 @@ impl PipelineSet {
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
             _ => false,
         };
-        *lock(&self.requests) = *lock(&before.requests);
+        self.requests.store(before.requests.load(Ordering::SeqCst), Ordering::SeqCst);
         for (key, entry) in &lock(&before.graphics).entries {
             if key.pass.stages().iter().all(|path| is_same(path)) {
                 lock(&self.graphics).entries.insert(key.clone(), entry.clone());
@@ -171,11 +171,7 @@ impl PipelineSet {
     /// # Errors
     /// The driver rejects a pipeline. Pipelines created before it stay.
     pub fn build(&self, request: &PipelineRequest) -> Result<(), GpuError> {
-        let number = {
-            let mut requests = lock(&self.requests);
-            *requests += 1;
-            *requests
-        };
+        let number = self.requests.fetch_add(1, Ordering::SeqCst) + 1;
         for key in request.keys() {
             if !lock(&self.graphics).touch(&key, number) {
                 let pipeline = self.make(&key)?;
@@ -202,14 +198,6 @@ impl PipelineSet {
         Some(BoundPipelines { pipelines, tables })
     }
 
-    pub(crate) fn gpu(&self) -> &Arc<Gpu> {
-        &self.gpu
-    }
-
-    pub(crate) fn layouts(&self) -> &Arc<SetLayouts> {
-        &self.layouts
-    }
-
     /// The author's constants that the tables depend on.
     fn table_constants(&self, constants: &Specialization) -> Specialization {
         let stages = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().filter_map(|path| self.shaders.stages.get(path));
@@ -230,7 +218,7 @@ impl PipelineSet {
     /// A compute pipeline, created at its first use.
     pub(crate) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
         let key = (path.to_owned(), constants.clone());
-        let number = *lock(&self.requests);
+        let number = self.requests.load(Ordering::SeqCst);
         lock(&self.computes).touch(&key, number);
         if let Some(pipeline) = lock(&self.computes).get(&key) {
             return Ok(pipeline.clone());
