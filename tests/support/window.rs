@@ -128,6 +128,17 @@ impl Viewer {
         Self { running, tree, window, display }
     }
 
+    /// Waits for the model and for the environment, which appear in either order.
+    #[track_caller]
+    pub fn ready_and_baked(&mut self) {
+        let (mut ready, mut baked) = (false, false);
+        self.running.until("model and environment", |event| {
+            ready |= event["event"] == "ready";
+            baked |= event["event"] == "bake";
+            ready && baked
+        });
+    }
+
     /// Presses and releases a key.
     #[track_caller]
     pub fn key(&self, key: &str) {

@@ -11,6 +11,9 @@ pub(super) const ERROR: [u8; 3] = [255, 110, 100];
 /// Text and frames of warnings.
 pub(super) const WARNING: [u8; 3] = [255, 196, 92];
 
+/// Behind what is chosen in a list.
+const SELECTED: [u8; 3] = [35, 86, 134];
+
 /// Controls begin this far right of the panel's left edge: a margin, and 120 points for the name with a gap.
 const CONTROL: u32 = 134;
 /// The entries of the environment's list are this far apart, the first one a little farther from its button.
@@ -41,14 +44,13 @@ pub(super) fn choose_environment(viewer: &Viewer, left: u32, entry: u32) {
     let screen = viewer.until_screen("the list of environments", |screen| row(screen).is_some());
     let y = row(&screen).unwrap() + ENTRY / 2;
     viewer.click((x + 20, y));
-    // The open list lies over the rows below the button. The first of them may change color with the button.
-    let below =
-        |screen: &RgbaImage| (2 * ENTRY..4 * ENTRY).map(|row| *screen.get_pixel(x + 12, y + row)).collect::<Vec<_>>();
-    let open = viewer.until_screen("the open list of environments", |now| below(now) != below(&screen));
+    // An open list marks its chosen entry over its whole width. Nothing else so close to the button has that color.
+    let is_open = |screen: &RgbaImage| count(screen, x..x + 146, y + ENTRY / 2..y + 4 * ENTRY, SELECTED) > 1000;
+    viewer.until_screen("the open list of environments", is_open);
     viewer.click((x + 20, y + ENTRY + 3 + ENTRY * entry));
     // Over a control or a name, the mouse would change its color or open a tooltip.
     viewer.display.park_mouse();
-    viewer.until_screen("the closed list of environments", |now| below(now) != below(&open));
+    viewer.until_screen("the closed list of environments", |screen| !is_open(screen));
 }
 
 /// Drags the slider in row `y` of the panel with the left edge `left` to `value`: 0 and 1 are its ends.

@@ -1,9 +1,11 @@
 //! A long session: memory, threads and file descriptors stay as they are. `SPECULA_LONG=1` runs ten times as many steps.
 
+use std::time::{Duration, Instant};
+
 use image::RgbaImage;
 
 use super::controls::{choose_environment, drag_slider};
-use crate::support::process::Usage;
+use crate::support::process::PATIENCE;
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb};
 
@@ -20,29 +22,32 @@ fn factor() -> usize {
 
 /// Repeats `step` so many times, and compares what the program holds after a fifth of them with what it holds in the end.
 fn repeat(viewer: &mut Viewer, what: &str, steps: usize, mut step: impl FnMut(&mut Viewer, usize)) {
-    let mut usage = |viewer: &mut Viewer, range: std::ops::Range<usize>| -> Usage {
-        range.for_each(|number| step(viewer, number));
-        viewer.running.usage()
-    };
-    let early = usage(viewer, 0..steps / 5);
-    let late = usage(viewer, steps / 5..steps);
+    (0..steps / 5).for_each(|number| step(viewer, number));
+    let early = viewer.running.usage();
+    (steps / 5..steps).for_each(|number| step(viewer, number));
+    let mut late = viewer.running.usage();
+    // A thread that has sent its result may still be ending.
+    let deadline = Instant::now() + PATIENCE;
+    while late.threads > early.threads && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(10));
+        late = viewer.running.usage();
+    }
     println!("{what}: {early:?} after {}, {late:?} after {steps}", steps / 5);
     assert!(late.memory_kib < early.memory_kib + SLACK_KIB, "{what}: memory grows from {early:?} to {late:?}");
     assert!(late.threads <= early.threads, "{what}: threads grow from {early:?} to {late:?}");
     assert!(late.files <= early.files, "{what}: file descriptors grow from {early:?} to {late:?}");
 }
 
-fn open(tree: Tree, more: &[&str]) -> (Viewer, RgbaImage) {
+fn open(tree: Tree, more: &[&str]) -> Viewer {
     std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    let mut viewer = Viewer::open(tree, &[&["model.glb"], more].concat());
-    viewer.running.event("ready");
-    let first = viewer.screenshot();
-    (viewer, first)
+    Viewer::open(tree, &[&["model.glb"], more].concat())
 }
 
 #[test]
 fn a_thousand_reloads_keep_nothing() {
-    let (mut viewer, first) = open(Tree::new(), &[]);
+    let mut viewer = open(Tree::new(), &[]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
     let original = viewer.tree.read(TONEMAP);
     let texts = [viewer.tree.edited(TONEMAP, "value * frame.exposure", "value * (0.5 * frame.exposure)"), original];
     repeat(&mut viewer, "reloads", 100 * factor(), |viewer, number| {
@@ -55,7 +60,9 @@ fn a_thousand_reloads_keep_nothing() {
 
 #[test]
 fn two_hundred_drags_of_a_constant_keep_nothing() {
-    let (mut viewer, first) = open(Tree::new(), &[]);
+    let mut viewer = open(Tree::new(), &[]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
     let left = first.width();
     let before = viewer.screen();
     let text = viewer.tree.read(TONEMAP).replace(
@@ -84,11 +91,13 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
 
 #[test]
 fn twenty_environments_keep_nothing() {
-    let (mut viewer, first) = open(Tree::new(), &["--size", "640x640", "--env", "studio"]);
-    let left = first.width();
+    let mut viewer = open(Tree::new(), &["--size", "640x640", "--env", "studio"]);
+    viewer.ready_and_baked();
+    let left = viewer.screenshot().width();
     repeat(&mut viewer, "environments", 20 * factor(), |viewer, number| {
-        choose_environment(viewer, left, [1, 0][number % 2]);
-        viewer.running.event("bake");
+        let (entry, name) = [(1, "furnace"), (0, "studio")][number % 2];
+        choose_environment(viewer, left, entry);
+        viewer.running.until(name, |event| event["event"] == "bake" && event["environment"] == name);
     });
     viewer.quit();
 }

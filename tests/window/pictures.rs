@@ -19,13 +19,7 @@ fn an_environment_comes_and_goes_in_one_step() {
 
     let lit = [&size[..], &["--env", "furnace"]].concat();
     let mut viewer = Viewer::with_fault(Tree::new(), &lit, "compile-delay-ms:500");
-    // The model and the light appear in either order.
-    let (mut ready, mut baked) = (false, false);
-    viewer.running.until("model and environment", |event| {
-        ready |= event["event"] == "ready";
-        baked |= event["event"] == "bake";
-        ready && baked
-    });
+    viewer.ready_and_baked();
     let with = viewer.screenshot();
     assert!(with != without, "the environment gives no light");
     let left = with.width();
