@@ -1,7 +1,7 @@
 //! The window, which runs beside an editor.
 //!
-//! [`viewer`] holds the session and the last complete picture, [`screen`] draws frames, and [`threads`] create what is missing.
-//! Panels, keys and dropped files change settings or send a [`command`].
+//! `viewer` holds the session and the last complete picture, `screen` draws frames, and `threads` create what is missing.
+//! Panels, keys and dropped files change settings or send a `command`.
 
 mod command;
 mod input;

@@ -207,7 +207,7 @@ impl View {
     }
 
     /// Records the readback of the picture in `output`, which [`View::draw`] has drawn, and of the HDR target. Call
-    /// [`Readback::finish`] once the frame has finished.
+    /// `Readback::finish` once the frame has finished.
     ///
     /// # Errors
     /// Out of memory.
