@@ -24,7 +24,7 @@ void main() {
     complete_surface(surface, v);
 
     // Shaded once, for the picture and for all modes: each call would cost the driver another copy of it to compile.
-    // What the mode does not show of it, it drops.
+    // The mode drops the parts that it does not show.
     Lit lit = shade(surface, v, lights_of_mode());
     vec3 radiance = outgoing_radiance(surface, v, lit);
     vec3 value;

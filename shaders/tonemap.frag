@@ -11,7 +11,7 @@ layout(set = SET_PASS, binding = BINDING_SCENE_COLOR) uniform sampler2D scene_co
 
 layout(location = 0) out vec4 out_color;
 
-// What the display shows for `value`, 0..1 and still linear if it is a color.
+// The display's color for `value`, 0..1 and still linear if it is a color.
 vec3 display_value(vec3 value) {
     if (TONEMAP != TONEMAP_OFF) value = tonemap(value * frame.exposure, TONEMAP);
     if (ENCODE == ENCODE_VECTOR) value = value * 0.5 + 0.5;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::shader::is_specula_tree;
 
-/// What Specula can do with a path.
+/// The use that Specula has for a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
     /// glTF: `.gltf`, `.glb`.

@@ -88,7 +88,7 @@ pub struct Binding {
     pub binding: u32,
     /// The constant's name in GLSL, `BINDING_...`.
     pub name: &'static str,
-    /// What is bound there.
+    /// The kind of resource bound there.
     pub kind: BindingKind,
     /// For blocks: the largest size in bytes that a shader may declare.
     pub size: u32,

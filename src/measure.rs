@@ -118,7 +118,7 @@ pub fn unclaimed<'a>(claim: Claim, settings: &Settings, shaders: &'a ShaderSet) 
     choices(settings, shaders).into_iter().filter(lacks).collect()
 }
 
-/// What all measurements of one shader set share.
+/// Shared by all measurements of one shader set.
 struct Shared {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,

@@ -1,4 +1,4 @@
-//! What all messages share: control characters of foreign names are escaped before a terminal sees them, and a name
+//! Shared by all messages: control characters of foreign names are escaped before a terminal sees them, and a name
 //! that does not exist is answered with the nearest one that does.
 
 use std::fmt::{Display, Write as _};

@@ -1,4 +1,4 @@
-//! What the user works on: settings, model, the last good shaders, diagnostics. A session holds no device object, so it
+//! The user's work: settings, model, the last good shaders, diagnostics. A session holds no device object, so it
 //! survives the loss of the device.
 
 use std::cell::RefCell;

@@ -182,7 +182,7 @@ fn the_sky_behind_the_model_is_the_files_and_turns() {
     let (red, blue) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
     for (assignment, expected) in [
         ("environment.rotation=180", [blue, red]),
-        // What was ahead is now left, and what was right is ahead.
+        // The direction ahead is now left, and the right one is ahead.
         ("environment.rotation=90", [blue, blue]),
         ("environment.rotation=-90", [red, red]),
         ("environment.rotation=0", [red, blue]),

@@ -79,7 +79,7 @@ fn the_fixed_slugs_exist() {
     }
 }
 
-/// What is wrong with the picture of a mode whose data the model has.
+/// The fault in the picture of a mode whose data the model has.
 fn fault(headless: &mut Headless, slug: &str) -> Option<String> {
     let capture = render(headless, slug);
     let values = covered(&capture);

@@ -29,7 +29,7 @@ vec3 color_from_id(uint id) {
     return 0.55 + 0.45 * cos(2.0 * PI * (hue + vec3(0.0, 1.0, 2.0) / 3.0));
 }
 
-// What a debug mode shows where its data does not exist: two grays in squares of 16 pixels.
+// The color of a debug mode where its data does not exist: two grays in squares of 16 pixels.
 vec3 checkerboard(vec2 pixel) {
     ivec2 square = ivec2(pixel) / 16;
     return vec3(((square.x + square.y) & 1) == 0 ? 0.180017 : 0.260017);

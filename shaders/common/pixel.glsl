@@ -1,4 +1,4 @@
-// What a pixel of the HDR target holds: linear RGB times coverage; in alpha, coverage 0..1 and flags.
+// The content of a pixel of the HDR target: linear RGB times coverage; in alpha, coverage 0..1 and flags.
 //
 // A flag is added to alpha, so it passes through half floats, clamping and the mean of a pixel's samples. Of n samples (up
 // to 8), each without data adds 16 / n, at least 2, and each that is not finite adds 256 / n, at least 32. Coverage is

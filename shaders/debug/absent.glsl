@@ -1,4 +1,4 @@
-// What a debug mode shows where its data does not exist.
+// The picture of a debug mode where its data does not exist.
 #ifndef DEBUG_ABSENT_GLSL
 #define DEBUG_ABSENT_GLSL
 

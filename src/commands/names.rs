@@ -1,4 +1,4 @@
-//! What stands where a model or an environment is expected: a file, a built-in name, a typing error, or another kind of
+//! Interprets the name of a model or an environment: a file, a built-in name, a typing error, or another kind of
 //! file, which is answered with its option.
 
 use std::path::Path;

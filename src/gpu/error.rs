@@ -34,7 +34,7 @@ pub enum GpuError {
     /// Any other Vulkan error.
     #[error("Vulkan failed while {action}: {result}")]
     Vulkan {
-        /// What Specula was doing, as "creating the swapchain".
+        /// The action that failed, as "creating the swapchain".
         action: String,
         /// The result code.
         result: vk::Result,
@@ -42,7 +42,7 @@ pub enum GpuError {
     /// The allocator failed for another reason than a lack of memory.
     #[error("the memory allocator failed while {action}: {message}")]
     Allocation {
-        /// What Specula was doing, as "creating the image `depth`".
+        /// The action that failed, as "creating the image `depth`".
         action: String,
         /// The allocator's own message.
         message: String,

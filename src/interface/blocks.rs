@@ -29,7 +29,7 @@ pub struct Member {
     pub name: &'static str,
     /// Its type: a GLSL type, or an array of one as Rust writes it.
     pub type_name: &'static str,
-    /// What it holds: unit, space, range.
+    /// Its content: unit, space, range.
     pub doc: &'static str,
     /// Bytes from the start of the struct.
     pub offset: u32,

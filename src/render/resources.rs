@@ -45,7 +45,7 @@ impl BoundFrame {
     }
 }
 
-/// What a state needs and [`Resources`] does not have yet.
+/// The resources of a state that [`Resources`] does not have yet.
 #[derive(Clone, Debug, Default)]
 pub struct Missing {
     /// Whether the newest set lacks pipelines.
@@ -150,7 +150,7 @@ impl Resources {
         self.environment.last_good()
     }
 
-    /// What `state` still needs. The model is never missing, because states refer only to uploaded models.
+    /// The resources that `state` still lacks. The model is never missing, because states refer only to uploaded models.
     pub fn missing(&self, state: &FrameState) -> Missing {
         let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
         let environment = state.environment.as_ref();

@@ -9,14 +9,14 @@ use std::path::PathBuf;
 pub struct LoadError {
     /// The file as the user gave it, or the name of a built-in model.
     pub file: PathBuf,
-    /// What is wrong with it.
+    /// The fault.
     pub problem: Box<Problem>,
     /// Absolute paths of all files that were read or looked for, the model's own first. Watch these to notice a repair.
     /// Empty for a model in memory.
     pub files: Vec<PathBuf>,
 }
 
-/// What is wrong with a model.
+/// A fault of a model.
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
     /// The file itself cannot be read.
@@ -31,7 +31,7 @@ pub enum Problem {
          Convert the model to glTF 2.0 (.gltf or .glb), for example with Blender's export."
     )]
     NotGltf {
-        /// What the first bytes look like.
+        /// The kind of file that the first bytes suggest.
         found: String,
     },
     /// The GLB container is damaged.
@@ -39,9 +39,9 @@ pub enum Problem {
         "is a damaged GLB: expected {expected}, found {found}. The file may be cut short: copy or export it again."
     )]
     Container {
-        /// What the GLB specification requires here.
+        /// Required here by the GLB specification.
         expected: String,
-        /// What the file has instead.
+        /// Found in the file instead.
         found: String,
     },
     /// The JSON does not parse, or is not glTF.
@@ -76,9 +76,9 @@ pub enum Problem {
     Invalid {
         /// The object, as a path into the JSON with its name.
         place: String,
-        /// What glTF requires.
+        /// Required by glTF.
         expected: String,
-        /// What the file has.
+        /// Found in the file.
         found: String,
     },
     /// A URI with a scheme that is never opened.
@@ -127,7 +127,7 @@ pub enum Problem {
          Check what was selected when it was exported."
     )]
     NothingToDraw {
-        /// What the file has.
+        /// Found in the file.
         found: String,
     },
     /// The loader or a decoder panicked.

@@ -35,8 +35,8 @@ pub struct Model {
     pub outline: Vec<Vec3>,
     /// Absolute paths of all files that were read. The window watches them.
     pub files: Vec<PathBuf>,
-    /// What the loader ignored or replaced, one sentence each: unknown extensions, images that cannot be decoded, repaired
-    /// tangents.
+    /// Warnings, one sentence for each part that the loader ignored or replaced: unknown extensions, images that cannot be
+    /// decoded, repaired tangents.
     pub warnings: Vec<String>,
     /// Loading times.
     pub timing: LoadTiming,

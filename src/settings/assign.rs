@@ -122,7 +122,7 @@ fn numbers(path: &str) -> Option<String> {
     }
 }
 
-/// What fits at a path where `old` is, after serde refused `text` because of `cause`.
+/// Describes the values that fit at a path where `old` is, after serde refused `text` because of `cause`.
 fn takes(path: &str, text: &str, old: Option<&toml::Value>, cause: &str) -> String {
     let names = catalog::names(path);
     if !names.is_empty() {

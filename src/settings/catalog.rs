@@ -16,11 +16,11 @@ pub struct Setting {
     pub takes: &'static str,
     /// Value without any option; empty when there is none.
     pub default: String,
-    /// What a number can be; empty when it can be anything, or when it is no number.
+    /// The range of a number; empty when any number fits, or for other types.
     pub range: String,
     /// Unit or color space; empty for pure numbers.
     pub unit: &'static str,
-    /// What the setting does.
+    /// The effect of the setting.
     pub doc: String,
 }
 
@@ -144,7 +144,7 @@ pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<String> {
     message::best(candidates.map(|path| (likeness(path), path))).map(str::to_owned)
 }
 
-/// What is at a path of a table.
+/// The value at a path of a table.
 fn at<'a>(root: &'a toml::Value, path: &str) -> Option<&'a toml::Value> {
     path.split('.').try_fold(root, |place, key| match place {
         toml::Value::Array(array) => array.get(key.parse::<usize>().ok()?),

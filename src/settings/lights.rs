@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Range;
 
-/// Which lights are on.
+/// The lights that are on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum LightSource {

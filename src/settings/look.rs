@@ -10,7 +10,7 @@ use crate::message::did_you_mean;
 pub struct LookError {
     /// Line and column, counted from 1; `None` when the parser names no place.
     pub place: Option<(usize, usize)>,
-    /// What is wrong, what was expected, and the nearest name.
+    /// The fault, the expected value, and the nearest name.
     pub message: String,
     /// The line of the file.
     pub excerpt: Option<String>,

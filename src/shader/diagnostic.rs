@@ -42,11 +42,11 @@ pub struct Diagnostic {
     pub column: Option<u32>,
     /// Number of characters that the caret spans; 0 without a column.
     pub length: u32,
-    /// What is wrong: expected and found.
+    /// The fault: expected and found.
     pub message: String,
     /// The source line as written.
     pub excerpt: Option<String>,
-    /// What to do next.
+    /// Advice to the user.
     pub help: Option<String>,
     /// Additional information, such as the other place of a conflict or the include chain.
     pub notes: Vec<String>,

@@ -1,4 +1,4 @@
-//! What reaches a terminal: names from files without their control characters, and tables that people read.
+//! Text for a terminal: names from files without their control characters, and tables that people read.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! What is seen through smooth glass, from KHR_materials_transmission, _volume and _dispersion.
+//! The view through smooth glass, from KHR_materials_transmission, _volume and _dispersion.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What the integration tests share: one device and compiler per test binary, shader trees that can be edited, models
+//! Shared by the integration tests: one device and compiler per test binary, shader trees that can be edited, models
 //! made in code, and the program as a child process.
 
 // Every test binary has its own copy of this module and uses a part of it.

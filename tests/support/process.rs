@@ -14,7 +14,7 @@ use serde_json::Value;
 /// How long anything may take before a test gives up. Nothing waits this long unless it hangs.
 pub const PATIENCE: Duration = Duration::from_secs(90);
 
-/// What a finished program left.
+/// The output and exit status of a finished program.
 #[derive(Debug)]
 pub struct Finished {
     /// Exit code; `None` when a signal ended it.
@@ -79,14 +79,14 @@ pub fn finish(command: &mut Command) -> Finished {
     Finished { code: status.code(), stdout, stderr: stderr.recv_timeout(PATIENCE).unwrap_or_default() }
 }
 
-/// What a program has written on stderr so far, and a signal for each new line.
+/// A program's stderr so far, and a signal for each new line.
 #[derive(Default)]
 struct Stderr {
     text: Mutex<String>,
     grew: Condvar,
 }
 
-/// What a process holds at a moment.
+/// The resources that a process holds at a moment.
 #[derive(Clone, Copy, Debug)]
 pub struct Usage {
     /// Resident memory, KiB.
@@ -197,7 +197,7 @@ impl Running {
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
     }
 
-    /// What the program holds now (proc(5)).
+    /// The resources that the program holds now (proc(5)).
     pub fn usage(&self) -> Usage {
         let process = format!("/proc/{}", self.child.id());
         let status = std::fs::read_to_string(format!("{process}/status")).unwrap();
@@ -210,7 +210,7 @@ impl Running {
         }
     }
 
-    /// What the program said on stderr so far; all of it after [`Self::end`].
+    /// The program's stderr so far; all of it after [`Self::end`].
     pub fn stderr(&self) -> String {
         self.stderr.text.lock().unwrap().clone()
     }
@@ -224,7 +224,7 @@ impl Running {
         assert!(!waited.timed_out(), "waited in vain for `{part}` on stderr. {}", self.story());
     }
 
-    /// What the program said so far, for messages.
+    /// The program's output so far, for messages.
     pub fn story(&self) -> String {
         format!("Events so far:\n{}\nstderr so far:\n{}", self.seen.join("\n"), self.stderr())
     }

@@ -1,4 +1,4 @@
-//! What fails beside the shaders costs the user neither the picture nor the session: memory, threads, a model that takes forever.
+//! A failure outside the shaders costs the user neither the picture nor the session: memory, threads, a model that takes forever.
 
 use super::controls::{WARNING, count};
 use crate::NDF;

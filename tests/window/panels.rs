@@ -1,4 +1,4 @@
-//! What the panels and messages say, read from the screen. The mouse rests and no key is pressed, so nothing but the program
+//! Reads panels and messages from the screen. The mouse rests and no key is pressed, so nothing but the program
 //! itself asks for another frame.
 
 use image::RgbaImage;

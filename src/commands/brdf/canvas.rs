@@ -28,7 +28,7 @@ pub fn pen(ink: Ink, width: f32) -> Pen {
     Pen { ink, width, dashed: false }
 }
 
-/// Which part of a text is at the given position.
+/// The part of a text that is at the given position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// Its start.

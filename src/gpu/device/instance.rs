@@ -11,7 +11,7 @@ use crate::gpu::error::Context;
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// What to do when the loader finds no driver.
+/// Advice when the loader finds no driver.
 pub(in crate::gpu) const NO_DRIVER: &str = "the Vulkan loader found no driver. Install one; a software driver for Debian and \
                                     Ubuntu: apt-get install mesa-vulkan-drivers";
 

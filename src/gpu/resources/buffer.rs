@@ -10,7 +10,7 @@ use super::memory::{Resource, allocate};
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
 
-/// Which side reads and writes a buffer.
+/// The side that reads and writes a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
     /// The device alone reads and writes it.

@@ -10,11 +10,11 @@ use crate::gpu::{Gpu, GpuError, fault};
 pub(in crate::gpu) struct Resource<'a> {
     /// Its name, for the allocator's reports.
     pub(in crate::gpu) name: &'a str,
-    /// What the caller does, as "creating the image `depth`".
+    /// The caller's action, as "creating the image `depth`".
     pub(in crate::gpu) action: &'a str,
     /// Size, alignment and memory types that Vulkan requires for it.
     pub(in crate::gpu) requirements: vk::MemoryRequirements,
-    /// Which side reads and writes it.
+    /// The side that reads and writes it.
     pub(in crate::gpu) location: MemoryLocation,
     /// False for images with optimal tiling.
     pub(in crate::gpu) linear: bool,

@@ -34,7 +34,7 @@ pub(crate) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer
     Ok(results)
 }
 
-/// What all passes need.
+/// The arguments of all passes.
 pub(crate) struct Passes<'a> {
     pub(crate) gpu: &'a Arc<Gpu>,
     pub(crate) layouts: &'a Arc<SetLayouts>,

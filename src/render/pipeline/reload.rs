@@ -33,7 +33,7 @@ pub enum Outcome {
 
 /// A finished reload.
 pub struct Reload {
-    /// What was compiled, and how long it took.
+    /// The compiled stages, and how long they took.
     pub report: Report,
     /// Time to create the pipelines, milliseconds.
     pub pipeline_ms: f64,

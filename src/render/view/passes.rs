@@ -11,7 +11,7 @@ use crate::render::resources::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
 use crate::render::state::{MaterialVariant, PipelineKey, PipelineRequest};
 
-/// What all passes of a frame need.
+/// The arguments of all passes of a frame.
 pub(super) struct Passes<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) targets: &'a Targets,

@@ -9,13 +9,13 @@ use std::path::PathBuf;
 pub struct EnvironmentError {
     /// The file as the user gave it.
     pub file: PathBuf,
-    /// What is wrong with it.
+    /// The fault.
     pub problem: EnvironmentProblem,
     /// Absolute paths of the files that were read or looked for. Watch these to retry once they change.
     pub files: Vec<PathBuf>,
 }
 
-/// What is wrong with an environment image.
+/// A fault of an environment image.
 #[derive(Debug, thiserror::Error)]
 pub enum EnvironmentProblem {
     /// Neither a readable file nor a built-in name.
@@ -91,11 +91,11 @@ pub enum EnvironmentProblem {
     /// A valid file with a feature that Specula does not read.
     #[error("is {found}, expected {expected}. {todo}")]
     Unsupported {
-        /// What the file has.
+        /// Found in the file.
         found: String,
-        /// What Specula reads.
+        /// Supported by Specula.
         expected: &'static str,
-        /// What to do.
+        /// Advice to the user.
         todo: &'static str,
     },
     /// Pixels that are NaN, infinite or negative.

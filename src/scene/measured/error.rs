@@ -11,11 +11,11 @@ use super::{MeasuredKind, merl, utia};
 pub struct MeasuredError {
     /// The file as the user gave it.
     pub file: PathBuf,
-    /// What is wrong with it.
+    /// The fault.
     pub problem: MeasuredProblem,
 }
 
-/// What is wrong with a measured BRDF.
+/// A fault of a measured BRDF.
 #[derive(Debug, thiserror::Error)]
 pub enum MeasuredProblem {
     /// The file cannot be read.

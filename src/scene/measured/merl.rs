@@ -29,7 +29,7 @@ pub(super) const FILE_BYTES: usize = HEADER_BYTES + 3 * CELLS * size_of::<f64>()
 /// Converts stored values to 1/sr: one factor per channel (from the database's reader).
 const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
 
-/// What the database stores for directions below the horizon.
+/// The database's value for directions below the horizon.
 const BELOW_HORIZON: f64 = -1.0;
 
 /// The header's three numbers; `None` if it is too short.

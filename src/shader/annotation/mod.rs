@@ -95,7 +95,7 @@ pub struct Mode {
     pub draw: DrawAs,
     /// Key in the window.
     pub key: Option<char>,
-    /// What the mode shows.
+    /// A description of the mode.
     pub doc: String,
     /// File as printed.
     #[serde(skip)]

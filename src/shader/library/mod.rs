@@ -24,7 +24,7 @@ use slot::{Outcome, Slot, build};
 
 pub use slot::Stage;
 
-/// What may have changed since the last update.
+/// The files that may have changed since the last update.
 #[derive(Clone, Debug)]
 pub enum Change {
     /// Anything: the first update, and the reload key. Every stage is compiled. A stage whose module comes out
@@ -67,7 +67,7 @@ pub struct ShaderSet {
     pub animated: bool,
 }
 
-/// What an update compiled, and how long it took.
+/// The stages that an update compiled, and how long it took.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Changed files that a stage depends on, as displayed.

@@ -53,7 +53,7 @@ pub(super) struct Broken {
 /// The result of compiling, reflecting and checking a stage.
 pub(super) type Outcome = Result<Built, Broken>;
 
-/// What is remembered about one stage.
+/// The state of one stage between updates.
 pub(super) struct Slot {
     pub path: TreePath,
     /// The result for the latest text.

@@ -59,7 +59,7 @@ pub enum WatchError {
     Root {
         /// As given.
         path: PathBuf,
-        /// What the system says.
+        /// The system's message.
         source: std::io::Error,
     },
     /// The system grants no thread.

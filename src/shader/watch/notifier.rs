@@ -132,7 +132,7 @@ impl Notifier {
     }
 }
 
-/// What the system says, and which limit to raise.
+/// The system's message, and the limit to raise.
 fn reason(error: &notify::Error) -> String {
     const TOO_MANY_FILES: i32 = 24;
     match &error.kind {

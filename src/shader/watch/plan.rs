@@ -1,4 +1,4 @@
-//! Which directories to watch for a tree and for single files, and what an event in one of them means.
+//! Chooses the directories to watch for a tree and for single files, and interprets their events.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;

@@ -1,4 +1,4 @@
-//! What the watcher knows: from the system's events to the files whose content differs.
+//! The watcher's state: turns the system's events into the files whose content differs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use super::fingerprint::{Fingerprint, fingerprint};
 use super::notifier::Notifier;
 use super::plan::{Plan, is_watched};
 
-/// What events have touched. Files have the names that the watcher was given.
+/// The files and folders that events have touched. Files have the names that the watcher was given.
 #[derive(Debug, Default)]
 pub struct Touched {
     /// Files that may have changed.

@@ -240,7 +240,7 @@ fn a_number_that_json_cannot_hold_is_named_by_its_line() {
     let text = builder.json.to_string().replace("12345", "\n1e999");
     let error = load_bytes("x", text.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("number out of range at line 2"), "{error}");
-    // What is kept raw is parsed when it is used.
+    // The loader parses raw extensions when it uses them.
     let mut builder = with(json!({}));
     builder.json["materials"][0]["extras"] = json!({ "specula": { "conductor_n": [1, 12345, 1] } });
     let text = builder.json.to_string().replace("12345", "1e999");
@@ -261,7 +261,7 @@ fn conductors_come_in_extras() {
     let gold = json!({ "specula": { "conductor_n": [0.18, 0.42, 1.37], "conductor_k": [3.42, 2.35, 1.77] } });
     let conductor = extras(gold).model().materials[1].conductor;
     assert_eq!(conductor, Some(Conductor { n: Vec3::new(0.18, 0.42, 1.37), k: Vec3::new(3.42, 2.35, 1.77) }));
-    // What others keep there is theirs.
+    // Other programs' data there is ignored.
     for foreign in [
         json!(null),
         json!(5),

@@ -1,4 +1,4 @@
-//! What a material asks of the shaders, and the variants of a model.
+//! The features that a material needs of the shaders, and the variants of a model.
 
 use super::super::super::features;
 use super::*;

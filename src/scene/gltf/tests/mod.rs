@@ -153,7 +153,7 @@ impl Builder {
     }
 }
 
-/// What `Model` promises to those who draw it.
+/// The invariants of `Model`, on which drawing relies.
 #[track_caller]
 fn assert_sound(model: &Model) {
     for primitive in &model.primitives {
