@@ -30,19 +30,25 @@ vec3 environment_radiance(vec3 direction, float lod) {
     return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;
 }
 
+// Without an environment, the ambient light of the settings arrives from everywhere.
+const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
+
 // E / pi: the radiance that a white Lambertian surface with the normal n reflects.
 vec3 irradiance_over_pi(vec3 n) {
+    if (!HAS_ENVIRONMENT) return frame.ambient;
     return frame.environment_intensity * textureLod(irradiance_cube, map_from_world(n), 0.0).rgb;
 }
 
 // The GGX-weighted mean of radiance around r, for v = n: the first factor of the split sum (Karis 2013).
 vec3 prefiltered_radiance(vec3 r, float roughness) {
+    if (!HAS_ENVIRONMENT) return frame.ambient;
     float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_cube));
     return frame.environment_intensity * textureLod(prefiltered_cube, map_from_world(r), lod).rgb;
 }
 
 // The same with the sheen distribution.
 vec3 prefiltered_sheen(vec3 r, float roughness) {
+    if (!HAS_ENVIRONMENT) return frame.ambient;
     float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_sheen_cube));
     return frame.environment_intensity * textureLod(prefiltered_sheen_cube, map_from_world(r), lod).rgb;
 }

@@ -1,0 +1,121 @@
+#version 460
+#include "interface.glsl"
+#include "brdf/ndf.glsl"
+#include "brdf/surface.glsl"
+#include "common/math.glsl"
+#include "ibl/filter.glsl"
+#include "ibl/levels.glsl"
+#include "ibl/lobe.glsl"
+
+// Chooses the samples of one level's lobe, K = D NoL with N = V = R (Karis 2013), for the selected D. One workgroup.
+//
+// With x = sin^2 of the angle to h, NoL = 1 - 2x, dl = 4 pi dx, and light above the horizon has x < 1/2. The density of
+// samples is proportional to K^(3/4). Sampled with K itself, the last samples would represent half the sky and mix the
+// peak into it.
+
+layout(local_size_x = 256) in;
+
+// Cells of equal ratio from x = 1e-7, a tenth of the narrowest peak; the first also covers what is below.
+const uint CELLS = 1024u;
+const float RATIO = 15.4249;   // log(0.5 / 1e-7)
+
+shared float below[CELLS];     // integral of the density up to the end of each cell
+shared float sample_x[LARGEST_LOBE];
+shared float blurred[LARGEST_LOBE];
+shared float integral;
+shared uint wrong;
+
+float end_of_cell(uint cell) { return 0.5 * exp(RATIO * (float(cell + 1u) / float(CELLS) - 1.0)); }
+float start_of_cell(uint cell) { return cell == 0u ? 0.0 : end_of_cell(cell - 1u); }
+
+// A D that is no density counts as 0.
+float weight_at(float x, float alpha) {
+    float d = d_specular(sqrt(1.0 - x), x, alpha);
+    if (!(d >= 0.0 && d < 1e20)) {
+        wrong = 1u;
+        return 0.0;
+    }
+    return d * (1.0 - 2.0 * x);
+}
+
+// x such that this fraction of all samples is below it.
+float x_of_fraction(float fraction) {
+    float target = fraction * below[CELLS - 1u];
+    uint first = 0u;
+    uint last = CELLS - 1u;
+    while (first < last) {
+        uint middle = (first + last) / 2u;
+        if (below[middle] < target) first = middle + 1u; else last = middle;
+    }
+    float before = first == 0u ? 0.0 : below[first - 1u];
+    float within = clamp((target - before) / max(below[first] - before, 1e-30), 0.0, 1.0);
+    return mix(start_of_cell(first), end_of_cell(first), within);
+}
+
+void main() {
+    // 0.999: at alpha = 1, K is the cosine alone.
+    float alpha = min(alpha_from_roughness(roughness_of_level(task.level, task.levels)), 0.999);
+    uint own = gl_LocalInvocationIndex;
+    if (own == 0u) {
+        integral = 0.0;
+        wrong = 0u;
+    }
+    barrier();
+    for (uint cell = own; cell < CELLS; cell += gl_WorkGroupSize.x) {
+        float first = start_of_cell(cell);
+        float last = end_of_cell(cell);
+        below[cell] = pow(weight_at(0.5 * (first + last), alpha), 0.75) * (last - first);
+    }
+    barrier();
+    if (own == 0u) {
+        for (uint cell = 1u; cell < CELLS; ++cell) below[cell] += below[cell - 1u];
+        // A D of 0 everywhere: uniform samples without weight.
+        if (below[CELLS - 1u] <= 0.0) for (uint cell = 0u; cell < CELLS; ++cell) below[cell] = end_of_cell(cell);
+    }
+    barrier();
+
+    // Sample i stands for the stratum from i / n to (i + 1) / n.
+    float count = float(task.samples);
+    for (uint i = own; i < task.samples; i += gl_WorkGroupSize.x) {
+        float x = x_of_fraction((float(i) + 0.5) / count);
+        float width = x_of_fraction((float(i) + 1.0) / count) - x_of_fraction(float(i) / count);
+        float footprint = max(4.0 * PI * width, finest_footprint());
+        float k = weight_at(x, alpha);
+        lobes[task.level].samples[i] = LobeSample(x, footprint, k * width);
+        sample_x[i] = x;
+        blurred[i] = FILTER_VARIANCE * footprint * k;
+    }
+    barrier();
+
+    // Reading each sample with a filter of variance s^2 amounts to a mean with K + laplacian(s^2 K) / 2, up to terms of
+    // s^4. So K - laplacian(s^2 K) / 2 replaces K, which about halves the error. The laplacian of g(x) around an axis of
+    // the unit sphere is (1 - 2x) g' + x (1 - x) g''. Here g is known at the samples.
+    for (uint i = own; i < task.samples; i += gl_WorkGroupSize.x) {
+        uint a = i == 0u ? 0u : i - 1u;
+        uint b = min(i + 1u, task.samples - 1u);
+        float x = sample_x[i];
+        float to_a = max(x - sample_x[a], 1e-12);
+        float to_b = max(sample_x[b] - x, 1e-12);
+        float slope_a = (blurred[i] - blurred[a]) / to_a;
+        float slope_b = (blurred[b] - blurred[i]) / to_b;
+        bool inside = a < i && i < b;
+        float first = inside ? (slope_a * to_b + slope_b * to_a) / (to_a + to_b) : a < i ? slope_a : slope_b;
+        float second = inside ? 2.0 * (slope_b - slope_a) / (to_a + to_b) : 0.0;
+        float laplacian = (1.0 - 2.0 * x) * first + x * (1.0 - x) * second;
+        float k = weight_at(x, alpha);
+        // At most twice K: where D has a step, the correction has no meaning.
+        float sharpened = clamp(k - 0.5 * laplacian, 0.0, 2.0 * k);
+        lobes[task.level].samples[i].weight *= k > 0.0 ? sharpened / k : 0.0;
+    }
+    float sum = 0.0;
+    barrier();
+    if (own == 0u) {
+        for (uint cell = 0u; cell < CELLS; ++cell) {
+            float first = start_of_cell(cell);
+            float last = end_of_cell(cell);
+            sum += weight_at(0.5 * (first + last), alpha) * (last - first);
+        }
+        lobes[task.level].integral = 4.0 * PI * sum;
+        lobes[task.level].wrong = wrong;
+    }
+}
