@@ -28,14 +28,17 @@ Dfg dfg_at(float cosine, float roughness) {
 
 // Their cosine-weighted means, 2 integral over 0..1 of x(mu) mu dmu.
 Dfg dfg_mean(float roughness) {
-    vec4 weights = vec4(0.0);
-    if (F_IS_SAMPLED) weights = dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS);
-    return dfg_of(dfg_texel(0.5, roughness, DFG_MEAN), weights);
+    vec4 terms = dfg_texel(0.5, roughness, DFG_MEAN);
+    if (!F_IS_SAMPLED) return Dfg(terms.r, terms.g, 0.0, terms.a, vec4(0.0));
+    float e = dfg_texel(0.5, roughness, DFG_LOBE).r;
+    return Dfg(terms.r, terms.g, e, terms.a, dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS));
 }
 
-// alpha of the GGX whose facets spread as widely as those of the selected D, relative to alpha: half of their area lies
-// within tan = alpha (Walter et al. 2007, eq. 35). For tables that only exist for GGX (lighting/area.glsl).
-float ggx_width(float roughness) { return dfg_texel(0.5, roughness, DFG_LOBE).r; }
+// Roughness of the GGX whose facets spread as widely as those of the selected D: half of their area lies within tan =
+// alpha (Walter et al. 2007, eq. 35). For formulas and tables that only exist for GGX (lighting/area.glsl).
+float ggx_roughness(float roughness) {
+    return min(roughness * sqrt(dfg_texel(0.5, roughness, DFG_MEAN).b), 1.0);
+}
 
 // alpha along t and b. Anisotropy raises alpha along t towards 1 (KHR_materials_anisotropy).
 vec2 alpha_sides(Surface s) {

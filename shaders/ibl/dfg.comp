@@ -154,9 +154,10 @@ void main() {
     here.terms.a = area > 1e-6 ? max(1.0 - here.terms.b / area, 0.0) : 0.0;
     store(DFG_DIRECTION, here.terms);
     store(DFG_DIRECTION_WEIGHTS, here.weights);
-    store(DFG_LOBE, vec4(width, area, float(wrong), 0.0));
 
     float weight = n_dot_v * (2.0 / float(COLUMNS));
-    store(DFG_MEAN, sum_over_columns(here.terms * weight));
+    vec4 mean = sum_over_columns(here.terms * weight);
+    store(DFG_MEAN, vec4(mean.rg, width, mean.a));
+    store(DFG_LOBE, vec4(mean.b, area, float(wrong), 0.0));
     store(DFG_MEAN_WEIGHTS, sum_over_columns(here.weights * weight));
 }

@@ -7,7 +7,8 @@
 #include "ibl/levels.glsl"
 #include "ibl/lobe.glsl"
 
-// Chooses the samples of one level's lobe, K = D NoL with N = V = R (Karis 2013), for the selected D. One workgroup.
+// Chooses the samples of one level's lobe, K = D V NoL with n = v (the split sum of Karis 2013), for the selected D and
+// V. One workgroup.
 //
 // With x = sin^2 of the angle to h, NoL = 1 - 2x, dl = 4 pi dx, and light above the horizon has x < 1/2. The density of
 // samples is proportional to K^(3/4). Sampled with K itself, the last samples would represent half the sky and mix the
@@ -28,14 +29,11 @@ shared uint wrong;
 float end_of_cell(uint cell) { return 0.5 * exp(RATIO * (float(cell + 1u) / float(CELLS) - 1.0)); }
 float start_of_cell(uint cell) { return cell == 0u ? 0.0 : end_of_cell(cell - 1u); }
 
-// A D that is no density counts as 0.
 float weight_at(float x, float alpha) {
-    float d = d_specular(sqrt(1.0 - x), x, alpha);
-    if (!(d >= 0.0 && d < 1e20)) {
-        wrong = 1u;
-        return 0.0;
-    }
-    return d * (1.0 - 2.0 * x);
+    float k = lobe_weight(x, alpha);
+    if (is_weight(k)) return k;
+    wrong = 1u;
+    return 0.0;
 }
 
 // x such that this fraction of all samples is below it.
@@ -89,10 +87,12 @@ void main() {
 
     // Reading each sample with a filter of variance s^2 amounts to a mean with K + laplacian(s^2 K) / 2, up to terms of
     // s^4. So K - laplacian(s^2 K) / 2 replaces K, which about halves the error. The laplacian of g(x) around an axis of
-    // the unit sphere is (1 - 2x) g' + x (1 - x) g''. Here g is known at the samples.
+    // the unit sphere is (1 - 2x) g' + x (1 - x) g''. Here g is known at the samples; the differences span several, since
+    // those of neighbors would be rounding errors.
+    uint reach = max(task.samples / 32u, 1u);
     for (uint i = own; i < task.samples; i += gl_WorkGroupSize.x) {
-        uint a = i == 0u ? 0u : i - 1u;
-        uint b = min(i + 1u, task.samples - 1u);
+        uint a = i - min(i, reach);
+        uint b = min(i + reach, task.samples - 1u);
         float x = sample_x[i];
         float to_a = max(x - sample_x[a], 1e-12);
         float to_b = max(sample_x[b] - x, 1e-12);

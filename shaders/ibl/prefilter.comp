@@ -1,6 +1,5 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
@@ -11,8 +10,8 @@
 #include "ibl/lobe.glsl"
 #include "ibl/small_lights.glsl"
 
-// Prefilters one level for the specular lobe: the mean of radiance weighted by K = D NoL, with N = V = R (Karis 2013).
-// ibl/lobe.comp has chosen the samples and their weights for the selected D.
+// Prefilters one level for the specular lobe: the mean of radiance weighted by K = D V NoL with n = v (Karis 2013).
+// ibl/lobe.comp has chosen the samples and their weights for the selected D and V.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
@@ -38,9 +37,8 @@ vec3 small_light_sum(vec3 n, float alpha) {
         SmallLight light = small_lights[i];
         vec3 chord = light.direction - n;
         float x = 0.25 * dot(chord, chord);   // not 1 - NoL, which loses its digits where a narrow lobe needs them
-        if (x >= 0.5) continue;
-        float d = d_specular(sqrt(1.0 - x), x, sqrt(alpha * alpha + light.spread));
-        sum += light.intensity * ((1.0 - 2.0 * x) * (d >= 0.0 && d < 1e20 ? d : 0.0));
+        float k = lobe_weight(x, sqrt(alpha * alpha + light.spread));
+        if (is_weight(k)) sum += light.intensity * k;
     }
     return sum;
 }

@@ -19,9 +19,9 @@
 
 // The direction in which to look up a lobe: the mirror direction, shifted towards n for rough lobes, since NoL weights
 // them (Lagarde & de Rousiers 2014, section 4.9.3). The weight of n is within 0.1 of the true mean's at most angles. A
-// mirror -> r, alpha = 1 -> n. Not normalized, since a cube lookup does not need it.
+// mirror -> r, alpha = 1 -> n. Not normalized, since a cube lookup does not need it. The fit is for GGX.
 vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
-    float alpha = roughness * roughness;
+    float alpha = pow(ggx_roughness(roughness), 2.0);
     float smoothness = 1.0 - alpha;
     return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
 }

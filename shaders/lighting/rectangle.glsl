@@ -22,7 +22,7 @@ Light mirrored_rectangle(Light light, vec3 position_ws, vec3 n) {
 
 // The part of a lobe that the light covers. The table is for GGX, so the lobe counts as the GGX that is as wide.
 AreaLight covered(Light light, vec3 position_ws, vec3 n, vec3 v, float roughness) {
-    return integrate_rect(light, position_ws, n, v, min(roughness * sqrt(ggx_width(roughness)), 1.0));
+    return integrate_rect(light, position_ws, n, v, ggx_roughness(roughness));
 }
 
 // The same for the specular lobe of an anisotropic surface.
