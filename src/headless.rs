@@ -165,7 +165,7 @@ impl Headless {
     pub fn bake_warnings(&self) -> Vec<String> {
         let tables = self.resources.tables().map(|tables| tables.wrong.clone()).unwrap_or_default();
         let mut functions: BTreeSet<&str> = tables.into_iter().collect();
-        functions.extend(self.resources.environment().wrong_ndf.then_some("D in brdf/ndf.glsl"));
+        functions.extend(self.resources.environment().wrong());
         functions.into_iter().map(wrong_values).collect()
     }
 

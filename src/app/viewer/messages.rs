@@ -125,7 +125,7 @@ impl Viewer {
                 }
                 match result {
                     Ok(environment) => {
-                        self.warn_of(environment.wrong_ndf.then_some("D in brdf/ndf.glsl"));
+                        self.warn_of(environment.wrong());
                         emit(self.events, &Event::Bake(&environment.report));
                         self.resources.set_environment(key, Some(environment));
                     }

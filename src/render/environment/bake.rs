@@ -29,7 +29,8 @@ pub(crate) const SHEEN_STAGES: [&str; 1] = [PREFILTER_SHEEN];
 const CUBE_SIDE: u32 = 512;
 const CUBE_LEVELS: u32 = 10;
 const PREFILTERED_SIDE: u32 = 256;
-const PREFILTERED_LEVELS: u32 = 9;
+/// Mip levels of the even levels of ibl/levels.glsl; the odd ones have one less.
+const PREFILTERED_LEVELS: u32 = 6;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 256;
@@ -41,8 +42,8 @@ pub(crate) const LARGEST_HALF: f32 = 65504.0;
 /// A map is scaled down at most by this factor to fit half floats, and clipped beyond: more would lose its dark parts.
 const LARGEST_RANGE: f32 = 4096.0;
 
-/// Samples per texel of each prefiltered level. Rougher levels need more samples and have fewer texels.
-const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512, 512, 512, 512];
+/// Samples per texel of each mip level. Rougher lobes need more samples and have fewer texels.
+const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512];
 
 /// Why a bake failed.
 #[derive(Debug, thiserror::Error)]
@@ -89,11 +90,9 @@ pub struct BakeReport {
 /// An environment on the device; all images in [`Use::Sampled`].
 pub struct GpuEnvironment {
     pub(crate) radiance: Arc<Radiance>,
-    pub(crate) prefiltered: Arc<Image>,
+    pub(crate) prefiltered: Arc<Prefiltered>,
     pub(crate) sheen: Arc<Image>,
     pub(crate) sampler: Arc<Sampler>,
-    /// Whether D returned NaN, infinite or negative values, which count as 0 in `prefiltered`.
-    pub wrong_ndf: bool,
     /// How long the bake took.
     pub report: BakeReport,
 }
@@ -108,6 +107,14 @@ pub(crate) struct Radiance {
     small_lights: Option<Arc<Buffer>>,
     /// Fingerprint of the map.
     map: u128,
+}
+
+/// The levels of the specular lobe (ibl/levels.glsl), in [`Use::Sampled`].
+pub(crate) struct Prefiltered {
+    pub(crate) even: Arc<Image>,
+    pub(crate) odd: Arc<Image>,
+    /// Whether D or V returned values that are no densities. They count as 0.
+    wrong: bool,
 }
 
 /// Callbacks and options of a bake.
@@ -134,12 +141,9 @@ impl GpuEnvironment {
             compute::upload(gpu, &[(&image, &texels)])?;
             Ok::<_, GpuError>(image)
         };
-        let (cube, irradiance, prefiltered, sheen) = (
-            cube("uniform cube")?,
-            cube("uniform irradiance")?,
-            cube("uniform prefiltered")?,
-            cube("uniform sheen")?,
-        );
+        let (even, odd) = (cube("uniform even levels")?, cube("uniform odd levels")?);
+        let (sheen, irradiance, cube) = (cube("uniform sheen")?, cube("uniform irradiance")?, cube("uniform cube")?);
+        let prefiltered = Arc::new(Prefiltered { even, odd, wrong: false });
         let radiance = Arc::new(Radiance { cube, irradiance, scale: 1.0, small_lights: None, map: 0 });
         Ok(Arc::new(Self::of(gpu, radiance, prefiltered, sheen)?))
     }
@@ -147,11 +151,16 @@ impl GpuEnvironment {
     fn of(
         gpu: &Arc<Gpu>,
         radiance: Arc<Radiance>,
-        prefiltered: Arc<Image>,
+        prefiltered: Arc<Prefiltered>,
         sheen: Arc<Image>,
     ) -> Result<Self, GpuError> {
         let sampler = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
-        Ok(Self { radiance, prefiltered, sheen, sampler, wrong_ndf: false, report: BakeReport::default() })
+        Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
+    }
+
+    /// The functions that returned values which are no densities, and count as 0 in this light.
+    pub fn wrong(&self) -> Option<&'static str> {
+        self.prefiltered.wrong.then_some("D or V in brdf/ndf.glsl or brdf/visibility.glsl")
     }
 
     /// Bakes the environment of `key`, built-in or a file, with the stages of `set`. A part is taken from `before` if its stages
@@ -176,8 +185,8 @@ impl GpuEnvironment {
             }
             None => bake.radiance()?,
         };
-        let prefiltered = match before.filter(|(old, made)| old.prefilter == key.prefilter && !made.wrong_ndf) {
-            Some((_, old)) => (old.prefiltered.clone(), false),
+        let prefiltered = match before.filter(|(old, made)| old.prefilter == key.prefilter && made.wrong().is_none()) {
+            Some((_, old)) => old.prefiltered.clone(),
             None => bake.prefiltered(&radiance)?,
         };
         let sheen = match before.filter(|(old, _)| old.sheen == key.sheen) {
@@ -185,8 +194,7 @@ impl GpuEnvironment {
             None => bake.sheen(&radiance)?,
         };
         (control.progress)(1.0, "");
-        let mut this = Self::of(&set.gpu, radiance, prefiltered.0, sheen)?;
-        this.wrong_ndf = prefiltered.1;
+        let mut this = Self::of(&set.gpu, radiance, prefiltered, sheen)?;
         this.report = bake.report;
         this.report.total_ms = ms(start);
         Ok(Arc::new(this))
@@ -327,40 +335,42 @@ impl Bake<'_> {
         Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights: Some(lights), map: file.fingerprint }))
     }
 
-    /// The levels of the specular lobe, and whether D returned wrong values.
-    fn prefiltered(&mut self, radiance: &Radiance) -> Result<(Arc<Image>, bool), BakeError> {
+    /// The levels of the specular lobe.
+    fn prefiltered(&mut self, radiance: &Radiance) -> Result<Arc<Prefiltered>, BakeError> {
         let stages = [&*self.key.radiance, &*self.key.prefilter].concat();
         let mut sizes = vec![CUBE_SIDE, PREFILTERED_SIDE];
         sizes.extend(PREFILTER_SAMPLES);
         let disk_key = key(&[radiance.map], &stages, &sizes);
-        let image = self.image("prefiltered", PREFILTERED_SIDE, PREFILTERED_LEVELS)?;
-        if let Some(entry) = self.cached(&disk_key, image.desc().bytes()) {
-            self.fill(&[&image], &entry)?;
-            return Ok((image, false));
+        let even = self.image("even levels", PREFILTERED_SIDE, PREFILTERED_LEVELS)?;
+        let odd = self.image("odd levels", PREFILTERED_SIDE / 2, PREFILTERED_LEVELS - 1)?;
+        let size = even.desc().bytes() + odd.desc().bytes();
+        if let Some(entry) = self.cached(&disk_key, size) {
+            self.fill(&[&even, &odd], &entry)?;
+            return Ok(Arc::new(Prefiltered { even, odd, wrong: false }));
         }
-        let Some(lights) = &radiance.small_lights else { return Ok((image, false)) };
+        let Some(lights) = &radiance.small_lights else { return Err(GpuError::NoStage(CUBE.into()).into()) };
         self.begin(0.3, "pipelines")?;
         self.pipelines(&self.key.prefilter.clone())?;
         let time = self.begin(0.3, "reflections")?;
         let [lobe, prefilter] = &*self.key.prefilter else { return Err(GpuError::NoStage(PREFILTER.into()).into()) };
-        let lobes = Lobes::new(self.set, lobe, PREFILTERED_LEVELS, &PREFILTER_SAMPLES)?;
+        let lobes = Lobes::new(self.set, lobe, &PREFILTER_SAMPLES)?;
         self.passes(lights).lobes(lobe, &lobes, &radiance.cube)?;
         // A software device prefilters one level per submission, so that frames run in between. A GPU is fast enough for all.
         let at_once = if self.gpu.info().kind == "cpu" { 1 } else { PREFILTERED_LEVELS };
         for first in (0..PREFILTERED_LEVELS).step_by(at_once as usize) {
             self.begin(0.3 + 0.6 * first as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
             let levels = first..(first + at_once).min(PREFILTERED_LEVELS);
-            let to = Target { image: &image, samples: &PREFILTER_SAMPLES, lobes: Some(&lobes.buffer) };
+            let to = Target { image: &even, samples: &PREFILTER_SAMPLES, specular: Some((&odd, &lobes.buffer)) };
             self.passes(lights).prefilter(prefilter, &radiance.cube, &to, levels)?;
         }
         self.report.prefilter_ms = ms(time);
-        let read = self.read(&[&image], Some(&lobes.buffer))?;
-        let (texels, lobe_bytes) = read.split_at(image.desc().bytes() as usize);
+        let read = self.read(&[&even, &odd], Some(&lobes.buffer))?;
+        let (texels, lobe_bytes) = read.split_at(size as usize);
         let wrong = lobes.wrong(lobe_bytes);
         if !wrong {
             disk_cache::store(&disk_key, texels);
         }
-        Ok((image, wrong))
+        Ok(Arc::new(Prefiltered { even, odd, wrong }))
     }
 
     /// The levels of the sheen lobe.
@@ -372,12 +382,12 @@ impl Bake<'_> {
             self.fill(&[&image], &entry)?;
             return Ok(image);
         }
-        let Some(lights) = &radiance.small_lights else { return Ok(image) };
+        let Some(lights) = &radiance.small_lights else { return Err(GpuError::NoStage(CUBE.into()).into()) };
         self.pipelines(&self.key.sheen.clone())?;
         let time = self.begin(0.9, "sheen")?;
         let [stage] = &*self.key.sheen else { return Err(GpuError::NoStage(PREFILTER_SHEEN.into()).into()) };
         let samples = [SHEEN_SAMPLES; SHEEN_LEVELS as usize];
-        let to = Target { image: &image, samples: &samples, lobes: None };
+        let to = Target { image: &image, samples: &samples, specular: None };
         self.passes(lights).prefilter(stage, &radiance.cube, &to, 0..SHEEN_LEVELS)?;
         self.report.sheen_ms = ms(time);
         disk_cache::store(&disk_key, &self.read(&[&image], None)?);

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, SetLayouts, SetWriter, Use, one_shot, vk};
 use crate::interface::{
-    BINDING_LEVEL_ABOVE, BINDING_LOBES, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, SET_TASK,
-    Task,
+    BINDING_LEVEL_ABOVE, BINDING_LOBES, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET,
+    BINDING_TARGET_ODD, SET_TASK, Task,
 };
 
 use crate::render::compute;
@@ -45,39 +45,37 @@ pub(crate) fn small_lights(gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<Arc<Buffer>, 
     Ok(results)
 }
 
-/// The samples of every level of a prefilter: ibl/lobe.glsl.
-pub(crate) struct Lobes {
+/// The samples of every mip level of the specular lobe: ibl/lobe.glsl.
+pub(crate) struct Lobes<'a> {
     pub(crate) buffer: Arc<Buffer>,
-    levels: u32,
-    /// Samples of each level.
-    samples: Vec<u32>,
-    /// Bytes of a level.
-    stride: usize,
+    /// Samples of each mip level.
+    samples: &'a [u32],
 }
 
-impl Lobes {
+impl<'a> Lobes<'a> {
     /// Levels that the block of ibl/lobe.glsl has room for.
-    const LEVELS: u64 = 16;
+    const LEVELS: usize = 8;
 
-    pub(crate) fn new(set: &PipelineSet, stage: &BakeStage, levels: u32, samples: &[u32]) -> Result<Self, GpuError> {
+    pub(crate) fn new(set: &PipelineSet, stage: &BakeStage, samples: &'a [u32]) -> Result<Self, GpuError> {
         let size = declared_size(set, stage.stage.path.as_str(), BINDING_LOBES);
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
         let buffer = Buffer::new(&set.gpu, "lobes", size, usage, Memory::Device)?;
-        Ok(Self { buffer, levels, samples: samples.to_vec(), stride: (size / Self::LEVELS) as usize })
+        Ok(Self { buffer, samples })
     }
 
-    /// Whether D returned wrong values in one of the levels: the second word of a level. `bytes`: the content of the buffer.
+    /// Whether D or V returned wrong values in one of the levels: the first word of a level. `bytes`: content of the buffer.
     pub(crate) fn wrong(&self, bytes: &[u8]) -> bool {
-        let levels = bytes.chunks_exact(self.stride).take(self.levels as usize).skip(1);
-        levels.filter_map(|level| level.get(4..8)).any(|word| word.iter().any(|byte| *byte != 0))
+        let levels = bytes.chunks_exact((bytes.len() / Self::LEVELS).max(4)).take(self.samples.len()).skip(1);
+        levels.filter_map(|level| level.get(..4)).any(|word| word.iter().any(|byte| *byte != 0))
     }
 }
 
-/// The image that a prefilter writes, with the samples per texel of each level, and the lobes that it reads.
+/// The image that a prefilter writes, with the samples per texel of each level. For the specular lobe also the image of the odd
+/// levels, and the lobes' samples.
 pub(crate) struct Target<'a> {
     pub(crate) image: &'a Arc<Image>,
     pub(crate) samples: &'a [u32],
-    pub(crate) lobes: Option<&'a Arc<Buffer>>,
+    pub(crate) specular: Option<(&'a Arc<Image>, &'a Arc<Buffer>)>,
 }
 
 /// The arguments of all passes.
@@ -155,13 +153,12 @@ impl Passes<'_> {
     }
 
     /// Chooses the samples of every level but the first, which is a mirror.
-    pub(crate) fn lobes(&self, stage: &BakeStage, lobes: &Lobes, cube: &Arc<Image>) -> Result<(), GpuError> {
+    pub(crate) fn lobes(&self, stage: &BakeStage, lobes: &Lobes<'_>, cube: &Arc<Image>) -> Result<(), GpuError> {
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
         let pipeline = self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
         let mut dispatches = Vec::new();
-        for level in 1..lobes.levels {
-            let samples = lobes.samples.get(level as usize).copied().unwrap_or(1);
-            let task = Task { level, levels: lobes.levels, samples, ..Task::default() };
+        for (level, samples) in (0..).zip(lobes.samples).skip(1) {
+            let task = Task { level, samples: *samples, ..Task::default() };
             dispatches.push(compute::bindings(self.gpu, self.layouts, &task, |writer| {
                 writer.texture(BINDING_SOURCE_CUBE, cube, &sampler).buffer(BINDING_LOBES, &lobes.buffer)
             })?);
@@ -193,18 +190,23 @@ impl Passes<'_> {
             let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
             let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
                 let writer = self.to(writer.texture(BINDING_SOURCE_CUBE, cube, &sampler), to.image, level);
-                to.lobes.into_iter().fold(writer, |writer, lobes| writer.buffer(BINDING_LOBES, lobes))
+                to.specular.into_iter().fold(writer, |writer, (odd, lobes)| {
+                    // Level 0 has no odd one before it, and writes none.
+                    let odd_level = level.saturating_sub(1);
+                    writer.buffer(BINDING_LOBES, lobes).storage_level(BINDING_TARGET_ODD, odd, odd_level)
+                })
             })?;
             dispatches.push((level, bindings, compute::groups(side, desc.layers)));
         }
         one_shot(self.gpu, |encoder| {
             for (level, bindings, groups) in &dispatches {
+                let images = || [to.image].into_iter().chain(to.specular.map(|(odd, _)| odd));
                 if *level == 0 {
-                    encoder.transition(to.image, Use::Undefined, Use::Storage);
+                    images().for_each(|image| encoder.transition(image, Use::Undefined, Use::Storage));
                 }
                 encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
                 if level + 1 == desc.mips {
-                    encoder.transition(to.image, Use::Storage, Use::Sampled);
+                    images().for_each(|image| encoder.transition(image, Use::Storage, Use::Sampled));
                 }
             }
             Ok(())
