@@ -4,8 +4,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::cancel::wait_unless;
 use crate::disk_cache;
-use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, fault, one_shot, vk};
 use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
@@ -97,7 +98,7 @@ pub struct GpuEnvironment {
 pub struct BakeControl<'a> {
     /// Receives the fraction that is done, 0..1, and the name of the next pass.
     pub progress: &'a (dyn Fn(f32, &str) + Sync),
-    /// Returns whether to cancel. Called before each pass.
+    /// Returns whether to cancel. Called while a file is read and decoded, and before each pass.
     pub superseded: &'a (dyn Fn() -> bool + Sync),
     /// Whether a cached result may be used. Otherwise the bake replaces it.
     pub from_disk: bool,
@@ -183,12 +184,14 @@ impl GpuEnvironment {
     /// # Errors
     /// A bad map, a device error, or `control` has canceled the bake.
     pub fn bake(set: &PipelineSet, name: &str, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
-        let file = &EnvironmentFile::open(name)?;
+        let name = name.to_owned();
+        let file = wait_unless(control.superseded, move || EnvironmentFile::open(&name));
+        let file = Arc::new(file.ok_or(BakeError::Superseded)??);
         let start = Instant::now();
         let gpu = &set.gpu;
         let mut this = Self::new(gpu)?;
         this.report.environment.clone_from(&file.name);
-        let key = key(set, file)?;
+        let key = key(set, &file)?;
         // An entry holds the images, then the scale.
         if let Some(bytes) = disk_cache::load(&key, this.bytes() + 4).filter(|_| control.from_disk) {
             let upload = Instant::now();
@@ -201,7 +204,11 @@ impl GpuEnvironment {
             return Ok(Arc::new(this));
         }
         (control.progress)(0.0, "reading");
-        let map = file.decode()?;
+        let map = wait_unless(control.superseded, move || {
+            fault::delay("decode-delay-ms");
+            file.decode()
+        });
+        let map = map.ok_or(BakeError::Superseded)??;
         this.report.decode_ms = ms(start);
         this.run(set, &map, control)?;
         this.report.total_ms = ms(start);

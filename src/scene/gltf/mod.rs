@@ -35,6 +35,7 @@ use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
+use crate::message::panic_text;
 
 /// Largest coordinate of a mesh and of the scene, in meters. The square of the camera's distance is still finite in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
@@ -58,11 +59,8 @@ pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
 /// the session.
 fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result<Model, Problem> {
-    catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start))).unwrap_or_else(|panic| {
-        let words =
-            panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-        Err(Problem::Refused { found: words.unwrap_or("a panic without words").to_owned() })
-    })
+    catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start)))
+        .unwrap_or_else(|panic| Err(Problem::Refused { found: panic_text(&*panic).to_owned() }))
 }
 
 fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Result<Model, Problem> {
