@@ -46,7 +46,8 @@ pub(super) fn style(egui: &egui::Context) {
         style.spacing.item_spacing = egui::vec2(6.0, 4.0);
         style.spacing.slider_width = 100.0;
         // Keeps the bar beside the content even while it is wide, under the mouse.
-        style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
+        let scroll = &mut style.spacing.scroll;
+        scroll.floating_allocated_width = scroll.bar_width + scroll.bar_inner_margin;
     });
 }
 
@@ -91,7 +92,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
             let mode = &mut session.settings.mode;
             panel.show(ui, |ui| modes::show(ui, session.shaders.as_deref(), mode, &mut state.scrolled_to));
         }
-        let panel = egui::Panel::right("settings").frame(frame).default_size(314.0).min_size(220.0).max_size(480.0);
+        let panel = egui::Panel::right("settings").frame(frame).default_size(318.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| settings(ui, viewer, readings, commands));
         });

@@ -1,21 +1,12 @@
 //! Reads glTF 2.0 into a [`Model`]. The `gltf` crate parses the JSON. This module checks and reads all other data, since the
 //! crate's own readers panic on invalid files and refuse some valid ones.
 
-mod accessor;
-mod buffers;
-mod container;
-mod extensions;
-mod images;
-mod material;
-mod mesh;
+mod file;
+mod geometry;
+mod materials;
 mod nodes;
-mod placeholder;
-mod tangents;
 #[cfg(test)]
 mod tests;
-mod textures;
-mod triangles;
-mod uri;
 mod values;
 mod variants;
 
@@ -27,9 +18,12 @@ use std::time::Instant;
 use gltf::json;
 use rayon::prelude::*;
 
-use self::accessor::Reader;
-use self::buffers::{Buffers, Files, read_regular};
-use self::mesh::Geometry;
+use self::file::buffers::{Buffers, Files, read_regular};
+use self::file::container;
+use self::geometry::accessor::Reader;
+use self::geometry::mesh::{self, Geometry};
+use self::geometry::tangents;
+use self::materials::{images, material, placeholder};
 use super::LoadOptions;
 use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
