@@ -123,7 +123,7 @@ impl Screen {
         Ok(if viewer.set_shortage(shortage.as_ref()) { Some(Duration::ZERO) } else { wait })
     }
 
-    /// Draws a frame, without patience for a lack of memory.
+    /// Draws a frame. Without memory for the targets of a new picture it draws the last one; any other lack of memory is an error.
     fn draw_frame(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         if !self.resize(window, viewer)? {
             return Ok(None);

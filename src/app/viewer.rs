@@ -252,7 +252,7 @@ impl Viewer {
         }
     }
 
-    /// Says that memory is short, until it is no longer. Returns whether that is news.
+    /// Shows that memory is short for as long as it is. Returns whether the message changes.
     pub(super) fn set_shortage(&mut self, error: Option<&GpuError>) -> bool {
         let text = error.map(|error| format!("{error}. The last picture stays."));
         if self.shortage == text {

@@ -94,7 +94,7 @@ impl Baker {
         }
     }
 
-    /// Marks a bake as ended. Returns its key, unless a newer bake or none is wanted.
+    /// Marks a bake as ended. Returns its key, unless it was canceled.
     pub(in crate::app) fn ended(&mut self, number: u64) -> Option<EnvironmentKey> {
         self.bake.take_if(|bake| bake.number == number).map(|bake| bake.key)
     }

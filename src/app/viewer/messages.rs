@@ -71,7 +71,9 @@ impl Viewer {
     fn check_names(&mut self, is_first: bool) {
         let mut problems = self.session.problems(is_first);
         if self.session.mode().is_none() {
-            problems.push(format!("there is no mode '{}'; `specula modes` lists them all", self.session.settings.mode));
+            let mode = &self.session.settings.mode;
+            problems
+                .push(format!("there is no mode '{mode}', so you see the final picture; `specula modes` lists all"));
         }
         if !problems.is_empty() {
             self.say(problems.join("\n"));

@@ -126,8 +126,8 @@ impl View {
         Ok(())
     }
 
-    /// Draws `frame` with the uniforms of frame slot `slot`. Call [`View::prepare`] for the frame first, and [`View::forget`] if the
-    /// commands are not submitted.
+    /// Draws `frame` with the uniforms of frame slot `slot`. Call [`View::prepare`] for the frame first, and
+    /// [`View::forget`] if the commands are not submitted.
     ///
     /// # Errors
     /// Out of memory. Nothing is recorded then.
