@@ -56,6 +56,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
         emit(args.common.emits(), &Event::Bake(headless.bake_report()));
     }
     write(&mut headless, &args, all)?;
+    warn_of_bakes(&headless);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     if let Some(mut watch) = watch {
         eprintln!("specula: wrote {}; watching, Ctrl+C ends", args.out.display());
@@ -107,6 +108,7 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
             Err(Failure::Input(message) | Failure::Usage(message)) => message::tell(message),
             result => result?,
         }
+        warn_of_bakes(headless);
     }
     report(&reload, headless, args, detect_ms, first_frame_ms);
     Ok(())
@@ -152,6 +154,13 @@ fn take_environment(headless: &mut Headless, args: &Args) -> bool {
         Err(error) => message::tell(format_args!("{error}\nspecula: the last good environment stays")),
     }
     baked.is_ok()
+}
+
+/// Warns of functions of the BRDF whose values the tables or the prefilter could not use.
+fn warn_of_bakes(headless: &Headless) {
+    for warning in headless.bake_warnings() {
+        message::tell(format_args!("warning: {warning}"));
+    }
 }
 
 fn tell(args: &Args, diagnostics: &[Diagnostic]) {
