@@ -15,12 +15,18 @@ vec2 hammersley(uint i, uint count) {
 }
 
 // Three random 32-bit words from three (pcg3d: Jarzynski & Olano 2020, section 3). Stateless: hash pixel and sample
-// index.
+// index. x, y and z are updated one after the other, each from the newest values of the other two. Updated together,
+// they would stay equal for equal inputs.
+uvec3 pcg3d_round(uvec3 x) {
+    x.x += x.y * x.z;
+    x.y += x.z * x.x;
+    x.z += x.x * x.y;
+    return x;
+}
+
 uvec3 random_words(uvec3 x) {
-    x = x * 1664525u + 1013904223u;
-    x += x.yzx * x.zxy;
-    x ^= x >> 16;
-    return x + x.yzx * x.zxy;
+    x = pcg3d_round(x * 1664525u + 1013904223u);
+    return pcg3d_round(x ^ (x >> 16));
 }
 
 // Uniform in 0 <= x < 1. 24 bits fit a float's mantissa; more could round up to 1.
