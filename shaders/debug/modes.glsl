@@ -190,7 +190,7 @@ const uint MODE_LUMINANCE = 410u;
 // Environment light.
 //@mode ibl-diffuse "Environment, diffuse" group="Light" encode=color unit="cd/m^2" tonemap doc="Irradiance times the diffuse albedo."
 const uint MODE_IBL_DIFFUSE = 411u;
-//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Specular albedo times prefiltered radiance (Karis 2013)."
+//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Split sum: specular albedo times prefiltered radiance (Karis 2013)."
 const uint MODE_IBL_SPECULAR = 412u;
 //@mode irradiance "Irradiance" group="Light" encode=color unit="lux" tonemap doc="Environment irradiance for the normal, lux."
 const uint MODE_IRRADIANCE = 413u;
