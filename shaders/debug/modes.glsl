@@ -78,7 +78,7 @@ const uint MODE_BASE_COLOR = 100u;
 const uint MODE_ALPHA = 101u;
 //@mode metallic "Metallic" group="Material" encode=data components=1 key=m doc="0 dielectric, 1 metal."
 const uint MODE_METALLIC = 102u;
-//@mode roughness "Roughness" group="Material" encode=data components=1 key=u doc="Perceptual roughness."
+//@mode roughness "Roughness" group="Material" encode=data components=1 key=u doc="Perceptual roughness, with specular antialiasing if selected."
 const uint MODE_ROUGHNESS = 103u;
 //@mode ggx-alpha "Alpha of the NDF" group="Material" encode=data components=1 doc="Width of the selected NDF: roughness^2, at least 0.0025."
 const uint MODE_GGX_ALPHA = 104u;
