@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
 
-const uint INTERFACE_VERSION = 3u;
+const uint INTERFACE_VERSION = 4u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
@@ -24,6 +24,8 @@ const int BINDING_LTC = 8;
 const int BINDING_MEASURED = 9;
 const int BINDING_SHEEN_ALBEDO = 10;
 const int BINDING_UNUSED = 11;
+const int BINDING_DIFFUSE_ALBEDO = 12;
+const int BINDING_PREFILTERED_ODD = 13;
 const int BINDING_MATERIAL = 0;
 const int BINDING_SCENE_COLOR = 0;
 const int BINDING_BEHIND = 1;
@@ -33,6 +35,8 @@ const int BINDING_SOURCE_CUBE = 2;
 const int BINDING_TARGET = 3;
 const int BINDING_LEVEL_ABOVE = 4;
 const int BINDING_RESULTS = 5;
+const int BINDING_LOBES = 6;
+const int BINDING_TARGET_ODD = 7;
 const int BINDING_BASE_COLOR_TEXTURE = 1;
 const int BINDING_METALLIC_ROUGHNESS_TEXTURE = 2;
 const int BINDING_NORMAL_TEXTURE = 3;

@@ -161,7 +161,7 @@ void clear_extensions(inout Surface s) {
     s.diffuse_transmission_color = vec3(1.0);
 }
 
-// `v`: towards the eye, world space, unit. complete_surface (brdf/multiscatter.glsl) fills in s.dfg and s.multiple.
+// `v`: towards the eye, world space, unit. complete_surface (brdf/multiscatter.glsl) fills in the rest.
 Surface make_surface(Fragment f, vec3 v) {
     vec4 base_color = texture(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR));
     vec4 metallic_roughness = texture(metallic_roughness_texture, texture_uv(f, TEXTURE_METALLIC_ROUGHNESS));
@@ -185,8 +185,6 @@ Surface make_surface(Fragment f, vec3 v) {
     s.ior = material.ior;
     s.f0 = vec3(f0_from_ior(s.ior));
     s.f90 = 1.0;
-    s.dfg = vec4(0.0);   // a mirror at normal incidence
-    s.multiple = vec3(0.0);
     clear_extensions(s);
 
     if ((FEATURES & FEATURE_SPECULAR_GLOSSINESS) != 0u) read_specular_glossiness(metallic_roughness, s);

@@ -1,5 +1,6 @@
 //! Rendering without a window: the same reload and the same frames as on screen, on one thread.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -8,7 +9,7 @@ use rayon::prelude::*;
 use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineSet,
-    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View,
+    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, wrong_values,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
@@ -158,6 +159,14 @@ impl Headless {
     /// Reports that the file of the measured BRDF has changed. The next frame reads it again.
     pub fn measured_changed(&mut self) {
         self.session.revisions.measured += 1;
+    }
+
+    /// Warnings about functions whose values the last bakes could not use.
+    pub fn bake_warnings(&self) -> Vec<String> {
+        let tables = self.resources.tables().map(|tables| tables.wrong.clone()).unwrap_or_default();
+        let mut functions: BTreeSet<&str> = tables.into_iter().collect();
+        functions.extend(self.resources.environment().wrong());
+        functions.into_iter().map(wrong_values).collect()
     }
 
     /// How long the last bake took.

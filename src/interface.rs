@@ -16,7 +16,7 @@ pub use print::glsl;
 pub use textures::*;
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;
@@ -68,6 +68,10 @@ impl BindingKind {
 
 /// Binding in [`SET_TASK`] of the buffer that a task writes numbers to. It is as large as the stages declare.
 pub const BINDING_RESULTS: u32 = 5;
+/// The samples of each level of a prefilter.
+pub const BINDING_LOBES: u32 = 6;
+/// The odd level of a prefilter, which is written along with the even one.
+pub const BINDING_TARGET_ODD: u32 = 7;
 /// Binding in [`SET_TASK`] of the block [`Task`].
 pub const BINDING_TASK: u32 = 0;
 /// Binding in [`SET_TASK`] of the image that a task reads.
@@ -126,6 +130,8 @@ const OTHERS: &[Binding] = &[
     // Works around a crash of Mesa's lavapipe (22.3), which records the uniforms that branches depend on and overwrites its
     // own counters with those of a stage's fourth uniform block. So the fourth block is this one, which nothing reads.
     binding(SET_FRAME, 11, "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
+    binding(SET_FRAME, 12, "BINDING_DIFFUSE_ALBEDO", BindingKind::Sampler2D, 0),
+    binding(SET_FRAME, 13, "BINDING_PREFILTERED_ODD", BindingKind::SamplerCube, 0),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),
@@ -135,6 +141,8 @@ const OTHERS: &[Binding] = &[
     binding(SET_TASK, BINDING_TARGET, "BINDING_TARGET", BindingKind::StorageImage, 0),
     binding(SET_TASK, BINDING_LEVEL_ABOVE, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
     binding(SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
+    binding(SET_TASK, BINDING_LOBES, "BINDING_LOBES", BindingKind::StorageBuffer, 0),
+    binding(SET_TASK, BINDING_TARGET_ODD, "BINDING_TARGET_ODD", BindingKind::StorageImage, 0),
 ];
 
 /// A specialization constant that Rust sets.

@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::render::{
-    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, TargetFormat, Uniforms,
+    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, Tables, TablesKey, TargetFormat, Uniforms,
     compute, ltc, measured_buffer,
 };
 use crate::settings::Settings;
@@ -166,9 +166,8 @@ impl Bench {
     fn on(shared: Arc<Shared>, settings: &Settings) -> Result<Self, GpuError> {
         let request = request(settings, &shared.set.shaders);
         shared.set.build(&request)?;
-        let bound = shared.set.bind(&request).ok_or_else(|| GpuError::NoStage("ibl/dfg.comp".to_owned()))?;
-        let environment = shared.environment.clone();
-        let sources = Sources { environment, tables: bound.tables, measured: shared.measured.clone() };
+        let tables = Tables::bake(&shared.set, &TablesKey::new(&shared.set.shaders, &request.constants), None)?;
+        let sources = Sources { environment: shared.environment.clone(), tables, measured: shared.measured.clone() };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
         let params = values::params(&settings.shader, &shared.set.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);

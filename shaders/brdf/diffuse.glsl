@@ -1,4 +1,4 @@
-// Diffuse models: how light that enters the surface and scatters below it leaves again. All return f in 1/sr; the three
+// Diffuse models: how light that enters the surface and scatters below it leaves again. All return f in 1/sr; those
 // without an albedo argument return f / albedo. The coupling (brdf/evaluate.glsl) decides how much light enters.
 #ifndef BRDF_DIFFUSE_GLSL
 #define BRDF_DIFFUSE_GLSL
@@ -65,6 +65,29 @@ float f_call_of_duty(float n_dot_l, float n_dot_v, float n_dot_h, float v_dot_h,
     float lobe = mix(rough, smooth_lobe, saturate(2.2 * g - 0.5));
     float bump = ((34.5 * g - 59.0) * g + 24.5) * v_dot_h * exp2(-max(73.2 * g - 21.2, 8.9) * sqrt(n_dot_h));
     return (lobe + bump) / PI;
+}
+
+// The cosines that diffuse models depend on.
+struct Cosines {
+    float n_dot_l;
+    float n_dot_v;
+    float n_dot_h;
+    float v_dot_h;
+    float l_dot_v;
+};
+
+// The selected model, 1/sr. Lamps call this, and ibl/diffuse_albedo.comp integrates it for light from all directions.
+// alpha: roughness^2, limited below (brdf/surface.glsl).
+vec3 f_diffuse(vec3 base_color, float roughness, float alpha, Cosines x) {
+    if (DIFFUSE == OREN_NAYAR) return f_oren_nayar(base_color, x.n_dot_l, x.n_dot_v, x.l_dot_v, roughness);
+    if (DIFFUSE == BURLEY) return base_color * f_burley(x.n_dot_l, x.n_dot_v, x.v_dot_h, roughness);
+    if (DIFFUSE == RENORMALIZED_BURLEY) {
+        return base_color * f_renormalized_burley(x.n_dot_l, x.n_dot_v, x.v_dot_h, roughness);
+    }
+    if (DIFFUSE == CALL_OF_DUTY) {
+        return base_color * f_call_of_duty(x.n_dot_l, x.n_dot_v, x.n_dot_h, x.v_dot_h, alpha);
+    }
+    return f_lambert(base_color);
 }
 
 #endif

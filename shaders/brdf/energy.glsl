@@ -1,34 +1,43 @@
-// Directional albedo of the lobes: tables over NoV and roughness, which ibl/dfg.comp and ibl/sheen_albedo.comp bake for
-// the selected NDF and masking.
-//
-// With the selected D and V, c = VoH and F = f0 + (f90 - f0) (1 - c)^5 - beta c (1 - c)^6, the albedo towards v is
-//
-//   integral of F D V NoL dl = f0 A + f90 B - beta C
-//
-//   A = integral of D V (1 - (1 - c)^5) NoL dl        E = A + B: albedo for F = 1; 1 - E is lost between facets
-//   B = integral of D V (1 - c)^5 NoL dl              E_avg = 2 integral over 0..1 of E(mu) mu dmu
-//   C = integral of D V c (1 - c)^6 NoL dl
-//
-// The table stores 1 - E, B, C, 1 - E_avg. Multiple scattering needs a ratio of two losses, which are about 1e-4 on
-// smooth surfaces. A half float holds such a loss to three digits, but E, close to 1, only to 5e-4.
+// Directional albedo of the lobes: tables over NoV and roughness, which ibl/*.comp bake with the functions that lamps
+// use. So an edit of D, V, F or the diffuse model reaches light from all directions too, as soon as the tables follow.
 #ifndef BRDF_ENERGY_GLSL
 #define BRDF_ENERGY_GLSL
 
 #include "interface.glsl"
-#include "brdf/models.glsl"
+#include "brdf/dfg.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
-#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_DFG) uniform sampler2D dfg_table;
+layout(set = SET_FRAME, binding = BINDING_DIFFUSE_ALBEDO) uniform sampler2D diffuse_table;
 layout(set = SET_FRAME, binding = BINDING_SHEEN_ALBEDO) uniform sampler2D sheen_albedo_table;
 
-// Returns 1 - E, B, C, 1 - E_avg. Columns are NoV at texel centers. The first and last row are roughness 0 and 1
-// exactly, since many materials use these values.
-vec4 dfg(float n_dot_v, float roughness) {
-    const float ROWS = 128.0;
-    return textureLod(dfg_table, vec2(n_dot_v, (roughness * (ROWS - 1.0) + 0.5) / ROWS), 0.0);
+vec4 dfg_texel(float cosine, float roughness, uint slice) {
+    return textureLod(dfg_table, table_uv(cosine, roughness, slice, DFG_SIDE, DFG_SLICES), 0.0);
+}
+
+Dfg dfg_of(vec4 terms, vec4 weights) { return Dfg(terms.r, terms.g, terms.b, terms.a, weights); }
+
+// The lobe's moments in a direction with this cosine to the normal.
+Dfg dfg_at(float cosine, float roughness) {
+    vec4 weights = vec4(0.0);
+    if (F_IS_SAMPLED) weights = dfg_texel(cosine, roughness, DFG_DIRECTION_WEIGHTS);
+    return dfg_of(dfg_texel(cosine, roughness, DFG_DIRECTION), weights);
+}
+
+// Their cosine-weighted means, 2 integral over 0..1 of x(mu) mu dmu.
+Dfg dfg_mean(float roughness) {
+    vec4 terms = dfg_texel(0.5, roughness, DFG_MEAN);
+    if (!F_IS_SAMPLED) return Dfg(terms.r, terms.g, 0.0, terms.a, vec4(0.0));
+    float e = dfg_texel(0.5, roughness, DFG_LOBE).r;
+    return Dfg(terms.r, terms.g, e, terms.a, dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS));
+}
+
+// Roughness of the GGX whose facets spread as widely as those of the selected D: half of their area lies within tan =
+// alpha (Walter et al. 2007, eq. 35). For formulas and tables that only exist for GGX (lighting/area.glsl).
+float ggx_roughness(float roughness) {
+    return min(roughness * sqrt(dfg_texel(0.5, roughness, DFG_MEAN).b), 1.0);
 }
 
 // alpha along t and b. Anisotropy raises alpha along t towards 1 (KHR_materials_anisotropy).
@@ -47,28 +56,32 @@ float table_roughness(Surface s) {
     return sqrt(sqrt(mix(alpha.y * alpha.y, alpha.x * alpha.x, 0.46)));
 }
 
-// A, B and C.
-vec3 dfg_terms(vec4 dfg) { return vec3(1.0 - dfg.r - dfg.g, dfg.g, dfg.b); }
-
-float white_albedo(vec4 dfg) { return 1.0 - dfg.r; }
-
-vec3 curve_albedo(FresnelCurve curve, vec4 dfg) {
-    vec3 terms = dfg_terms(dfg);
-    return curve.f0 * terms.r + curve.f90 * terms.g - curve.beta * terms.b;
+// Albedo of the specular lobe with this F.
+vec3 single_albedo(Fresnel fresnel, bool is_sampled, Dfg dfg) {
+    if (is_sampled) return fresnel.sampled * dfg.weights + fresnel.at_normal * (dfg.e - dot(dfg.weights, vec4(1.0)));
+    return fresnel.f0 * dfg.a + fresnel.f90 * dfg.b;
 }
 
-// Cosine-weighted average of B, 2 integral B(mu) mu dmu, which the table does not hold. It is 1/21 for a mirror and
-// less for rough surfaces, whose facets reflect at smaller angles. Fits to the integrals, with an error below 0.002.
-float b_average(float roughness) {
-    vec2 fit = vec2(2.9, 13.3);
-    if (MASKING_SHADOWING == SCHLICK_MASKING) fit = vec2(6.0, 18.0);
-    else if (NDF == BECKMANN) fit = vec2(1.0, 7.0);
-    float alpha = roughness * roughness;
-    return 1.0 / (21.0 * (1.0 + alpha * (fit.x + alpha * fit.y)));
+vec3 dielectric_albedo(Surface s, Dfg dfg) { return single_albedo(s.dielectric, DIELECTRIC_IS_SAMPLED, dfg); }
+vec3 metal_albedo(Surface s, Dfg dfg) { return single_albedo(s.metal, METAL_IS_SAMPLED, dfg); }
+
+// Integral of f_diffuse NoL dl. The model need not be linear in the base color x (Oren-Nayar's is not): albedo / x is
+// interpolated by the parabola through its values at x = 1/3, 2/3 and 1.
+vec3 diffuse_albedo(vec3 base_color, float roughness, float n_dot_v) {
+    vec2 uv = table_uv(n_dot_v, roughness, DIFFUSE_COLORS, DIFFUSE_SIDE, DIFFUSE_SLICES);
+    vec3 q = textureLod(diffuse_table, uv, 0.0).rgb;
+    vec3 x = 3.0 * base_color;
+    return base_color * (q.x * 0.5 * (x - 2.0) * (x - 3.0) - q.y * (x - 1.0) * (x - 3.0) + q.z * 0.5 * (x - 1.0) * (x - 2.0));
 }
 
-// Columns are sqrt(NoV), since E is steep at grazing angles; rows as in dfg(). The error is below 0.001 for NoV >= 0.1
-// and roughness >= 0.15.
+// The mean of F over the half vectors of light that the diffuse lobe of a white surface sends towards v.
+vec3 mean_fresnel(Fresnel fresnel, float roughness, float n_dot_v) {
+    vec4 weights = textureLod(diffuse_table, table_uv(n_dot_v, roughness, DIFFUSE_WEIGHTS, DIFFUSE_SIDE, DIFFUSE_SLICES), 0.0);
+    return fresnel.sampled * weights + fresnel.at_normal * (1.0 - dot(weights, vec4(1.0)));
+}
+
+// Columns are sqrt(NoV), since E is steep at grazing angles; rows as in the other tables. The error is below 0.001 for
+// NoV >= 0.1 and roughness >= 0.15.
 float sheen_albedo(float n_dot_v, float sheen_roughness) {
     const float ROWS = 64.0;
     return textureLod(sheen_albedo_table, vec2(sqrt(n_dot_v), (sheen_roughness * (ROWS - 1.0) + 0.5) / ROWS), 0.0).r;

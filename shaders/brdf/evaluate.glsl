@@ -71,30 +71,18 @@ void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
     f.v = v_specular(f.n_dot_l, f.n_dot_v, a2_l, a2_v);
 }
 
-// f_diffuse of the selected model, 1/sr.
-vec3 f_diffuse(Surface s, Brdf f, float l_dot_v) {
-    float fit = 1.0 / PI;
-    if (DIFFUSE == OREN_NAYAR) return f_oren_nayar(s.base_color, f.n_dot_l, f.n_dot_v, l_dot_v, s.roughness);
-    if (DIFFUSE == BURLEY) fit = f_burley(f.n_dot_l, f.n_dot_v, f.v_dot_h, s.roughness);
-    if (DIFFUSE == RENORMALIZED_BURLEY) fit = f_renormalized_burley(f.n_dot_l, f.n_dot_v, f.v_dot_h, s.roughness);
-    if (DIFFUSE == CALL_OF_DUTY) {
-        fit = f_call_of_duty(f.n_dot_l, f.n_dot_v, f.n_dot_h, f.v_dot_h, alpha_from_roughness(s.roughness));
-    }
-    return s.base_color * fit;
-}
-
 // The fraction of light that passes the dielectric boundary on the way in and again on the way out. A colored F counts
 // by its largest component, so that the diffuse lobe does not take on the complementary color (KHR_materials_specular).
 //
-// Fresnel: 1 - F (glTF 2.0, appendix B). Multiple scattering does not reduce it further: that lobe returns energy that
+// GltfSample: 1 - F (glTF 2.0, appendix B). Multiple scattering does not reduce it further: that lobe returns energy that
 // single scattering lost between the facets and that F already counts as reflected.
 //
 // Albedo: (1 - R(l)) (1 - R(v)) / (1 - R_avg), with R the boundary's total reflectance (Kelemen & Szirmay-Kalos 2001).
 // A white base returns exactly what the boundary transmitted. R = 1 everywhere would be 0 / 0; 1e-4 makes it 0.
-float entering(Surface s, Brdf f, vec4 dfg_l) {
-    if (DIFFUSE_COUPLING == FRESNEL_COUPLING) return 1.0 - max_component(f.f_dielectric);
+float entering(Surface s, Brdf f, Dfg dfg_l) {
+    if (DIFFUSE_COUPLING == GLTF_SAMPLE_COUPLING) return 1.0 - max_component(f.f_dielectric);
     float through = (1.0 - boundary_albedo(s, dfg_l)) * (1.0 - boundary_albedo(s, s.dfg));
-    return through / max(1.0 - boundary_albedo_average(s), 1e-4);
+    return through / max(1.0 - boundary_albedo(s, s.mean_dfg), 1e-4);
 }
 
 // KHR_materials_clearcoat: a layer with index of refraction 1.5 and its own normal and roughness,
@@ -158,10 +146,12 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     f.f_dielectric = dielectric_fresnel(s, f.v_dot_h);
     f.f_metal = metal_fresnel(s, f.v_dot_h);
 
-    vec4 dfg_l = s.dfg;
-    if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) dfg_l = dfg(abs(cos_l), table_roughness(s));
+    Dfg dfg_l = s.dfg;
+    if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) {
+        dfg_l = dfg_at(abs(cos_l), table_roughness(s));
+    }
     f.multiple = vec3(0.0);
-    if (MULTI_SCATTER != SINGLE_SCATTER) f.multiple = f_multiple(s, dfg_l);
+    if (MULTI_SCATTER != SINGLE_SCATTER) f.multiple = f_multiple(s, dfg_l.lost);
 
     f.k_s = mix(f.f_dielectric, f.f_metal, s.metallic);
     f.k_d = (1.0 - s.metallic) * entering(s, f, dfg_l);
@@ -180,7 +170,8 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     }
     cover(s, l, v, abs(cos_l), f);
 
-    f.diffuse = f_diffuse(s, f, dot(l, v)) * (f.k_d * above);
+    Cosines cosines = Cosines(f.n_dot_l, f.n_dot_v, f.n_dot_h, f.v_dot_h, dot(l, v));
+    f.diffuse = f_diffuse(s.base_color, s.roughness, alpha_from_roughness(s.roughness), cosines) * (f.k_d * above);
     f.specular = f.k_s * (f.d * f.v);
     f.multiple *= above;
     f.sheen *= above;

@@ -9,7 +9,7 @@
 // refraction 1.5) the error against the exact equations is at most 0.036, at 85 degrees. Metals such as aluminum dip
 // before they rise; Schlick's curve does not.
 vec3 f_schlick(vec3 f0, vec3 f90, float c) { return f0 + (f90 - f0) * pow5(1.0 - c); }
-float f_schlick(float f0, float c) { return f0 + (1.0 - f0) * pow5(1.0 - c); }
+float f_schlick(float f0, float c) { return f_schlick(vec3(f0), vec3(1.0), c).x; }
 
 // Reflectance at normal incidence, ((n - 1) / (n + 1))^2; n = 1.5 -> 0.04. KHR_materials_ior uses 0 for an infinite
 // index, which needs no special case: both give 1.
@@ -30,13 +30,6 @@ float f_dielectric_exact(float ior, float c) {
     float s = (g - c) / max(g + c, 1e-6);
     float p = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
     return 0.5 * s * s * (1.0 + p * p);
-}
-
-// Cosine-weighted average of a dielectric's F, 2 integral F c dc: our fit in t = sqrt F0, with an error below 0.001 for
-// n from 1.2 to 2.6. n = 1.5 -> 0.0918.
-float f_dielectric_average(float ior) {
-    float t = (ior - 1.0) / (ior + 1.0);
-    return saturate(t * (0.5129 + t * (1.1584 * t - 0.4833)));
 }
 
 // A conductor with the complex index of refraction n + i k (Born & Wolf 1999, section 14.4).
@@ -69,13 +62,17 @@ void complex_ior(vec3 f0, vec3 edge_tint, out vec3 n, out vec3 k) {
     k = sqrt(max((f0 * n_plus * n_plus - n_minus * n_minus) / (1.0 - f0), 0.0));
 }
 
-// By how much Schlick's curve exceeds a metal's F (Kutz, Hasan & Edmondson 2021, "F82-tint", after Lazanyi &
+// A metal by its reflectance at 0 and at 82 degrees (Kutz, Hasan & Edmondson 2021, "F82-tint", after Lazanyi &
 // Szirmay-Kalos 2005):
 //
 //   F = F0 + (1 - F0) (1 - c)^5 - beta c (1 - c)^6        beta such that F(82 degrees) = f82
 //
 // The last term peaks at c = 1 / 7 (82 degrees), so beta is fitted there: 1/7 (6/7)^6 = 0.0566528.
 const float COS_82 = 1.0 / 7.0;
-vec3 f82_beta(vec3 f0, vec3 f82) { return (f_schlick(f0, vec3(1.0), COS_82) - f82) / 0.0566528; }
+vec3 f_82(vec3 f0, vec3 f82, float c) {
+    vec3 beta = (f_schlick(f0, vec3(1.0), COS_82) - f82) / 0.0566528;
+    float x = 1.0 - c;
+    return saturate(f_schlick(f0, vec3(1.0), c) - beta * (c * pow5(x) * x));
+}
 
 #endif

@@ -13,8 +13,9 @@
 // OrenNayar). These choices make fewer claims:
 //
 //   Burley, CallOfDuty    fits to the look of real surfaces; both gain energy at grazing angles.
-//   Coupling Fresnel      glTF 2.0, appendix B.3.5. Light enters by 1 - F(VoH), but at a grazing v the surface reflects
-//                         about F(NoV), while VoH is far from grazing for most l: the two sum to more than 1.
+//   Coupling GltfSample   glTF 2.0, appendix B.3.5. Light enters by 1 - F(VoH), but at a grazing v the surface reflects
+//                         about F(NoV), while VoH is far from grazing for most l: the two sum to more than 1, by 59 %
+//                         at 85 degrees.
 //   FdezAguera            distributes the energy that v misses uniformly over l: the albedo is 1, but l and v differ.
 #ifndef BRDF_MODELS_GLSL
 #define BRDF_MODELS_GLSL
@@ -57,9 +58,9 @@ const uint FDEZ_AGUERA = 2u;
 //@ui "Multiple scattering" choice None=0 KullaConty=1 FdezAguera=2 conserves="None KullaConty FdezAguera" reciprocal="None KullaConty"
 layout(constant_id = USER_CONSTANTS + 6) const uint MULTI_SCATTER = KULLA_CONTY;
 
-const uint FRESNEL_COUPLING = 0u;
+const uint GLTF_SAMPLE_COUPLING = 0u;
 const uint ALBEDO_COUPLING = 1u;
-//@ui "Diffuse coupling" choice Fresnel=0 Albedo=1 conserves="Albedo" reciprocal="Fresnel Albedo"
-layout(constant_id = USER_CONSTANTS + 7) const uint DIFFUSE_COUPLING = FRESNEL_COUPLING;
+//@ui "Diffuse coupling" choice GltfSample=0 Albedo=1 conserves="Albedo" reciprocal="GltfSample Albedo"
+layout(constant_id = USER_CONSTANTS + 7) const uint DIFFUSE_COUPLING = ALBEDO_COUPLING;
 
 #endif

@@ -2,6 +2,17 @@
 #ifndef BRDF_SURFACE_GLSL
 #define BRDF_SURFACE_GLSL
 
+#include "brdf/dfg.glsl"
+
+// F of one boundary, for the tables (brdf/dfg.glsl).
+struct Fresnel {
+    vec3 f0;                   // Schlick's parameters
+    vec3 f90;
+    vec3 at_normal;            // F at c = 1
+    mat4x3 sampled;            // F at F_COSINES
+    vec3 average;              // cosine-weighted: 2 integral F(c) c dc
+};
+
 struct Surface {
     vec3 position_ws;
     vec3 n;                    // shading normal, world space, unit
@@ -14,8 +25,13 @@ struct Surface {
     vec3 f0;                   // of the dielectric: reflectance at normal incidence
     float f90;                 // of the dielectric: reflectance at grazing incidence
     float ior;                 // of the dielectric
-    vec4 dfg;                  // albedo terms towards the eye (brdf/energy.glsl), by complete_surface
-    vec3 multiple;             // multiple scattering (brdf/multiscatter.glsl), by complete_surface
+
+    // complete_surface (brdf/multiscatter.glsl) computes these from the members above.
+    Fresnel dielectric;        // of the boundary if it were all dielectric, and all metal
+    Fresnel metal;
+    Dfg dfg;                   // of the specular lobe towards the eye
+    Dfg mean_dfg;              // the mean over all directions
+    vec3 multiple;             // multiple scattering
 
     // The members below are neutral unless FEATURES has the extension's bit.
     vec3 t;                    // FEATURE_ANISOTROPY: direction of the larger alpha, unit, perpendicular to n

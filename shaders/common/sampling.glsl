@@ -68,6 +68,13 @@ float pdf_ggx(float n_dot_h, float alpha) {
     return a2 * max(n_dot_h, 0.0) / (PI * spread * spread);
 }
 
+// GGX with a different alpha along x and y (Heitz 2014, eq. 85), whatever brdf/ndf.glsl returns.
+float d_ggx_reference(vec3 h, vec2 alpha) {
+    vec3 scaled = vec3(h.xy / alpha, h.z);
+    float spread = dot(scaled, scaled);
+    return 1.0 / (PI * alpha.x * alpha.y * spread * spread);
+}
+
 // Half vectors with Beckmann's density D NoH: tan^2 = -alpha^2 log(1 - u) (Walter et al. 2007, eq. 28).
 vec3 sample_beckmann(vec2 u, float alpha) {
     return direction_from_cosine(inversesqrt(1.0 - alpha * alpha * log(1.0 - u.x)), u.y);

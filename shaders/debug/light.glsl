@@ -125,7 +125,7 @@ bool debug_light(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     else if (MODE == MODE_LIGHT_2) value = if_present(present, reflected_radiance(lit));
     else if (MODE == MODE_LIGHT_3) value = if_present(present, reflected_radiance(lit));
     else if (MODE == MODE_LUMINANCE) value = vec3(luminance(radiance));
-    else if (MODE == MODE_DFG) value = if_present(is_lit, dfg_terms(s.dfg));
+    else if (MODE == MODE_DFG) value = if_present(is_lit, vec3(s.dfg.a, s.dfg.b, s.dfg.e));
     else if (MODE == MODE_CLEARCOAT_LIGHT) {
         vec3 light = lit.punctual.clearcoat + lit.area.clearcoat + lit.ambient.clearcoat;
         value = if_present(has_feature(FEATURE_CLEARCOAT), light);

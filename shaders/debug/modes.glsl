@@ -196,7 +196,7 @@ const uint MODE_IBL_SPECULAR = 412u;
 const uint MODE_IRRADIANCE = 413u;
 //@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap doc="Prefiltered radiance in the mirror direction."
 const uint MODE_PREFILTERED = 414u;
-//@mode dfg "DFG terms" group="Light" encode=data doc="A, B, C of the selected D and V: the lobe reflects F0 A + F90 B - beta C."
+//@mode dfg "DFG terms" group="Light" encode=data doc="A, B, E of the selected D and V: the lobe reflects F0 A + F90 B, or E if F is 1."
 const uint MODE_DFG = 415u;
 // For the selected light or all lights, and the environment.
 //@mode clearcoat-light "Clearcoat light" group="Light" encode=color unit="cd/m^2" tonemap doc="Light that the clearcoat reflects."

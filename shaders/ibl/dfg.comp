@@ -1,66 +1,163 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/models.glsl"
+#include "brdf/dfg.glsl"
+#include "brdf/fresnel.glsl"
+#include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
-// Directional albedo of the specular lobe, for brdf/energy.glsl. With c = VoH and integrals over all l,
-//
-//   A = integral of D V (1 - (1 - c)^5) NoL dl      B = integral of D V (1 - c)^5 NoL dl
-//   C = integral of D V c (1 - c)^6 NoL dl          E = A + B,  E_avg = 2 integral of E(mu) mu dmu over 0..1
-//
-// Half vectors are sampled with a density that contains D, so D cancels (Karis 2013) and brdf/ndf.glsl is not called.
-// This table does not follow an edit of D, so the furnace shows the error.
-//
-// One workgroup per row (roughness 0 to 1), one invocation per column (NoV at texel centers). The stored 1 - E, B, C
-// and 1 - E_avg keep three digits in half floats even where E is close to 1.
+// Integrates the moments of the specular lobe (brdf/dfg.glsl) with the D, V and F of the selected models, so that the
+// tables follow an edit of them. One workgroup per row (roughness 0 to 1), one invocation per column (NoV at texel
+// centers).
 
-const uint COLUMNS = 128u;
 layout(local_size_x = 128) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
-shared float partial[COLUMNS];
+const uint COLUMNS = DFG_SIDE;
+shared vec4 partial[COLUMNS];
 
-// Ratio of Beckmann's D to GGX's for the same alpha, at most 4 / e. Both densities contain NoH, which cancels.
-float beckmann_over_ggx(float n_dot_h, float alpha) { return pdf_beckmann(n_dot_h, alpha) / pdf_ggx(n_dot_h, alpha); }
-
-// Visible normals: pdf_h = G1 D VoH / NoV and dh / dl = 1 / (4 VoH), so D / pdf_l = 4 NoV / G1. The points form a
-// lattice, which converges fast for periodic integrands. The integrand is periodic in the azimuth; the substitution 3
-// u^2 - 2 u^3, with its derivative as a weight, makes it periodic in the radius. 512 points have an error of 0.0006,
-// 1024 Hammersley points 0.0016.
-vec4 terms(vec3 v, float alpha) {
-    vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < task.samples; ++i) {
-        float u = (float(i) + 0.5) / float(task.samples);
-        vec2 point = vec2(u * u * (3.0 - 2.0 * u), fract(float(i) * 0.618033988));
-        vec3 h = sample_ggx_vndf(point, v, vec2(alpha));
-        float c = dot(v, h);
-        vec3 l = 2.0 * c * h - v;
-        if (l.z <= 0.0 || c <= 0.0) continue;
-        float weight = 6.0 * u * (1.0 - u) * v_specular(l.z, v.z, alpha) * l.z;
-        if (NDF == BECKMANN) weight *= beckmann_over_ggx(h.z, alpha);
-        float grazing = pow5(1.0 - c);
-        sum += weight * vec4(1.0 - grazing, grazing, c * (1.0 - c) * grazing, 0.0);
+vec4 sum_over_columns(vec4 own) {
+    uint column = gl_LocalInvocationID.x;
+    barrier();
+    partial[column] = own;
+    barrier();
+    for (uint count = COLUMNS / 2u; count > 0u; count /= 2u) {
+        if (column < count) partial[column] += partial[column + count];
+        barrier();
     }
-    return sum * (4.0 * v.z / (g1_ggx(v, vec2(alpha)) * float(task.samples)));
+    return partial[0];
+}
+
+void store(uint slice, vec4 value) {
+    uvec2 texel = gl_GlobalInvocationID.xy;
+    ivec3 place = ivec3(texel.x, slice * DFG_SIDE + texel.y, 0);
+    imageStore(target, place, rounded_to_half(value));
+}
+
+// A value that D, V and F must not have: the caller counts such samples as 0, and Rust warns.
+bool is_wrong(float x) { return isnan(x) || isinf(x) || x < 0.0 || x > 1e20; }
+bool is_wrong(vec3 x) { return any(isnan(x)) || any(isinf(x)) || any(greaterThan(abs(x), vec3(1e3))); }
+
+uint wrong = 0u;               // DFG_FLAG bits
+
+float checked_d(float n_dot_h, float sin2_h, float alpha) {
+    float d = d_specular(n_dot_h, sin2_h, alpha);
+    if (!is_wrong(d)) return d;
+    wrong |= DFG_FLAG_D;
+    return 0.0;
+}
+
+// Three densities of half vectors: GGX's visible normals for alpha, which fit most D, and shares of wider ones, for a D
+// that has more facets far from n. The balance heuristic weights them (Veach 1997, section 9.2.2).
+const uint DENSITIES = 3u;
+const float SHARE[DENSITIES] = float[](1.0, 0.05, 0.01);
+
+float alpha_of_density(uint i, float alpha) { return i == 0u ? alpha : i == 1u ? sqrt(alpha) : 1.0; }
+
+// Up to the factor that is the same for all densities: G1 VoH / NoV and dh / dl = 1 / (4 VoH) of each.
+float pdf_of_density(uint i, vec3 v, vec3 h, float alpha) {
+    return pdf_reflected(pdf_ggx_vndf(v, h, vec2(alpha_of_density(i, alpha))), dot(v, h));
+}
+
+struct Moments {
+    vec4 terms;                // A, B, E
+    vec4 weights;
+};
+
+// The points form a lattice, which converges fast for periodic integrands. The integrand is periodic in the azimuth; the
+// substitution 3 u^2 - 2 u^3, with its derivative as a weight, makes it periodic in the radius. With 512 points, E of
+// GGX and Beckmann is within 0.001; of a D as different as 1 / pi, within 0.013.
+Moments moments(vec3 v, float alpha) {
+    Moments sum = Moments(vec4(0.0), vec4(0.0));
+    for (uint density = 0u; density < DENSITIES; ++density) {
+        uint count = density == 0u ? task.samples : task.samples / 4u;
+        for (uint i = 0u; i < count; ++i) {
+            float u = (float(i) + 0.5) / float(count);
+            vec2 point = vec2(u * u * (3.0 - 2.0 * u), fract(float(i) * 0.618033988));
+            vec3 h = sample_ggx_vndf(point, v, vec2(alpha_of_density(density, alpha)));
+            float c = dot(v, h);
+            vec3 l = 2.0 * c * h - v;
+            if (l.z <= 0.0 || c <= 0.0) continue;
+            float pdf = 0.0;
+            for (uint other = 0u; other < DENSITIES; ++other) pdf += SHARE[other] * pdf_of_density(other, v, h, alpha);
+
+            float visibility = v_specular(l.z, v.z, alpha);
+            // One call for both: a(c) in the first channel, b(c) in the second.
+            vec3 f = f_schlick(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), c);
+            if (is_wrong(visibility)) wrong |= DFG_FLAG_V;
+            if (is_wrong(f)) wrong |= DFG_FLAG_F;
+            float lobe = checked_d(h.z, dot(h.xy, h.xy), alpha) * (is_wrong(visibility) ? 0.0 : visibility) * l.z;
+            lobe *= SHARE[density] * 6.0 * u * (1.0 - u) / (pdf * float(count));
+            sum.terms += lobe * vec4(is_wrong(f) ? vec2(0.0) : f.rg, 1.0, 0.0);
+            sum.weights += lobe * f_weights(c);
+        }
+    }
+    return sum;
+}
+
+// N, the projected area of the facets: the integral of D NoH dh, 1 for a true distribution of normals (Walter et al.
+// 2007, eq. 4). Sampled by the D of three GGX; each invocation takes one sample of each.
+float facet_area(float alpha) {
+    float u = (float(gl_LocalInvocationID.x) + 0.5) / float(COLUMNS);
+    float sum = 0.0;
+    for (uint density = 0u; density < DENSITIES; ++density) {
+        float a2 = pow(alpha_of_density(density, alpha), 2.0);
+        float tan2 = a2 * u / (1.0 - u);
+        float cos2 = 1.0 / (1.0 + tan2);
+        float pdf = 0.0;
+        for (uint other = 0u; other < DENSITIES; ++other) {
+            float b2 = pow(alpha_of_density(other, alpha), 2.0);
+            float spread = cos2 * b2 + tan2 * cos2;
+            pdf += SHARE[other] * b2 / (PI * spread * spread);
+        }
+        sum += SHARE[density] * checked_d(sqrt(cos2), tan2 * cos2, alpha) / pdf;
+    }
+    float area = sum_over_columns(vec4(sum)).x / float(COLUMNS);
+    // The sum is only so exact. Without the step, smooth surfaces would seem to lose what they do not.
+    return abs(area - 1.0) < 2e-3 ? 1.0 : area;
+}
+
+// tan within which half of the facets' area lies, relative to GGX's, which is alpha. 128 steps of tan^2, an eighth of an
+// octave each.
+const float FIRST_STEP = -7.0;
+const float STEP = 0.125;
+
+float relative_width(float alpha) {
+    uint column = gl_LocalInvocationID.x;
+    float relative = exp(FIRST_STEP + STEP * (float(column) + 0.5));
+    float tan2 = alpha * alpha * relative;
+    float cos2 = 1.0 / (1.0 + tan2);
+    // D NoH dh = D NoH^4 / 2 d(tan^2) d(phi)
+    float area = checked_d(sqrt(cos2), tan2 * cos2, alpha) * cos2 * cos2 * tan2;
+    float half_of_all = 0.5 * sum_over_columns(vec4(area)).x;
+    barrier();
+    partial[column] = vec4(area);
+    barrier();
+    float before = 0.0;
+    uint i = 0u;
+    while (i + 1u < COLUMNS && before + partial[i].x < half_of_all) before += partial[i++].x;
+    float within = clamp((half_of_all - before) / max(partial[i].x, 1e-30), 0.0, 1.0);
+    return exp(0.5 * (FIRST_STEP + STEP * (float(i) + within)));
 }
 
 void main() {
     uvec2 texel = gl_GlobalInvocationID.xy;
     float n_dot_v = (float(texel.x) + 0.5) / float(COLUMNS);
     float alpha = alpha_from_roughness(float(texel.y) / float(task.size.y - 1u));
-    vec4 dfg = terms(vec3(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v), alpha);
+    float area = facet_area(alpha);
+    float width = relative_width(alpha);
 
-    float lost = max(1.0 - (dfg.r + dfg.g), 0.0);
-    partial[texel.x] = lost * n_dot_v * (2.0 / float(COLUMNS));
-    barrier();
-    for (uint half_count = COLUMNS / 2u; half_count > 0u; half_count /= 2u) {
-        if (texel.x < half_count) partial[texel.x] += partial[texel.x + half_count];
-        barrier();
-    }
-    float average = rounded_to_half(vec3(partial[0])).x;
-    imageStore(target, ivec3(texel, 0), vec4(rounded_to_half(vec3(lost, dfg.gb)), average));
+    Moments here = moments(vec3(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v), alpha);
+    here.terms.a = area > 1e-6 ? max(1.0 - here.terms.b / area, 0.0) : 0.0;
+    store(DFG_DIRECTION, here.terms);
+    store(DFG_DIRECTION_WEIGHTS, here.weights);
+
+    float weight = n_dot_v * (2.0 / float(COLUMNS));
+    vec4 mean = sum_over_columns(here.terms * weight);
+    store(DFG_MEAN, vec4(mean.rg, width, mean.a));
+    store(DFG_LOBE, vec4(mean.b, area, float(wrong), 0.0));
+    store(DFG_MEAN_WEIGHTS, sum_over_columns(here.weights * weight));
 }

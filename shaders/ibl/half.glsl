@@ -12,4 +12,6 @@ vec3 rounded_to_half(vec3 x) {
     return uintBitsToFloat((bits + 0xfffu + ((bits >> 13) & 1u)) & ~0x1fffu);
 }
 
+vec4 rounded_to_half(vec4 x) { return vec4(rounded_to_half(x.rgb), rounded_to_half(x.aaa).x); }
+
 #endif

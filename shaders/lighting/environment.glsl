@@ -7,7 +7,8 @@
 #include "ibl/levels.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
-layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform samplerCube prefiltered_cube;
+layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform samplerCube prefiltered_even;
+layout(set = SET_FRAME, binding = BINDING_PREFILTERED_ODD) uniform samplerCube prefiltered_odd;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED_SHEEN) uniform samplerCube prefiltered_sheen_cube;
 layout(set = SET_FRAME, binding = BINDING_IRRADIANCE) uniform samplerCube irradiance_cube;
 
@@ -30,19 +31,30 @@ vec3 environment_radiance(vec3 direction, float lod) {
     return frame.environment_intensity * textureLod(environment_cube, map_from_world(direction), lod).rgb;
 }
 
+// Without an environment, the ambient light of the settings arrives from everywhere.
+const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
+
 // E / pi: the radiance that a white Lambertian surface with the normal n reflects.
 vec3 irradiance_over_pi(vec3 n) {
+    if (!HAS_ENVIRONMENT) return frame.ambient;
     return frame.environment_intensity * textureLod(irradiance_cube, map_from_world(n), 0.0).rgb;
 }
 
-// The GGX-weighted mean of radiance around r, for v = n: the first factor of the split sum (Karis 2013).
+// The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
+// (Karis 2013). The levels are in two cube maps (ibl/levels.glsl), so a lookup mixes an even with an odd level.
 vec3 prefiltered_radiance(vec3 r, float roughness) {
-    float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_cube));
-    return frame.environment_intensity * textureLod(prefiltered_cube, map_from_world(r), lod).rgb;
+    if (!HAS_ENVIRONMENT) return frame.ambient;
+    vec3 direction = map_from_world(r);
+    float level = specular_level(roughness);
+    float odd = min(floor(0.5 * level), 0.5 * SPECULAR_LEVELS - 1.0);
+    vec3 even_radiance = textureLod(prefiltered_even, direction, floor(0.5 * level + 0.5)).rgb;
+    vec3 odd_radiance = textureLod(prefiltered_odd, direction, odd).rgb;
+    return frame.environment_intensity * mix(even_radiance, odd_radiance, 1.0 - abs(level - 2.0 * odd - 1.0));
 }
 
 // The same with the sheen distribution.
 vec3 prefiltered_sheen(vec3 r, float roughness) {
+    if (!HAS_ENVIRONMENT) return frame.ambient;
     float lod = level_of_roughness(roughness, textureQueryLevels(prefiltered_sheen_cube));
     return frame.environment_intensity * textureLod(prefiltered_sheen_cube, map_from_world(r), lod).rgb;
 }
@@ -50,11 +62,11 @@ vec3 prefiltered_sheen(vec3 r, float roughness) {
 // The background. environment_blur acts as a roughness. Below level 1 this blends with the unfiltered cube, which has
 // more texels than level 0 of the prefiltered one.
 vec3 background_radiance(vec3 direction) {
-    float lod = level_of_roughness(frame.environment_blur, textureQueryLevels(prefiltered_cube));
-    if (lod <= 0.0) return environment_radiance(direction, 0.0);
-    if (lod >= 1.0) return prefiltered_radiance(direction, frame.environment_blur);
-    vec3 blurred = textureLod(prefiltered_cube, map_from_world(direction), 1.0).rgb * frame.environment_intensity;
-    return mix(environment_radiance(direction, 0.0), blurred, lod);
+    float level = specular_level(frame.environment_blur);
+    if (level <= 0.0) return environment_radiance(direction, 0.0);
+    if (level >= 1.0) return prefiltered_radiance(direction, frame.environment_blur);
+    vec3 blurred = textureLod(prefiltered_odd, map_from_world(direction), 0.0).rgb * frame.environment_intensity;
+    return mix(environment_radiance(direction, 0.0), blurred, level);
 }
 
 #endif

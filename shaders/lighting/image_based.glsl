@@ -1,6 +1,7 @@
 // Light from the environment, by the split sum (Karis 2013, "Real Shading in Unreal Engine 4"): each lobe's albedo
 // towards the eye (lighting/albedo.glsl) times its mean incident radiance, from cube maps that were prefiltered for a
-// lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp).
+// lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp). Without an environment the radiance is the same from
+// everywhere, and the product is exact.
 //
 // Multiple scattering (Kulla & Conty 2017; Fdez-Aguera 2019) leaves the facets in all directions, so it uses the
 // irradiance, as the diffuse lobe does.
@@ -12,42 +13,25 @@
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "lighting/albedo.glsl"
+#include "lighting/anisotropy.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/lobes.glsl"
 
 // The direction in which to look up a lobe: the mirror direction, shifted towards n for rough lobes, since NoL weights
 // them (Lagarde & de Rousiers 2014, section 4.9.3). The weight of n is within 0.1 of the true mean's at most angles. A
-// mirror -> r, alpha = 1 -> n. Not normalized, since a cube lookup does not need it.
+// mirror -> r, alpha = 1 -> n. Not normalized, since a cube lookup does not need it. The fit is for GGX.
 vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
-    float alpha = roughness * roughness;
+    float alpha = pow(ggx_roughness(roughness), 2.0);
     float smoothness = 1.0 - alpha;
     return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
 }
 
-// Approximates an anisotropic lobe (KHR_materials_anisotropy) by a row of isotropic ones with its smaller alpha, whose
-// normals are tilted along t. The slopes x of GGX along t have the density 1 / (2 a (1 + x^2 / a^2)^(3/2)); each strip
-// takes the middle of an equal share of it. An isotropic lobe already has a width, so a^2 is the difference of the two
-// alpha^2; without anisotropy all strips coincide. Each strip is weighted like a facet with its normal,
-// V NoL VoH / NoH (Walter et al. 2007, eq. 41).
-const int STRIPS = 8;
-
+// Mean incident radiance of an anisotropic lobe.
 vec3 stretched_radiance(Surface s, vec3 v) {
-    vec2 stretched = alpha_sides(s);
-    float spread = sqrt(max(stretched.x * stretched.x - stretched.y * stretched.y, 0.0));
-    mat3 ts_from_ws = transpose(mat3(s.t, s.b, s.n));
-    float n_dot_v = n_dot_v_of(s.n, v);
-    float a2_v = a2_towards(ts_from_ws * v, stretched);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < STRIPS; ++i) {
-        float u = (2.0 * float(i) + 1.0) / float(STRIPS) - 1.0;
-        vec3 h = normalize(s.n + s.t * (spread * u * inversesqrt(1.0 - u * u)));
-        vec3 l = reflect(-v, h);
-        float n_dot_l = dot(s.n, l);
-        float v_dot_h = dot(v, h);
-        if (n_dot_l <= 0.0 || v_dot_h <= 0.0) continue;
-        float visible = v_specular(n_dot_l, n_dot_v, a2_towards(ts_from_ws * l, stretched), a2_v);
-        float weight = visible * n_dot_l * v_dot_h / dot(s.n, h);
-        sum += vec4(prefiltered_radiance(lobe_direction(h, v, s.roughness), s.roughness), 1.0) * weight;
+        Strip strip = strip_of_lobe(s, v, i);
+        sum += vec4(prefiltered_radiance(lobe_direction(strip.n, v, s.roughness), s.roughness), 1.0) * strip.weight;
     }
     return sum.rgb / max(sum.a, 1e-6);
 }

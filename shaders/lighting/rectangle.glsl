@@ -7,6 +7,7 @@
 #include "brdf/surface.glsl"
 #include "brdf/transmission.glsl"
 #include "lighting/albedo.glsl"
+#include "lighting/anisotropy.glsl"
 #include "lighting/area.glsl"
 #include "lighting/lobes.glsl"
 
@@ -19,30 +20,44 @@ Light mirrored_rectangle(Light light, vec3 position_ws, vec3 n) {
     return light;
 }
 
+// The part of a lobe that the light covers. The table is for GGX, so the lobe counts as the GGX that is as wide.
+AreaLight covered(Light light, vec3 position_ws, vec3 n, vec3 v, float roughness) {
+    return integrate_rect(light, position_ws, n, v, ggx_roughness(roughness));
+}
+
+// The same for the specular lobe of an anisotropic surface.
+float covered_of_stretched(Light light, Surface s, vec3 v) {
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < STRIPS; ++i) {
+        Strip strip = strip_of_lobe(s, v, i);
+        sum += vec2(covered(light, s.position_ws, strip.n, v, s.roughness).specular, 1.0) * strip.weight;
+    }
+    return sum.x / max(sum.y, 1e-6);
+}
+
 // Each lobe's albedo, times the fraction of the lobe that the rectangle covers, times the rectangle's radiance.
 // Multiple scattering and sheen have no table; they use the fraction of the diffuse lobe, which is about as wide.
 Lobes rectangle_light(Surface s, vec3 v, Albedo albedo, Light light) {
-    AreaLight base = integrate_rect(light, s.position_ws, s.n, v, s.roughness);
+    AreaLight base = covered(light, s.position_ws, s.n, v, s.roughness);
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) base.specular = covered_of_stretched(light, s, v);
     Lobes seen = no_light();
     seen.diffuse = albedo.diffuse * base.diffuse;
     seen.multiple = albedo.multiple * base.diffuse;
     seen.sheen = albedo.sheen * base.diffuse;
     seen.specular = albedo.specular * base.specular;
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
-        AreaLight coat = integrate_rect(light, s.position_ws, s.clearcoat_n, v, s.clearcoat_roughness);
+        AreaLight coat = covered(light, s.position_ws, s.clearcoat_n, v, s.clearcoat_roughness);
         seen.clearcoat = albedo.clearcoat * coat.specular;
     }
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
-        AreaLight back = integrate_rect(light, s.position_ws, -s.n, v, s.roughness);
+        AreaLight back = covered(light, s.position_ws, -s.n, v, s.roughness);
         seen.transmitted += albedo.diffuse_transmitted * back.diffuse;
     }
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
-        // The transmitted lobe of a thin wall is the reflected lobe, mirrored, as in evaluate_brdf. evaluate_brdf loses
-        // light between the facets, so this multiplies by the albedo for F = 1.
+        // The transmitted lobe of a thin wall is the reflected lobe, mirrored, as in evaluate_brdf.
         float roughness = transmission_roughness(s.roughness, s.ior);
-        vec3 passes = albedo.transmitted * white_albedo(dfg(n_dot_v_of(s.n, v), roughness));
         Light mirror = mirrored_rectangle(light, s.position_ws, s.n);
-        seen.transmitted += passes * integrate_rect(mirror, s.position_ws, s.n, v, roughness).specular;
+        seen.transmitted += albedo.transmitted * covered(mirror, s.position_ws, s.n, v, roughness).specular;
     }
     Lobes sum = no_light();
     add(sum, with_sum(seen), light.intensity);

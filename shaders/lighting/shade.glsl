@@ -6,7 +6,6 @@
 #include "interface.glsl"
 #include "brdf/evaluate.glsl"
 #include "lighting/albedo.glsl"
-#include "lighting/ambient.glsl"
 #include "lighting/image_based.glsl"
 #include "lighting/lobes.glsl"
 #include "lighting/punctual.glsl"
@@ -56,11 +55,6 @@ void add_punctual(inout Lit lit, Surface s, vec3 v, Light light, bool for_terms)
     add(lit.punctual, lobes, illumination.irradiance * abs(n_dot_l));
 }
 
-Lobes ambient_light(Surface s, vec3 v, Albedo albedo) {
-    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) return with_sum(environment_light(s, v, albedo));
-    return with_sum(flat_light(s));
-}
-
 // Attenuates transmitted light by the volume's thickness, wherever the light comes from.
 void cross_volume(Surface s, inout Lobes light) {
     light.all -= light.transmitted;
@@ -72,7 +66,7 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     Albedo albedo = directional_albedo(s, v);
     Lit lit;
     lit.punctual = lit.area = lit.lobes = no_light();
-    lit.ambient = ambient_light(s, v, albedo);
+    lit.ambient = with_sum(environment_light(s, v, albedo));
     lit.behind = vec3(0.0);
     lit.emitted = s.emissive * albedo.under_coat;
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);

@@ -181,7 +181,8 @@ impl Viewer {
         if missing.pipelines {
             self.threads.worker.build(set, &state.pipelines);
         }
-        self.threads.baker.bake(set, missing.environment);
+        self.threads.baker.bake_tables(set, missing.tables, &self.resources);
+        self.threads.baker.bake(set, missing.environment, &self.resources);
         self.threads.baker.read(missing.measured);
     }
 

@@ -13,6 +13,7 @@ mod scene;
 mod state;
 mod view;
 
+pub use brdf::tables::{Tables, wrong_values};
 pub(crate) use brdf::{ltc, measured::measured_buffer};
 pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
 pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages, tree_name};
@@ -20,7 +21,7 @@ pub use resources::{BoundFrame, Missing, ProvideError, Resources, read_measured}
 pub use scene::{GpuModel, UploadError};
 pub use state::{
     EnvironmentKey, FrameInputs, FrameState, MaterialVariant, MeasuredKey, PipelineRequest, Revisions, Scene,
-    TargetFormat,
+    TablesKey, TargetFormat,
 };
 pub use view::{Capture, Output, PixelAt, Redraw, View};
 pub(crate) use view::{SharedImages, Sources, Uniforms};

@@ -7,10 +7,11 @@ use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts};
 use crate::scene::{Measured, MeasuredError};
 
 use super::brdf::measured::measured_buffer;
+use super::brdf::tables::Tables;
 use super::environment::bake::{BakeControl, BakeError, GpuEnvironment};
 use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};
-use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene};
+use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
 
 /// A [`FrameState`] with all the pipelines and resources that draw it. It keeps them alive after newer ones replace them.
 #[derive(Clone)]
@@ -19,6 +20,7 @@ pub struct BoundFrame {
     pub state: Arc<FrameState>,
     pub(super) pipelines: BoundPipelines,
     pub(super) scene: Option<Arc<GpuScene>>,
+    pub(super) tables: Arc<Tables>,
     pub(super) environment: Arc<GpuEnvironment>,
     pub(super) measured: Arc<Buffer>,
 }
@@ -39,6 +41,7 @@ impl BoundFrame {
         };
         same_scene
             && self.pipelines.is_same(&other.pipelines)
+            && Arc::ptr_eq(&self.tables, &other.tables)
             && Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.measured, &other.measured)
             && self.state.is_same(&other.state)
@@ -50,6 +53,8 @@ impl BoundFrame {
 pub struct Missing {
     /// Whether the newest set lacks pipelines.
     pub pipelines: bool,
+    /// Tables of the BRDF to bake.
+    pub tables: Option<TablesKey>,
     /// An environment to bake.
     pub environment: Option<EnvironmentKey>,
     /// A measured BRDF to read.
@@ -83,6 +88,11 @@ impl<K: PartialEq, T> Slot<K, T> {
         self.made.as_ref().map_or(&self.none, |(_, resource)| resource)
     }
 
+    /// The last good resource, if the wanted one differs from it only by an edit.
+    fn before_edit(&self, is_edit: impl Fn(&K) -> bool) -> Option<&Arc<T>> {
+        self.made.as_ref().filter(|(key, _)| is_edit(key)).map(|(_, resource)| resource)
+    }
+
     fn set(&mut self, key: K, resource: Option<Arc<T>>) {
         match resource {
             Some(resource) => (self.made, self.failed) = (Some((key, resource)), None),
@@ -98,6 +108,7 @@ pub struct Resources {
     pipelines: Option<Arc<PipelineSet>>,
     model: Option<Arc<GpuModel>>,
     scene: Option<(Scene, Arc<GpuScene>)>,
+    tables: Slot<TablesKey, Tables>,
     environment: Slot<EnvironmentKey, GpuEnvironment>,
     measured: Slot<MeasuredKey, Buffer>,
 }
@@ -114,6 +125,7 @@ impl Resources {
             pipelines: None,
             model: None,
             scene: None,
+            tables: Slot::new(Tables::of_mirror(gpu)?),
             environment: Slot::new(GpuEnvironment::uniform(gpu, ambient)?),
             measured: Slot::new(measured_buffer(gpu, None)?),
         })
@@ -135,7 +147,17 @@ impl Resources {
         self.scene = None;
     }
 
-    /// Takes the result of a bake; `None` if it failed.
+    /// Takes baked tables of the BRDF; `None` if the bake failed.
+    pub fn set_tables(&mut self, key: TablesKey, tables: Option<Arc<Tables>>) {
+        self.tables.set(key, tables);
+    }
+
+    /// The tables that were baked last.
+    pub fn tables(&self) -> Option<&Arc<Tables>> {
+        self.tables.made.as_ref().map(|(_, tables)| tables)
+    }
+
+    /// Takes a baked environment; `None` if the bake failed.
     pub fn set_environment(&mut self, key: EnvironmentKey, environment: Option<Arc<GpuEnvironment>>) {
         self.environment.set(key, environment);
     }
@@ -150,6 +172,11 @@ impl Resources {
         self.environment.last_good()
     }
 
+    /// The environment that was baked last, with its key: the next bake takes over the parts that are the same.
+    pub fn baked_environment(&self) -> Option<&(EnvironmentKey, Arc<GpuEnvironment>)> {
+        self.environment.made.as_ref()
+    }
+
     /// The resources that `state` still lacks. The model is never missing, because states refer only to uploaded models.
     pub fn missing(&self, state: &FrameState) -> Missing {
         let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
@@ -157,13 +184,15 @@ impl Resources {
         let measured = state.measured.as_ref();
         Missing {
             pipelines: !has_pipelines,
+            tables: self.tables.get(Some(&state.tables)).is_none().then(|| state.tables.clone()),
             environment: environment.filter(|key| self.environment.get(Some(key)).is_none()).cloned(),
             measured: measured.filter(|key| self.measured.get(Some(key)).is_none()).cloned(),
         }
     }
 
-    /// Binds `state`, or returns `None` if a resource is missing. With `is_first`, the last environment (at first the ambient
-    /// light) may replace one that is still being baked, so that the first picture appears early.
+    /// Binds `state`, or returns `None` if a resource is missing. An edit of the shaders shows at once, in the light that the
+    /// previous shaders baked. With `is_first`, the last environment (at first the ambient light) may replace one that is still
+    /// being baked, so that the first picture appears early.
     ///
     /// # Errors
     /// No memory left for the materials.
@@ -171,12 +200,14 @@ impl Resources {
         let Some(pipelines) = self.pipelines_of(state).and_then(|set| set.bind(&state.pipelines)) else {
             return Ok(None);
         };
-        let environment = match self.environment.get(state.environment.as_ref()) {
-            Some(environment) => environment.clone(),
-            // An edit of the bake stages shows at once, in the light that the previous shaders baked.
-            None if is_first || self.has_baked(state) => self.environment.last_good().clone(),
-            None => return Ok(None),
-        };
+        let tables = self.tables.get(Some(&state.tables));
+        let tables = tables.or_else(|| self.tables.before_edit(|key| key.is_edit_of(&state.tables))).cloned();
+        let environment = self.environment.get(state.environment.as_ref());
+        let environment = environment.or_else(|| {
+            let is_edit = |key: &EnvironmentKey| state.environment.as_ref().is_some_and(|wanted| key.is_edit_of(wanted));
+            self.environment.before_edit(is_edit).or(is_first.then(|| self.environment.last_good()))
+        });
+        let (Some(tables), Some(environment)) = (tables, environment.cloned()) else { return Ok(None) };
         let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
         let scene = match &state.scene {
             Some(scene) => match self.scene_of(scene)? {
@@ -185,7 +216,7 @@ impl Resources {
             },
             None => None,
         };
-        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, environment, measured }))
+        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured }))
     }
 
     /// Creates everything that `state` lacks on this thread, and binds it.
@@ -195,6 +226,11 @@ impl Resources {
     pub fn provide(&mut self, state: &Arc<FrameState>) -> Result<BoundFrame, ProvideError> {
         let missing = self.missing(state);
         let set = self.pipelines_of(state).cloned().ok_or(ProvideError::Stale)?;
+        if let Some(key) = missing.tables {
+            let tables = Tables::bake(&set, &key, self.tables().map(|tables| &**tables));
+            self.set_tables(key, tables.as_ref().ok().cloned());
+            tables?;
+        }
         if let Some(key) = missing.environment {
             self.bake(key, true)?;
         }
@@ -217,7 +253,9 @@ impl Resources {
     pub fn bake(&mut self, key: EnvironmentKey, from_disk: bool) -> Result<(), ProvideError> {
         let set = self.pipelines.clone().ok_or(ProvideError::Stale)?;
         let control = BakeControl { progress: &|_, _| {}, superseded: &|| false, from_disk };
-        match GpuEnvironment::bake(&set, &key.name, &control) {
+        // A bench wants all parts anew.
+        let before = self.baked_environment().filter(|_| from_disk);
+        match GpuEnvironment::bake(&set, &key, before, &control) {
             Ok(environment) => self.set_environment(key, Some(environment)),
             Err(error) => {
                 self.set_environment(key, None);
@@ -225,12 +263,6 @@ impl Resources {
             }
         }
         Ok(())
-    }
-
-    /// Whether the last bake was of the environment of `state`, possibly with other shaders or from an older version of the file.
-    fn has_baked(&self, state: &FrameState) -> bool {
-        let baked = self.environment.made.as_ref().map(|(key, _)| &key.name);
-        baked.is_some() && baked == state.environment.as_ref().map(|key| &key.name)
     }
 
     /// The newest set, if it has the shaders of `state`.

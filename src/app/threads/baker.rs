@@ -1,4 +1,4 @@
-//! The baker bakes environments and reads measured BRDFs, each on a thread of its own. The window keeps drawing with the previous
+//! The baker bakes environments and the tables of the BRDF, and reads measured BRDFs, each on a thread of its own. The window keeps drawing with the previous
 //! one, and the newest request wins.
 
 use std::sync::Arc;
@@ -6,8 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
 use super::{Message, Outbox};
-use crate::gpu::{Buffer, Gpu};
-use crate::render::{BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, read_measured};
+use crate::gpu::{Buffer, Gpu, GpuError};
+use crate::render::{
+    BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, Resources, Tables, TablesKey,
+    read_measured,
+};
 
 /// Messages of the baker.
 pub(in crate::app) enum BakeMessage {
@@ -15,6 +18,8 @@ pub(in crate::app) enum BakeMessage {
     Progress(u64, f32, String),
     /// The result of a bake.
     Environment(u64, EnvironmentKey, Result<Arc<GpuEnvironment>, BakeError>),
+    /// Tables of the BRDF.
+    Tables(TablesKey, Result<Arc<Tables>, GpuError>),
     /// A measured BRDF.
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
 }
@@ -30,6 +35,8 @@ pub(in crate::app) struct Baker {
     gpu: Arc<Gpu>,
     outbox: Outbox,
     bake: Option<Bake>,
+    /// The newest tables. The window takes them, and ignores older ones.
+    pub(in crate::app) tables: Option<TablesKey>,
     /// The newest read. The window takes its result, and ignores those of older ones.
     pub(in crate::app) reading: Option<MeasuredKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
@@ -40,7 +47,7 @@ pub(in crate::app) struct Baker {
 impl Baker {
     pub(super) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
         let (newest, threads) = Default::default();
-        Self { gpu: gpu.clone(), outbox: outbox.clone(), bake: None, reading: None, newest, threads }
+        Self { gpu: gpu.clone(), outbox: outbox.clone(), bake: None, tables: None, reading: None, newest, threads }
     }
 
     /// The fraction of the running bake that is done, and its next pass.
@@ -48,8 +55,9 @@ impl Baker {
         self.bake.as_ref().map(|bake| &bake.progress)
     }
 
-    /// Bakes `key` with `set` and cancels any other bake. `None` only cancels.
-    pub(in crate::app) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>) {
+    /// Bakes `key` with `set` and cancels any other bake. `None` only cancels. `resources` has the last bake, of which
+    /// unchanged parts are taken over.
+    pub(in crate::app) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>, resources: &Resources) {
         if self.bake.as_ref().map(|bake| &bake.key) == key.as_ref() {
             return;
         }
@@ -58,16 +66,34 @@ impl Baker {
         let Some(key) = key else { return };
         self.bake = Some(Bake { key: key.clone(), progress: (0.0, String::new()) });
         let (set, newest) = (set.clone(), self.newest.clone());
+        let before = resources.baked_environment().cloned();
         self.spawn("baker", move |outbox| {
             let progress = |done: f32, next: &str| {
                 outbox.send(Message::Bake(BakeMessage::Progress(number, done, next.to_owned())));
             };
             let superseded = || newest.load(Ordering::SeqCst) != number;
             let control = BakeControl { progress: &progress, superseded: &superseded, from_disk: true };
-            let result = GpuEnvironment::bake(&set, &key.name, &control);
-            // Release the set before the window takes the result.
-            drop(set);
+            let result = GpuEnvironment::bake(&set, &key, before.as_ref(), &control);
+            // Release them before the window takes the result.
+            drop((set, before));
             outbox.send(Message::Bake(BakeMessage::Environment(number, key, result)));
+        });
+    }
+
+    /// Bakes the tables of `key` with `set`, unless they are being baked.
+    pub(in crate::app) fn bake_tables(
+        &mut self,
+        set: &Arc<PipelineSet>,
+        key: Option<TablesKey>,
+        resources: &Resources,
+    ) {
+        let Some(key) = key.filter(|key| self.tables.as_ref() != Some(key)) else { return };
+        self.tables = Some(key.clone());
+        let (set, before) = (set.clone(), resources.tables().cloned());
+        self.spawn("tables", move |outbox| {
+            let result = Tables::bake(&set, &key, before.as_deref());
+            drop((set, before));
+            outbox.send(Message::Bake(BakeMessage::Tables(key, result)));
         });
     }
 

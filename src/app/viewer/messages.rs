@@ -11,7 +11,7 @@ use crate::app::threads::loader::Loaded;
 use crate::app::threads::worker::WorkerMessage;
 use crate::events::{Event, ReloadEvent, emit};
 use crate::message;
-use crate::render::{Outcome, Reload};
+use crate::render::{Outcome, Reload, wrong_values};
 use crate::settings::LightSource;
 
 /// Maximum number of worker restarts after consecutive panics.
@@ -125,6 +125,7 @@ impl Viewer {
                 }
                 match result {
                     Ok(environment) => {
+                        self.warn_of(environment.wrong());
                         emit(self.events, &Event::Bake(&environment.report));
                         self.resources.set_environment(key, Some(environment));
                     }
@@ -134,12 +135,27 @@ impl Viewer {
                     }
                 }
             }
+            BakeMessage::Tables(key, result) if self.threads.baker.tables.as_ref() == Some(&key) => {
+                self.threads.baker.tables = None;
+                if let Ok(tables) = &result {
+                    self.warn_of(tables.wrong.iter().copied());
+                }
+                let result = result.map_err(|error| self.say(error.to_string()));
+                self.resources.set_tables(key, result.ok());
+            }
             BakeMessage::Measured(key, result) if self.threads.baker.reading.as_ref() == Some(&key) => {
                 self.threads.baker.reading = None;
                 let result = result.map_err(|message| self.say(message));
                 self.resources.set_measured(key, result.ok());
             }
-            BakeMessage::Measured(..) => {}
+            BakeMessage::Tables(..) | BakeMessage::Measured(..) => {}
+        }
+    }
+
+    /// Warns of functions whose values a bake could not use.
+    fn warn_of(&mut self, functions: impl IntoIterator<Item = &'static str>) {
+        for function in functions {
+            self.say(wrong_values(function));
         }
     }
 
@@ -174,6 +190,11 @@ impl Viewer {
             "baker" => {
                 if let Some(key) = self.threads.baker.abandon_bake() {
                     self.resources.set_environment(key, None);
+                }
+            }
+            "tables" => {
+                if let Some(key) = self.threads.baker.tables.take() {
+                    self.resources.set_tables(key, None);
                 }
             }
             "reader" => {

@@ -6,24 +6,31 @@ use std::time::Instant;
 
 use crate::disk_cache;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
-use crate::scene::{Environment, EnvironmentError, EnvironmentFile};
+use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
-use crate::render::environment::passes::{IRRADIANCE_LEVEL, Passes, no_results};
+use crate::render::environment::passes::{
+    IRRADIANCE_LEVEL, Lobes, Passes, Target, small_lights, small_lights_size,
+};
 use crate::render::pipeline::PipelineSet;
+use crate::render::state::{BakeStage, EnvironmentKey};
 
 pub(crate) const CUBE: &str = "ibl/cube.comp";
 pub(crate) const DOWNSAMPLE: &str = "ibl/downsample.comp";
 pub(crate) const IRRADIANCE: &str = "ibl/irradiance.comp";
-const PREFILTER: &str = "ibl/prefilter.comp";
+pub(crate) const PREFILTER: &str = "ibl/prefilter.comp";
 const PREFILTER_SHEEN: &str = "ibl/prefilter_sheen.comp";
-/// The stages of a bake. If one of them changes, the environment is baked again.
-pub const BAKE_STAGES: [&str; 5] = [CUBE, DOWNSAMPLE, IRRADIANCE, PREFILTER, PREFILTER_SHEEN];
+pub(crate) const LOBE: &str = "ibl/lobe.comp";
+/// The stages of each part of a bake. If one of them changes, the part is baked again.
+pub(crate) const RADIANCE_STAGES: [&str; 3] = [CUBE, DOWNSAMPLE, IRRADIANCE];
+pub(crate) const PREFILTER_STAGES: [&str; 2] = [LOBE, PREFILTER];
+pub(crate) const SHEEN_STAGES: [&str; 1] = [PREFILTER_SHEEN];
 
 const CUBE_SIDE: u32 = 512;
 const CUBE_LEVELS: u32 = 10;
 const PREFILTERED_SIDE: u32 = 256;
-const PREFILTERED_LEVELS: u32 = 9;
+/// Mip levels of the even levels of ibl/levels.glsl; the odd ones have one less.
+const PREFILTERED_LEVELS: u32 = 6;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 256;
@@ -35,8 +42,8 @@ pub(crate) const LARGEST_HALF: f32 = 65504.0;
 /// A map is scaled down at most by this factor to fit half floats, and clipped beyond: more would lose its dark parts.
 const LARGEST_RANGE: f32 = 4096.0;
 
-/// Samples per texel of each prefiltered level. Rougher levels need more samples and have fewer texels.
-const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512, 512, 512, 512];
+/// Samples per texel of each mip level. Rougher lobes need more samples and have fewer texels.
+const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512];
 
 /// Why a bake failed.
 #[derive(Debug, thiserror::Error)]
@@ -82,15 +89,32 @@ pub struct BakeReport {
 
 /// An environment on the device; all images in [`Use::Sampled`].
 pub struct GpuEnvironment {
-    pub(crate) cube: Arc<Image>,
-    pub(crate) prefiltered: Arc<Image>,
+    pub(crate) radiance: Arc<Radiance>,
+    pub(crate) prefiltered: Arc<Prefiltered>,
     pub(crate) sheen: Arc<Image>,
-    pub(crate) irradiance: Arc<Image>,
     pub(crate) sampler: Arc<Sampler>,
-    /// The images hold radiance times this factor.
-    pub(crate) scale: f32,
     /// How long the bake took.
     pub report: BakeReport,
+}
+
+/// The part of an environment that depends on its map alone; images in [`Use::Sampled`].
+pub(crate) struct Radiance {
+    pub(crate) cube: Arc<Image>,
+    pub(crate) irradiance: Arc<Image>,
+    /// The images hold radiance times this factor.
+    pub(crate) scale: f32,
+    /// The list of ibl/small_lights.glsl. `None` in an environment that is never prefiltered.
+    small_lights: Option<Arc<Buffer>>,
+    /// Fingerprint of the map.
+    map: u128,
+}
+
+/// The levels of the specular lobe (ibl/levels.glsl), in [`Use::Sampled`].
+pub(crate) struct Prefiltered {
+    pub(crate) even: Arc<Image>,
+    pub(crate) odd: Arc<Image>,
+    /// Whether D or V returned values that are no densities. They count as 0.
+    wrong: bool,
 }
 
 /// Callbacks and options of a bake.
@@ -110,66 +134,145 @@ impl GpuEnvironment {
     /// Out of memory.
     pub(crate) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
-        let cube = |name: &str| Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage));
-        let names = ["uniform cube", "uniform prefiltered", "uniform sheen", "uniform irradiance"];
-        let [a, b, c, d] = names.map(cube);
-        let this = Self::with(gpu, [a?, b?, c?, d?])?;
-        let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(half::f16::from_f32);
-        let texels = this.bytes() as usize / size_of_val(&texel);
-        this.fill(gpu, &bytemuck::cast_slice(&texel.map(half::f16::to_bits)).repeat(texels))?;
+        let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(|x| half::f16::from_f32(x).to_bits());
+        let texels = bytemuck::cast_slice(&texel).repeat(6);
+        let cube = |name: &str| {
+            let image = Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage))?;
+            compute::upload(gpu, &[(&image, &texels)])?;
+            Ok::<_, GpuError>(image)
+        };
+        let (even, odd) = (cube("uniform even levels")?, cube("uniform odd levels")?);
+        let (sheen, irradiance, cube) = (cube("uniform sheen")?, cube("uniform irradiance")?, cube("uniform cube")?);
+        let prefiltered = Arc::new(Prefiltered { even, odd, wrong: false });
+        let radiance = Arc::new(Radiance { cube, irradiance, scale: 1.0, small_lights: None, map: 0 });
+        Ok(Arc::new(Self::of(gpu, radiance, prefiltered, sheen)?))
+    }
+
+    fn of(
+        gpu: &Arc<Gpu>,
+        radiance: Arc<Radiance>,
+        prefiltered: Arc<Prefiltered>,
+        sheen: Arc<Image>,
+    ) -> Result<Self, GpuError> {
+        let sampler = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
+    }
+
+    /// The functions that returned values which are no densities, and count as 0 in this light.
+    pub fn wrong(&self) -> Option<&'static str> {
+        self.prefiltered.wrong.then_some("D or V in brdf/ndf.glsl or brdf/visibility.glsl")
+    }
+
+    /// Bakes the environment of `key`, built-in or a file, with the stages of `set`. A part is taken from `before` if its stages
+    /// and its map are the same, else from the disk cache; else it is computed. Any thread may call this.
+    ///
+    /// # Errors
+    /// A bad map, a device error, or `control` has canceled the bake.
+    pub fn bake(
+        set: &PipelineSet,
+        key: &EnvironmentKey,
+        before: Option<&(EnvironmentKey, Arc<Self>)>,
+        control: &BakeControl<'_>,
+    ) -> Result<Arc<Self>, BakeError> {
+        let start = Instant::now();
+        let report = BakeReport { environment: key.name.clone(), cached: true, ..BakeReport::default() };
+        let mut bake = Bake { gpu: &set.gpu, set, key, control, report };
+        let before = before.filter(|(old, _)| old.has_radiance_of(key));
+        let radiance = match before {
+            Some((_, old)) => {
+                bake.report.environment.clone_from(&old.report.environment);
+                old.radiance.clone()
+            }
+            None => bake.radiance()?,
+        };
+        let prefiltered = match before.filter(|(old, made)| old.prefilter == key.prefilter && made.wrong().is_none()) {
+            Some((_, old)) => old.prefiltered.clone(),
+            None => bake.prefiltered(&radiance)?,
+        };
+        let sheen = match before.filter(|(old, _)| old.sheen == key.sheen) {
+            Some((_, old)) => old.sheen.clone(),
+            None => bake.sheen(&radiance)?,
+        };
+        (control.progress)(1.0, "");
+        let mut this = Self::of(&set.gpu, radiance, prefiltered, sheen)?;
+        this.report = bake.report;
+        this.report.total_ms = ms(start);
         Ok(Arc::new(this))
     }
+}
 
-    fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+/// A running bake.
+struct Bake<'a> {
+    gpu: &'a Arc<Gpu>,
+    set: &'a PipelineSet,
+    key: &'a EnvironmentKey,
+    control: &'a BakeControl<'a>,
+    report: BakeReport,
+}
+
+impl Bake<'_> {
+    /// Begins a pass. Returns its start.
+    fn begin(&self, done: f32, next: &str) -> Result<Instant, BakeError> {
+        (self.control.progress)(done, next);
+        tracing::debug!("bake: {next}");
+        if (self.control.superseded)() { Err(BakeError::Superseded) } else { Ok(Instant::now()) }
+    }
+
+    fn passes<'a>(&'a self, small_lights: &'a Arc<Buffer>) -> Passes<'a> {
+        Passes { gpu: self.gpu, layouts: &self.set.layouts, set: self.set, small_lights }
+    }
+
+    /// Creates the pipelines of a part, which counts as a time of its own.
+    fn pipelines(&mut self, stages: &[BakeStage]) -> Result<(), BakeError> {
+        let time = Instant::now();
+        for stage in stages {
+            self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
+        }
+        self.report.pipeline_ms += ms(time);
+        self.report.cached = false;
+        Ok(())
+    }
+
+    fn cached(&self, key: &str, bytes: u64) -> Option<Vec<u8>> {
+        disk_cache::load(key, bytes).filter(|_| self.control.from_disk)
+    }
+
+    fn image(&self, name: &str, side: u32, levels: u32) -> Result<Arc<Image>, GpuError> {
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-        let cube = |name: &str, side, levels| Image::new(gpu, name, ImageDesc::cube(side, levels, HALF, usage));
-        let images = [
-            cube("environment", CUBE_SIDE, CUBE_LEVELS)?,
-            cube("prefiltered", PREFILTERED_SIDE, PREFILTERED_LEVELS)?,
-            cube("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?,
-            cube("irradiance", IRRADIANCE_SIDE, 1)?,
-        ];
-        Self::with(gpu, images)
+        Image::new(self.gpu, name, ImageDesc::cube(side, levels, HALF, usage))
     }
 
-    fn with(gpu: &Arc<Gpu>, [cube, prefiltered, sheen, irradiance]: [Arc<Image>; 4]) -> Result<Self, GpuError> {
-        let sampler = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
-        Ok(Self { cube, prefiltered, sheen, irradiance, sampler, scale: 1.0, report: BakeReport::default() })
-    }
-
-    fn images(&self) -> [&Arc<Image>; 4] {
-        [&self.cube, &self.prefiltered, &self.sheen, &self.irradiance]
-    }
-
-    /// Bytes of all images.
-    fn bytes(&self) -> u64 {
-        self.images().iter().map(|image| image.desc().bytes()).sum()
-    }
-
-    /// Uploads all images, in the order of [`Self::read`].
-    fn fill(&self, gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<(), GpuError> {
+    /// Uploads the images one after the other.
+    fn fill(&mut self, images: &[&Arc<Image>], bytes: &[u8]) -> Result<(), GpuError> {
+        let time = Instant::now();
         let mut rest = bytes;
-        let mut images = Vec::new();
-        for image in self.images() {
+        let mut parts = Vec::new();
+        for image in images {
             let (own, others) = rest.split_at(image.desc().bytes() as usize);
-            images.push((image, own));
+            parts.push((*image, own));
             rest = others;
         }
-        compute::upload(gpu, &images)
+        compute::upload(self.gpu, &parts)?;
+        self.report.upload_ms += ms(time);
+        Ok(())
     }
 
-    /// Reads all images back.
-    fn read(&self, gpu: &Arc<Gpu>) -> Result<Vec<u8>, GpuError> {
-        let usage = vk::BufferUsageFlags::TRANSFER_DST;
-        let out = Buffer::new(gpu, "baked", self.bytes(), usage, Memory::Readback)?;
-        one_shot(gpu, |encoder| {
+    /// Reads back the images one after the other, then the buffer.
+    fn read(&self, images: &[&Arc<Image>], buffer: Option<&Arc<Buffer>>) -> Result<Vec<u8>, GpuError> {
+        let size = |image: &&Arc<Image>| image.desc().bytes();
+        let bytes = images.iter().map(size).sum::<u64>() + buffer.map_or(0, |buffer| buffer.size());
+        let out = Buffer::new(self.gpu, "baked", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
+        one_shot(self.gpu, |encoder| {
             let mut at = 0;
-            for image in self.images() {
+            for image in images {
                 encoder.transition(image, Use::Sampled, Use::CopyFrom);
                 encoder.copy_levels_from_image(image, &out, at);
                 encoder.transition(image, Use::CopyFrom, Use::Sampled);
-                at += image.desc().bytes();
+                at += size(image);
+            }
+            if let Some(buffer) = buffer {
+                encoder.copy_buffer(buffer, 0, &out, at, buffer.size());
             }
             encoder.copies_done();
             Ok(())
@@ -177,112 +280,125 @@ impl GpuEnvironment {
         Ok(out.read())
     }
 
-    /// Bakes an environment, built-in or a file, with the stages of `set`, or loads the result from the disk cache. Any thread
-    /// may call this.
-    ///
-    /// # Errors
-    /// A bad map, a device error, or `control` has canceled the bake.
-    pub fn bake(set: &PipelineSet, name: &str, control: &BakeControl<'_>) -> Result<Arc<Self>, BakeError> {
-        let file = &EnvironmentFile::open(name)?;
-        let start = Instant::now();
-        let gpu = &set.gpu;
-        let mut this = Self::new(gpu)?;
-        this.report.environment.clone_from(&file.name);
-        let key = key(set, file)?;
-        // An entry holds the images, then the scale.
-        if let Some(bytes) = disk_cache::load(&key, this.bytes() + 4).filter(|_| control.from_disk) {
-            let upload = Instant::now();
-            let (images, scale) = bytes.split_at(bytes.len() - 4);
-            this.fill(gpu, images)?;
-            this.scale = bytemuck::pod_read_unaligned(scale);
-            this.report.cached = true;
-            this.report.upload_ms = ms(upload);
-            this.report.total_ms = ms(start);
-            return Ok(Arc::new(this));
+    /// The cube map, the irradiance and the small lights of the map.
+    fn radiance(&mut self) -> Result<Arc<Radiance>, BakeError> {
+        let time = self.begin(0.0, "reading")?;
+        let file = EnvironmentFile::open(&self.key.name)?;
+        self.report.environment.clone_from(&file.name);
+        let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits()];
+        let disk_key = key(&[file.fingerprint], &self.key.radiance, &sizes);
+        let cube = self.image("environment", CUBE_SIDE, CUBE_LEVELS)?;
+        let irradiance = self.image("irradiance", IRRADIANCE_SIDE, 1)?;
+        let images = [&cube, &irradiance];
+        let lights = small_lights_size(self.set);
+        let bytes: u64 = images.iter().map(|image| image.desc().bytes()).sum();
+        // An entry holds the images, the small lights, and the scale.
+        if let Some(entry) = self.cached(&disk_key, bytes + lights + 4) {
+            self.report.decode_ms = ms(time);
+            let (images_part, rest) = entry.split_at(bytes as usize);
+            self.fill(&images, images_part)?;
+            let (lights, scale) = rest.split_at(rest.len() - 4);
+            let small_lights = Some(small_lights(self.gpu, lights)?);
+            let scale = bytemuck::pod_read_unaligned(scale);
+            return Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights, map: file.fingerprint }));
         }
-        (control.progress)(0.0, "reading");
         let map = file.decode()?;
-        this.report.decode_ms = ms(start);
-        this.run(set, &map, control)?;
-        this.report.total_ms = ms(start);
-        let mut bytes = this.read(gpu)?;
-        bytes.extend(this.scale.to_ne_bytes());
-        disk_cache::store(&key, &bytes);
-        Ok(Arc::new(this))
-    }
-
-    /// All passes, each a submission of its own.
-    fn run(&mut self, set: &PipelineSet, map: &Environment, control: &BakeControl<'_>) -> Result<(), BakeError> {
-        let (gpu, layouts) = (&set.gpu, &set.layouts);
-        let begin = |done: f32, next: &str| -> Result<Instant, BakeError> {
-            (control.progress)(done, next);
-            tracing::debug!("bake: {next}");
-            if (control.superseded)() { Err(BakeError::Superseded) } else { Ok(Instant::now()) }
-        };
-        let most = gpu.max_image_size();
+        self.report.decode_ms = ms(time);
+        let most = self.gpu.max_image_size();
         if map.width.max(map.height) > most {
             return Err(BakeError::TooLarge(map.width, map.height, most));
         }
-        let time = begin(0.05, "pipelines")?;
-        let results = no_results(gpu, set)?;
-        let passes = Passes { gpu, layouts, set, results: &results };
-        for stage in BAKE_STAGES {
-            set.compute(stage, &Vec::new())?;
-        }
-        self.report.pipeline_ms = ms(time);
+        self.begin(0.05, "pipelines")?;
+        self.pipelines(&self.key.radiance.clone())?;
 
-        let time = begin(0.1, "upload")?;
-        self.scale = (LARGEST_HALF / map.peak.max(LARGEST_HALF)).max(1.0 / LARGEST_RANGE);
+        let time = self.begin(0.1, "upload")?;
+        let scale = (LARGEST_HALF / map.peak.max(LARGEST_HALF)).max(1.0 / LARGEST_RANGE);
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let desc = ImageDesc::new(map.width, map.height, vk::Format::R32G32B32A32_SFLOAT, usage);
-        let equirect = Image::new(gpu, "environment map", desc)?;
-        compute::upload(gpu, &[(&equirect, bytemuck::cast_slice(&map.pixels))])?;
+        let equirect = Image::new(self.gpu, "environment map", desc)?;
+        compute::upload(self.gpu, &[(&equirect, bytemuck::cast_slice(&map.pixels))])?;
+        drop(map);
         self.report.upload_ms = ms(time);
 
-        let time = begin(0.15, "cube map")?;
-        passes.cube(&equirect, &self.cube, self.scale)?;
+        let lights = small_lights(self.gpu, &vec![0; lights as usize])?;
+        let time = self.begin(0.15, "cube map")?;
+        self.passes(&lights).cube(&equirect, &cube, scale)?;
         self.report.cube_ms = ms(time);
 
-        let time = begin(0.25, "irradiance")?;
-        passes.irradiance(&self.cube, &self.irradiance)?;
+        let time = self.begin(0.25, "irradiance")?;
+        self.passes(&lights).irradiance(&cube, &irradiance)?;
         self.report.irradiance_ms = ms(time);
 
-        // A software device prefilters one level per submission, so that frames run in between. A GPU is fast enough for all.
-        let at_once = if gpu.info().kind == "cpu" { 1 } else { PREFILTERED_LEVELS };
-        let source = (&self.cube, &self.sampler);
-        for first in (0..PREFILTERED_LEVELS).step_by(at_once as usize) {
-            let time = begin(0.3 + 0.6 * first as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
-            let levels = first..(first + at_once).min(PREFILTERED_LEVELS);
-            passes.prefilter(PREFILTER, source, &self.prefiltered, levels, &PREFILTER_SAMPLES)?;
-            self.report.prefilter_ms += ms(time);
+        let mut entry = self.read(&images, Some(&lights))?;
+        entry.extend(f32::to_ne_bytes(scale));
+        disk_cache::store(&disk_key, &entry);
+        Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights: Some(lights), map: file.fingerprint }))
+    }
+
+    /// The levels of the specular lobe.
+    fn prefiltered(&mut self, radiance: &Radiance) -> Result<Arc<Prefiltered>, BakeError> {
+        let stages = [&*self.key.radiance, &*self.key.prefilter].concat();
+        let mut sizes = vec![CUBE_SIDE, PREFILTERED_SIDE];
+        sizes.extend(PREFILTER_SAMPLES);
+        let disk_key = key(&[radiance.map], &stages, &sizes);
+        let even = self.image("even levels", PREFILTERED_SIDE, PREFILTERED_LEVELS)?;
+        let odd = self.image("odd levels", PREFILTERED_SIDE / 2, PREFILTERED_LEVELS - 1)?;
+        let size = even.desc().bytes() + odd.desc().bytes();
+        if let Some(entry) = self.cached(&disk_key, size) {
+            self.fill(&[&even, &odd], &entry)?;
+            return Ok(Arc::new(Prefiltered { even, odd, wrong: false }));
         }
-        let time = begin(0.9, "sheen")?;
+        let Some(lights) = &radiance.small_lights else { return Err(GpuError::NoStage(CUBE.into()).into()) };
+        self.begin(0.3, "pipelines")?;
+        self.pipelines(&self.key.prefilter.clone())?;
+        let time = self.begin(0.3, "reflections")?;
+        let [lobe, prefilter] = &*self.key.prefilter else { return Err(GpuError::NoStage(PREFILTER.into()).into()) };
+        let lobes = Lobes::new(self.set, lobe, &PREFILTER_SAMPLES)?;
+        self.passes(lights).lobes(lobe, &lobes, &radiance.cube)?;
+        // A software device prefilters one level per submission, so that frames run in between. A GPU is fast enough for all.
+        let at_once = if self.gpu.info().kind == "cpu" { 1 } else { PREFILTERED_LEVELS };
+        for first in (0..PREFILTERED_LEVELS).step_by(at_once as usize) {
+            self.begin(0.3 + 0.6 * first as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
+            let levels = first..(first + at_once).min(PREFILTERED_LEVELS);
+            let to = Target { image: &even, samples: &PREFILTER_SAMPLES, specular: Some((&odd, &lobes.buffer)) };
+            self.passes(lights).prefilter(prefilter, &radiance.cube, &to, levels)?;
+        }
+        self.report.prefilter_ms = ms(time);
+        let read = self.read(&[&even, &odd], Some(&lobes.buffer))?;
+        let (texels, lobe_bytes) = read.split_at(size as usize);
+        let wrong = lobes.wrong(lobe_bytes);
+        if !wrong {
+            disk_cache::store(&disk_key, texels);
+        }
+        Ok(Arc::new(Prefiltered { even, odd, wrong }))
+    }
+
+    /// The levels of the sheen lobe.
+    fn sheen(&mut self, radiance: &Radiance) -> Result<Arc<Image>, BakeError> {
+        let stages = [&*self.key.radiance, &*self.key.sheen].concat();
+        let disk_key = key(&[radiance.map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES]);
+        let image = self.image("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?;
+        if let Some(entry) = self.cached(&disk_key, image.desc().bytes()) {
+            self.fill(&[&image], &entry)?;
+            return Ok(image);
+        }
+        let Some(lights) = &radiance.small_lights else { return Err(GpuError::NoStage(CUBE.into()).into()) };
+        self.pipelines(&self.key.sheen.clone())?;
+        let time = self.begin(0.9, "sheen")?;
+        let [stage] = &*self.key.sheen else { return Err(GpuError::NoStage(PREFILTER_SHEEN.into()).into()) };
         let samples = [SHEEN_SAMPLES; SHEEN_LEVELS as usize];
-        passes.prefilter(PREFILTER_SHEEN, source, &self.sheen, 0..SHEEN_LEVELS, &samples)?;
+        let to = Target { image: &image, samples: &samples, specular: None };
+        self.passes(lights).prefilter(stage, &radiance.cube, &to, 0..SHEEN_LEVELS)?;
         self.report.sheen_ms = ms(time);
-        (control.progress)(1.0, "");
-        Ok(())
+        disk_cache::store(&disk_key, &self.read(&[&image], None)?);
+        Ok(image)
     }
 }
 
-/// The cache key: a hash of the map, of all sizes and sample counts, and of the SPIR-V of the bake stages.
-fn key(set: &PipelineSet, file: &EnvironmentFile) -> Result<String, GpuError> {
-    let numbers = [
-        CUBE_SIDE,
-        PREFILTERED_SIDE,
-        SHEEN_SIDE,
-        SHEEN_SAMPLES,
-        IRRADIANCE_SIDE,
-        IRRADIANCE_LEVEL,
-        LARGEST_RANGE.to_bits(),
-    ];
-    let fingerprint = file.fingerprint.to_le_bytes();
-    let mut parts: Vec<&[u8]> = vec![&fingerprint, bytemuck::cast_slice(&numbers)];
-    parts.push(bytemuck::cast_slice(&PREFILTER_SAMPLES));
-    for stage in BAKE_STAGES {
-        parts.push(bytemuck::cast_slice(set.spirv(stage)?));
-    }
-    Ok(disk_cache::key(&parts))
+/// The cache key of a part: a hash of the map, of the modules of its stages, and of sizes and sample counts.
+fn key(map: &[u128], stages: &[BakeStage], sizes: &[u32]) -> String {
+    let modules: Vec<u64> = stages.iter().map(|stage| stage.module).collect();
+    disk_cache::key(&[bytemuck::cast_slice(map), bytemuck::cast_slice(&modules), bytemuck::cast_slice(sizes)])
 }
 
 fn ms(since: Instant) -> f64 {

@@ -3,35 +3,79 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, Use, one_shot, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, SetLayouts, SetWriter, Use, one_shot, vk};
 use crate::interface::{
-    BINDING_LEVEL_ABOVE, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, SET_TASK, Task,
+    BINDING_LEVEL_ABOVE, BINDING_LOBES, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET,
+    BINDING_TARGET_ODD, SET_TASK, Task,
 };
 
 use crate::render::compute;
-use crate::render::environment::bake::{BAKE_STAGES, CUBE, DOWNSAMPLE, IRRADIANCE};
+use crate::render::environment::bake::{CUBE, DOWNSAMPLE, IRRADIANCE};
 use crate::render::pipeline::PipelineSet;
+use crate::render::state::BakeStage;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
 pub(crate) const IRRADIANCE_LEVEL: u32 = 5;
-/// The zeroed buffer `BINDING_RESULTS`, as large as the largest declaration in the stages (ibl/small_lights.glsl).
-pub(crate) fn no_results(gpu: &Arc<Gpu>, set: &PipelineSet) -> Result<Arc<Buffer>, GpuError> {
-    let stages = BAKE_STAGES.iter().filter_map(|path| set.shaders.stages.get(*path));
-    let declared = stages.flat_map(|stage| &stage.reflection.descriptors);
-    let results = declared.filter(|d| (d.set, d.binding) == (SET_TASK, BINDING_RESULTS));
-    let sizes = results.filter_map(|descriptor| descriptor.block.as_ref()).map(|block| u64::from(block.size));
-    let bytes = sizes.max().unwrap_or(0).max(16);
+
+/// Bytes of the block that a stage declares at this binding of set 3.
+fn declared_size(set: &PipelineSet, stage: &str, binding: u32) -> u64 {
+    let stage = set.shaders.stages.get(stage);
+    let mut declared = stage.iter().flat_map(|stage| &stage.reflection.descriptors);
+    let found = declared.find(|d| (d.set, d.binding) == (SET_TASK, binding));
+    found.and_then(|descriptor| descriptor.block.as_ref()).map_or(0, |block| u64::from(block.size)).max(16)
+}
+
+/// Bytes of the list of ibl/small_lights.glsl.
+pub(crate) fn small_lights_size(set: &PipelineSet) -> u64 {
+    declared_size(set, DOWNSAMPLE, BINDING_RESULTS)
+}
+
+/// The buffer of ibl/small_lights.glsl with these bytes; zeros for a new bake.
+pub(crate) fn small_lights(gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<Arc<Buffer>, GpuError> {
     use vk::BufferUsageFlags as Usage;
-    let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-    let results = Buffer::new(gpu, "bake", bytes, usage, Memory::Device)?;
-    let staging = Buffer::new(gpu, "staging", bytes, Usage::TRANSFER_SRC, Memory::Upload)?;
-    staging.write(0, &vec![0; bytes as usize]);
+    let (size, usage) = (bytes.len() as u64, Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST);
+    let results = Buffer::new(gpu, "small lights", size, usage, Memory::Device)?;
+    let staging = Buffer::new(gpu, "staging", size, Usage::TRANSFER_SRC, Memory::Upload)?;
+    staging.write(0, bytes);
     one_shot(gpu, |encoder| {
-        encoder.copy_buffer(&staging, 0, &results, 0, bytes);
+        encoder.copy_buffer(&staging, 0, &results, 0, size);
         encoder.copies_done();
         Ok(())
     })?;
     Ok(results)
+}
+
+/// The samples of every mip level of the specular lobe: ibl/lobe.glsl.
+pub(crate) struct Lobes<'a> {
+    pub(crate) buffer: Arc<Buffer>,
+    /// Samples of each mip level.
+    samples: &'a [u32],
+}
+
+impl<'a> Lobes<'a> {
+    /// Levels that the block of ibl/lobe.glsl has room for.
+    const LEVELS: usize = 8;
+
+    pub(crate) fn new(set: &PipelineSet, stage: &BakeStage, samples: &'a [u32]) -> Result<Self, GpuError> {
+        let size = declared_size(set, stage.stage.path.as_str(), BINDING_LOBES);
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+        let buffer = Buffer::new(&set.gpu, "lobes", size, usage, Memory::Device)?;
+        Ok(Self { buffer, samples })
+    }
+
+    /// Whether D or V returned wrong values in one of the levels: the first word of a level. `bytes`: content of the buffer.
+    pub(crate) fn wrong(&self, bytes: &[u8]) -> bool {
+        let levels = bytes.chunks_exact((bytes.len() / Self::LEVELS).max(4)).take(self.samples.len()).skip(1);
+        levels.filter_map(|level| level.get(..4)).any(|word| word.iter().any(|byte| *byte != 0))
+    }
+}
+
+/// The image that a prefilter writes, with the samples per texel of each level. For the specular lobe also the image of the odd
+/// levels, and the lobes' samples.
+pub(crate) struct Target<'a> {
+    pub(crate) image: &'a Arc<Image>,
+    pub(crate) samples: &'a [u32],
+    pub(crate) specular: Option<(&'a Arc<Image>, &'a Arc<Buffer>)>,
 }
 
 /// The arguments of all passes.
@@ -40,13 +84,13 @@ pub(crate) struct Passes<'a> {
     pub(crate) layouts: &'a Arc<SetLayouts>,
     pub(crate) set: &'a PipelineSet,
     /// `BINDING_RESULTS`: one pass stores here what the following ones read, see ibl/small_lights.glsl.
-    pub(crate) results: &'a Arc<Buffer>,
+    pub(crate) small_lights: &'a Arc<Buffer>,
 }
 
 impl Passes<'_> {
-    /// Binds the level that a pass writes, and the shared results.
+    /// Binds the level that a pass writes, and the small lights.
     fn to(&self, writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
-        writer.storage_level(BINDING_TARGET, image, level).buffer(BINDING_RESULTS, self.results)
+        writer.storage_level(BINDING_TARGET, image, level).buffer(BINDING_RESULTS, self.small_lights)
     }
 
     /// Resamples the map to level 0, then each level from the level above. Leaves the cube in [`Use::Sampled`].
@@ -108,36 +152,61 @@ impl Passes<'_> {
         })
     }
 
-    /// Prefilters `levels` of `to`. `samples` has an entry for every level of the image. The last level leaves the image in
-    /// [`Use::Sampled`].
+    /// Chooses the samples of every level but the first, which is a mirror.
+    pub(crate) fn lobes(&self, stage: &BakeStage, lobes: &Lobes<'_>, cube: &Arc<Image>) -> Result<(), GpuError> {
+        let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        let pipeline = self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
+        let mut dispatches = Vec::new();
+        for (level, samples) in (0..).zip(lobes.samples).skip(1) {
+            let task = Task { level, samples: *samples, ..Task::default() };
+            dispatches.push(compute::bindings(self.gpu, self.layouts, &task, |writer| {
+                writer.texture(BINDING_SOURCE_CUBE, cube, &sampler).buffer(BINDING_LOBES, &lobes.buffer)
+            })?);
+        }
+        one_shot(self.gpu, |encoder| {
+            for bindings in &dispatches {
+                encoder.dispatch(self.layouts, &pipeline, &[bindings], [1, 1, 1]);
+            }
+            encoder.computed();
+            Ok(())
+        })
+    }
+
+    /// Prefilters `levels`. The last level leaves the image in [`Use::Sampled`].
     pub(crate) fn prefilter(
         &self,
-        stage: &str,
-        (cube, sampler): (&Arc<Image>, &Arc<Sampler>),
-        to: &Arc<Image>,
+        stage: &BakeStage,
+        cube: &Arc<Image>,
+        to: &Target<'_>,
         levels: Range<u32>,
-        samples: &[u32],
     ) -> Result<(), GpuError> {
-        let desc = *to.desc();
-        let pipeline = self.set.compute(stage, &Vec::new())?;
+        let desc = *to.image.desc();
+        let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        let pipeline = self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
         let mut dispatches = Vec::new();
         for level in levels {
             let side = (desc.width >> level).max(1);
-            let samples = samples.get(level as usize).copied().unwrap_or(1);
+            let samples = to.samples.get(level as usize).copied().unwrap_or(1);
             let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
             let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-                self.to(writer.texture(BINDING_SOURCE_CUBE, cube, sampler), to, level)
+                let writer = self.to(writer.texture(BINDING_SOURCE_CUBE, cube, &sampler), to.image, level);
+                to.specular.into_iter().fold(writer, |writer, (odd, lobes)| {
+                    // Level 0 has no odd one before it, and writes none.
+                    let odd_level = level.saturating_sub(1);
+                    writer.buffer(BINDING_LOBES, lobes).storage_level(BINDING_TARGET_ODD, odd, odd_level)
+                })
             })?;
             dispatches.push((level, bindings, compute::groups(side, desc.layers)));
         }
         one_shot(self.gpu, |encoder| {
             for (level, bindings, groups) in &dispatches {
+                let images = || [to.image].into_iter().chain(to.specular.map(|(odd, _)| odd));
                 if *level == 0 {
-                    encoder.transition(to, Use::Undefined, Use::Storage);
+                    images().for_each(|image| encoder.transition(image, Use::Undefined, Use::Storage));
                 }
                 encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
                 if level + 1 == desc.mips {
-                    encoder.transition(to, Use::Storage, Use::Sampled);
+                    images().for_each(|image| encoder.transition(image, Use::Storage, Use::Sampled));
                 }
             }
             Ok(())

@@ -8,8 +8,8 @@ use crate::gpu::{
     ComputePipeline, Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule,
     Specialization,
 };
-use crate::render::brdf::tables::{self, Tables};
-use crate::render::environment::bake::BAKE_STAGES;
+use crate::render::brdf::tables::TABLE_STAGES;
+use crate::render::environment::bake::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES};
 use crate::render::state::{Pass, PipelineKey, PipelineRequest};
 use crate::shader::{ShaderSet, specialize};
 
@@ -22,7 +22,8 @@ pub const MEASURE_STAGES: [&str; 4] =
 
 /// The stages that a shader tree must have, as paths from its root.
 pub fn stages() -> Vec<&'static str> {
-    GRAPHICS.into_iter().chain([tables::DFG, tables::SHEEN_ALBEDO]).chain(BAKE_STAGES).collect()
+    let baked = TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES);
+    GRAPHICS.into_iter().chain(baked).collect()
 }
 
 /// [`stages`] and [`MEASURE_STAGES`]: every file of the built-in tree with a `main()`.
@@ -46,11 +47,10 @@ impl Pass {
     }
 }
 
-/// The pipelines of one [`PipelineRequest`], and the tables for its constants.
+/// The pipelines of one [`PipelineRequest`].
 #[derive(Clone)]
 pub(crate) struct BoundPipelines {
     pipelines: HashMap<PipelineKey, Arc<Pipeline>>,
-    pub(crate) tables: Arc<Tables>,
 }
 
 impl BoundPipelines {
@@ -63,9 +63,7 @@ impl BoundPipelines {
         let same = |(key, pipeline): (&PipelineKey, &Arc<Pipeline>)| {
             other.pipelines.get(key).is_some_and(|o| Arc::ptr_eq(o, pipeline))
         };
-        Arc::ptr_eq(&self.tables, &other.tables)
-            && self.pipelines.len() == other.pipelines.len()
-            && self.pipelines.iter().all(same)
+        self.pipelines.len() == other.pipelines.len() && self.pipelines.iter().all(same)
     }
 }
 
@@ -108,7 +106,6 @@ pub struct PipelineSet {
     pub shaders: Arc<ShaderSet>,
     graphics: Mutex<Recent<PipelineKey, Pipeline>>,
     computes: Mutex<Recent<(String, Specialization), ComputePipeline>>,
-    tables: Mutex<Recent<Specialization, Tables>>,
     requests: AtomicU64,
 }
 
@@ -134,7 +131,6 @@ impl PipelineSet {
             shaders,
             graphics: Mutex::default(),
             computes: Mutex::default(),
-            tables: Mutex::default(),
             requests: AtomicU64::default(),
         };
         if let Some(before) = before {
@@ -161,9 +157,6 @@ impl PipelineSet {
                 lock(&self.computes).entries.insert(key.clone(), entry.clone());
             }
         }
-        if [tables::DFG, tables::SHEEN_ALBEDO].into_iter().all(is_same) {
-            lock(&self.tables).entries.clone_from(&lock(&before.tables).entries);
-        }
     }
 
     /// Creates the missing pipelines of `request`. Any thread may call this while frames use the set.
@@ -178,13 +171,7 @@ impl PipelineSet {
                 lock(&self.graphics).insert(key, pipeline, number);
             }
         }
-        let constants = self.table_constants(&request.constants);
-        if !lock(&self.tables).touch(&constants, number) {
-            let tables = Tables::new(self, &constants)?;
-            lock(&self.tables).insert(constants, tables, number);
-        }
         lock(&self.graphics).trim(number);
-        lock(&self.tables).trim(number);
         lock(&self.computes).trim(number);
         Ok(())
     }
@@ -194,15 +181,7 @@ impl PipelineSet {
         let graphics = lock(&self.graphics);
         let pipelines = request.keys().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
         let pipelines = pipelines.collect::<Option<_>>()?;
-        let tables = lock(&self.tables).get(&self.table_constants(&request.constants)).cloned()?;
-        Some(BoundPipelines { pipelines, tables })
-    }
-
-    /// The author's constants that the tables depend on.
-    fn table_constants(&self, constants: &Specialization) -> Specialization {
-        let stages = [tables::DFG, tables::SHEEN_ALBEDO].into_iter().filter_map(|path| self.shaders.stages.get(path));
-        let declared: Vec<u32> = stages.flat_map(|s| s.reflection.constants.iter().map(|c| c.id)).collect();
-        constants.iter().filter(|(id, _)| declared.contains(id)).copied().collect()
+        Some(BoundPipelines { pipelines })
     }
 
     /// The SPIR-V of a stage.

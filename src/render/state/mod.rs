@@ -3,12 +3,15 @@
 //! [`FrameState::new`] is a pure function. Each frame draws exactly one state, so no picture mixes two versions of settings,
 //! shaders or resources.
 
+mod baked;
 mod pipelines;
 mod scene;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
+pub(super) use baked::BakeStage;
+pub use baked::{EnvironmentKey, TablesKey};
 pub use pipelines::{MaterialVariant, PipelineRequest, TargetFormat};
 pub(super) use pipelines::{Pass, PipelineKey};
 pub(super) use scene::Appearance;
@@ -16,10 +19,10 @@ pub use scene::Scene;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHTS};
-use crate::render::environment::bake::{BAKE_STAGES, LARGEST_HALF};
+use crate::render::environment::bake::LARGEST_HALF;
 use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
-use crate::shader::{Mode, ShaderSet, Stage, values};
+use crate::shader::{Mode, ShaderSet, values};
 
 /// Paths per pixel and frame in an accumulating mode.
 const PATHS_PER_FRAME: u32 = 8;
@@ -53,25 +56,6 @@ pub struct Revisions {
     pub measured: u64,
 }
 
-/// Identifies a baked environment: its name, the revision of its file, and the bake stages.
-#[derive(Clone, Debug)]
-pub struct EnvironmentKey {
-    /// Built-in name or file.
-    pub name: String,
-    revision: u64,
-    stages: Vec<Arc<Stage>>,
-}
-
-impl PartialEq for EnvironmentKey {
-    fn eq(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Arc<Stage>, &Arc<Stage>)| Arc::ptr_eq(a, b) || a.spirv == b.spirv;
-        self.name == other.name
-            && self.revision == other.revision
-            && self.stages.len() == other.stages.len()
-            && self.stages.iter().zip(&other.stages).all(same)
-    }
-}
-
 /// Identifies a measured BRDF.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredKey {
@@ -89,6 +73,8 @@ pub struct FrameState {
     pub pipelines: PipelineRequest,
     /// The model and its materials.
     pub scene: Option<Scene>,
+    /// Tables of the BRDF's albedo, for the selected models.
+    pub tables: TablesKey,
     /// Image-based light. Without it, the settings' ambient light is used.
     pub environment: Option<EnvironmentKey>,
     /// Measured BRDF, for the modes that show one.
@@ -144,7 +130,11 @@ impl FrameState {
         };
         Self {
             params: values::params(&settings.shader, &shaders.parameters),
-            environment: lit.then(|| environment_key(&settings.environment.name, revisions.environment, shaders)),
+            tables: TablesKey::new(shaders, &pipelines.constants),
+            environment: lit.then(|| {
+                let (name, revision) = (&settings.environment.name, revisions.environment);
+                EnvironmentKey::new(name, revision, shaders, &pipelines.constants)
+            }),
             measured: (!settings.measured.is_empty())
                 .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
             shaders: shaders.clone(),
@@ -170,6 +160,7 @@ impl FrameState {
             && self.params == other.params
             && self.pipelines == other.pipelines
             && self.scene == other.scene
+            && self.tables == other.tables
             && self.environment == other.environment
             && self.measured == other.measured
     }
@@ -189,9 +180,4 @@ impl FrameState {
             ..self.constants
         }
     }
-}
-
-fn environment_key(name: &str, revision: u64, shaders: &ShaderSet) -> EnvironmentKey {
-    let stages = BAKE_STAGES.iter().filter_map(|path| shaders.stages.get(*path).cloned()).collect();
-    EnvironmentKey { name: name.to_owned(), revision, stages }
 }

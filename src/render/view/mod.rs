@@ -158,11 +158,11 @@ impl View {
 
         // Uniforms and set 0.
         let in_flight = &mut self.in_flight[slot];
-        let constants = frame.state.constants(rect, frame.environment.scale, self.sample_index);
+        let constants = frame.state.constants(rect, frame.environment.radiance.scale, self.sample_index);
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
         let sources = Sources {
             environment: frame.environment.clone(),
-            tables: frame.pipelines.tables.clone(),
+            tables: frame.tables.clone(),
             measured: frame.measured.clone(),
         };
         encoder.bind_set(&self.layouts, &in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?);

@@ -72,14 +72,16 @@ impl Uniforms {
             .buffer(0, &self.frame)
             .buffer(1, &self.lights)
             .buffer(2, &self.params)
-            .texture(3, &environment.cube, &environment.sampler)
-            .texture(4, &environment.prefiltered, &environment.sampler)
+            .texture(3, &environment.radiance.cube, &environment.sampler)
+            .texture(4, &environment.prefiltered.even, &environment.sampler)
             .texture(5, &environment.sheen, &environment.sampler)
-            .texture(6, &environment.irradiance, &shared.linear)
+            .texture(6, &environment.radiance.irradiance, &shared.linear)
             .texture(7, &tables.dfg, &shared.linear)
             .texture(8, &shared.ltc, &shared.linear)
             .buffer(9, measured)
-            .texture(10, &tables.sheen_albedo, &shared.linear);
+            .texture(10, &tables.sheen_albedo, &shared.linear)
+            .texture(12, &tables.diffuse_albedo, &shared.linear)
+            .texture(13, &environment.prefiltered.odd, &environment.sampler);
         let set = DescriptorSet::new(layouts, interface::SET_FRAME, writer)?;
         self.set = Some((sources.clone(), set.clone()));
         Ok(set)

@@ -1,7 +1,9 @@
 //! One stage of a library: how it is built, and what is remembered about it between updates.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use xxhash_rust::xxh3::Xxh3;
 
 use crate::shader::compile::{Compiler, StageKind};
 use crate::shader::contract::{self, Texts};
@@ -9,9 +11,10 @@ use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
+use crate::shader::spirv::specialize;
 
 /// A compiled stage.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Stage {
     /// The file with its `main()`.
     pub path: TreePath,
@@ -23,9 +26,39 @@ pub struct Stage {
     pub reflection: Reflection,
     /// The stage's files, and the paths where an include was not found.
     pub dependencies: BTreeSet<TreePath>,
+    /// Hashes of the specialized modules that were asked for, by constants.
+    hashes: Mutex<Vec<(Constants, u64)>>,
+}
+
+/// Hashes that a stage keeps.
+const HASHES_KEPT: usize = 64;
+
+/// Values of specialization constants: `constant_id` and the four bytes.
+type Constants = Vec<(u32, u32)>;
+
+impl PartialEq for Stage {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path && self.spirv == other.spirv && self.dependencies == other.dependencies
+    }
 }
 
 impl Stage {
+    /// Hash of the module that the driver gets for these constants. It does not cover functions that the constants leave
+    /// uncalled. Computed once.
+    pub fn specialized_hash(&self, constants: &[(u32, u32)]) -> u64 {
+        let mut hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, hash)) = hashes.iter().find(|(known, _)| known == constants) {
+            return *hash;
+        }
+        let mut hasher = Xxh3::new();
+        specialize(&self.spirv, constants).iter().for_each(|word| hasher.update(&word.to_le_bytes()));
+        let hash = hasher.digest();
+        // Dragging a constant's slider asks for many.
+        hashes.truncate(HASHES_KEPT - 1);
+        hashes.insert(0, (constants.to_vec(), hash));
+        hash
+    }
+
     /// The stage's source text, for messages.
     pub(super) fn texts<'a>(&'a self, snapshot: &'a Snapshot<'a>) -> Texts<'a> {
         Texts { snapshot, stage: &self.path, dependencies: &self.dependencies }
@@ -129,7 +162,7 @@ pub(super) fn build(compiler: &Compiler, snapshot: &Snapshot<'_>, path: &TreePat
     let errors = contract::check(&reflection, Texts { snapshot, stage: path, dependencies: &dependencies });
     let outcome = match StageKind::of(path) {
         Some(kind) if errors.is_empty() => {
-            let stage = Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies });
+            let stage = Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies, hashes: Mutex::default() });
             Ok(Built { stage, hash, warnings: compiled.warnings })
         }
         _ => broken(errors),

@@ -1,0 +1,92 @@
+//! The keys of what is baked from shaders: the BRDF's tables and an environment's images.
+
+use std::sync::Arc;
+
+use crate::gpu::Specialization;
+use crate::render::brdf::tables::TABLE_STAGES;
+use crate::render::environment::bake::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES};
+use crate::shader::{ShaderSet, Stage};
+
+/// A compute stage with the author's constants that it declares. Two are equal if the driver gets the same module, so an edit
+/// of a function that the selected models do not call makes no difference.
+#[derive(Clone, Debug)]
+pub struct BakeStage {
+    pub(crate) stage: Arc<Stage>,
+    pub(crate) constants: Specialization,
+    /// Hash of the specialized module.
+    pub(crate) module: u64,
+}
+
+impl PartialEq for BakeStage {
+    fn eq(&self, other: &Self) -> bool {
+        self.module == other.module
+    }
+}
+
+/// The stages of `paths` with the constants that each declares. A tree without one of them has failed its check before.
+fn stages(shaders: &ShaderSet, paths: &[&str], constants: &Specialization) -> Vec<BakeStage> {
+    let stages = paths.iter().filter_map(|path| shaders.stages.get(*path));
+    let bake = stages.map(|stage| {
+        let declares = |id: u32| stage.reflection.constants.iter().any(|constant| constant.id == id);
+        let constants: Specialization = constants.iter().filter(|(id, _)| declares(*id)).copied().collect();
+        BakeStage { module: stage.specialized_hash(&constants), stage: stage.clone(), constants }
+    });
+    bake.collect()
+}
+
+/// Identifies the tables of the BRDF: a stage for each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TablesKey(pub(crate) Vec<BakeStage>);
+
+impl TablesKey {
+    pub(crate) fn new(shaders: &ShaderSet, constants: &Specialization) -> Self {
+        Self(stages(shaders, &TABLE_STAGES, constants))
+    }
+
+    /// Whether both are for the same choice of models, so that the tables differ by an edit of the shaders at most.
+    pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
+        same_constants(&self.0, &other.0)
+    }
+}
+
+/// Identifies a baked environment: its name, the revision of its file, and the stages of each part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnvironmentKey {
+    /// Built-in name or file.
+    pub name: String,
+    pub(crate) revision: u64,
+    /// The stages of the cube map and the irradiance, which depend on the map alone.
+    pub(crate) radiance: Vec<BakeStage>,
+    /// Those of the prefilter, which depend on the selected NDF too.
+    pub(crate) prefilter: Vec<BakeStage>,
+    /// That of the sheen's prefilter.
+    pub(crate) sheen: Vec<BakeStage>,
+}
+
+impl EnvironmentKey {
+    pub(crate) fn new(name: &str, revision: u64, shaders: &ShaderSet, constants: &Specialization) -> Self {
+        Self {
+            name: name.to_owned(),
+            revision,
+            radiance: stages(shaders, &RADIANCE_STAGES, constants),
+            prefilter: stages(shaders, &PREFILTER_STAGES, constants),
+            sheen: stages(shaders, &SHEEN_STAGES, constants),
+        }
+    }
+
+    /// Whether the cube map and the irradiance are the same.
+    pub(crate) fn has_radiance_of(&self, other: &Self) -> bool {
+        self.name == other.name && self.revision == other.revision && self.radiance == other.radiance
+    }
+
+    /// Whether both are for the same map and models: they differ by an edit of the shaders or of the file at most.
+    pub(crate) fn is_edit_of(&self, other: &Self) -> bool {
+        self.name == other.name
+            && same_constants(&self.prefilter, &other.prefilter)
+            && same_constants(&self.sheen, &other.sheen)
+    }
+}
+
+fn same_constants(a: &[BakeStage], b: &[BakeStage]) -> bool {
+    a.iter().map(|stage| &stage.constants).eq(b.iter().map(|stage| &stage.constants))
+}
