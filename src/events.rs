@@ -30,6 +30,11 @@ pub enum Event<'a> {
         /// Its path.
         file: &'a str,
     },
+    /// Memory or a thread of the window failed. The last picture stays.
+    Failure {
+        /// The message that the window shows.
+        message: &'a str,
+    },
     /// A diagnostic of the compiler or of a check.
     Diagnostic(&'a Diagnostic),
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
+use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineSet,
     ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, wrong_values,
@@ -253,17 +253,10 @@ impl Headless {
         let frame = self.bind()?;
         if frame.state.pipelines.accumulates {
             for _ in 1..self.session.settings.view.frames {
-                self.draw_frame(&frame, Redraw::Always)?;
+                self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
             }
         }
-        self.view.prepare(&frame)?;
-        let output = self.output_image()?;
-        let mut encoder = self.frames.begin()?;
-        let slot = self.frames.current();
-        self.view.draw(&mut encoder, slot, &frame, &to(&output), Redraw::Always)?;
-        let readback = self.view.read_back(&mut encoder, &output)?;
-        self.frames.submit(encoder, Default::default())?;
-        self.frames.wait()?;
+        let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
@@ -273,7 +266,7 @@ impl Headless {
     /// As [`Headless::render`].
     pub fn draw(&mut self) -> Result<(), HeadlessError> {
         let frame = self.bind()?;
-        self.draw_frame(&frame, Redraw::Always)
+        self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))
     }
 
     /// The values of one pixel, counted from the upper left corner, in each of `modes`; zero where nothing covers the pixel.
@@ -317,7 +310,7 @@ impl Headless {
                 let frame = self.resources.provide(state)?;
                 let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
                 for _ in 0..frames {
-                    self.draw_frame(&frame, Redraw::Pixel(at.0, at.1))?;
+                    self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
                 }
                 values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
             }
@@ -356,14 +349,26 @@ impl Headless {
         Ok(self.resources.provide(&state)?)
     }
 
-    fn draw_frame(&mut self, frame: &BoundFrame, redraw: Redraw) -> Result<(), HeadlessError> {
+    /// Draws a frame to the output image, records `more`, and waits for both.
+    fn draw_frame<T>(
+        &mut self,
+        frame: &BoundFrame,
+        redraw: Redraw,
+        more: impl FnOnce(&View, &mut Encoder, &Arc<Image>) -> Result<T, GpuError>,
+    ) -> Result<T, HeadlessError> {
         self.view.prepare(frame)?;
         let output = self.output_image()?;
         let mut encoder = self.frames.begin()?;
         let slot = self.frames.current();
-        self.view.draw(&mut encoder, slot, frame, &to(&output), redraw)?;
-        self.frames.submit(encoder, Default::default())?;
-        Ok(self.frames.wait()?)
+        let drawn = self.view.draw(&mut encoder, slot, frame, &to(&output), redraw);
+        let recorded = drawn.and_then(|()| more(&self.view, &mut encoder, &output));
+        let submitted = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
+        if submitted.is_err() {
+            self.view.forget();
+        }
+        let result = submitted?;
+        self.frames.wait()?;
+        Ok(result)
     }
 
     fn output_image(&mut self) -> Result<Arc<Image>, HeadlessError> {

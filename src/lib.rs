@@ -21,6 +21,7 @@
 //! and changes nothing else.
 
 pub mod app;
+mod cancel;
 pub mod comparison;
 mod disk_cache;
 pub mod events;

@@ -1,6 +1,7 @@
 //! Shared by all messages: control characters of foreign names are escaped before a terminal sees them, and a name
 //! that does not exist is answered with the nearest one that does.
 
+use std::any::Any;
 use std::fmt::{Display, Write as _};
 
 /// Least likeness, 0..1, of a name that is suggested for another.
@@ -16,6 +17,12 @@ pub fn escape(text: &str) -> String {
 /// `\u{1b}`. For whole messages.
 pub fn escape_lines(text: &str) -> String {
     escape_but(text, &['\n', '\t'])
+}
+
+/// The message of a panic that `catch_unwind` or a joined thread returns.
+pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message")
 }
 
 fn escape_but(text: &str, kept: &[char]) -> String {

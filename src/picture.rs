@@ -22,6 +22,16 @@ pub fn check_ending(path: &Path) -> Result<(), String> {
     format_of(path).map(|_| ())
 }
 
+/// Writes a frame as `specula-N.png` with the first free number, in the working directory. Returns the path.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_numbered(capture: &Capture) -> Result<PathBuf, String> {
+    let free = (1..).map(|n| PathBuf::from(format!("specula-{n}.png"))).find(|path| !path.exists());
+    let path = free.unwrap_or_else(|| "specula.png".into());
+    write(capture, &path).map(|()| path)
+}
+
 /// Fails before any work when no picture can be written to `path`.
 ///
 /// # Errors

@@ -8,7 +8,12 @@
 // and 2 m have the same size. At roughness 1 that is 8 x 8 texels a face: with fewer, the sampler's interpolation is off
 // by up to a tenth.
 const float SPECULAR_LEVELS = 10.0;
-float specular_level(float roughness) { return clamp(SPECULAR_LEVELS + 2.5 * log2(max(roughness, 1e-4)), 0.0, SPECULAR_LEVELS); }
+float specular_level(float roughness) {
+    float level = clamp(SPECULAR_LEVELS + 2.5 * log2(max(roughness, 1e-4)), 0.0, SPECULAR_LEVELS);
+    // Between two levels, where the tails of the rougher lobe reach dark places, a little less of it is closer.
+    float part = fract(level);
+    return level - 0.12 * part * (1.0 - part);
+}
 float roughness_of_specular_level(float level) { return exp2(0.4 * (level - SPECULAR_LEVELS)); }
 
 // Sheen. Roughness 1 is at the level with 8 x 8 texels a face. The smaller levels hold roughness 1 too; nothing looks

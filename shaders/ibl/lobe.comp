@@ -8,7 +8,7 @@
 // selected D and V. One workgroup.
 //
 // With x = sin^2 of the angle to h, NoL = 1 - 2x, dl = 4 pi dx, and light above the horizon has x < 1/2. The density of
-// samples is proportional to the sum of both K^(3/4). Sampled with K itself, the last samples would represent half the
+// samples is proportional to the sum of both sqrt(K). Sampled with K itself, the last samples would represent half the
 // sky and mix the peak into it.
 
 layout(local_size_x = 256) in;
@@ -74,7 +74,7 @@ void main() {
         float first = start_of_cell(cell);
         float last = end_of_cell(cell);
         vec2 k = weights_at(0.5 * (first + last)) / max(integral, vec2(1e-30));
-        below[cell] = (pow(k.x, 0.75) + pow(k.y, 0.75)) * (last - first);
+        below[cell] = (sqrt(k.x) + sqrt(k.y)) * (last - first);
     }
     barrier();
     if (own == 0u) {

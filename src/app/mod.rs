@@ -22,7 +22,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
-use crate::gpu::{Gpu, GpuError, GpuOptions};
+use crate::gpu::{Gpu, GpuError, GpuOptions, SetLayouts};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
@@ -143,8 +143,9 @@ impl App {
             validation: options.validation,
             display: Some(display.as_raw()),
         })?;
-        let screen = Screen::new(&gpu, &window)?;
-        let viewer = Viewer::new(&gpu, screen.layouts(), options, early, &self.outbox)?;
+        let layouts = SetLayouts::new(&gpu)?;
+        let screen = Screen::new(&gpu, &layouts, &window)?;
+        let viewer = Viewer::new(&gpu, &layouts, options, early, &self.outbox)?;
         Ok(Open { viewer, screen, gpu, window })
     }
 

@@ -1,6 +1,5 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -21,6 +20,8 @@ use crate::scene::{CameraController, CameraView};
 
 /// The CPU prepares a frame while the device draws the one before.
 const FRAMES_IN_FLIGHT: usize = 2;
+/// How soon a frame is tried again while memory is short.
+const RETRY: Duration = Duration::from_millis(500);
 /// A repaint delay of egui from which on no repaint is scheduled.
 const NEVER: Duration = Duration::from_secs(3600);
 
@@ -38,15 +39,17 @@ pub(super) struct Screen {
     frames: Frames,
     swapchain: Option<Swapchain>,
     surface: Arc<Surface>,
-    layouts: Arc<SetLayouts>,
     egui: egui::Context,
     input: egui_winit::State,
-    textures_to_free: egui::TexturesDelta,
+    /// Textures of egui to upload, and those to free because no later frame uses them.
+    textures: egui::TexturesDelta,
     /// Whether the swapchain no longer fits the window.
     stale: bool,
     first: bool,
     /// The last frame for which targets could be allocated. It is drawn again while memory is short.
     last: Option<BoundFrame>,
+    /// The lack of memory that the current frame met.
+    shortage: Option<GpuError>,
     /// The newest value under the mouse.
     pixel: Option<PixelAt>,
     pub(super) mouse: Mouse,
@@ -56,11 +59,10 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    pub(super) fn new(gpu: &Arc<Gpu>, window: &Arc<Window>) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, window: &Arc<Window>) -> Result<Self, GpuError> {
         let handles = window.display_handle().and_then(|d| Ok((d.as_raw(), window.window_handle()?.as_raw())));
         let (display, handle) = handles.map_err(|e| GpuError::NoDevice(format!("the window has no handle: {e}")))?;
         let surface = Surface::new(gpu, display, handle)?;
-        let layouts = SetLayouts::new(gpu)?;
         let egui = egui::Context::default();
         panels::style(&egui);
         let input = egui_winit::State::new(
@@ -73,27 +75,23 @@ impl Screen {
         );
         Ok(Self {
             ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
-            view: View::new(gpu, &layouts, FRAMES_IN_FLIGHT)?,
+            view: View::new(gpu, layouts, FRAMES_IN_FLIGHT)?,
             frames: Frames::new(gpu, FRAMES_IN_FLIGHT)?,
             swapchain: None,
             surface,
-            layouts,
             egui,
             input,
-            textures_to_free: egui::TexturesDelta::default(),
+            textures: egui::TexturesDelta::default(),
             stale: true,
             first: true,
             last: None,
+            shortage: None,
             pixel: None,
             mouse: Mouse::default(),
             camera: CameraController::default(),
             rect: PictureRect::default(),
             last_frame: Instant::now(),
         })
-    }
-
-    pub(super) fn layouts(&self) -> &Arc<SetLayouts> {
-        &self.layouts
     }
 
     pub(super) fn on_window_event(&mut self, window: &Window, event: &WindowEvent) -> egui_winit::EventResponse {
@@ -109,11 +107,24 @@ impl Screen {
         self.last.as_ref().map(|frame| frame.state.camera)
     }
 
-    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event.
+    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event. If memory runs out, the last picture
+    /// stays, the viewer says so, and the next frame tries again.
     ///
     /// # Errors
-    /// A device error. If memory runs out, the last picture stays and the window says so.
+    /// A device error other than a lack of memory.
     pub(super) fn draw(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
+        let drawn = self.draw_frame(window, viewer);
+        let drawn = self.survive(drawn)?;
+        if drawn.is_none() {
+            self.view.forget();
+        }
+        let shortage = self.shortage.take();
+        let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
+        Ok(if viewer.set_shortage(shortage.as_ref()) { Some(Duration::ZERO) } else { wait })
+    }
+
+    /// Draws a frame. Without memory for the targets of a new picture it draws the last one; any other lack of memory is an error.
+    fn draw_frame(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         if !self.resize(window, viewer)? {
             return Ok(None);
         }
@@ -130,8 +141,13 @@ impl Screen {
         // A screenshot that was asked for before the first picture waits for it.
         if let Some(frame) = frame.as_ref().filter(|_| viewer.screenshot) {
             viewer.screenshot = false;
-            let written = self.screenshot(viewer, frame);
-            survive(viewer, written)?;
+            match self.screenshot(viewer, frame) {
+                Err(error @ GpuError::OutOfMemory(_)) => {
+                    self.view.forget();
+                    viewer.say(format!("no screenshot: {error}"));
+                }
+                written => written?,
+            }
         }
 
         // Record both to a swapchain image. `begin` waits for a frame slot.
@@ -165,12 +181,8 @@ impl Screen {
     /// Recreates the swapchain if it does not fit the window. Returns whether there is a swapchain.
     fn resize(&mut self, window: &Window, viewer: &mut Viewer) -> Result<bool, GpuError> {
         if self.stale || self.swapchain.is_none() {
-            let size = window.inner_size();
-            let old = self.swapchain.take();
-            let vsync = viewer.gpu_is_fast();
-            let made = Swapchain::new(&self.surface, (size.width, size.height), FRAMES_IN_FLIGHT, vsync, old);
-            // Without memory, the next event tries again.
-            self.swapchain = survive(viewer, made)?.flatten();
+            let (size, old) = (window.inner_size().into(), self.swapchain.take());
+            self.swapchain = Swapchain::new(&self.surface, size, FRAMES_IN_FLIGHT, viewer.gpu_is_fast(), old)?;
             self.stale = false;
         }
         Ok(self.swapchain.is_some())
@@ -234,10 +246,21 @@ impl Screen {
     /// The frame to draw, with its targets allocated. If memory runs out, it is the last frame.
     fn next_frame(&mut self, viewer: &mut Viewer) -> Result<Option<BoundFrame>, GpuError> {
         let prepared = viewer.next_frame(self.rect.size, |frame| self.view.prepare(frame));
-        if let Some(frame) = survive(viewer, prepared)? {
+        if let Some(frame) = self.survive(prepared)? {
             self.last = frame;
         }
         Ok(self.last.clone())
+    }
+
+    /// Turns a lack of memory into `None`, and remembers it for the end of the frame.
+    fn survive<T>(&mut self, result: Result<T, GpuError>) -> Result<Option<T>, GpuError> {
+        match result {
+            Err(error @ GpuError::OutOfMemory(_)) => {
+                self.shortage = Some(error);
+                Ok(None)
+            }
+            result => result.map(Some),
+        }
     }
 
     /// The pixel of the picture under the mouse.
@@ -279,18 +302,17 @@ impl Screen {
         Ok(!viewer.times_next_frame())
     }
 
-    /// Uploads egui's textures. SYNC: waits for the frames in flight; this is rare, because textures change only with a new glyph
-    /// or image.
-    fn take_textures(&mut self, mut delta: egui::TexturesDelta) -> Result<(), GpuError> {
-        if !delta.is_empty() || !self.textures_to_free.is_empty() {
+    /// Uploads egui's textures, and frees those that the last frame used last. What fails is tried again with the next frame.
+    /// SYNC: waits for the frames in flight; this is rare, because textures change only with a new glyph or image.
+    fn take_textures(&mut self, delta: egui::TexturesDelta) -> Result<(), GpuError> {
+        if !delta.is_empty() || !self.textures.is_empty() {
             self.frames.wait_all()?;
-            self.ui.free_textures(&self.textures_to_free)?;
-            self.textures_to_free.clear();
-            self.ui.set_textures(&delta)?;
-            delta.set.clear();
-            std::mem::swap(&mut self.textures_to_free, &mut delta);
+            self.ui.free_textures(&self.textures)?;
+            self.textures.free.clear();
+            self.textures.append(delta);
+            self.ui.set_textures(&self.textures)?;
+            self.textures.set.clear();
         }
-        delta.clear();
         Ok(())
     }
 
@@ -305,10 +327,8 @@ impl Screen {
         // SYNC: the CPU reads the picture.
         self.frames.wait()?;
         let Some(capture) = readback.map(|readback| readback.finish()) else { return Ok(()) };
-        let free = (1..).map(|n| PathBuf::from(format!("specula-{n}.png"))).find(|path| !path.exists());
-        let path = free.unwrap_or_else(|| "specula.png".into());
-        match picture::write(&capture, &path) {
-            Ok(()) => {
+        match picture::write_numbered(&capture) {
+            Ok(path) => {
                 viewer.say(format!("wrote {}", path.display()));
                 emit(viewer.events, &Event::Screenshot { file: &path.display().to_string() });
             }
@@ -320,18 +340,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        self.textures_to_free.clear();
-    }
-}
-
-/// Turns out of memory into a message that stays, and `None`.
-fn survive<T>(viewer: &mut Viewer, result: Result<T, GpuError>) -> Result<Option<T>, GpuError> {
-    match result {
-        Err(error @ GpuError::OutOfMemory(_)) => {
-            viewer.keep_saying(format!("{error}. The last picture stays."));
-            Ok(None)
-        }
-        result => result.map(Some),
+        self.textures.clear();
     }
 }
 

@@ -34,8 +34,7 @@ impl Notices {
         self.passing = Some((text, Instant::now()));
     }
 
-    /// Shows a message until the user dismisses it.
-    /// Returns whether the message is new.
+    /// Shows a message until the user dismisses it. Returns whether the message is new.
     pub(super) fn keep(&mut self, text: String) -> bool {
         let is_new = !self.kept.contains(&text);
         if is_new {
@@ -56,7 +55,12 @@ impl Notices {
         &self.kept
     }
 
-    /// Removes the kept messages.
+    /// Removes a kept message whose reason is gone.
+    pub(super) fn end(&mut self, text: &str) {
+        self.kept.retain(|kept| kept != text);
+    }
+
+    /// Removes all kept messages.
     pub(super) fn dismiss(&mut self) {
         self.kept.clear();
     }

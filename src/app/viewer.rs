@@ -20,7 +20,7 @@ use crate::render::{BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Rev
 use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, ShaderSet, Source};
+use crate::shader::{Change, ShaderSet, Source};
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
 struct LastComplete {
@@ -62,14 +62,12 @@ pub(super) struct Viewer {
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
-    layouts: Arc<SetLayouts>,
-    compiler: Arc<Compiler>,
-    source: Source,
     allow_outside: bool,
     shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
     ready: bool,
-    worker_restarts: u32,
+    /// The message about a lack of memory.
+    shortage: Option<String>,
     pub(super) screenshot: bool,
     pub(super) quit: bool,
 }
@@ -101,18 +99,15 @@ impl Viewer {
             gpu: gpu.clone(),
             resources,
             threads,
-            layouts: layouts.clone(),
-            compiler: options.compiler,
-            source,
             allow_outside: options.allow_outside,
             shown: None,
             first_frame: None,
             ready: false,
-            worker_restarts: 0,
+            shortage: None,
             screenshot: false,
             quit: false,
         };
-        viewer.watch_tree();
+        viewer.watch_tree(&source);
         viewer.begin_loading(options.model, early.reading);
         Ok(viewer)
     }
@@ -250,19 +245,30 @@ impl Viewer {
         self.notices.say(text);
     }
 
-    /// Shows a message until the user dismisses it.
-    pub(super) fn keep_saying(&mut self, text: String) {
+    /// Shows a failure until the user dismisses it.
+    fn keep_saying(&mut self, text: String) {
         if self.notices.keep(text.clone()) {
+            emit(self.events, &Event::Failure { message: &text });
             message::tell(text);
         }
+    }
+
+    /// Shows that memory is short for as long as it is. Returns whether the message changes.
+    pub(super) fn set_shortage(&mut self, error: Option<&GpuError>) -> bool {
+        let text = error.map(|error| format!("{error}. The last picture stays."));
+        if self.shortage == text {
+            return false;
+        }
+        if let Some(old) = std::mem::replace(&mut self.shortage, text.clone()) {
+            self.notices.end(&old);
+        }
+        text.into_iter().for_each(|text| self.keep_saying(text));
+        true
     }
 
     pub(super) fn execute(&mut self, command: Command) {
         match command {
             Command::Reload => {
-                if self.threads.worker.has_ended() {
-                    self.restart_worker();
-                }
                 // A build that failed, for example without memory, is tried again.
                 self.threads.worker.built();
                 self.shader.compiling = true;
@@ -276,10 +282,10 @@ impl Viewer {
             Command::Quit => self.quit = true,
             Command::Say(text) => self.say(text),
             Command::OpenTree(path) => {
-                self.source = Source::Disk(path);
-                self.watch_tree();
+                let source = Source::Disk(path);
+                self.watch_tree(&source);
                 self.shader.compiling = true;
-                self.threads.worker.open_tree(self.source.clone());
+                self.threads.worker.open_tree(source);
             }
             Command::OpenModel(path) => self.load_model(Some(path)),
             Command::OpenEnvironment(path) => self.session.settings.environment.name = path.display().to_string(),
@@ -296,16 +302,6 @@ impl Viewer {
         self.execute(open_as(path).unwrap_or_else(Command::Say));
     }
 
-    /// Starts a new worker, which compiles the current files.
-    fn restart_worker(&mut self) {
-        let (settings, scene) = (self.session.settings.clone(), self.session.scene());
-        let snapshot = Snapshot { target: target(&self.gpu, &settings), settings, scene };
-        let device = (&self.gpu, &self.layouts);
-        self.threads.restart_worker(device, &self.compiler, self.source.clone(), snapshot);
-        self.shader.compiling = true;
-        self.watch_tree();
-    }
-
     /// Loads a model. The current model stays until the new one is ready.
     fn load_model(&mut self, path: Option<PathBuf>) {
         let reading = loader::read(path.clone(), LoadOptions { allow_outside: self.allow_outside });
@@ -317,11 +313,11 @@ impl Viewer {
         self.model.files.extend(path.iter().filter_map(|path| std::path::absolute(path).ok()));
         self.model.requested = path;
         self.model.loading = true;
-        self.threads.upload(reading);
+        self.threads.loader.upload(reading);
     }
 
-    fn watch_tree(&mut self) {
-        if let Err(message) = self.threads.watch_tree(&self.source) {
+    fn watch_tree(&mut self, source: &Source) {
+        if let Err(message) = self.threads.watch_tree(source) {
             self.say(message);
         }
     }

@@ -7,7 +7,7 @@ use specula::events::{Event, emit};
 use specula::gpu::{PrimitiveClass, SetLayouts};
 use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
 use specula::message::tell;
-use specula::render::{MaterialVariant, PipelineRequest, PipelineSet, TargetFormat, tree_name};
+use specula::render::{MaterialVariant, PipelineRequest, PipelineSet, TargetFormat};
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
@@ -95,7 +95,7 @@ fn build_choices(
     let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None) {
         Ok(set) => set,
         Err(error) => {
-            diagnostics.push(Diagnostic::error(tree_name(&args.common.source()?), error.to_string()));
+            diagnostics.push(Diagnostic::error(args.common.source()?.name(), error.to_string()));
             return Ok(None);
         }
     };
@@ -111,7 +111,7 @@ fn build_choices(
     // With a light count from the frame's uniforms. All other requests have a fixed number of lights.
     let every_material =
         PipelineRequest { materials: all_materials, target: TargetFormat::half(4), light_count: 0, ..plain.clone() };
-    build(&every_material, &tree_name(&args.common.source()?), 1, "some kind of material".to_owned());
+    build(&every_material, &args.common.source()?.name(), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
         build(&plain.with_mode(mode, settings.view.tonemap), &mode.file, mode.line, format!("mode {}", mode.slug));
     }

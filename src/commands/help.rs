@@ -7,7 +7,7 @@ use specula::message::nearest;
 use specula::scene::BUILT_IN;
 use specula::settings::{Setting, catalog};
 
-use super::names::is_word;
+use super::common::names::is_word;
 use super::{Cli, Failure, print};
 
 /// Topic that is not a command.

@@ -14,14 +14,11 @@ mod diff;
 mod help;
 mod info;
 mod modes;
-mod names;
 mod new;
-mod parse;
 mod probe;
 mod render;
 mod signals;
 mod view;
-mod watch;
 
 use std::io::IsTerminal as _;
 use std::process::ExitCode;

@@ -6,8 +6,8 @@ use std::time::Instant;
 use specula::app::{self, AppError, AppOptions};
 
 use super::Failure;
+use super::common::names::check_model_path;
 use super::common::{Common, compiler};
-use super::names::check_model_path;
 
 /// Largest width and height of a window in pixels: larger than any screen, and within the limits of window systems.
 const LARGEST_WINDOW: u32 = 16384;

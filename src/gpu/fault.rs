@@ -5,15 +5,23 @@
 //!
 //! - `image-bytes:N`: creating an image of more than `N` bytes of device memory fails with [`super::GpuError::OutOfMemory`].
 //! - `buffer-bytes:N`: the same for buffers.
+//! - `swapchain:N`, `frame-set:N`, `frame-submit:N`, `ui-textures:N`, `ui-draw:N`: the Nth call of the process that creates a
+//!   swapchain, creates a descriptor set 0, submits a frame of a window, uploads egui's textures or draws the user interface fails
+//!   with [`super::GpuError::OutOfMemory`].
 //!
 //! `app` knows these:
 //!
-//! - `worker-panic:N`: the worker panics at the Nth reload of the process. The worker that replaces it goes on counting.
+//! - `worker-panic:N`: the worker panics at the Nth reload of the process.
 //! - `compile-delay-ms:N`: every reload takes so much longer.
 //! - `load-delay-ms:N`: reading a model takes so much longer.
+//! - `bake-delay-ms:N`, `bake-panic:N`: every bake takes so much longer; the Nth bake panics.
+//!
+//! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, OnceLock, PoisonError};
+
+use super::GpuError;
 
 /// The environment variable that this module reads.
 pub const VARIABLE: &str = "SPECULA_FAULT";
@@ -39,6 +47,12 @@ pub fn strikes(name: &str) -> bool {
     let call = calls.entry(name.to_owned()).or_default();
     *call += 1;
     *call == number
+}
+
+/// Fails with [`GpuError::OutOfMemory`] at call number N of the process for a fault `name:N`. `action` continues "out of memory
+/// while".
+pub(super) fn refuse(name: &str, action: &str) -> Result<(), GpuError> {
+    if strikes(name) { Err(GpuError::OutOfMemory(action.to_owned())) } else { Ok(()) }
 }
 
 /// Sleeps for as many milliseconds as the fault `name` says, if it is there.

@@ -31,18 +31,7 @@ pub(crate) fn bindings(
 
 /// A trilinear sampler, clamped vertically. `wrap_u` is REPEAT for an equirectangular map, whose left and right edges meet.
 pub(crate) fn linear(gpu: &Arc<Gpu>, wrap_u: vk::SamplerAddressMode) -> Result<Arc<Sampler>, GpuError> {
-    Sampler::new(
-        gpu,
-        &SamplerDesc {
-            mag: vk::Filter::LINEAR,
-            min: vk::Filter::LINEAR,
-            mip: vk::SamplerMipmapMode::LINEAR,
-            mips: true,
-            wrap_u,
-            wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-            anisotropy: 1,
-        },
-    )
+    Sampler::new(gpu, &SamplerDesc { wrap_u, ..SamplerDesc::LINEAR })
 }
 
 /// Uploads all levels and layers of the images, and leaves them in [`Use::Sampled`].

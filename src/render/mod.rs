@@ -16,7 +16,7 @@ mod view;
 pub use brdf::tables::{Tables, wrong_values};
 pub(crate) use brdf::{ltc, measured::measured_buffer};
 pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
-pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages, tree_name};
+pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages};
 pub use resources::{BoundFrame, Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};
 pub use state::{

@@ -5,8 +5,6 @@
 
 mod built_in;
 mod camera;
-mod camera_controller;
-mod camera_motion;
 pub mod environment;
 mod error;
 mod features;
@@ -24,9 +22,7 @@ mod texture_source;
 use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
-pub use camera::{CameraView, frame};
-pub use camera_controller::CameraController;
-pub use camera_motion::{FlyCamera, OrbitCamera};
+pub use camera::{CameraController, CameraView, FlyCamera, OrbitCamera, frame};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};

@@ -64,6 +64,28 @@ fn an_error_moves_nothing_and_goes_with_its_repair() {
 }
 
 #[test]
+fn the_end_of_a_bake_moves_nothing() {
+    let tree = Tree::new();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let args = ["model.glb", "--env", "furnace", "--size", "640x640"];
+    let mut viewer = Viewer::with_fault(tree, &args, "bake-delay-ms:3000");
+    viewer.running.event("ready");
+    let left = viewer.screenshot().width();
+    let baking = viewer.screen();
+    let changed = |screen: &RgbaImage| -> Vec<u32> {
+        let differs = |y: u32| (left..SIZE.0 - SCROLL_BAR).any(|x| screen.get_pixel(x, y) != baking.get_pixel(x, y));
+        (SHADERS_END..640).filter(|y| differs(*y)).collect()
+    };
+    viewer.running.event("bake");
+    viewer.until_screen("the time of the bake", |screen| !changed(screen).is_empty());
+    viewer.screenshot();
+    let rows = changed(&viewer.screen());
+    // The bar becomes a line of text.
+    assert!(rows.last().unwrap() - rows[0] < 20, "rows that moved or changed: {rows:?}");
+    viewer.quit();
+}
+
+#[test]
 fn warnings_of_a_model_lie_over_the_picture() {
     let (mut json, bin) = glb::document(&glb::quad(1.0), &glb::gray());
     json["images"] = json!([{ "uri": "data:image/png;base64,aGVsbG8=" }]);

@@ -1,17 +1,15 @@
 //! The panel Camera: field of view, framing, and the cameras in the model.
 
-use egui::{RichText, Slider, Ui};
+use egui::{RichText, Ui};
 
-use super::{QUIET, row, section};
+use super::{QUIET, angle, section};
 use crate::app::command::Command;
 use crate::scene::{CameraView, Model};
 use crate::settings::CameraSettings;
 
 pub(super) fn show(ui: &mut Ui, settings: &mut CameraSettings, model: &Model, commands: &mut Vec<Command>) {
     section(ui, "Camera", false, |ui| {
-        row(ui, "Field of view", "Vertical field of view in degrees (--fovy)", |ui| {
-            ui.add(Slider::new(&mut settings.fovy, 5.0..=120.0).suffix("°").max_decimals(0));
-        });
+        angle(ui, "Field of view", "Vertical field of view in degrees (--fovy)", &mut settings.fovy, 5.0..=120.0);
         ui.horizontal(|ui| {
             if ui.button("Frame the model").on_hover_text("Show the whole model (R or Home)").clicked() {
                 commands.push(Command::FrameModel);

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Slider, Ui};
 
-use super::{QUIET, row, section};
+use super::{QUIET, angle, row, section};
 use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::Settings;
@@ -22,15 +22,17 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, progress: Option<&(f32,
                 },
             );
         });
-        if let Some((done, next)) = progress {
-            ui.add(egui::ProgressBar::new(*done).desired_height(14.0).text(RichText::new(next).small()));
-        } else if environment.is_lit() && report.total_ms > 0.0 {
-            let from = if report.cached { "from the disk" } else { "baked" };
-            ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));
-        }
-        row(ui, "Rotation", "Rotation around +Y in degrees", |ui| {
-            ui.add(Slider::new(&mut environment.rotation, -180.0..=180.0).suffix("°").max_decimals(0));
+        // A row of the same height in every state, so that the rows below keep their place.
+        ui.allocate_ui(egui::vec2(ui.available_width(), 16.0), |ui| {
+            ui.set_min_height(16.0);
+            if let Some((done, next)) = progress {
+                ui.add(egui::ProgressBar::new(*done).desired_height(16.0).text(RichText::new(next).small()));
+            } else if environment.is_lit() && report.total_ms > 0.0 {
+                let from = if report.cached { "from the disk" } else { "baked" };
+                ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));
+            }
         });
+        angle(ui, "Rotation", "Rotation around +Y in degrees", &mut environment.rotation, -180.0..=180.0);
         row(ui, "Intensity", "Factor on the map, whose values are cd/m^2", |ui| {
             ui.add(Slider::new(&mut environment.intensity, 0.0..=8.0).max_decimals(2));
         });

@@ -2,7 +2,7 @@
 
 use egui::{DragValue, Slider, Ui};
 
-use super::{color, row, section};
+use super::{angle, color, row, section};
 use crate::settings::{LightSettings, LightSource, RectLight};
 
 /// Shows the panel. `in_model` is the number of lights in the model.
@@ -39,15 +39,7 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
                             ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
                         },
                     );
-                    row(ui, "Distance", "From the model center, in model radii", |ui| {
-                        ui.add(Slider::new(&mut light.distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
-                    });
-                    row(ui, "Azimuth", "Degrees around +Y, from +Z towards +X", |ui| {
-                        ui.add(Slider::new(&mut light.azimuth, -180.0..=360.0).suffix("°").max_decimals(0));
-                    });
-                    row(ui, "Polar", "Degrees from +Y", |ui| {
-                        ui.add(Slider::new(&mut light.polar, 0.0..=180.0).suffix("°").max_decimals(0));
-                    });
+                    place(ui, &mut light.distance, &mut light.azimuth, &mut light.polar);
                 });
             }
         }
@@ -80,14 +72,15 @@ fn rect(ui: &mut Ui, light: &mut RectLight) {
             ui.add(DragValue::new(&mut light.width).range(0.01..=20.0).speed(0.01).prefix("w "));
             ui.add(DragValue::new(&mut light.height).range(0.01..=20.0).speed(0.01).prefix("h "));
         });
-        row(ui, "Distance", "From the model center, in model radii", |ui| {
-            ui.add(Slider::new(&mut light.distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
-        });
-        row(ui, "Azimuth", "Degrees around +Y, from +Z towards +X", |ui| {
-            ui.add(Slider::new(&mut light.azimuth, -180.0..=180.0).suffix("°").max_decimals(0));
-        });
-        row(ui, "Polar", "Degrees from +Y", |ui| {
-            ui.add(Slider::new(&mut light.polar, 0.0..=180.0).suffix("°").max_decimals(0));
-        });
+        place(ui, &mut light.distance, &mut light.azimuth, &mut light.polar);
     });
+}
+
+/// The place of a light around the model.
+fn place(ui: &mut Ui, distance: &mut f32, azimuth: &mut f32, polar: &mut f32) {
+    row(ui, "Distance", "From the model center, in model radii", |ui| {
+        ui.add(Slider::new(distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
+    });
+    angle(ui, "Azimuth", "Degrees around +Y, from +Z towards +X", azimuth, -180.0..=360.0);
+    angle(ui, "Polar", "Degrees from +Y", polar, 0.0..=180.0);
 }

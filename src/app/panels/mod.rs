@@ -12,7 +12,9 @@ mod parameters;
 mod shaders;
 mod timing;
 
-use egui::{Color32, FontId, Margin, TextStyle, Ui};
+use std::ops::RangeInclusive;
+
+use egui::{Color32, FontId, Margin, Slider, TextStyle, Ui};
 
 use super::command::Command;
 use super::viewer::Viewer;
@@ -43,6 +45,9 @@ pub(super) fn style(egui: &egui::Context) {
         style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
         style.spacing.item_spacing = egui::vec2(6.0, 4.0);
         style.spacing.slider_width = 100.0;
+        // Keeps the bar beside the content even while it is wide, under the mouse.
+        let scroll = &mut style.spacing.scroll;
+        scroll.floating_allocated_width = scroll.bar_width + scroll.bar_inner_margin;
     });
 }
 
@@ -87,7 +92,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
             let mode = &mut session.settings.mode;
             panel.show(ui, |ui| modes::show(ui, session.shaders.as_deref(), mode, &mut state.scrolled_to));
         }
-        let panel = egui::Panel::right("settings").frame(frame).default_size(304.0).min_size(220.0).max_size(480.0);
+        let panel = egui::Panel::right("settings").frame(frame).default_size(318.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| settings(ui, viewer, readings, commands));
         });
@@ -137,6 +142,11 @@ fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R
         control(ui)
     })
     .inner
+}
+
+/// A row with a slider in degrees.
+fn angle(ui: &mut Ui, name: &str, doc: &str, degrees: &mut f32, range: RangeInclusive<f32>) {
+    row(ui, name, doc, |ui| ui.add(Slider::new(degrees, range).suffix("°").max_decimals(0)));
 }
 
 /// A count with its noun, such as "1 draw" or "2 draws".

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Slider, Ui};
 
-use super::{QUIET, WARNING, color, plural, row, section};
+use super::{QUIET, WARNING, angle, color, plural, row, section};
 use crate::app::viewer::ModelStatus;
 use crate::scene::Model;
 use crate::settings::{MaterialOverride, Settings};
@@ -68,8 +68,7 @@ fn override_material(ui: &mut Ui, material: &mut MaterialOverride) {
     row(ui, "Roughness", "Perceptual", |ui| ui.add(Slider::new(&mut material.roughness, 0.0..=1.0).max_decimals(3)));
     row(ui, "Anisotropy", "Strength", |ui| ui.add(Slider::new(&mut material.anisotropy, 0.0..=1.0).max_decimals(3)));
     if material.anisotropy > 0.0 {
-        row(ui, "Direction", "Angle from the tangent towards the bitangent, in degrees", |ui| {
-            ui.add(Slider::new(&mut material.anisotropy_rotation, -90.0..=90.0).suffix("°").max_decimals(0))
-        });
+        let doc = "Angle from the tangent towards the bitangent, in degrees";
+        angle(ui, "Direction", doc, &mut material.anisotropy_rotation, -90.0..=90.0);
     }
 }

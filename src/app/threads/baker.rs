@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
-use super::{Message, Outbox};
-use crate::gpu::{Buffer, Gpu, GpuError};
+use super::{Message, Outbox, Role};
+use crate::gpu::{Buffer, Gpu, GpuError, fault};
 use crate::render::{
     BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, Resources, Tables, TablesKey,
     read_measured,
@@ -17,7 +17,7 @@ pub(in crate::app) enum BakeMessage {
     /// Number of the bake, the fraction that is done, 0..1, and the next pass.
     Progress(u64, f32, String),
     /// The result of a bake.
-    Environment(u64, EnvironmentKey, Result<Arc<GpuEnvironment>, BakeError>),
+    Environment(u64, Result<Arc<GpuEnvironment>, BakeError>),
     /// Tables of the BRDF.
     Tables(TablesKey, Result<Arc<Tables>, GpuError>),
     /// A measured BRDF.
@@ -26,6 +26,7 @@ pub(in crate::app) enum BakeMessage {
 
 /// A running bake.
 struct Bake {
+    number: u64,
     key: EnvironmentKey,
     progress: (f32, String),
 }
@@ -36,9 +37,9 @@ pub(in crate::app) struct Baker {
     outbox: Outbox,
     bake: Option<Bake>,
     /// The newest tables. The window takes them, and ignores older ones.
-    pub(in crate::app) tables: Option<TablesKey>,
+    tables: Option<TablesKey>,
     /// The newest read. The window takes its result, and ignores those of older ones.
-    pub(in crate::app) reading: Option<MeasuredKey>,
+    reading: Option<MeasuredKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
     threads: Vec<JoinHandle<()>>,
@@ -64,10 +65,12 @@ impl Baker {
         let number = self.newest.fetch_add(1, Ordering::SeqCst) + 1;
         self.bake = None;
         let Some(key) = key else { return };
-        self.bake = Some(Bake { key: key.clone(), progress: (0.0, String::new()) });
+        self.bake = Some(Bake { number, key: key.clone(), progress: (0.0, String::new()) });
         let (set, newest) = (set.clone(), self.newest.clone());
         let before = resources.baked_environment().cloned();
-        self.spawn("baker", move |outbox| {
+        self.spawn(Role::Baker(number), move |outbox| {
+            fault::delay("bake-delay-ms");
+            assert!(!fault::strikes("bake-panic"), "the injected fault bake-panic");
             let progress = |done: f32, next: &str| {
                 outbox.send(Message::Bake(BakeMessage::Progress(number, done, next.to_owned())));
             };
@@ -76,7 +79,7 @@ impl Baker {
             let result = GpuEnvironment::bake(&set, &key, before.as_ref(), &control);
             // Release them before the window takes the result.
             drop((set, before));
-            outbox.send(Message::Bake(BakeMessage::Environment(number, key, result)));
+            outbox.send(Message::Bake(BakeMessage::Environment(number, result)));
         });
     }
 
@@ -90,7 +93,7 @@ impl Baker {
         let Some(key) = key.filter(|key| self.tables.as_ref() != Some(key)) else { return };
         self.tables = Some(key.clone());
         let (set, before) = (set.clone(), resources.tables().cloned());
-        self.spawn("tables", move |outbox| {
+        self.spawn(Role::Tables(key.clone()), move |outbox| {
             let result = Tables::bake(&set, &key, before.as_deref());
             drop((set, before));
             outbox.send(Message::Bake(BakeMessage::Tables(key, result)));
@@ -102,7 +105,7 @@ impl Baker {
         let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
         self.reading = Some(key.clone());
         let gpu = self.gpu.clone();
-        self.spawn("reader", move |outbox| {
+        self.spawn(Role::Reader(key.clone()), move |outbox| {
             let result = read_measured(&gpu, &key).map_err(|error| error.to_string());
             drop(gpu);
             outbox.send(Message::Bake(BakeMessage::Measured(key, result)));
@@ -111,27 +114,29 @@ impl Baker {
 
     /// Stores the progress of a bake, if it is the newest.
     pub(in crate::app) fn set_progress(&mut self, number: u64, done: f32, next: String) {
-        if let Some(bake) = self.bake.as_mut().filter(|_| self.newest.load(Ordering::SeqCst) == number) {
+        if let Some(bake) = self.bake.as_mut().filter(|bake| bake.number == number) {
             bake.progress = (done, next);
         }
     }
 
-    /// Marks a bake as ended. Returns whether it is the newest.
-    pub(in crate::app) fn ended(&mut self, number: u64) -> bool {
-        let is_newest = self.newest.load(Ordering::SeqCst) == number;
-        self.bake = self.bake.take().filter(|_| !is_newest);
-        is_newest
+    /// Marks a bake as ended. Returns its key, unless it was canceled.
+    pub(in crate::app) fn ended(&mut self, number: u64) -> Option<EnvironmentKey> {
+        self.bake.take_if(|bake| bake.number == number).map(|bake| bake.key)
     }
 
-    /// Cancels the running bake after a panic. Returns its key.
-    pub(in crate::app) fn abandon_bake(&mut self) -> Option<EnvironmentKey> {
-        self.newest.fetch_add(1, Ordering::SeqCst);
-        self.bake.take().map(|bake| bake.key)
+    /// Marks tables as baked. Returns whether they are the newest.
+    pub(in crate::app) fn has_tables(&mut self, key: &TablesKey) -> bool {
+        self.tables.take_if(|tables| tables == key).is_some()
     }
 
-    fn spawn(&mut self, name: &'static str, body: impl FnOnce(&Outbox) + Send + 'static) {
+    /// Marks a read as ended. Returns whether it is the newest.
+    pub(in crate::app) fn has_read(&mut self, key: &MeasuredKey) -> bool {
+        self.reading.take_if(|reading| reading == key).is_some()
+    }
+
+    fn spawn(&mut self, role: Role, body: impl FnOnce(&Outbox) + Send + 'static) {
         self.threads.retain(|thread| !thread.is_finished());
-        self.threads.push(self.outbox.spawn(name, body));
+        self.threads.push(self.outbox.spawn(role, body));
     }
 }
 

@@ -6,8 +6,9 @@ use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use super::{DeviceGate, Message, Outbox, panic_text};
+use super::{DeviceGate, Message, Outbox, Role};
 use crate::gpu::{Gpu, SetLayouts, fault, return_freed_memory};
+use crate::message::panic_text;
 use crate::render::GpuModel;
 use crate::scene::{self, LoadError, LoadOptions, Model};
 
@@ -62,7 +63,7 @@ impl Loader {
     pub(in crate::app) fn upload(&mut self, reading: Reading) {
         self.newest += 1;
         let (gpu, layouts, gate, number) = (self.gpu.clone(), self.layouts.clone(), self.gate.clone(), self.newest);
-        self.outbox.spawn("loader", move |outbox| {
+        self.outbox.spawn(Role::Loader(number), move |outbox| {
             let Reading { path, start, model } = reading;
             let result = match model.join() {
                 Ok(model) => model.map_err(|error| (error.to_string(), error.files)),

@@ -5,7 +5,6 @@ pub(super) mod baker;
 pub(super) mod loader;
 pub(super) mod worker;
 
-use std::any::Any;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -15,9 +14,11 @@ use std::thread::JoinHandle;
 use winit::event_loop::EventLoopProxy;
 
 use crate::gpu::{Gpu, SetLayouts};
+use crate::message::panic_text;
+use crate::render::{MeasuredKey, TablesKey};
 use crate::shader::{Batch, Change, Compiler, Source, TreePath, Watcher};
 use baker::{BakeMessage, Baker};
-use loader::{Loaded, Loader, Reading};
+use loader::{Loaded, Loader};
 use worker::{Snapshot, Worker, WorkerMessage};
 
 /// Messages of the threads to the window.
@@ -27,8 +28,17 @@ pub(super) enum Message {
     Bake(BakeMessage),
     /// Watched files outside the shader tree have changed.
     FilesChanged(BTreeSet<PathBuf>),
-    /// A thread has panicked: its name, and the panic's message.
-    Panicked(&'static str, String),
+    /// A thread has panicked, with this message.
+    Panicked(Role, String),
+}
+
+/// What a thread does, with the number or key of its work.
+pub(super) enum Role {
+    Worker,
+    Loader(u64),
+    Baker(u64),
+    Tables(TablesKey),
+    Reader(MeasuredKey),
 }
 
 /// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
@@ -45,19 +55,14 @@ impl Outbox {
     }
 
     /// Runs `body` on a new thread. If it panics, the window receives a message.
-    fn spawn(&self, name: &'static str, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
+    fn spawn(&self, role: Role, body: impl FnOnce(&Self) + Send + 'static) -> JoinHandle<()> {
         let outbox = self.clone();
         std::thread::spawn(move || {
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| body(&outbox))) {
-                outbox.send(Message::Panicked(name, panic_text(&*panic)));
+                outbox.send(Message::Panicked(role, panic_text(&*panic).to_owned()));
             }
         })
     }
-}
-
-fn panic_text(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".to_owned())
 }
 
 /// Lets threads use the device until the window closes. The process must not end while a thread is inside the driver.
@@ -136,24 +141,6 @@ impl Threads {
         }
         self.watched = files;
         Ok(())
-    }
-
-    /// Replaces a worker that panicked.
-    pub(super) fn restart_worker(
-        &mut self,
-        device: (&Arc<Gpu>, &Arc<SetLayouts>),
-        compiler: &Arc<Compiler>,
-        source: Source,
-        snapshot: Snapshot,
-    ) {
-        // The watcher sends to the old worker.
-        self.tree_watcher = None;
-        self.worker = Worker::start(device, compiler, source, snapshot, &self.outbox);
-    }
-
-    /// Uploads a model once it has been read.
-    pub(super) fn upload(&mut self, reading: Reading) {
-        self.loader.upload(reading);
     }
 }
 

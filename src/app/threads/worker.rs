@@ -1,6 +1,7 @@
 //! The worker compiles shaders and builds pipelines, so that the window never waits for either.
 
 use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -8,14 +9,16 @@ use std::time::Instant;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use super::{Message, Outbox};
+use super::{Message, Outbox, Role};
 use crate::gpu::{Gpu, SetLayouts, fault};
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
-use crate::render::{
-    MaterialVariant, Outcome, PipelineRequest, PipelineSet, Reload, Reloader, Scene, TargetFormat, tree_name,
-};
+use crate::message::panic_text;
+use crate::render::{MaterialVariant, Outcome, PipelineRequest, PipelineSet, Reload, Reloader, Scene, TargetFormat};
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, ShaderSet, Source};
+
+/// How often the thread starts again by itself if each attempt panics.
+const RESTARTS: u32 = 3;
 
 /// The settings, scene and target that the window draws now. A reload builds their pipelines.
 #[derive(Clone)]
@@ -58,6 +61,12 @@ struct Edit {
     settled: Instant,
 }
 
+impl Edit {
+    fn new(change: Change, since: Instant) -> Self {
+        Self { change, since, settled: Instant::now() }
+    }
+}
+
 type Build = (Arc<PipelineSet>, PipelineRequest);
 
 enum Job {
@@ -78,12 +87,8 @@ impl Jobs {
         if !matches!(job, Job::Build(_)) {
             self.edits.fetch_add(1, Ordering::SeqCst);
         }
-        // Fails only after a panic of the thread, which the window learns from its own message.
+        // Fails only while the window closes.
         let _ = self.sender.send(job);
-    }
-
-    fn edit(&self, change: Change, since: Instant) {
-        self.send(Job::Edit(Edit { change, since, settled: Instant::now() }));
     }
 }
 
@@ -109,20 +114,16 @@ impl Worker {
         let edits = Arc::new(AtomicU64::new(0));
         let snapshot = Arc::new(Mutex::new(snapshot));
         let mut state = Thread {
-            gpu: gpu.clone(),
-            layouts: layouts.clone(),
-            compiler: compiler.clone(),
             reloader: Reloader::new(gpu, layouts, compiler, source),
             snapshot: snapshot.clone(),
             inbox,
             edits: edits.clone(),
             edits_taken: 0,
+            panics: 0,
             outbox: outbox.clone(),
         };
-        let thread = outbox.spawn("worker", move |_| state.run());
-        let worker = Self { jobs: Some(Jobs { sender, edits }), snapshot, asked: None, thread: Some(thread) };
-        worker.change(Change::All, Instant::now());
-        worker
+        let thread = std::thread::spawn(move || state.run());
+        Self { jobs: Some(Jobs { sender, edits }), snapshot, asked: None, thread: Some(thread) }
     }
 
     /// Sets what the next reload builds pipelines for.
@@ -132,13 +133,13 @@ impl Worker {
 
     /// Compiles the stages that a change makes dirty. `since` is the time of its first file event.
     pub(in crate::app) fn change(&self, change: Change, since: Instant) {
-        self.jobs.iter().for_each(|jobs| jobs.edit(change.clone(), since));
+        self.send(Job::Edit(Edit::new(change, since)));
     }
 
     /// [`Worker::change`] for the watcher's thread, which must end before the worker does.
     pub(super) fn changes(&self) -> impl Fn(Change, Instant) + Send + 'static {
         let jobs = self.jobs.clone();
-        move |change, since| jobs.iter().for_each(|jobs| jobs.edit(change.clone(), since))
+        move |change, since| jobs.iter().for_each(|jobs| jobs.send(Job::Edit(Edit::new(change.clone(), since))))
     }
 
     /// Builds pipelines. The newest request wins. A request that is running or has failed is not sent again.
@@ -148,11 +149,6 @@ impl Worker {
             self.asked = Some((set.clone(), request.clone()));
             self.send(Job::Build((set.clone(), request.clone())));
         }
-    }
-
-    /// Whether the thread has ended, after a panic.
-    pub(in crate::app) fn has_ended(&self) -> bool {
-        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
     /// Marks the newest build as successful, or lets a failed one be tried again.
@@ -179,74 +175,77 @@ impl Drop for Worker {
             jobs.edits.fetch_add(1, Ordering::SeqCst);
         }
         if let Some(thread) = self.thread.take() {
-            // The thread has already sent its panic as a message.
             let _ = thread.join();
         }
     }
 }
 
+/// Joins an edit with an older one that has not been compiled yet.
+fn join(old: Option<Edit>, new: Edit) -> Edit {
+    match old {
+        Some(old) => Edit { change: old.change.and(new.change), since: old.since, ..new },
+        None => new,
+    }
+}
+
 struct Thread {
-    gpu: Arc<Gpu>,
-    layouts: Arc<SetLayouts>,
-    compiler: Arc<Compiler>,
     reloader: Reloader,
     snapshot: Arc<Mutex<Snapshot>>,
     inbox: Receiver<Job>,
     edits: Arc<AtomicU64>,
     /// How many of `edits` were taken out of the inbox.
     edits_taken: u64,
+    /// Panics since the last reload that ended.
+    panics: u32,
     outbox: Outbox,
 }
 
 impl Thread {
-    /// Runs until the window drops its [`Jobs`]. Of all waiting jobs, the thread first joins and compiles the edits, then
-    /// builds the newest request, even if an edit has failed.
+    /// Works until the window drops its [`Jobs`]. After a panic the thread starts again with a new reloader.
     fn run(&mut self) {
+        let mut edit = Some(Edit::new(Change::All, Instant::now()));
+        while let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.work(edit.take()))) {
+            self.outbox.send(Message::Panicked(Role::Worker, panic_text(&*panic).to_owned()));
+            self.reloader.open(self.reloader.library().source().clone());
+            self.panics += 1;
+            // If each attempt panics, wait for the next edit, with which a new reloader compiles the whole tree.
+            edit = (self.panics <= RESTARTS).then(|| Edit::new(Change::All, Instant::now()));
+        }
+    }
+
+    /// Of all waiting jobs, first joins and compiles the edits, then builds the newest request, even if an edit has failed.
+    fn work(&mut self, mut edit: Option<Edit>) {
         let mut build: Option<Build> = None;
-        while let Ok(first) = self.inbox.recv() {
-            let mut waiting = vec![first];
-            while !waiting.is_empty() || build.is_some() {
-                waiting.extend(self.inbox.try_iter());
-                let mut edit = None::<Edit>;
-                for job in waiting.drain(..) {
-                    match job {
-                        Job::Edit(new) => edit = Some(self.join(edit, new)),
-                        Job::OpenTree(source) => edit = Some(self.open_tree(source)),
-                        Job::Build(newest) => build = Some(newest),
+        loop {
+            let mut waiting = Vec::new();
+            // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is closing.
+            if edit.is_none() && (build.is_none() || self.is_stale()) {
+                let Ok(job) = self.inbox.recv() else { return };
+                waiting.push(job);
+            }
+            waiting.extend(self.inbox.try_iter());
+            for job in waiting {
+                self.edits_taken += u64::from(!matches!(job, Job::Build(_)));
+                match job {
+                    Job::Edit(new) => edit = Some(join(edit, new)),
+                    Job::OpenTree(source) => {
+                        self.reloader.open(source);
+                        edit = Some(Edit::new(Change::All, Instant::now()));
                     }
-                }
-                if let Some(set) = edit.and_then(|edit| self.reload(edit)) {
-                    // Drop a request for an older set. The window sends one for the new set.
-                    build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
-                } else if self.is_stale() {
-                    // A newer edit has been counted and is about to arrive, or the window is closing.
-                    match self.inbox.recv() {
-                        Ok(job) => waiting.push(job),
-                        Err(_) => return,
-                    }
-                } else if let Some((set, request)) = build.take() {
-                    let built = set.build(&request).map_err(|error| error.to_string());
-                    self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
-                    self.build_ahead(&set);
+                    Job::Build(newest) => build = Some(newest),
                 }
             }
+            if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
+                // Drop a request for an older set. The window sends one for the new set.
+                build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
+            } else if !self.is_stale()
+                && let Some((set, request)) = build.take()
+            {
+                let built = set.build(&request).map_err(|error| error.to_string());
+                self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
+                self.build_ahead(&set);
+            }
         }
-    }
-
-    /// Joins an edit with an older one that has not been compiled yet.
-    fn join(&mut self, old: Option<Edit>, new: Edit) -> Edit {
-        self.edits_taken += 1;
-        match old {
-            Some(old) => Edit { change: old.change.and(new.change), since: old.since, ..new },
-            None => new,
-        }
-    }
-
-    fn open_tree(&mut self, source: Source) -> Edit {
-        self.edits_taken += 1;
-        self.reloader = Reloader::new(&self.gpu, &self.layouts, &self.compiler, source);
-        let now = Instant::now();
-        Edit { change: Change::All, since: now, settled: now }
     }
 
     /// Whether a newer edit waits, or the window is closing.
@@ -266,16 +265,17 @@ impl Thread {
         let request =
             |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
         let reload = self.reloader.update(edit.change, request, || edits.load(Ordering::SeqCst) > taken);
+        self.panics = 0;
         let set = match &reload.outcome {
             Outcome::Ready(set) => Some(set.clone()),
             Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
         };
-        let tree = tree_name(self.reloader.library().source());
+        let tree = self.reloader.library().source().name();
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
         let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, tree };
         self.outbox.send(Message::Worker(message));
-        // At the start, leave the CPU to the loader. The window requests a build once the model is on screen.
-        if let Some(set) = set.as_ref().filter(|set| set.shaders.generation > 1) {
+        // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
+        if let Some(set) = set.as_ref().filter(|_| self.snapshot().scene.is_some()) {
             self.build_ahead(set);
         }
         set

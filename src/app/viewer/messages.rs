@@ -5,17 +5,14 @@ use std::path::PathBuf;
 
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
-use crate::app::threads::Message;
 use crate::app::threads::baker::BakeMessage;
 use crate::app::threads::loader::Loaded;
 use crate::app::threads::worker::WorkerMessage;
+use crate::app::threads::{Message, Role};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::message;
 use crate::render::{Outcome, Reload, wrong_values};
 use crate::settings::LightSource;
-
-/// Maximum number of worker restarts after consecutive panics.
-const WORKER_RESTARTS: u32 = 3;
 
 impl Viewer {
     pub(in crate::app) fn on_message(&mut self, message: Message) {
@@ -25,13 +22,12 @@ impl Viewer {
             Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, tree }) => {
                 self.shader.compiling = false;
                 self.shader.tree = tree;
-                self.worker_restarts = 0;
                 self.on_reload(&reload, detect_ms);
             }
             Message::Loaded(loaded) => self.on_loaded(*loaded),
             Message::Bake(message) => self.on_bake(message),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
-            Message::Panicked(thread, text) => self.on_panic(thread, &text),
+            Message::Panicked(role, text) => self.on_panic(role, &text),
         }
     }
 
@@ -75,7 +71,9 @@ impl Viewer {
     fn check_names(&mut self, is_first: bool) {
         let mut problems = self.session.problems(is_first);
         if self.session.mode().is_none() {
-            problems.push(format!("there is no mode '{}'; `specula modes` lists them all", self.session.settings.mode));
+            let mode = &self.session.settings.mode;
+            problems
+                .push(format!("there is no mode '{mode}', so you see the final picture; `specula modes` lists all"));
         }
         if !problems.is_empty() {
             self.say(problems.join("\n"));
@@ -119,10 +117,8 @@ impl Viewer {
     fn on_bake(&mut self, message: BakeMessage) {
         match message {
             BakeMessage::Progress(number, done, next) => self.threads.baker.set_progress(number, done, next),
-            BakeMessage::Environment(number, key, result) => {
-                if !self.threads.baker.ended(number) {
-                    return;
-                }
+            BakeMessage::Environment(number, result) => {
+                let Some(key) = self.threads.baker.ended(number) else { return };
                 match result {
                     Ok(environment) => {
                         self.warn_of(environment.wrong());
@@ -135,20 +131,21 @@ impl Viewer {
                     }
                 }
             }
-            BakeMessage::Tables(key, result) if self.threads.baker.tables.as_ref() == Some(&key) => {
-                self.threads.baker.tables = None;
-                if let Ok(tables) = &result {
-                    self.warn_of(tables.wrong.iter().copied());
+            BakeMessage::Tables(key, result) => {
+                if self.threads.baker.has_tables(&key) {
+                    if let Ok(tables) = &result {
+                        self.warn_of(tables.wrong.iter().copied());
+                    }
+                    let result = result.map_err(|error| self.say(error.to_string()));
+                    self.resources.set_tables(key, result.ok());
                 }
-                let result = result.map_err(|error| self.say(error.to_string()));
-                self.resources.set_tables(key, result.ok());
             }
-            BakeMessage::Measured(key, result) if self.threads.baker.reading.as_ref() == Some(&key) => {
-                self.threads.baker.reading = None;
-                let result = result.map_err(|message| self.say(message));
-                self.resources.set_measured(key, result.ok());
+            BakeMessage::Measured(key, result) => {
+                if self.threads.baker.has_read(&key) {
+                    let result = result.map_err(|message| self.say(message));
+                    self.resources.set_measured(key, result.ok());
+                }
             }
-            BakeMessage::Tables(..) | BakeMessage::Measured(..) => {}
         }
     }
 
@@ -176,34 +173,35 @@ impl Viewer {
         }
     }
 
-    fn on_panic(&mut self, thread: &'static str, text: &str) {
-        let restarts = thread == "worker" && self.worker_restarts < WORKER_RESTARTS;
-        let then = if restarts { "; it was started again" } else { "" };
-        self.keep_saying(format!(
-            "Specula's {thread} thread failed ({text}){then}. Please report this; your files are safe"
-        ));
-        match thread {
-            "worker" if restarts => {
-                self.worker_restarts += 1;
-                self.restart_worker();
+    /// Says that a thread has panicked, and treats its work as failed.
+    fn on_panic(&mut self, role: Role, text: &str) {
+        let thread = match role {
+            Role::Worker => {
+                self.shader.compiling = false;
+                "worker"
             }
-            "baker" => {
-                if let Some(key) = self.threads.baker.abandon_bake() {
-                    self.resources.set_environment(key, None);
-                }
+            Role::Loader(number) => {
+                self.model.loading &= number != self.threads.loader.newest;
+                "loader"
             }
-            "tables" => {
-                if let Some(key) = self.threads.baker.tables.take() {
+            Role::Baker(number) => {
+                let failed = self.threads.baker.ended(number);
+                failed.into_iter().for_each(|key| self.resources.set_environment(key, None));
+                "baker"
+            }
+            Role::Tables(key) => {
+                if self.threads.baker.has_tables(&key) {
                     self.resources.set_tables(key, None);
                 }
+                "baker"
             }
-            "reader" => {
-                if let Some(key) = self.threads.baker.reading.take() {
+            Role::Reader(key) => {
+                if self.threads.baker.has_read(&key) {
                     self.resources.set_measured(key, None);
                 }
+                "reader"
             }
-            "loader" => self.model.loading = false,
-            _ => self.shader.compiling = false,
-        }
+        };
+        self.keep_saying(format!("Specula's {thread} thread failed ({text}). Please report this; your files are safe"));
     }
 }

@@ -20,8 +20,8 @@ use specula::shader::values::{misfits, unknown_names};
 use specula::shader::{Change, Constant, Library, ShaderSet, Update};
 
 use super::Failure;
+use super::common::parse::number;
 use super::common::{check_validation, compiler, open_gpu, source};
-use super::parse::number;
 
 /// Options of `brdf`.
 #[derive(clap::Args)]

@@ -10,7 +10,7 @@ use super::plot_axes::{Chart, HalfDisk, TEXT, draw_legend};
 use super::{Opened, Options, SurfaceOptions, short, unit};
 use crate::commands::Failure;
 use crate::commands::common::check_out;
-use crate::commands::parse::number;
+use crate::commands::common::parse::number;
 
 const WIDTH: f32 = 1600.0;
 const MARGIN: f32 = 56.0;

@@ -9,8 +9,8 @@ use specula::scene::{self, LoadOptions};
 use specula::settings::{LightSource, MaterialOverride};
 
 use super::{Options, SurfaceOptions};
+use crate::commands::common::names::check_environment;
 use crate::commands::common::{check_mode, check_validation, compiler, open_gpu, source};
-use crate::commands::names::check_environment;
 use crate::commands::{Failure, print_json};
 
 /// The sphere of this model is measured.

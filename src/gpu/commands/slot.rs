@@ -8,7 +8,7 @@ use ash::vk;
 use super::encoder::Encoder;
 use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer};
 use crate::gpu::error::Context;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, fault};
 
 /// How long a wait may take before the device counts as lost, in nanoseconds. A frame this long would freeze the desktop.
 const FENCE_TIMEOUT_NS: u64 = 60_000_000_000;
@@ -139,6 +139,9 @@ impl Slot {
             .command_buffer_infos(&buffers)
             .wait_semaphore_infos(wait.as_slice())
             .signal_semaphore_infos(signal.as_slice());
+        if sync.signal.is_some() {
+            fault::refuse("frame-submit", "submitting a frame")?;
+        }
         let queue = self.gpu.lock_queue();
         // SAFETY: no submission is pending on the fence, the queue is locked, and `kept` holds all that the commands use.
         unsafe {

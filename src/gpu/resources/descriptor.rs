@@ -10,7 +10,7 @@ use super::buffer::Buffer;
 use super::image::Image;
 use super::sampler::Sampler;
 use crate::gpu::error::Context;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, fault};
 use crate::interface::{self, BindingKind};
 
 const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
@@ -182,6 +182,9 @@ impl DescriptorSet {
     /// # Errors
     /// The device is out of memory.
     pub fn new(layouts: &Arc<SetLayouts>, set: u32, writer: SetWriter) -> Result<Arc<Self>, GpuError> {
+        if set == interface::SET_FRAME {
+            fault::refuse("frame-set", "creating a descriptor pool")?;
+        }
         let device = &layouts.gpu.device;
         let writer = writer.completed(set, &layouts.blank);
         let sizes: Vec<_> = interface::BINDINGS

@@ -37,6 +37,14 @@ impl SamplerDesc {
         wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
         anisotropy: 1,
     };
+    /// Blends texels and levels, clamped to the edge.
+    pub const LINEAR: Self = Self {
+        mag: vk::Filter::LINEAR,
+        min: vk::Filter::LINEAR,
+        mip: vk::SamplerMipmapMode::LINEAR,
+        mips: true,
+        ..Self::NEAREST
+    };
 }
 
 /// A sampler.

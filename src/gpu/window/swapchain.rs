@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::surface::{Surface, no_display};
 use crate::gpu::error::Context;
-use crate::gpu::{Gpu, GpuError, Image, ImageDesc, Submission};
+use crate::gpu::{Gpu, GpuError, Image, ImageDesc, Submission, fault};
 
 /// An image of the swapchain to draw a frame to.
 pub struct Acquired {
@@ -85,6 +85,7 @@ impl Swapchain {
             .present_mode(window.mode)
             .clipped(true)
             .old_swapchain(old);
+        fault::refuse("swapchain", "creating the swapchain")?;
         // SAFETY: the surface is live. This call retires the old swapchain, which the caller destroys.
         let raw = unsafe { swapchains.create_swapchain(&info, None) }.context("creating the swapchain")?;
         gpu.name(raw, "swapchain");

@@ -7,7 +7,10 @@ use ash::vk;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, RendererError};
 
 use crate::gpu::error::Context;
-use crate::gpu::{Encoder, Gpu, GpuError};
+use crate::gpu::{Encoder, Gpu, GpuError, fault};
+
+/// The action of every error.
+const DRAWING: &str = "drawing the user interface";
 
 /// egui's renderer on our device.
 pub struct UiRenderer {
@@ -43,6 +46,7 @@ impl UiRenderer {
     /// # Errors
     /// The device is out of memory.
     pub fn set_textures(&mut self, delta: &egui::TexturesDelta) -> Result<(), GpuError> {
+        fault::refuse("ui-textures", DRAWING)?;
         // SYNC: the renderer submits each upload, and waits for the queue, which must stay locked meanwhile.
         let queue = self.gpu.lock_queue();
         for (id, images) in &delta.set {
@@ -73,16 +77,16 @@ impl UiRenderer {
         pixels_per_point: f32,
         primitives: &[egui::ClippedPrimitive],
     ) -> Result<(), GpuError> {
+        fault::refuse("ui-draw", DRAWING)?;
         let extent = vk::Extent2D { width: extent.0, height: extent.1 };
         self.inner.cmd_draw(encoder.raw, extent, pixels_per_point, primitives).map_err(ui)
     }
 }
 
 fn ui(error: RendererError) -> GpuError {
-    let action = "drawing the user interface";
     match error {
-        RendererError::Vulkan(result) => GpuError::vulkan(result, action, ""),
-        RendererError::GpuAllocator(error) => GpuError::allocation(&error, action),
+        RendererError::Vulkan(result) => GpuError::vulkan(result, DRAWING, ""),
+        RendererError::GpuAllocator(error) => GpuError::allocation(&error, DRAWING),
         other => GpuError::Ui(other.to_string()),
     }
 }

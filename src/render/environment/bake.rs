@@ -4,8 +4,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::cancel::wait_unless;
 use crate::disk_cache;
-use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, one_shot, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, fault, one_shot, vk};
 use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
@@ -121,7 +122,7 @@ pub(crate) struct Prefiltered {
 pub struct BakeControl<'a> {
     /// Receives the fraction that is done, 0..1, and the name of the next pass.
     pub progress: &'a (dyn Fn(f32, &str) + Sync),
-    /// Returns whether to cancel. Called before each pass.
+    /// Returns whether to cancel. Called while a file is read and decoded, and before each pass.
     pub superseded: &'a (dyn Fn() -> bool + Sync),
     /// Whether a cached result may be used. Otherwise the bake replaces it.
     pub from_disk: bool,
@@ -283,7 +284,9 @@ impl Bake<'_> {
     /// The cube map, the irradiance and the small lights of the map.
     fn radiance(&mut self) -> Result<Arc<Radiance>, BakeError> {
         let time = self.begin(0.0, "reading")?;
-        let file = EnvironmentFile::open(&self.key.name)?;
+        let name = self.key.name.clone();
+        let file = wait_unless(self.control.superseded, move || EnvironmentFile::open(&name));
+        let file = Arc::new(file.ok_or(BakeError::Superseded)??);
         self.report.environment.clone_from(&file.name);
         let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits()];
         let disk_key = key(&[file.fingerprint], &self.key.radiance, &sizes);
@@ -302,7 +305,12 @@ impl Bake<'_> {
             let scale = bytemuck::pod_read_unaligned(scale);
             return Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights, map: file.fingerprint }));
         }
-        let map = file.decode()?;
+        let decoded = file.clone();
+        let map = wait_unless(self.control.superseded, move || {
+            fault::delay("decode-delay-ms");
+            decoded.decode()
+        });
+        let map = map.ok_or(BakeError::Superseded)??;
         self.report.decode_ms = ms(time);
         let most = self.gpu.max_image_size();
         if map.width.max(map.height) > most {

@@ -3,6 +3,6 @@
 mod reload;
 mod set;
 
-pub use reload::{Outcome, Reload, Reloader, tree_name};
+pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;
 pub use set::{MEASURE_STAGES, PipelineSet, all_stages, stages};

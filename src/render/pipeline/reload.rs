@@ -53,6 +53,11 @@ impl Reloader {
         }
     }
 
+    /// Reads another tree, or the same one as if for the first time. Compiles nothing yet.
+    pub fn open(&mut self, source: Source) {
+        *self = Self::new(&self.gpu, &self.layouts, self.library.compiler(), source);
+    }
+
     /// The shader tree.
     pub fn library(&self) -> &Library {
         &self.library
@@ -98,13 +103,8 @@ impl Reloader {
                 self.current = Some(set.clone());
                 Outcome::Ready(set)
             }
-            Err(error) => Outcome::Failed(vec![Diagnostic::error(tree_name(self.library.source()), error.to_string())]),
+            Err(error) => Outcome::Failed(vec![Diagnostic::error(self.library.source().name(), error.to_string())]),
         };
         Reload { report, pipeline_ms, outcome }
     }
-}
-
-/// The name of a tree in messages.
-pub fn tree_name(source: &Source) -> String {
-    source.root().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string())
 }

@@ -126,10 +126,11 @@ impl View {
         Ok(())
     }
 
-    /// Draws `frame` with the uniforms of frame slot `slot`. Call [`View::prepare`] for the frame first.
+    /// Draws `frame` with the uniforms of frame slot `slot`. Call [`View::prepare`] for the frame first, and
+    /// [`View::forget`] if the commands are not submitted.
     ///
     /// # Errors
-    /// Out of memory.
+    /// Out of memory. Nothing is recorded then.
     pub fn draw(
         &mut self,
         encoder: &mut Encoder,
@@ -139,6 +140,14 @@ impl View {
         redraw: Redraw,
     ) -> Result<(), GpuError> {
         let Some(targets) = &self.targets else { return Ok(()) };
+        let sources = Sources {
+            environment: frame.environment.clone(),
+            tables: frame.tables.clone(),
+            measured: frame.measured.clone(),
+        };
+        let in_flight = &mut self.in_flight[slot];
+        // This can fail, so it comes before the view changes.
+        let set = in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?;
         let (width, height) = frame.state.size;
         let rect = Rect { x: output.at.0, y: output.at.1, width, height };
         let only = match redraw {
@@ -157,15 +166,9 @@ impl View {
         }
 
         // Uniforms and set 0.
-        let in_flight = &mut self.in_flight[slot];
         let constants = frame.state.constants(rect, frame.environment.radiance.scale, self.sample_index);
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
-        let sources = Sources {
-            environment: frame.environment.clone(),
-            tables: frame.tables.clone(),
-            measured: frame.measured.clone(),
-        };
-        encoder.bind_set(&self.layouts, &in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?);
+        encoder.bind_set(&self.layouts, &set);
 
         // The model to the HDR target.
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, only };
@@ -183,6 +186,11 @@ impl View {
         encoder.transition(output.image, output.before, Use::Color);
         encoder.pass("tone map", |encoder| passes.tone_map(encoder, output.image, rect));
         Ok(())
+    }
+
+    /// Draws everything in the next frame, since the commands of a frame were not submitted and the targets may hold nothing.
+    pub fn forget(&mut self) {
+        self.drawn = None;
     }
 
     /// Fills an output with black while there is no frame to draw.

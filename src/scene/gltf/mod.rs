@@ -1,21 +1,12 @@
 //! Reads glTF 2.0 into a [`Model`]. The `gltf` crate parses the JSON. This module checks and reads all other data, since the
 //! crate's own readers panic on invalid files and refuse some valid ones.
 
-mod accessor;
-mod buffers;
-mod container;
-mod extensions;
-mod images;
-mod material;
-mod mesh;
+mod file;
+mod geometry;
+mod materials;
 mod nodes;
-mod placeholder;
-mod tangents;
 #[cfg(test)]
 mod tests;
-mod textures;
-mod triangles;
-mod uri;
 mod values;
 mod variants;
 
@@ -27,14 +18,18 @@ use std::time::Instant;
 use gltf::json;
 use rayon::prelude::*;
 
-use self::accessor::Reader;
-use self::buffers::{Buffers, Files, read_regular};
-use self::mesh::Geometry;
+use self::file::buffers::{Buffers, Files, read_regular};
+use self::file::container;
+use self::geometry::accessor::Reader;
+use self::geometry::mesh::{self, Geometry};
+use self::geometry::tangents;
+use self::materials::{images, material, placeholder};
 use super::LoadOptions;
 use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
 use super::outline::outline;
 use crate::interface::MAX_LIGHTS;
+use crate::message::panic_text;
 
 /// Largest coordinate of a mesh and of the scene, in meters. The square of the camera's distance is still finite in `f32`.
 const LARGEST_COORDINATE: f32 = 1e15;
@@ -58,11 +53,8 @@ pub fn load_memory(name: &str, bytes: &[u8]) -> Result<Model, Problem> {
 /// Builds the model and turns a panic into an error. A panic is a bug in Specula, but a file that triggers it must not end
 /// the session.
 fn guarded(name: &str, bytes: &[u8], files: Files<'_>, start: Instant) -> Result<Model, Problem> {
-    catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start))).unwrap_or_else(|panic| {
-        let words =
-            panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-        Err(Problem::Refused { found: words.unwrap_or("a panic without words").to_owned() })
-    })
+    catch_unwind(AssertUnwindSafe(|| build(name, bytes, files, start)))
+        .unwrap_or_else(|panic| Err(Problem::Refused { found: panic_text(&*panic).to_owned() }))
 }
 
 fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Result<Model, Problem> {

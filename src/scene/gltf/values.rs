@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use gltf::json;
 
 use super::super::error::Problem;
-use super::textures::Slot;
+use super::materials::textures::Slot;
 
 /// Extensions that the parser does not know, by name.
 pub type Extensions = serde_json::Map<String, json::Value>;

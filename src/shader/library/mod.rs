@@ -123,7 +123,7 @@ impl Library {
     }
 
     /// The compiler.
-    pub fn compiler(&self) -> &Compiler {
+    pub fn compiler(&self) -> &Arc<Compiler> {
         &self.compiler
     }
 

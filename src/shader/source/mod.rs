@@ -189,6 +189,11 @@ impl Source {
             _ => None,
         }
     }
+
+    /// The name of the tree in messages: its folder, or that it is built in.
+    pub fn name(&self) -> String {
+        self.root().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string())
+    }
 }
 
 /// Whether a directory looks like a Specula shader tree: it holds an `interface.glsl`.

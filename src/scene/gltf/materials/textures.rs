@@ -8,10 +8,10 @@ use json::extensions::texture::TextureTransform;
 use json::texture::{MagFilter, MinFilter, WrappingMode};
 use json::validation::Checked;
 
-use super::super::error::Problem;
-use super::super::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
-use super::place;
-use super::values::{self, Extensions};
+use crate::scene::error::Problem;
+use crate::scene::gltf::place;
+use crate::scene::gltf::values::{self, Extensions};
+use crate::scene::model::{Material, Mip, Sampler, Texture, TextureUse, Wrap};
 
 /// The highest TEXCOORD set of a vertex.
 const LAST_UV_SET: u32 = 1;
@@ -87,14 +87,21 @@ impl<'a> Collector<'a> {
     fn texture_use(&mut self, slot: &Slot, place: &str) -> Result<TextureUse, Problem> {
         let textures = &self.root.textures;
         let Some(texture) = textures.get(slot.texture) else {
-            return Err(super::out_of_range(place, "textures", slot.texture, textures.len()));
+            return Err(crate::scene::gltf::out_of_range(place, "textures", slot.texture, textures.len()));
         };
         let origin = self.origin(texture, slot.texture)?;
         let sampler = match texture.sampler {
             None => Sampler::default(),
             Some(at) => match self.root.samplers.get(at.value()) {
                 Some(sampler) => read_sampler(sampler, at.value())?,
-                None => return Err(super::out_of_range(place, "samplers", at.value(), self.root.samplers.len())),
+                None => {
+                    return Err(crate::scene::gltf::out_of_range(
+                        place,
+                        "samplers",
+                        at.value(),
+                        self.root.samplers.len(),
+                    ));
+                }
             },
         };
         let mut uv_set = slot.transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(slot.uv_set);
@@ -128,7 +135,7 @@ impl<'a> Collector<'a> {
         };
         match source {
             Some(source) if source >= self.root.images.len() => {
-                Err(super::out_of_range(&place, "images", source, self.root.images.len()))
+                Err(crate::scene::gltf::out_of_range(&place, "images", source, self.root.images.len()))
             }
             Some(source) => Ok(Origin::Image(source)),
             None => Ok(Origin::Texture(index)),

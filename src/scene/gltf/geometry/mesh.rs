@@ -6,12 +6,12 @@ use json::accessor::{ComponentType as C, Type};
 use json::mesh::{Mode, Semantic};
 use json::validation::Checked;
 
-use super::super::error::Problem;
-use super::super::model::{Bounds, Material, Primitive, Topology, Vertex};
 use super::accessor::{Format, Normalized as N, Reader};
 use super::triangles::{self, Corners};
-use super::{LARGEST_COORDINATE, get, place, variants};
 use crate::interface as contract;
+use crate::scene::error::Problem;
+use crate::scene::gltf::{LARGEST_COORDINATE, get, place, variants};
+use crate::scene::model::{Bounds, Material, Primitive, Topology, Vertex};
 
 /// A primitive and its warnings.
 pub struct Geometry {

@@ -2,7 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Bounds, CameraView, FlyCamera, OrbitCamera};
+use super::{CameraView, FlyCamera, OrbitCamera};
+use crate::scene::model::Bounds;
 use crate::settings::CameraSettings;
 
 /// Radians that the camera turns when the mouse moves by the picture's height.

@@ -4,13 +4,13 @@ use glam::{Vec3, Vec4};
 use gltf::json;
 use json::validation::Checked;
 
-use super::super::error::Problem;
-use super::super::model::{AlphaMode, Material, Texture};
 use super::extensions;
-use super::place;
 use super::textures::{Collector, Origin, Slot};
-use super::values::{self, clamp, roughness};
 use crate::interface as contract;
+use crate::scene::error::Problem;
+use crate::scene::gltf::place;
+use crate::scene::gltf::values::{self, clamp, roughness};
+use crate::scene::model::{AlphaMode, Material, Texture};
 
 /// The materials of a file, with the textures and images that they use.
 pub struct Materials {

@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Vec2, Vec3};
 
-use super::camera::direction;
+use super::direction;
 
 /// Largest elevation, radians. Straight up or down, left and right would be undefined.
 const STEEPEST: f32 = FRAC_PI_2 - 1e-3;

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::super::model::{Topology, Vertex};
+use crate::scene::model::{Topology, Vertex};
 
 /// The number of indices after the last complete primitive.
 pub fn excess(topology: Topology, count: usize) -> usize {

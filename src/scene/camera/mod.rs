@@ -1,8 +1,14 @@
 //! The camera: framing and matrices.
 
+mod controller;
+mod motion;
+
 use glam::{Mat4, Vec3};
 
-use super::model::{Bounds, Camera};
+pub use controller::CameraController;
+pub use motion::{FlyCamera, OrbitCamera};
+
+use crate::scene::model::{Bounds, Camera};
 use crate::settings::CameraSettings;
 
 /// The framed model fills this fraction of the picture's width or height.

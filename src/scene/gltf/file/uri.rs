@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::super::error::Problem;
+use crate::scene::error::Problem;
 
 /// The target of a URI.
 #[derive(Debug, PartialEq, Eq)]

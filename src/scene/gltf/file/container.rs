@@ -2,7 +2,7 @@
 
 use gltf::json;
 
-use super::super::error::Problem;
+use crate::scene::error::Problem;
 
 /// Extensions that a model may require.
 pub const SUPPORTED: &[&str] = &[

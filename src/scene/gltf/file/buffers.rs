@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use gltf::json;
 
-use super::super::error::Problem;
-use super::place;
 use super::uri::{self, Target};
+use crate::scene::error::Problem;
+use crate::scene::gltf::place;
 
 /// The model's folder, and the files that the loader tried.
 pub struct Files<'t> {
@@ -94,12 +94,12 @@ impl<'a> Buffers<'a> {
     pub fn view(&self, root: &json::Root, view: json::Index<json::buffer::View>, user: &str) -> Result<&[u8], Problem> {
         let index = view.value();
         let Some(view) = root.buffer_views.get(index) else {
-            return Err(super::out_of_range(user, "bufferViews", index, root.buffer_views.len()));
+            return Err(crate::scene::gltf::out_of_range(user, "bufferViews", index, root.buffer_views.len()));
         };
         let place = place("bufferViews", index, view.name.as_deref());
         let buffer_index = view.buffer.value();
         let Some(buffer) = self.0.get(buffer_index) else {
-            return Err(super::out_of_range(&place, "buffers", buffer_index, self.0.len()));
+            return Err(crate::scene::gltf::out_of_range(&place, "buffers", buffer_index, self.0.len()));
         };
         let Some(bytes) = buffer else {
             let expected = format!("buffers[{buffer_index}] to have a uri or to be the binary chunk of a GLB");

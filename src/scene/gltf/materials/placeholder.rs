@@ -3,8 +3,8 @@
 
 use glam::Vec3;
 
-use super::super::model::{Image, Material, Texture};
 use crate::interface as contract;
+use crate::scene::model::{Image, Material, Texture};
 
 /// Side of the checkerboard, in pixels.
 const SIDE: u32 = 256;

@@ -3,13 +3,13 @@
 use glam::{Vec3, Vec4};
 use gltf::json;
 
-use super::super::error::Problem;
-use super::super::model::{
+use super::textures::Collector;
+use crate::interface as contract;
+use crate::scene::error::Problem;
+use crate::scene::gltf::values::{self, Fields};
+use crate::scene::model::{
     Anisotropy, Clearcoat, Conductor, DiffuseTransmission, Iridescence, Material, Sheen, Specular, Volume,
 };
-use super::textures::Collector;
-use super::values::{self, Fields};
-use crate::interface as contract;
 
 /// Far above any real material. Its square is still finite in `f32`.
 const LARGEST_IOR: f32 = 1e4;

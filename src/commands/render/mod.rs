@@ -1,5 +1,7 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
+mod watch;
+
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -11,8 +13,8 @@ use specula::render::{Outcome, Reload};
 use specula::shader::{Change, Diagnostic};
 
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
-use super::watch::{Changes, Watch};
 use super::{Failure, print_diagnostics};
+use watch::{Changes, Watch};
 
 /// Options of `render`.
 #[derive(clap::Args)]

@@ -1,5 +1,8 @@
 //! The options that every command takes: settings, shader tree, model, device.
 
+pub mod names;
+pub mod parse;
+
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,8 +15,8 @@ use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::{Compiler, ShaderSet, Source, is_specula_tree};
 
 use super::Failure;
-use super::names::{check_environment, check_model_path};
-use super::parse::{ev, fovy, size, vector};
+use names::{check_environment, check_model_path};
+use parse::{ev, fovy, size, vector};
 
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]

@@ -9,11 +9,12 @@ use gltf::json;
 use image::{ImageFormat, ImageReader};
 use rayon::prelude::*;
 
-use super::super::error::Problem;
-use super::super::model::Image;
-use super::buffers::{Buffers, Files};
+use super::placeholder;
 use super::textures::Origin;
-use super::{place, placeholder};
+use crate::scene::error::Problem;
+use crate::scene::gltf::file::buffers::{Buffers, Files};
+use crate::scene::gltf::place;
+use crate::scene::model::Image;
 
 /// Maximum width and height of an image, in pixels.
 const MAX_SIZE: u32 = 16384;
@@ -82,7 +83,7 @@ fn read<'a>(
     index: usize,
 ) -> Result<Cow<'a, [u8]>, Problem> {
     let Some(image) = root.images.get(index) else {
-        return Err(super::out_of_range("textures", "images", index, root.images.len()));
+        return Err(crate::scene::gltf::out_of_range("textures", "images", index, root.images.len()));
     };
     let place = place("images", index, image.name.as_deref());
     match (&image.uri, image.buffer_view) {

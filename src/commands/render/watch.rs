@@ -8,7 +8,7 @@ use crossbeam_channel::{Receiver, unbounded};
 use specula::headless::Headless;
 use specula::shader::{Batch, Source, Watcher};
 
-use super::Failure;
+use crate::commands::Failure;
 
 /// Watches a shader tree, and the files of the model, the environment and the measured BRDF.
 pub struct Watch {

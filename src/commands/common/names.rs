@@ -7,7 +7,7 @@ use specula::file_kind::FileKind;
 use specula::message::nearest;
 use specula::scene::{self, BUILT_IN};
 
-use super::Failure;
+use crate::commands::Failure;
 
 /// Whether a text looks like a name: it is no option, and has neither an ending nor a folder as files do.
 pub fn is_word(text: &str) -> bool {

@@ -3,10 +3,10 @@
 use bevy_mikktspace::{TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
 
-use super::super::model::{Material, Primitive, Topology, Vertex};
 use super::mesh::Geometry;
 use super::triangles::{self, Corners};
 use crate::interface as contract;
+use crate::scene::model::{Material, Primitive, Topology, Vertex};
 
 /// Gives every vertex a unit tangent, and warns of replaced tangents. Tangents of the file are normalized, but not made
 /// orthogonal to the normal.
