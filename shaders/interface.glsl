@@ -134,7 +134,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     mat4 view_from_world;              // World to view space; the camera looks along -Z.
     vec3 eye_ws;                       // Camera position, world space.
     float exposure;                    // Factor from luminance (cd/m^2) to the display's 0..1: 1 / (1.2 * 2^EV100).
-    vec3 ambient;                      // Radiance that arrives from everywhere, linear RGB.
+    vec3 ambient;                      // Light from everywhere, linear RGB times cd/m^2.
     float time_s;                      // Seconds since the start; 0 in headless renderings.
     vec4 background;                   // Linear RGB behind the model, and its alpha.
     vec3 scene_center_ws;              // Center of the model's bounds, world space.
@@ -148,7 +148,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint mode;                         // Debug mode on screen, for passes that are not specialized by mode.
     float largest_value;               // Largest value that the HDR target holds: 65504 for half floats.
     vec2 environment_rotation;         // Cosine and sine of the environment's rotation around +Y; at 0 the map's center column is seen looking down -Z.
-    float environment_intensity;       // Factor from the values of the environment's images to radiance.
+    float environment_intensity;       // Factor from the values of the environment's images to cd/m^2.
     float environment_blur;            // Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
     uint sample_index;                 // Accumulating modes: frames since the picture changed.
     uint sample_count;                 // Accumulating modes: random paths a pixel in each frame.
@@ -158,7 +158,7 @@ struct Light {
     vec4 position_ws;                  // Position and 1; directional: unit vector towards the light and 0.
     vec3 direction_ws;                 // Direction in which the light shines, unit.
     uint kind;                         // LIGHT_*.
-    vec3 intensity;                    // Linear RGB times candela (point, spot), lux (directional) or radiance (rectangle).
+    vec3 intensity;                    // Linear RGB times candela (point, spot), lux (directional) or cd/m^2 (rectangle).
     float inverse_range;               // 1 / the distance at which the light ends, 1/m; 0: no end.
     float angle_scale;                 // Spot: falloff is the square of scale * cosine + offset, clamped to 0..1; other kinds: 0.
     float angle_offset;                // The offset in that falloff; other kinds: 1.
@@ -172,7 +172,7 @@ layout(set = SET_FRAME, binding = BINDING_LIGHTS, scalar) uniform Lights {
 
 layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material {
     vec4 base_color_factor;            // Linear RGBA.
-    vec3 emissive_factor;              // Linear RGB, KHR_materials_emissive_strength included.
+    vec3 emissive_factor;              // Linear RGB times cd/m^2, KHR_materials_emissive_strength included.
     float metallic_factor;             // 0 dielectric .. 1 metal.
     float roughness_factor;            // Perceptual roughness 0..1.
     float normal_scale;                // Scale of the normal texture's x and y.

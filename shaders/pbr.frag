@@ -8,6 +8,7 @@
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
 #include "material.glsl"
+#include "material_antialiasing.glsl"
 #include "user.glsl"
 
 // One fragment of the model, or one debug mode of it: scene-referred linear RGB as common/pixel.glsl stores it.
@@ -19,6 +20,7 @@ void main() {
     vec3 v = safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0));
     Surface surface = make_surface(fragment, v);
     user_surface(surface);
+    antialias_specular(surface);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
     surface = surface_of_mode(surface);
     complete_surface(surface, v);

@@ -2,6 +2,7 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
+#include "user/vertex.glsl"
 
 // Transforms vertices to world and clip space. Vertices are read through a buffer device address, so the pipeline
 // declares no vertex input.
@@ -10,6 +11,7 @@ layout(location = 0) out Fragment fragment;
 
 void main() {
     Vertex vertex = draw.vertices.at[gl_VertexIndex];
+    user_vertex(vertex);
     mat3 directions = mat3(draw.world_from_object);
 
     fragment.position_ws = draw.world_from_object * vec4(vertex.position, 1.0);

@@ -2,6 +2,7 @@
 #include "interface.glsl"
 #include "common/pixel.glsl"
 #include "lighting/environment.glsl"
+#include "user/background.glsl"
 
 // Draws the environment behind the model: scene-referred linear RGB, opaque.
 
@@ -16,5 +17,7 @@ vec3 direction_ws() {
 }
 
 void main() {
-    out_color = hdr_pixel(background_radiance(direction_ws()), 1.0, false);
+    vec3 direction = direction_ws();
+    vec3 radiance = user_background(normalize(direction), background_radiance(direction));
+    out_color = hdr_pixel(radiance, 1.0, false);
 }

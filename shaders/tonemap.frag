@@ -3,6 +3,7 @@
 #include "common/color.glsl"
 #include "common/pixel.glsl"
 #include "common/tonemap.glsl"
+#include "user/display.glsl"
 
 // From scene color to the picture: exposure, tone map, background, encoding. The target stores numbers as they are
 // (UNORM), so the sRGB curve is applied here. Alpha leaves straight, not premultiplied.
@@ -13,7 +14,10 @@ layout(location = 0) out vec4 out_color;
 
 // The display's color for `value`, 0..1 and still linear if it is a color.
 vec3 display_value(vec3 value) {
-    if (TONEMAP != TONEMAP_OFF) value = tonemap(value * frame.exposure, TONEMAP);
+    if (TONEMAP != TONEMAP_OFF) {
+        vec2 uv = (gl_FragCoord.xy - frame.viewport_origin_px) / frame.viewport_px;
+        value = tonemap(user_display(value * frame.exposure, uv), TONEMAP);
+    }
     if (ENCODE == ENCODE_VECTOR) value = value * 0.5 + 0.5;
     return saturate(value);
 }

@@ -5,7 +5,7 @@ mod support;
 use specula::headless::Headless;
 use specula::render::Capture;
 use support::process::run;
-use support::{SIZE, assert_differ, assert_same, model, render, renderer, settings};
+use support::{SIZE, assert_differ, assert_same, glb, load, model, render, renderer, settings};
 
 fn open(name: &str, more: &[&str]) -> Headless {
     let direct = ["environment.name=none", "view.msaa=1", "view.background=none"];
@@ -99,4 +99,40 @@ fn the_axis_of_anisotropy_turns() {
     // The tangent is interpolated; the axis is perpendicular to the normal.
     assert!(along.iter().zip(&tangent).all(|(a, t)| dot(a, t) > 0.99), "0 degrees is the tangent");
     assert!(along.iter().zip(&across).all(|(a, b)| dot(a, b).abs() < 0.01), "90 degrees is at right angles to it");
+}
+
+/// Perceptual roughness to the power of four: alpha^2.
+fn alpha2(roughness: f32) -> f32 {
+    roughness.powi(4)
+}
+
+#[test]
+fn specular_antialiasing_widens_a_lobe_by_the_normals_of_a_pixel() {
+    let gray = load(&glb::model(&glb::sphere(64, 128), &glb::gray()));
+    let direct = ["environment.name=none", "view.msaa=1", "view.background=none", "material.enabled=true"];
+    let mut headless = renderer(gray, settings(&[&direct[..], &["material.roughness=0.2"]].concat()), SIZE);
+    let plain = render(&mut headless, "roughness");
+    assert!(plain.raw.iter().filter(|v| v[3] == 1.0).all(|v| (v[0] - 0.2).abs() < 1e-6), "off by default");
+    headless.settings_mut().assign("SPECULAR_ANTIALIASING=true").unwrap();
+    let (wide, normals) = (render(&mut headless, "roughness"), render(&mut headless, "shading-normal"));
+    let at = |x: usize, y: usize| y * normals.width as usize + x;
+    let mut widened = 0;
+    // Derivatives are differences within quads, which start at even pixels. Towards the silhouette a quad has several
+    // triangles, whose normals are extrapolated.
+    for (x, y) in (10..22).flat_map(|y| (18..30).map(move |x| (2 * x, 2 * y))) {
+        let quad = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
+        assert!(quad.iter().all(|i| normals.raw[*i][3] == 1.0), "{x}, {y} shows the sphere");
+        let squared = |a: usize, b: usize| (0..3).map(|c| (normals.raw[a][c] - normals.raw[b][c]).powi(2)).sum::<f32>();
+        let variance = 0.25 * (squared(quad[0], quad[1]) + squared(quad[0], quad[2]));
+        let expected = alpha2(0.2) + (2.0 * variance).min(0.18);
+        let found = alpha2(wide.raw[quad[0]][0]);
+        assert!((found - expected).abs() < 0.05 * expected, "{x}, {y}: {found}, expected {expected}");
+        widened += usize::from(found > 1.2 * alpha2(0.2));
+    }
+    assert!(widened > 50, "{widened} quads have a wider lobe");
+    // A flat surface keeps its roughness.
+    let flat = load(&glb::model(&glb::quad(1.0), &glb::gray()));
+    let mut headless = renderer(flat, settings(&[&direct[..], &["SPECULAR_ANTIALIASING=true"]].concat()), SIZE);
+    let values = shown(&mut headless, "roughness");
+    assert!(values.iter().all(|v| (v[0] - values[0][0]).abs() < 1e-5 && v[0] > 0.0), "{:?}", values[0]);
 }

@@ -410,3 +410,33 @@ fn moved_vertices_are_seen_from_where_they_are() {
         assert!((found[i][0] - expected).abs() < 1e-4, "{position}: {} instead of {expected}", found[i][0]);
     }
 }
+
+/// Reflectance of a conductor at normal incidence (Born & Wolf 1999, section 14.4).
+fn conductor_f0(n: f64, k: f64) -> f64 {
+    ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k)
+}
+
+#[test]
+fn f0_is_that_of_the_selected_fresnel_equation() {
+    let (n, k) = ([0.18, 0.42, 1.37], [3.42, 2.35, 1.77]);
+    let metal = |n: [f64; 3], k: [f64; 3]| {
+        json!({ "pbrMetallicRoughness": { "baseColorFactor": [0.8, 0.8, 0.8, 1.0] },
+            "extras": { "specula": { "conductor_n": n, "conductor_k": k } } })
+    };
+    let mut headless = sharp(load(&glb::model(&glb::quad(1.0), &metal(n, k))), &[]);
+    let by_ior = std::array::from_fn(|i| conductor_f0(n[i], k[i]));
+    for (choice, expected) in [("Schlick", [0.8; 3]), ("Conductor", by_ior), ("F82", by_ior)] {
+        headless.settings_mut().assign(&format!("FRESNEL_METAL={choice}")).unwrap();
+        let found = covered(&render(&mut headless, "f0"))[0];
+        let near = found.iter().zip(expected).all(|(a, b): (&f32, f64)| (f64::from(*a) - b).abs() < 1e-4);
+        assert!(near, "{choice}: {found:?}, expected {expected:?}");
+    }
+    // The base color is a plausible metal; n and k are not: F0 = 0.29.
+    let dull = metal([2.0; 3], [1.5; 3]);
+    for (choice, is_red) in [("Schlick", false), ("Conductor", true)] {
+        let choice = format!("FRESNEL_METAL={choice}");
+        let mut headless = sharp(load(&glb::model(&glb::quad(1.0), &dull)), &[&choice]);
+        let [r, g, _] = covered(&render(&mut headless, "f0-range"))[0];
+        assert_eq!(r == 1.0 && g < 0.1, is_red, "{choice}: {r}, {g}");
+    }
+}

@@ -29,10 +29,10 @@ fn the_slider_of_the_readme() {
     let mut session = session();
     let before = session.render();
     let member = snippet("//@ui \"Snow\"");
-    let text = session.tree.edited("user.glsl", "};", &format!("{}\n}};", member.trim_end()));
+    let params = session.tree.edited("user/params.glsl", "};", &format!("{}\n}};", member.trim_end()));
+    ready(&session.save("user/params.glsl", &params));
     let hook = "void user_surface(inout Surface s) {";
-    let text = text.replacen(hook, &format!("{hook}\n{}", snippet("snow * smoothstep")), 1);
-    ready(&session.save("user.glsl", &text));
+    ready(&session.edit("user.glsl", hook, &format!("{hook}\n{}", snippet("snow * smoothstep"))));
     assert_same(&before, &session.render(), "at its default the slider changes nothing");
     let generation = session.headless.shaders().generation;
     session.set("snow=1.0");

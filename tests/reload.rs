@@ -19,6 +19,7 @@ fn sphere() -> Session {
 
 const NDF: &str = "brdf/ndf.glsl";
 const USER: &str = "user.glsl";
+const PARAMS: &str = "user/params.glsl";
 /// Stages that sample the environment.
 const SKY: &[&str] = &["pbr.frag", "sky.frag"];
 /// Stages that round to half floats.
@@ -31,6 +32,7 @@ const ROUNDING: &[&str] = &[
     "ibl/prefilter_sheen.comp",
     "ibl/sheen_albedo.comp",
 ];
+const VERTEX_HOOK: &str = "void user_vertex(inout Vertex vertex) {";
 const SQUARED: &str = "float a2 = alpha * alpha;";
 
 #[test]
@@ -79,6 +81,13 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
         ("lighting/environment.glsl", "textureLod(environment_cube, ", "textureLod(environment_cube, -", SKY),
         ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", &["ibl/dfg.comp", "pbr.frag"]),
         ("ibl/half.glsl", "65504.0", "65503.0", ROUNDING),
+        (
+            "user/vertex.glsl",
+            VERTEX_HOOK,
+            "void user_vertex(inout Vertex vertex) { vertex.position.x += 0.1;",
+            &["pbr.vert"],
+        ),
+        ("user/display.glsl", "return light;", "return light * 0.5;", &["tonemap.frag"]),
         ("tonemap.vert", "void main() {", "void main() {\n    float unused = 1.0;", &["tonemap.vert"]),
     ] {
         let reload = session.edit(file, from, to);
@@ -275,7 +284,7 @@ fn an_annotation_that_does_not_parse_is_a_diagnostic_with_its_line() {
     let mut session = sphere();
     let before = session.render();
     for (file, from, to, part) in [
-        (USER, "//@ui \"Rim\" 0..1 = 0.0", "//@ui \"Rim\" 0..one = 0.0", "one"),
+        (PARAMS, "//@ui \"Rim\" 0..1 = 0.0", "//@ui \"Rim\" 0..one = 0.0", "one"),
         (USER, "Off=0 Two=2", "Off=0 Two", "Two"),
         (
             "debug/modes.glsl",
@@ -334,7 +343,7 @@ fn a_parameter_added_appears_and_values_survive_by_name() {
 
     // A new first member moves every offset, but values keep their names.
     let first = "    float roughness_scale;";
-    ready(&session.edit(USER, first, &format!("    float glow;                //@ui \"Glow\" 0..1 = 0.0\n{first}")));
+    ready(&session.edit(PARAMS, first, &format!("    float glow;                //@ui \"Glow\" 0..1 = 0.0\n{first}")));
     let names: Vec<String> =
         session.headless.shaders().parameters.iter().map(|parameter| parameter.name.clone()).collect();
     assert_eq!(names[0], "glow", "{names:?}");

@@ -107,8 +107,7 @@ float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf f) {
 void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf f) {
     float passes = 1.0;
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
-        float alpha = sheen_alpha(s.sheen_roughness);
-        f.sheen = s.sheen_color * (d_charlie(f.n_dot_h, alpha) * v_sheen(f.n_dot_l, f.n_dot_v, alpha));
+        f.sheen = s.sheen_color * f_sheen(f.n_dot_l, f.n_dot_v, f.n_dot_h, f.v_dot_h, s.sheen_roughness);
         float stopped = max(sheen_albedo(n_dot_l, s.sheen_roughness), sheen_albedo(f.n_dot_v, s.sheen_roughness));
         passes = under_sheen(s, stopped);
     }

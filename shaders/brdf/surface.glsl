@@ -21,7 +21,7 @@ struct Surface {
     float metallic;            // 0 dielectric .. 1 metal
     float roughness;           // perceptual, 0..1
     float occlusion;           // 1: unoccluded
-    vec3 emissive;             // radiance
+    vec3 emissive;             // radiance, cd/m^2
     vec3 f0;                   // of the dielectric: reflectance at normal incidence
     float f90;                 // of the dielectric: reflectance at grazing incidence
     float ior;                 // of the dielectric

@@ -15,12 +15,18 @@ vec2 hammersley(uint i, uint count) {
 }
 
 // Three random 32-bit words from three (pcg3d: Jarzynski & Olano 2020, section 3). Stateless: hash pixel and sample
-// index.
+// index. x, y and z are updated one after the other, each from the newest values of the other two. Updated together,
+// they would stay equal for equal inputs.
+uvec3 pcg3d_round(uvec3 x) {
+    x.x += x.y * x.z;
+    x.y += x.z * x.x;
+    x.z += x.x * x.y;
+    return x;
+}
+
 uvec3 random_words(uvec3 x) {
-    x = x * 1664525u + 1013904223u;
-    x += x.yzx * x.zxy;
-    x ^= x >> 16;
-    return x + x.yzx * x.zxy;
+    x = pcg3d_round(x * 1664525u + 1013904223u);
+    return pcg3d_round(x ^ (x >> 16));
 }
 
 // Uniform in 0 <= x < 1. 24 bits fit a float's mantissa; more could round up to 1.
@@ -43,10 +49,6 @@ vec3 direction_from_cosine(float cos_theta, float turns) {
     return vec3(sin_theta * cos(phi), sin_theta * sin(phi), cos_theta);
 }
 
-// Uniform over the hemisphere: zones of equal height have equal area (Archimedes).
-vec3 sample_uniform(vec2 u) { return direction_from_cosine(1.0 - u.x, u.y); }
-float pdf_uniform() { return 0.5 / PI; }
-
 // Density cos(theta) / pi: a uniform disk projected up to the hemisphere (Malley's method; Pharr et al. 2016, 13.6.3).
 vec3 sample_cosine(vec2 u) { return direction_from_cosine(sqrt(1.0 - u.x), u.y); }
 float pdf_cosine(float n_dot_l) { return max(n_dot_l, 0.0) / PI; }
@@ -67,30 +69,6 @@ float d_ggx_reference(vec3 h, vec2 alpha) {
     vec3 scaled = vec3(h.xy / alpha, h.z);
     float spread = dot(scaled, scaled);
     return 1.0 / (PI * alpha.x * alpha.y * spread * spread);
-}
-
-// Half vectors with Beckmann's density D NoH: tan^2 = -alpha^2 log(1 - u) (Walter et al. 2007, eq. 28).
-vec3 sample_beckmann(vec2 u, float alpha) {
-    return direction_from_cosine(inversesqrt(1.0 - alpha * alpha * log(1.0 - u.x)), u.y);
-}
-
-float pdf_beckmann(float n_dot_h, float alpha) {
-    if (n_dot_h <= 0.0) return 0.0;
-    float cos2 = n_dot_h * n_dot_h;
-    float a2 = alpha * alpha;
-    return exp((cos2 - 1.0) / (cos2 * a2)) / (PI * a2 * cos2 * n_dot_h);
-}
-
-// Half vectors with the density D NoH of the "Charlie" sheen, D = (2 + 1/alpha) sin^(1/alpha) / 2 pi (Estevez & Kulla
-// 2017, eq. 2). The CDF is a power of the sine, so sin = u^(alpha / (2 alpha + 1)).
-vec3 sample_charlie(vec2 u, float alpha) {
-    float sin_theta = pow(u.x, alpha / (2.0 * alpha + 1.0));
-    return direction_from_cosine(sqrt(max(1.0 - sin_theta * sin_theta, 0.0)), u.y);
-}
-
-float pdf_charlie(float n_dot_h, float alpha) {
-    float sin2 = max(1.0 - n_dot_h * n_dot_h, 0.0);
-    return (2.0 + 1.0 / alpha) * pow(sin2, 0.5 / alpha) * max(n_dot_h, 0.0) / (2.0 * PI);
 }
 
 // Smith's G1 of GGX, 2 / (1 + sqrt(1 + alpha^2 tan^2)): the visible fraction of the facets that face v (Walter et al.

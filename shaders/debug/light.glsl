@@ -12,6 +12,7 @@
 #include "debug/modes.glsl"
 #include "debug/terms.glsl"
 #include "lighting/environment.glsl"
+#include "lighting/punctual.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
 #include "material.glsl"
@@ -77,7 +78,8 @@ LightRange lights_of_mode() {
 vec3 lambert_without_cosine(Surface s, LightRange range) {
     vec3 irradiance = vec3(0.0);
     for (uint i = range.first; i < range.end; ++i) {
-        if (lights[i].kind != LIGHT_RECT) irradiance += illuminate(lights[i], s.position_ws).irradiance;
+        Light light = light_at(i, s.position_ws);
+        if (light.kind != LIGHT_RECT) irradiance += illuminate(light, s.position_ws).irradiance;
     }
     return f_lambert(s.base_color) * irradiance;
 }

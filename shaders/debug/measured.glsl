@@ -9,6 +9,7 @@
 #include "common/fragment.glsl"
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
+#include "lighting/punctual.glsl"
 #include "lighting/shade.glsl"
 #include "material.glsl"
 
@@ -23,10 +24,11 @@ MeasuredLight measured_light(Fragment f, Surface s, vec3 v, LightRange range) {
     vec3 b = bitangent_ws(f);
     MeasuredLight sum = MeasuredLight(vec3(0.0), 0.0);
     for (uint i = range.first; i < range.end; ++i) {
-        if (lights[i].kind == LIGHT_RECT) continue;
-        Illumination light = illuminate(lights[i], s.position_ws);
-        vec3 irradiance = light.irradiance * saturate(dot(s.n, light.l));
-        sum.radiance += f_measured(light.l, v, s.n, t, b) * irradiance;
+        Light light = light_at(i, s.position_ws);
+        if (light.kind == LIGHT_RECT) continue;
+        Illumination arriving = illuminate(light, s.position_ws);
+        vec3 irradiance = arriving.irradiance * saturate(dot(s.n, arriving.l));
+        sum.radiance += f_measured(arriving.l, v, s.n, t, b) * irradiance;
         sum.irradiance += luminance(irradiance);
     }
     return sum;

@@ -78,9 +78,9 @@ const uint MODE_BASE_COLOR = 100u;
 const uint MODE_ALPHA = 101u;
 //@mode metallic "Metallic" group="Material" encode=data components=1 key=m doc="0 dielectric, 1 metal."
 const uint MODE_METALLIC = 102u;
-//@mode roughness "Roughness" group="Material" encode=data components=1 key=u doc="Perceptual roughness."
+//@mode roughness "Roughness" group="Material" encode=data components=1 key=u doc="Perceptual roughness, with specular antialiasing if selected."
 const uint MODE_ROUGHNESS = 103u;
-//@mode ggx-alpha "GGX alpha" group="Material" encode=data components=1 doc="GGX width: roughness^2, at least 0.0025."
+//@mode ggx-alpha "Alpha of the NDF" group="Material" encode=data components=1 doc="Width of the selected NDF: roughness^2, at least 0.0025."
 const uint MODE_GGX_ALPHA = 104u;
 //@mode occlusion "Occlusion" group="Material" encode=data components=1 doc="1 is unoccluded. Affects only environment light."
 const uint MODE_OCCLUSION = 105u;
@@ -90,7 +90,7 @@ const uint MODE_EMISSIVE = 106u;
 const uint MODE_NORMAL_TEXTURE = 107u;
 //@mode diffuse-color "Diffuse color" group="Material" encode=color doc="Base color times (1 - metallic)."
 const uint MODE_DIFFUSE_COLOR = 108u;
-//@mode f0 "F0" group="Material" encode=color doc="Reflectance at normal incidence, dielectric and metal mixed."
+//@mode f0 "F0" group="Material" encode=color doc="F at normal incidence as shaded: metal and dielectric mixed, with film."
 const uint MODE_F0 = 109u;
 //@mode f90 "F90" group="Material" encode=color components=1 doc="Reflectance at grazing angles: 1, or the specular factor."
 const uint MODE_F90 = 110u;
@@ -112,7 +112,7 @@ const uint MODE_SHEEN_COLOR = 117u;
 const uint MODE_SHEEN_ROUGHNESS = 118u;
 //@mode specular-factor "Specular factor" group="Material" encode=data components=1 doc="F90 of the dielectric."
 const uint MODE_SPECULAR_FACTOR = 119u;
-//@mode specular-color "Specular color" group="Material" encode=color doc="F0 of the dielectric: color, factor and ior."
+//@mode specular-color "Specular color" group="Material" encode=color doc="F0 of the dielectric without film: color, factor and ior."
 const uint MODE_SPECULAR_COLOR = 120u;
 //@mode iridescence "Iridescence" group="Material" encode=data components=1 doc="Iridescence factor: 0 no film, 1 full."
 const uint MODE_IRIDESCENCE = 121u;
@@ -132,17 +132,17 @@ const uint MODE_DIFFUSE_TRANSMISSION = 127u;
 const uint MODE_DIFFUSE_TRANSMISSION_COLOR = 128u;
 
 // D to V dot H are for the selected light, or for light 1 if all are selected.
-//@mode d "Normal distribution D" group="BRDF terms" encode=data components=1 unit="1/sr" key=d doc="GGX (Walter et al. 2007, eq. 33), 1/sr."
+//@mode d "Normal distribution D" group="BRDF terms" encode=data components=1 unit="1/sr" key=d doc="The selected NDF, 1/sr; GGX by default (Walter et al. 2007, eq. 33)."
 const uint MODE_D = 300u;
-//@mode g "Masking-shadowing G" group="BRDF terms" encode=data components=1 key=g doc="Smith, GGX (Heitz 2014, eq. 98 or 99)."
+//@mode g "Masking-shadowing G" group="BRDF terms" encode=data components=1 key=g doc="The selected masking; by default height-correlated Smith (Heitz 2014, eq. 99)."
 const uint MODE_G = 301u;
-//@mode v "Visibility V" group="BRDF terms" encode=data components=1 key=v doc="G / (4 NoL NoV)."
+//@mode v "Visibility V" group="BRDF terms" encode=data components=1 key=v doc="G / (4 NoL NoV), of the selected masking."
 const uint MODE_V = 302u;
-//@mode f "Fresnel F" group="BRDF terms" encode=color key=f doc="Fresnel, dielectric and metal mixed (Schlick 1994, eq. 15)."
+//@mode f "Fresnel F" group="BRDF terms" encode=color key=f doc="F at V dot H, dielectric and metal mixed; by default Schlick 1994, eq. 15."
 const uint MODE_F = 303u;
-//@mode k-d "Diffuse weight k_d" group="BRDF terms" encode=data components=1 doc="(1 - metallic) (1 - F of the dielectric)."
+//@mode k-d "Diffuse weight k_d" group="BRDF terms" encode=data components=1 doc="Weight of the diffuse lobe below all layers; by default (1 - metallic) (1 - F)."
 const uint MODE_K_D = 304u;
-//@mode k-s "Specular weight k_s" group="BRDF terms" encode=color doc="F itself: mix(F dielectric, F metal, metallic)."
+//@mode k-s "Specular weight k_s" group="BRDF terms" encode=color doc="F, dielectric and metal mixed, times what the layers above transmit."
 const uint MODE_K_S = 305u;
 //@mode n-dot-l "N dot L" group="BRDF terms" encode=data components=1 doc="0 for light behind the surface."
 const uint MODE_N_DOT_L = 306u;
@@ -153,15 +153,15 @@ const uint MODE_N_DOT_H = 308u;
 //@mode v-dot-h "V dot H" group="BRDF terms" encode=data components=1 doc="Equals L dot H: the cosine in the Fresnel term."
 const uint MODE_V_DOT_H = 309u;
 // For the selected light, or the sum over all lights.
-//@mode diffuse-lobe "Diffuse lobe" group="BRDF terms" encode=color unit="1/sr" doc="k_d albedo / pi, 1/sr (Lambert 1760)."
+//@mode diffuse-lobe "Diffuse lobe" group="BRDF terms" encode=color unit="1/sr" doc="k_d times the selected diffuse model, 1/sr; Lambert by default."
 const uint MODE_DIFFUSE_LOBE = 310u;
-//@mode specular-lobe "Specular lobe" group="BRDF terms" encode=color unit="1/sr" key=k doc="k_s D V, 1/sr (Cook & Torrance 1982)."
+//@mode specular-lobe "Specular lobe" group="BRDF terms" encode=color unit="1/sr" key=k doc="k_s D V with the selected D, V and F, 1/sr (Cook & Torrance 1982)."
 const uint MODE_SPECULAR_LOBE = 311u;
-//@mode multi-scatter-lobe "Multi-scatter lobe" group="BRDF terms" encode=color unit="1/sr" doc="Multiple scattering between microfacets, 1/sr."
+//@mode multi-scatter-lobe "Multi-scatter lobe" group="BRDF terms" encode=color unit="1/sr" doc="The selected multiple scattering between microfacets, 1/sr."
 const uint MODE_MULTI_SCATTER_LOBE = 312u;
 //@mode clearcoat-lobe "Clearcoat lobe" group="BRDF terms" encode=color unit="1/sr" doc="D V of the clearcoat times its weight, 1/sr."
 const uint MODE_CLEARCOAT_LOBE = 313u;
-//@mode sheen-lobe "Sheen lobe" group="BRDF terms" encode=color unit="1/sr" doc="sheen color D V, 1/sr (Estevez & Kulla 2017)."
+//@mode sheen-lobe "Sheen lobe" group="BRDF terms" encode=color unit="1/sr" doc="Sheen color times the selected sheen, 1/sr."
 const uint MODE_SHEEN_LOBE = 314u;
 
 // For the selected light or all lights. The modes from `ambient` to `luminance` ignore the selection.
@@ -169,9 +169,9 @@ const uint MODE_SHEEN_LOBE = 314u;
 const uint MODE_DIELECTRIC = 400u;
 //@mode metal "Metal only" group="Light" encode=color unit="cd/m^2" tonemap key=j doc="The picture with metallic 1."
 const uint MODE_METAL = 401u;
-//@mode direct-diffuse "Direct diffuse" group="Light" encode=color unit="cd/m^2" tonemap doc="Diffuse lobe of the lights."
+//@mode direct-diffuse "Direct diffuse" group="Light" encode=color unit="cd/m^2" tonemap doc="Light of the lights that the diffuse lobe reflects."
 const uint MODE_DIRECT_DIFFUSE = 402u;
-//@mode direct-specular "Direct specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Specular lobe of the lights."
+//@mode direct-specular "Direct specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Light of the lights that the specular lobe reflects."
 const uint MODE_DIRECT_SPECULAR = 403u;
 //@mode lambert "Lambert, no cosine" group="Light" encode=color unit="cd/m^2" tonemap doc="Base color / pi times irradiance, lights head-on."
 const uint MODE_LAMBERT = 404u;
@@ -190,13 +190,13 @@ const uint MODE_LUMINANCE = 410u;
 // Environment light.
 //@mode ibl-diffuse "Environment, diffuse" group="Light" encode=color unit="cd/m^2" tonemap doc="Irradiance times the diffuse albedo."
 const uint MODE_IBL_DIFFUSE = 411u;
-//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Split sum, single scattering (Karis 2013)."
+//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Split sum: specular albedo times prefiltered radiance (Karis 2013)."
 const uint MODE_IBL_SPECULAR = 412u;
 //@mode irradiance "Irradiance" group="Light" encode=color unit="lux" tonemap doc="Environment irradiance for the normal, lux."
 const uint MODE_IRRADIANCE = 413u;
 //@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap doc="Prefiltered radiance in the mirror direction."
 const uint MODE_PREFILTERED = 414u;
-//@mode dfg "DFG terms" group="Light" encode=data doc="A, B, E: the specular lobe reflects F0 A + F90 B, or E if F is 1."
+//@mode dfg "DFG terms" group="Light" encode=data doc="A, B, E of the selected D and V: the lobe reflects F0 A + F90 B, or E if F is 1."
 const uint MODE_DFG = 415u;
 // For the selected light or all lights, and the environment.
 //@mode clearcoat-light "Clearcoat light" group="Light" encode=color unit="cd/m^2" tonemap doc="Light that the clearcoat reflects."

@@ -3,6 +3,7 @@
 #define DEBUG_SURFACE_GLSL
 
 #include "interface.glsl"
+#include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
 #include "common/fragment.glsl"
 #include "debug/absent.glsl"
@@ -34,6 +35,10 @@ bool has_shown_feature() {
     }
 }
 
+// F of the whole surface at normal incidence, as shading uses it: of the metal, by its n and k or its base color, and of
+// the dielectric, with the thin film over both.
+vec3 f0_of(Surface s) { return mix(dielectric_fresnel(s, 1.0), metal_fresnel(s, 1.0), s.metallic); }
+
 bool debug_surface(Fragment f, Surface s, out vec3 value) {
     bool known = true;
     if (MODE == MODE_BASE_COLOR) value = s.base_color;
@@ -45,7 +50,7 @@ bool debug_surface(Fragment f, Surface s, out vec3 value) {
     else if (MODE == MODE_EMISSIVE) value = s.emissive;
     else if (MODE == MODE_NORMAL_TEXTURE) value = normal_ts(f);
     else if (MODE == MODE_DIFFUSE_COLOR) value = s.base_color * (1.0 - s.metallic);
-    else if (MODE == MODE_F0) value = mix(s.f0, s.base_color, s.metallic);
+    else if (MODE == MODE_F0) value = f0_of(s);
     else if (MODE == MODE_F90) value = vec3(mix(s.f90, 1.0, s.metallic));
     else if (MODE == MODE_IOR) value = vec3(s.ior);
     else if (MODE == MODE_CLEARCOAT) value = vec3(s.clearcoat);

@@ -8,6 +8,7 @@
 #include "common/color.glsl"
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
+#include "debug/surface.glsl"
 #include "lighting/monte_carlo.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
@@ -58,7 +59,7 @@ vec3 albedo_range_color(Surface s) {
 // At normal incidence dielectrics reflect 2 to 5 % and metals sRGB 180 or more (McDermott 2018). Values between are
 // suspect: such a metal is covered by dirt or rust, which are dielectrics and need a lower `metallic`.
 vec3 f0_range_color(Surface s) {
-    float f0 = max_component(mix(s.f0, s.base_color, s.metallic));
+    float f0 = max_component(f0_of(s));
     if (f0 < 0.02) return TOO_LOW;
     float metal = linear_from_srgb(vec3(180.0 / 255.0)).r;
     if (f0 > 0.05 && f0 < metal) return TOO_HIGH;

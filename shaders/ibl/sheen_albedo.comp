@@ -5,12 +5,12 @@
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
-// Directional albedo of the sheen lobe, for brdf/energy.glsl: E = integral of D V NoL dl. Columns are sqrt(NoV) at
+// Directional albedo of the selected sheen, for brdf/energy.glsl: E = integral of f NoL dl. Columns are sqrt(NoV) at
 // texel centers; rows are roughness, 0 in the first and 1 in the last. The samples cover the whole hemisphere, since
-// most of the lobe's own distribution lies below it. They are a lattice with the cosine 3 u^2 - 2 u^3, weighted by its
+// most of Charlie's distribution lies below it. They are a lattice with the cosine 3 u^2 - 2 u^3, weighted by its
 // derivative, as in ibl/dfg.comp.
 //
-// E exceeds 1 (up to 2.2) for grazing v on smooth sheen, where V is unbounded. The lobe itself gains that energy.
+// Charlie's E exceeds 1 (up to 2.2) for grazing v on smooth sheen, where V is unbounded: the lobe gains that energy.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
@@ -21,14 +21,14 @@ void main() {
 
     float root = (float(texel.x) + 0.5) / float(task.size.x);
     float n_dot_v = root * root;
-    float alpha = sheen_alpha(float(texel.y) / float(task.size.y - 1u));
+    float roughness = float(texel.y) / float(task.size.y - 1u);
     vec3 v = vec3(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
     float sum = 0.0;
     for (uint i = 0u; i < task.samples; ++i) {
         float u = (float(i) + 0.5) / float(task.samples);
         vec3 l = direction_from_cosine(u * u * (3.0 - 2.0 * u), fract(float(i) * 0.618033988));
         vec3 h = normalize(l + v);
-        sum += 6.0 * u * (1.0 - u) * d_charlie(h.z, alpha) * v_sheen(l.z, v.z, alpha) * l.z;
+        sum += 6.0 * u * (1.0 - u) * f_sheen(l.z, v.z, h.z, dot(v, h), roughness) * l.z;
     }
     float albedo = 2.0 * PI * sum / float(task.samples);
     imageStore(target, ivec3(texel, 0), vec4(rounded_to_half(vec3(albedo)), 1.0));

@@ -4,11 +4,19 @@
 
 #include "interface.glsl"
 #include "common/math.glsl"
+#include "user.glsl"
 
 struct Illumination {
     vec3 l;                    // unit, towards the light
     vec3 irradiance;           // on a plane perpendicular to l; the surface receives NoL times it
 };
+
+// Light `i` as the user's hook leaves it for this point.
+Light light_at(uint i, vec3 position_ws) {
+    Light light = lights[i];
+    user_light(light, i, position_ws);
+    return light;
+}
 
 // Distances are clamped to 0.1 mm, since 1 / distance^2 diverges.
 const float MIN_DISTANCE_SQUARED = 1e-8;

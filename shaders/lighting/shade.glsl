@@ -71,12 +71,13 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     lit.emitted = s.emissive * albedo.under_coat;
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
     for (uint i = range.first; i < range.end; ++i) {
+        Light light = light_at(i, s.position_ws);
         // For BRDF terms a rectangle counts as a point light at its center.
-        bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && lights[i].kind == LIGHT_RECT;
+        bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && light.kind == LIGHT_RECT;
         if (has_size) {
-            add(lit.area, rectangle_light(s, v, albedo, lights[i]), vec3(1.0));
+            add(lit.area, rectangle_light(s, v, albedo, light), vec3(1.0));
         } else {
-            add_punctual(lit, s, v, lights[i], range.for_terms);
+            add_punctual(lit, s, v, light, range.for_terms);
         }
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {

@@ -99,7 +99,7 @@ blocks! {
         eye_ws: vec3,
         /// Factor from luminance (cd/m^2) to the display's 0..1: 1 / (1.2 * 2^EV100).
         exposure: float,
-        /// Radiance that arrives from everywhere, linear RGB.
+        /// Light from everywhere, linear RGB times cd/m^2.
         ambient: vec3,
         /// Seconds since the start; 0 in headless renderings.
         time_s: float,
@@ -127,7 +127,7 @@ blocks! {
         largest_value: float,
         /// Cosine and sine of the environment's rotation around +Y; at 0 the map's center column is seen looking down -Z.
         environment_rotation: vec2,
-        /// Factor from the values of the environment's images to radiance.
+        /// Factor from the values of the environment's images to cd/m^2.
         environment_intensity: float,
         /// Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
         environment_blur: float,
@@ -145,7 +145,7 @@ blocks! {
         direction_ws: vec3,
         /// LIGHT_*.
         kind: uint,
-        /// Linear RGB times candela (point, spot), lux (directional) or radiance (rectangle).
+        /// Linear RGB times candela (point, spot), lux (directional) or cd/m^2 (rectangle).
         intensity: vec3,
         /// 1 / the distance at which the light ends, 1/m; 0: no end.
         inverse_range: float,
@@ -163,7 +163,7 @@ blocks! {
     Material: "layout(set = SET_MATERIAL, binding = BINDING_MATERIAL, scalar) uniform Material", "material" {
         /// Linear RGBA.
         base_color_factor: vec4,
-        /// Linear RGB, KHR_materials_emissive_strength included.
+        /// Linear RGB times cd/m^2, KHR_materials_emissive_strength included.
         emissive_factor: vec3,
         /// 0 dielectric .. 1 metal.
         metallic_factor: float,

@@ -77,7 +77,7 @@ constants! {
     LIGHT_POINT = 1;
     /// `Light::kind`: spot light, intensity in candela.
     LIGHT_SPOT = 2;
-    /// `Light::kind`: one-sided rectangle, intensity is its radiance.
+    /// `Light::kind`: one-sided rectangle, intensity in cd/m^2.
     LIGHT_RECT = 3;
 
     /// First word of the measured BRDF's buffer: no measured BRDF.

@@ -13,7 +13,7 @@ pub struct EnvironmentSettings {
     pub name: String,
     /// Degrees around +Y; a positive angle turns what is ahead (-Z) to the left (-X).
     pub rotation: f32,
-    /// Factor on the environment's radiance.
+    /// Factor on the environment's values, which are in cd/m^2.
     pub intensity: f32,
     /// Blur of the background: 0 sharp .. 1, as a roughness.
     pub blur: f32,

@@ -33,7 +33,7 @@ pub struct LightSettings {
     pub chosen: u32,
     /// Color of the ambient light, linear RGB. It is off while there is an environment.
     pub ambient_color: [f32; 3],
-    /// Radiance of the ambient light if its color is white.
+    /// Luminance of the ambient light if its color is white, cd/m^2.
     pub ambient_strength: f32,
 }
 
@@ -62,7 +62,7 @@ impl Default for LightSettings {
 pub struct OrbitLight {
     /// Linear RGB.
     pub color: [f32; 3],
-    /// Irradiance at the model's center times distance^2: intensity in candela for a model of radius 1 m.
+    /// Illuminance at the model's center in lux, times distance^2: candela for a model of radius 1 m.
     pub strength: f32,
     /// Distance from the center in model radii.
     pub distance: f32,
@@ -80,7 +80,7 @@ pub struct RectLight {
     pub enabled: bool,
     /// Linear RGB.
     pub color: [f32; 3],
-    /// Radiance if its color is white. It does not change with the size.
+    /// Luminance if its color is white, cd/m^2. It does not change with the size.
     pub strength: f32,
     /// Length of its horizontal edges.
     pub width: f32,

@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, progress: Option<&(f32,
             }
         });
         angle(ui, "Rotation", "Rotation around +Y in degrees", &mut environment.rotation, -180.0..=180.0);
-        row(ui, "Intensity", "Factor on the map's radiance", |ui| {
+        row(ui, "Intensity", "Factor on the map, whose values are cd/m^2", |ui| {
             ui.add(Slider::new(&mut environment.intensity, 0.0..=8.0).max_decimals(2));
         });
         row(ui, "Behind", "Show the map behind the model (--background env); blur 0 is sharp", |ui| {

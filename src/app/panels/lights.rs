@@ -48,7 +48,7 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
             rect(ui, &mut lights.rect);
         }
         ui.separator();
-        row(ui, "Ambient", "Color and radiance from every direction; off with an environment", |ui| {
+        row(ui, "Ambient", "Color, and luminance of every direction in cd/m^2; off with an environment", |ui| {
             color(ui, &mut lights.ambient_color);
             ui.add(Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
         });
@@ -57,7 +57,7 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
 
 /// The rectangular light.
 fn rect(ui: &mut Ui, light: &mut RectLight) {
-    row(ui, "Rectangle", "One-sided area light: color, and radiance of white", |ui| {
+    row(ui, "Rectangle", "One-sided area light: color, and luminance of white in cd/m^2", |ui| {
         ui.checkbox(&mut light.enabled, "");
         if light.enabled {
             color(ui, &mut light.color);

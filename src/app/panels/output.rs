@@ -10,10 +10,10 @@ use crate::settings::{Settings, Tonemap};
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
     section(ui, "Output", true, |ui| {
         let view = &mut settings.view;
-        row(ui, "Exposure", "EV100 (--ev): radiance is multiplied by 1 / (1.2 * 2^EV)", |ui| {
+        row(ui, "Exposure", "EV100 (--ev): light in cd/m^2 is multiplied by 1 / (1.2 * 2^EV)", |ui| {
             ui.add(Slider::new(&mut view.ev, -10.0..=10.0).suffix(" EV").max_decimals(1));
         });
-        row(ui, "Tone map", "Curve from radiance to display range (--tonemap)", |ui| {
+        row(ui, "Tone map", "Curve from exposed light to display range (--tonemap)", |ui| {
             let name = |tonemap: Tonemap| {
                 tonemap.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
             };

@@ -8,7 +8,7 @@ use super::{Environment, sky, studio};
 
 /// Names of the built-in environments; the first is the default.
 ///
-/// | name | what | radiance |
+/// | name | what | radiance, cd/m^2 |
 /// |---|---|---|
 /// | `studio` | soft boxes in a dark, neutral room; 1024x512 | see `studio.rs` |
 /// | `furnace` | white everywhere, for energy tests; 64x32 | 1 |

@@ -31,7 +31,7 @@ const MAX_FILE_BYTES: u64 = MAX_WIDTH as u64 * MAX_HEIGHT as u64 * 16 + (1 << 20
 /// Raise this when the same bytes decode to other pixels. It seeds the fingerprint, so old cache entries are not used.
 const DECODER_VERSION: u64 = 1;
 
-/// Linear RGB radiance from every direction, as an equirectangular image. [`direction_from_uv`] maps texels to
+/// Radiance from every direction, linear RGB times cd/m^2, as an equirectangular image. [`direction_from_uv`] maps texels to
 /// directions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Environment {

@@ -1,9 +1,9 @@
 //! The built-in clear sky with a sun: the analytic model of Preetham, Shirley & Smits 1999, "A Practical Analytic Model
 //! for Daylight" (P99 below), over gray ground.
 //!
-//! The sky's mean luminance is scaled to 0.5. The sun's irradiance on a surface that faces it is 8 times the sky's on
-//! the ground, as on a clear day at this elevation. Its disc of 0.53 degrees therefore has a radiance near 3e5, beyond
-//! the range of half floats.
+//! The sky's mean luminance is scaled to 0.5 cd/m^2. The sun's illuminance on a surface that faces it is 8 times the sky's
+//! on the ground, as on a clear day at this elevation. Its disc of 0.53 degrees therefore has a luminance near 3e5 cd/m^2,
+//! beyond the range of half floats.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -22,9 +22,9 @@ const SUN_AZIMUTH: f32 = -25.0;
 const SUN_ELEVATION: f32 = 40.0;
 /// Angular radius of the disc, radians: 0.53 degrees across.
 pub const SUN_RADIUS: f64 = 0.265 * PI / 180.0;
-/// Ratio of the sun's irradiance (surface facing it) to the sky's (horizontal surface), luminance.
+/// Ratio of the sun's illuminance (surface facing it) to the sky's (horizontal surface).
 const SUN_OVER_SKY: f64 = 8.0;
-/// Mean luminance of the upper hemisphere.
+/// Mean luminance of the upper hemisphere, cd/m^2.
 const MEAN_SKY: f64 = 0.5;
 /// Reflectance of the ground, linear RGB.
 const GROUND_ALBEDO: DVec3 = DVec3::new(0.13, 0.12, 0.105);

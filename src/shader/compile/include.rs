@@ -46,8 +46,8 @@ impl<'a> Includes<'a> {
             self.dependencies.borrow_mut().insert(path.clone());
             match self.snapshot.read(path) {
                 Ok(text) => {
-                    if stack.contains(path) {
-                        return Err(format!("include cycle: {}", chain(&stack, Some(path))));
+                    if let Some(first) = stack.iter().position(|including| including == path) {
+                        return Err(format!("include cycle: {}", chain(&stack[first..], Some(path))));
                     }
                     stack.push(path.clone());
                     return Ok((path.clone(), text.to_string()));
@@ -108,7 +108,7 @@ mod tests {
         includes.resolve("a.glsl", 1).unwrap();
         includes.resolve("b.glsl", 2).unwrap();
         let error = includes.resolve("a.glsl", 3).unwrap_err();
-        assert_eq!(error, "include cycle: m.frag -> a.glsl -> b.glsl -> a.glsl");
+        assert_eq!(error, "include cycle: a.glsl -> b.glsl -> a.glsl");
         // Back in the outermost file, the same file may be included again.
         assert!(includes.resolve("a.glsl", 1).is_ok());
     }

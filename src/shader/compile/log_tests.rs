@@ -96,7 +96,7 @@ fn include_errors_mark_the_name() {
     expect(text, &[("m.frag:2:11: error: \"lib/x.glsl\" not found; looked for lib/x.glsl", "lib/x.glsl")]);
     let files = [("m.frag", "#version 460\n#include \"a.glsl\"\nvoid main() {}"), ("a.glsl", "#include \"a.glsl\"\n")];
     let errors = compile(&files).result.unwrap_err();
-    assert_eq!(errors[0].one_line(), "a.glsl:1:11: error: include cycle: m.frag -> a.glsl -> a.glsl");
+    assert_eq!(errors[0].one_line(), "a.glsl:1:11: error: include cycle: a.glsl -> a.glsl");
     let deep: Vec<(String, String)> = (0..40)
         .map(|i| (format!("{i}.glsl"), format!("#include \"{}.glsl\"\n", i + 1)))
         .chain([("m.frag".to_owned(), "#version 460\n#include \"0.glsl\"\nvoid main() {}".to_owned())])

@@ -28,7 +28,7 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let rest: Vec<TreePath> =
         library.source().list().into_iter().filter(|path| is_ours(path) && !known.contains(path)).collect();
     let compiler = library.compiler();
-    // A file that only compute stages include may use what only compute shaders have.
+    // A file that only stages of one kind include may use what only that kind has, as gl_VertexIndex or barrier().
     let users = |path: &TreePath| {
         library.set().into_iter().flat_map(|set| set.stages.values()).filter({
             let path = path.clone();
@@ -36,9 +36,9 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
         })
     };
     let kind_of = |path: &TreePath| {
-        let mut kinds = users(path).map(|stage| stage.kind).peekable();
-        let only_compute = kinds.peek().is_some() && kinds.all(|kind| kind == StageKind::Compute);
-        if only_compute { StageKind::Compute } else { StageKind::Fragment }
+        let mut kinds = users(path).map(|stage| stage.kind);
+        let first = kinds.next().unwrap_or(StageKind::Fragment);
+        if kinds.all(|kind| kind == first) { first } else { StageKind::Fragment }
     };
     let found: Vec<Diagnostic> = rest
         .par_iter()

@@ -1,0 +1,17 @@
+// Parameters of the hooks, in user.glsl and beside this file.
+//
+// A member of Params with an @ui comment gets a slider or a color picker in the window, and `--set NAME=VALUE` on the
+// command line; changing its value compiles nothing. All shaders that include this file read the same values.
+#ifndef USER_PARAMS_GLSL
+#define USER_PARAMS_GLSL
+
+#include "interface.glsl"
+
+layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {
+    float roughness_scale;     //@ui "Roughness scale" 0..2 = 1.0
+    float rim_strength;        //@ui "Rim" 0..1 = 0.0
+    float rim_power;           //@ui "Rim power" 1..8 = 3.0
+    vec3 rim_color;            //@ui "Rim color" color = 1 0.8 0.6
+};
+
+#endif
