@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineSet,
-    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View,
+    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, TraceError, UploadError, View,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
@@ -42,7 +42,8 @@ impl From<ProvideError> for HeadlessError {
     fn from(error: ProvideError) -> Self {
         match error {
             ProvideError::Bake(error) => error.into(),
-            ProvideError::Gpu(error) => error.into(),
+            ProvideError::Gpu(error) | ProvideError::Trace(TraceError::Gpu(error)) => error.into(),
+            ProvideError::Trace(error) => Self::Settings(error.to_string()),
             ProvideError::Measured(error) => error.into(),
             ProvideError::Stale => Self::Settings(error.to_string()),
         }

@@ -10,13 +10,16 @@ mod constants;
 mod print;
 mod textures;
 
-pub use blocks::{BLOCKS, Block, Draw, Frame, Light, Material, Member, Task, Vertex, block};
+pub use blocks::{
+    BLOCKS, Block, BvhNode, Draw, EnvironmentCell, Frame, Light, Material, Member, Task, TracedCorners, TracedMaterial,
+    TracedTriangle, Vertex, block,
+};
 pub use constants::*;
 pub use print::glsl;
 pub use textures::*;
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;
@@ -47,6 +50,8 @@ pub enum BindingKind {
     StorageBuffer,
     /// `sampler2D`.
     Sampler2D,
+    /// `sampler2DArray`.
+    Sampler2DArray,
     /// `samplerCube`.
     SamplerCube,
     /// `rgba16f image2DArray`: one mip level of an image with all its layers.
@@ -60,6 +65,7 @@ impl BindingKind {
             Self::UniformBuffer => "uniform block",
             Self::StorageBuffer => "buffer block",
             Self::Sampler2D => "sampler2D",
+            Self::Sampler2DArray => "sampler2DArray",
             Self::SamplerCube => "samplerCube",
             Self::StorageImage => "rgba16f image2DArray",
         }
@@ -126,6 +132,12 @@ const OTHERS: &[Binding] = &[
     // Works around a crash of Mesa's lavapipe (22.3), which records the uniforms that branches depend on and overwrites its
     // own counters with those of a stage's fourth uniform block. So the fourth block is this one, which nothing reads.
     binding(SET_FRAME, 11, "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
+    binding(SET_FRAME, 12, "BINDING_BVH", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 13, "BINDING_TRACED_TRIANGLES", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 14, "BINDING_TRACED_CORNERS", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 15, "BINDING_TRACED_MATERIALS", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 16, "BINDING_TRACED_TEXTURES", BindingKind::Sampler2DArray, 0),
+    binding(SET_FRAME, 17, "BINDING_ENVIRONMENT_CELLS", BindingKind::StorageBuffer, 0),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),

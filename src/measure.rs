@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::render::{
-    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, TargetFormat, Uniforms,
+    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, TargetFormat, Traced, Uniforms,
     compute, ltc, measured_buffer,
 };
 use crate::settings::Settings;
@@ -125,6 +125,7 @@ struct Shared {
     set: Arc<PipelineSet>,
     environment: Arc<GpuEnvironment>,
     measured: Arc<Buffer>,
+    traced: Arc<Traced>,
     images: SharedImages,
 }
 
@@ -150,6 +151,7 @@ impl Bench {
             set,
             environment: GpuEnvironment::uniform(gpu, [1.0; 3])?,
             measured: measured_buffer(gpu, None)?,
+            traced: Traced::empty(gpu)?,
             images: SharedImages { ltc: ltc::table(gpu)?, linear },
         };
         Self::on(Arc::new(shared), settings)
@@ -168,7 +170,8 @@ impl Bench {
         shared.set.build(&request)?;
         let bound = shared.set.bind(&request).ok_or_else(|| GpuError::NoStage("ibl/dfg.comp".to_owned()))?;
         let environment = shared.environment.clone();
-        let sources = Sources { environment, tables: bound.tables, measured: shared.measured.clone() };
+        let (measured, traced) = (shared.measured.clone(), shared.traced.clone());
+        let sources = Sources { environment, tables: bound.tables, measured, traced };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
         let params = values::params(&settings.shader, &shared.set.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);

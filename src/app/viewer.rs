@@ -183,6 +183,7 @@ impl Viewer {
         }
         self.threads.baker.bake(set, missing.environment);
         self.threads.baker.read(missing.measured);
+        self.threads.baker.trace(missing.traced);
     }
 
     /// The state of the picture on screen.

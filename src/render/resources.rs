@@ -8,6 +8,7 @@ use crate::scene::{Measured, MeasuredError};
 
 use super::brdf::measured::measured_buffer;
 use super::environment::bake::{BakeControl, BakeError, GpuEnvironment};
+use super::paths::{TraceError, TraceKey, TraceRequest, Traced};
 use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};
 use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene};
@@ -21,6 +22,7 @@ pub struct BoundFrame {
     pub(super) scene: Option<Arc<GpuScene>>,
     pub(super) environment: Arc<GpuEnvironment>,
     pub(super) measured: Arc<Buffer>,
+    pub(super) traced: Arc<Traced>,
 }
 
 impl BoundFrame {
@@ -41,6 +43,7 @@ impl BoundFrame {
             && self.pipelines.is_same(&other.pipelines)
             && Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.measured, &other.measured)
+            && Arc::ptr_eq(&self.traced, &other.traced)
             && self.state.is_same(&other.state)
     }
 }
@@ -54,6 +57,8 @@ pub struct Missing {
     pub environment: Option<EnvironmentKey>,
     /// A measured BRDF to read.
     pub measured: Option<MeasuredKey>,
+    /// What random paths trace. It depends on the environment, so it is missing only once that is there.
+    pub traced: Option<TraceRequest>,
 }
 
 /// The last good resource with its key, and the key of the last failure.
@@ -91,7 +96,7 @@ impl<K: PartialEq, T> Slot<K, T> {
     }
 }
 
-/// Pipelines, model, environment and measured BRDF: the newest of each.
+/// Pipelines, model, environment, measured BRDF and what random paths trace: the newest of each.
 pub struct Resources {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -100,6 +105,7 @@ pub struct Resources {
     scene: Option<(Scene, Arc<GpuScene>)>,
     environment: Slot<EnvironmentKey, GpuEnvironment>,
     measured: Slot<MeasuredKey, Buffer>,
+    traced: Slot<TraceKey, Traced>,
 }
 
 impl Resources {
@@ -116,6 +122,7 @@ impl Resources {
             scene: None,
             environment: Slot::new(GpuEnvironment::uniform(gpu, ambient)?),
             measured: Slot::new(measured_buffer(gpu, None)?),
+            traced: Slot::new(Traced::empty(gpu)?),
         })
     }
 
@@ -145,9 +152,29 @@ impl Resources {
         self.measured.set(key, buffer);
     }
 
+    /// Takes what random paths trace; `None` if it could not be built.
+    pub fn set_traced(&mut self, key: TraceKey, traced: Option<Arc<Traced>>) {
+        self.traced.set(key, traced);
+    }
+
     /// The environment that was baked last.
     pub fn environment(&self) -> &Arc<GpuEnvironment> {
         self.environment.last_good()
+    }
+
+    /// The environment of `state`, or a stand-in for one that is still being baked. `None` while there is neither.
+    fn environment_of(&self, state: &FrameState, is_first: bool) -> Option<&Arc<GpuEnvironment>> {
+        match self.environment.get(state.environment.as_ref()) {
+            // An edit of the bake stages shows at once, in the light that the previous shaders baked.
+            None if is_first || self.has_baked(state) => Some(self.environment.last_good()),
+            environment => environment,
+        }
+    }
+
+    /// Identifies what the paths of `state` trace; `None` for a mode without random paths.
+    fn trace_key(state: &FrameState, environment: &Arc<GpuEnvironment>) -> Option<TraceKey> {
+        let scene = state.scene.clone().filter(|_| state.pipelines.traces);
+        state.pipelines.paths.then(|| TraceKey { scene, environment: environment.clone() })
     }
 
     /// The resources that `state` still lacks. The model is never missing, because states refer only to uploaded models.
@@ -155,7 +182,10 @@ impl Resources {
         let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
         let environment = state.environment.as_ref();
         let measured = state.measured.as_ref();
+        let traced = self.environment_of(state, false).and_then(|environment| Self::trace_key(state, environment));
+        let traced = traced.filter(|key| self.traced.get(Some(key)).is_none());
         Missing {
+            traced: traced.map(|key| TraceRequest { key, model: self.model.clone(), before: self.traced.made.clone() }),
             pipelines: !has_pipelines,
             environment: environment.filter(|key| self.environment.get(Some(key)).is_none()).cloned(),
             measured: measured.filter(|key| self.measured.get(Some(key)).is_none()).cloned(),
@@ -171,12 +201,9 @@ impl Resources {
         let Some(pipelines) = self.pipelines_of(state).and_then(|set| set.bind(&state.pipelines)) else {
             return Ok(None);
         };
-        let environment = match self.environment.get(state.environment.as_ref()) {
-            Some(environment) => environment.clone(),
-            // An edit of the bake stages shows at once, in the light that the previous shaders baked.
-            None if is_first || self.has_baked(state) => self.environment.last_good().clone(),
-            None => return Ok(None),
-        };
+        let Some(environment) = self.environment_of(state, is_first).cloned() else { return Ok(None) };
+        let key = Self::trace_key(state, &environment);
+        let Some(traced) = self.traced.get(key.as_ref()).cloned() else { return Ok(None) };
         let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
         let scene = match &state.scene {
             Some(scene) => match self.scene_of(scene)? {
@@ -185,7 +212,7 @@ impl Resources {
             },
             None => None,
         };
-        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, environment, measured }))
+        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, environment, measured, traced }))
     }
 
     /// Creates everything that `state` lacks on this thread, and binds it.
@@ -205,6 +232,12 @@ impl Resources {
         }
         if missing.pipelines {
             set.build(&state.pipelines)?;
+        }
+        // Only now is the environment known.
+        if let Some(request) = self.missing(state).traced {
+            let built = Traced::new(&self.gpu, &request);
+            self.set_traced(request.key, built.as_ref().ok().cloned());
+            built?;
         }
         self.bind(state, false)?.ok_or(ProvideError::Stale)
     }
@@ -260,6 +293,9 @@ pub enum ProvideError {
     /// The measured BRDF could not be read.
     #[error(transparent)]
     Measured(#[from] MeasuredError),
+    /// The model cannot be traced.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
     /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),

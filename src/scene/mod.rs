@@ -4,6 +4,7 @@
 //! without checks. An error in the file becomes a [`LoadError`] or a warning of the model.
 
 mod built_in;
+mod bvh;
 mod camera;
 mod camera_controller;
 mod camera_motion;
@@ -24,12 +25,14 @@ mod texture_source;
 use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
+pub use bvh::Bvh;
 pub use camera::{CameraView, frame};
 pub use camera_controller::CameraController;
 pub use camera_motion::{FlyCamera, OrbitCamera};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
+pub use gltf::triangles;
 pub use lights::{light_count, lights};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;

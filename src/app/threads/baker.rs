@@ -1,4 +1,4 @@
-//! The baker bakes environments and reads measured BRDFs, each on a thread of its own. The window keeps drawing with the previous
+//! The baker bakes environments, reads measured BRDFs and builds what random paths trace, each on a thread of its own. The window keeps drawing with the previous
 //! one, and the newest request wins.
 
 use std::sync::Arc;
@@ -6,8 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
 use super::{Message, Outbox};
-use crate::gpu::{Buffer, Gpu};
-use crate::render::{BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, read_measured};
+use crate::gpu::{Buffer, Gpu, return_freed_memory};
+use crate::render::{
+    BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, TraceKey, TraceRequest, Traced,
+    read_measured,
+};
 
 /// Messages of the baker.
 pub(in crate::app) enum BakeMessage {
@@ -17,6 +20,8 @@ pub(in crate::app) enum BakeMessage {
     Environment(u64, EnvironmentKey, Result<Arc<GpuEnvironment>, BakeError>),
     /// A measured BRDF.
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
+    /// What random paths trace.
+    Traced(TraceKey, Result<Arc<Traced>, String>),
 }
 
 /// A running bake.
@@ -32,6 +37,8 @@ pub(in crate::app) struct Baker {
     bake: Option<Bake>,
     /// The newest read. The window takes its result, and ignores those of older ones.
     pub(in crate::app) reading: Option<MeasuredKey>,
+    /// The newest hierarchy that is being built. The window takes its result, and ignores those of older ones.
+    pub(in crate::app) tracing: Option<TraceKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
     threads: Vec<JoinHandle<()>>,
@@ -40,7 +47,7 @@ pub(in crate::app) struct Baker {
 impl Baker {
     pub(super) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
         let (newest, threads) = Default::default();
-        Self { gpu: gpu.clone(), outbox: outbox.clone(), bake: None, reading: None, newest, threads }
+        Self { gpu: gpu.clone(), outbox: outbox.clone(), bake: None, reading: None, tracing: None, newest, threads }
     }
 
     /// The fraction of the running bake that is done, and its next pass.
@@ -80,6 +87,21 @@ impl Baker {
             let result = read_measured(&gpu, &key).map_err(|error| error.to_string());
             drop(gpu);
             outbox.send(Message::Bake(BakeMessage::Measured(key, result)));
+        });
+    }
+
+    /// Builds what random paths trace, unless it is being built.
+    pub(in crate::app) fn trace(&mut self, request: Option<TraceRequest>) {
+        let Some(request) = request.filter(|request| self.tracing.as_ref() != Some(request.key())) else { return };
+        self.tracing = Some(request.key().clone());
+        let gpu = self.gpu.clone();
+        self.spawn("tracer", move |outbox| {
+            let result = Traced::new(&gpu, &request).map_err(|error| error.to_string());
+            let key = request.key().clone();
+            // Release the device objects before the window takes the result.
+            drop((gpu, request));
+            return_freed_memory();
+            outbox.send(Message::Bake(BakeMessage::Traced(key, result)));
         });
     }
 

@@ -139,7 +139,12 @@ impl Viewer {
                 let result = result.map_err(|message| self.say(message));
                 self.resources.set_measured(key, result.ok());
             }
-            BakeMessage::Measured(..) => {}
+            BakeMessage::Traced(key, result) if self.threads.baker.tracing.as_ref() == Some(&key) => {
+                self.threads.baker.tracing = None;
+                let result = result.map_err(|message| self.say(message));
+                self.resources.set_traced(key, result.ok());
+            }
+            BakeMessage::Measured(..) | BakeMessage::Traced(..) => {}
         }
     }
 
@@ -179,6 +184,11 @@ impl Viewer {
             "reader" => {
                 if let Some(key) = self.threads.baker.reading.take() {
                     self.resources.set_measured(key, None);
+                }
+            }
+            "tracer" => {
+                if let Some(key) = self.threads.baker.tracing.take() {
+                    self.resources.set_traced(key, None);
                 }
             }
             "loader" => self.model.loading = false,

@@ -109,7 +109,8 @@ impl GpuEnvironment {
     /// # Errors
     /// Out of memory.
     pub(crate) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
-        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        use vk::ImageUsageFlags as Usage;
+        let usage = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let cube = |name: &str| Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage));
         let names = ["uniform cube", "uniform prefiltered", "uniform sheen", "uniform irradiance"];
         let [a, b, c, d] = names.map(cube);

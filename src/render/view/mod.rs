@@ -164,6 +164,7 @@ impl View {
             environment: frame.environment.clone(),
             tables: frame.pipelines.tables.clone(),
             measured: frame.measured.clone(),
+            traced: frame.traced.clone(),
         };
         encoder.bind_set(&self.layouts, &in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?);
 

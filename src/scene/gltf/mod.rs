@@ -30,6 +30,7 @@ use rayon::prelude::*;
 use self::accessor::Reader;
 use self::buffers::{Buffers, Files, read_regular};
 use self::mesh::Geometry;
+pub use self::triangles::triangles;
 use super::LoadOptions;
 use super::error::Problem;
 use super::model::{Bounds, Image, Instance, LoadTiming, Material, Model};
