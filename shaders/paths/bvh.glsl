@@ -37,12 +37,6 @@ bool hits_triangle(Ray ray, uint index, float farthest, out Hit hit) {
         && hit.distance > 0.0 && hit.distance < farthest;
 }
 
-// A random number that is the same for all tests of one triangle with one ray, so that the order of the tests does not
-// matter.
-float number_of_triangle(Ray ray, uint triangle) {
-    return random_numbers(uvec3(triangle, floatBitsToUint(ray.direction_ws.xy))).x;
-}
-
 // The nearest hit closer than `farthest`, or with `any_hit` the first one found, which is all that a shadow needs. Returns
 // false if nothing stops the ray.
 bool trace(Ray ray, float farthest, bool any_hit, out Hit nearest) {
@@ -57,7 +51,7 @@ bool trace(Ray ray, float farthest, bool any_hit, out Hit nearest) {
         bool is_leaf = node.count > 0u || node.first == 0u;
         for (uint i = node.first; i < node.first + node.count; ++i) {
             Hit hit;
-            if (hits_triangle(ray, i, nearest.distance, hit) && stops_ray(hit, number_of_triangle(ray, i))) {
+            if (hits_triangle(ray, i, nearest.distance, hit) && stops_ray(hit, random_numbers(uvec3(ray.seed, i, 2u)).x)) {
                 nearest = hit;
                 found = true;
             }

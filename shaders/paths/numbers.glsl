@@ -31,4 +31,9 @@ vec3 numbers_of(PathNumbers numbers, uint vertex, bool to_light) {
     return recurrence(shift, numbers.path, to_light ? STEPS_TO_LIGHT : STEPS_OF_LOBE);
 }
 
+// Random bits for the ray that follows.
+uint seed_of(PathNumbers numbers, uint vertex, bool to_light) {
+    return random_words(numbers.pixel + uvec3(numbers.path, 2u * vertex + (to_light ? 1u : 0u), 3u)).x;
+}
+
 #endif

@@ -37,9 +37,9 @@ const float MOST_RADIANCE = 1e15;
 // closer together than this leaks light.
 const float RAY_OFFSET = 1e-4;
 
-Ray ray_from(vec3 position_ws, vec3 facet_n, vec3 l) {
+Ray ray_from(vec3 position_ws, vec3 facet_n, vec3 l, uint seed) {
     float side = dot(l, facet_n) < 0.0 ? -1.0 : 1.0;
-    return Ray(position_ws + facet_n * (side * RAY_OFFSET * frame.scene_radius), l);
+    return Ray(position_ws + facet_n * (side * RAY_OFFSET * frame.scene_radius), l, seed);
 }
 
 // f |NoL| for light from direction l. What a surface transmits crosses its volume. Its specular transmission is that of
@@ -92,7 +92,7 @@ PathLight trace_path(Surface s, vec3 v, vec3 facet_n, uint path, bool traces) {
             if (vertex == 0u) light.unoccluded += sky;
             if (!traces || max_component(abs(weight)) == 0.0) continue;
 
-            Ray ray = ray_from(s.position_ws, facet_n, drawn.l);
+            Ray ray = ray_from(s.position_ws, facet_n, drawn.l, seed_of(numbers, vertex, to_light));
             Hit hit;
             bool is_blocked = trace(ray, towards.distance, to_light, hit);
             if (!to_light) lamp = weight * rectangles_along(ray, hit.distance, drawn.pdf);

@@ -25,10 +25,11 @@ layout(set = SET_FRAME, binding = BINDING_TRACED_MATERIALS, scalar) readonly buf
 };
 layout(set = SET_FRAME, binding = BINDING_TRACED_TEXTURES) uniform sampler2DArray traced_textures;
 
-// A ray from origin_ws; direction_ws is unit.
+// A ray. Partly covered surfaces stop or let pass by chance, which `seed` decides.
 struct Ray {
     vec3 origin_ws;
-    vec3 direction_ws;
+    vec3 direction_ws;         // unit
+    uint seed;
 };
 
 // The place where a ray hits a triangle: corner + u edge_1 + v edge_2.

@@ -100,11 +100,7 @@ impl<'a> Placed<'a> {
 fn octahedral(n: Vec3) -> u32 {
     let n = n / n.abs().element_sum().max(f32::MIN_POSITIVE);
     let sign = |x: f32| if x < 0.0 { -1.0 } else { 1.0 };
-    let [x, y] = if n.z < 0.0 {
-        [(1.0 - n.y.abs()) * sign(n.x), (1.0 - n.x.abs()) * sign(n.y)]
-    } else {
-        [n.x, n.y]
-    };
+    let [x, y] = if n.z < 0.0 { [(1.0 - n.y.abs()) * sign(n.x), (1.0 - n.x.abs()) * sign(n.y)] } else { [n.x, n.y] };
     let snorm = |x: f32| u32::from((x.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
     snorm(x) | snorm(y) << 16
 }

@@ -133,4 +133,3 @@ fn level_above(image: &Image, side: u32) -> u32 {
 fn columns(m: Affine2) -> [[f32; 2]; 3] {
     [m.matrix2.x_axis.to_array(), m.matrix2.y_axis.to_array(), m.translation.to_array()]
 }
-

@@ -26,7 +26,9 @@ const REPEAT: vk::SamplerAddressMode = vk::SamplerAddressMode::REPEAT;
 #[derive(Debug, thiserror::Error)]
 pub enum TraceError {
     /// The scene has too many triangles.
-    #[error("random paths trace at most {most} triangles, and this model has more. Modes without `traces` still show it")]
+    #[error(
+        "random paths trace at most {most} triangles, and this model has more. Modes without `traces` still show it"
+    )]
     TooManyTriangles {
         /// The limit.
         most: usize,

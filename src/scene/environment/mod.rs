@@ -21,8 +21,8 @@ use xxhash_rust::xxh3::xxh3_128_with_seed;
 
 pub use built_in::BUILT_IN;
 pub use direction::{direction_from_uv, uv_from_direction};
-pub use importance::CubeLuminance;
 pub use error::{EnvironmentError, EnvironmentProblem};
+pub use importance::CubeLuminance;
 
 /// Largest supported width, pixels.
 pub const MAX_WIDTH: u32 = 16384;
