@@ -237,6 +237,16 @@ impl Headless {
         Ok(())
     }
 
+    /// Random paths that [`Headless::render`] spends on each pixel; `None` if the mode does not accumulate.
+    ///
+    /// # Errors
+    /// As [`Headless::frame_state`].
+    pub fn paths_per_pixel(&self) -> Result<Option<u64>, HeadlessError> {
+        let request = self.frame_state()?.pipelines;
+        let paths = u64::from(request.paths_per_frame()) * u64::from(self.session.settings.view.frames);
+        Ok(request.accumulates.then_some(paths))
+    }
+
     /// Renders a frame and reads it back. An accumulating mode averages `view.frames` frames.
     ///
     /// # Errors

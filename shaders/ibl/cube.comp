@@ -45,7 +45,7 @@ void main() {
     if (all(lessThan(texel.xy, task.size))) {
         vec3 radiance = mean_radiance(texel);
         float brightness = max_component(radiance);
-        imageStore(target, ivec3(texel), vec4(radiance, brightness));
+        imageStore(target, ivec3(texel), vec4(radiance, 1.0));
         atomicAdd(group_count[brightness_step(brightness)], 1u);
     }
     barrier();
