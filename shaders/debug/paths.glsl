@@ -18,8 +18,8 @@
 #include "paths/furnace.glsl"
 #include "paths/path.glsl"
 
-// The environment, reflected once, without obstacles: what the split sum approximates.
-const bool IS_ONE_BOUNCE = MODE == MODE_MONTE_CARLO || MODE == MODE_IBL_ERROR || MODE == MODE_SPLIT_SUM_ERROR;
+// Whether only the environment counts, reflected once and without obstacles: what the split sum approximates.
+bool is_one_bounce() { return MODE == MODE_MONTE_CARLO || MODE == MODE_IBL_ERROR || MODE == MODE_SPLIT_SUM_ERROR; }
 
 // A pixel's value, and whether some path of it was no number.
 struct PathValue {
@@ -66,7 +66,7 @@ vec3 value_of(PathLight light, vec3 lookups, Surface s, vec3 v) {
 // Modes about the split sum need an environment. Unlit materials have no light to trace, but are part of the picture.
 bool has_value() {
     bool is_picture = MODE == MODE_PATH_TRACED;
-    bool needs_environment = IS_ONE_BOUNCE || MODE == MODE_PREFILTER_ERROR || MODE == MODE_OCCLUSION_ERROR;
+    bool needs_environment = is_one_bounce() || MODE == MODE_PREFILTER_ERROR || MODE == MODE_OCCLUSION_ERROR;
     return (is_picture || !has_feature(FEATURE_UNLIT)) && (!needs_environment || has_feature(FEATURE_ENVIRONMENT));
 }
 
@@ -86,7 +86,7 @@ PathValue path_value(Fragment f, Surface s, vec3 v, vec3 facet_n) {
             lookups = mean_lookup_difference(s, v, first, frame.sample_count);
         }
         if (MODE != MODE_PREFILTER_ERROR && !has_feature(FEATURE_UNLIT)) {
-            light = trace_paths(s, v, facet_n, first, frame.sample_count, !IS_ONE_BOUNCE);
+            light = trace_paths(s, v, facet_n, first, frame.sample_count, !is_one_bounce());
         }
     }
     pixel.value = if_present(has_value(), value_of(light, lookups, s, v));
