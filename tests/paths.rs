@@ -204,10 +204,29 @@ fn the_parts_of_the_error_add_up() {
     let sum: [f32; 3] = std::array::from_fn(|c| split.iter().map(|part| part[c]).sum());
     let (error, image_based, picture, traced) = (of("path-error"), of("ibl-error"), of("final"), of("path-traced"));
     let size = split.iter().map(|part| part[1].abs()).sum::<f32>();
-    assert!(split.iter().all(|part| part[1].abs() > 1e-4), "{split:?}");
+    assert!(split[1..].iter().all(|part| part[1].abs() > 1e-4), "{split:?}");
     assert_near(sum, error, 0.04 * size, "the sum of the parts");
     assert_near([0, 1, 2].map(|c| traced[c] - picture[c]), error, 0.04 * size, "path traced minus picture");
     assert_near([0, 1, 2].map(|c| split[0][c] + split[1][c]), image_based, 0.02 * size, "the first two parts");
+}
+
+/// Wrong values of the baked map belong to `prefilter-error` alone.
+#[test]
+fn the_prefilter_is_told_apart_from_the_split_sum() {
+    let chosen =
+        ["environment.name=studio", "view.msaa=1", "view.background=none", "lights.source=none", "view.frames=48"];
+    let metal = json!({ "pbrMetallicRoughness": { "metallicFactor": 1.0, "roughnessFactor": 0.5 } });
+    let mut session = Session::new(load(&glb::model(&glb::sphere(16, 32), &metal)), settings(&chosen));
+    let all = |session: &mut Session, mode: &str| mean(&session.mode(mode), 0..96, 0..64)[1];
+    let [prefilter, split_sum] = ["prefilter-error", "split-sum-error"].map(|mode| all(&mut session, mode));
+    let light = all(&mut session, "ibl-specular");
+    let from = "return frame.environment_intensity * textureLod(prefiltered_cube";
+    let to = "return 1.2 * frame.environment_intensity * textureLod(prefiltered_cube";
+    ready(&session.edit("lighting/environment.glsl", from, to));
+    let [wrong, unchanged] = ["prefilter-error", "split-sum-error"].map(|mode| all(&mut session, mode));
+    assert!((wrong - prefilter + 0.2 * light).abs() < 0.002 * light, "{prefilter} {wrong}, of {light}");
+    assert!((unchanged - split_sum).abs() < 0.002 * light, "{split_sum} {unchanged}, of {light}");
+    assert!(prefilter.abs() < 0.03 * light, "{prefilter} of {light}");
 }
 
 #[test]
