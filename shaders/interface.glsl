@@ -26,6 +26,12 @@ const int BINDING_SHEEN_ALBEDO = 10;
 const int BINDING_UNUSED = 11;
 const int BINDING_DIFFUSE_ALBEDO = 12;
 const int BINDING_PREFILTERED_ODD = 13;
+const int BINDING_BVH = 14;
+const int BINDING_TRACED_TRIANGLES = 15;
+const int BINDING_TRACED_CORNERS = 16;
+const int BINDING_TRACED_MATERIALS = 17;
+const int BINDING_TRACED_TEXTURES = 18;
+const int BINDING_ENVIRONMENT_CELLS = 19;
 const int BINDING_MATERIAL = 0;
 const int BINDING_SCENE_COLOR = 0;
 const int BINDING_BEHIND = 1;
@@ -98,6 +104,8 @@ const uint ENCODE_DATA = 1u;
 const uint ENCODE_VECTOR = 2u;
 const uint FLAG_NO_DATA = 16u;
 const uint FLAG_NOT_FINITE = 256u;
+const uint MAX_BVH_DEPTH = 64u;
+const uint NO_TEXTURE = 0xffffffffu;
 const uint TONEMAP_OFF = 0xffffffffu;
 const uint TEXTURE_BASE_COLOR = 0u;
 const uint TEXTURE_METALLIC_ROUGHNESS = 1u;
@@ -152,6 +160,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     float environment_blur;            // Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
     uint sample_index;                 // Accumulating modes: frames since the picture changed.
     uint sample_count;                 // Accumulating modes: random paths a pixel in each frame.
+    uint path_bounces;                 // Modes that trace the model: number of times that a path goes on from the surface that it has hit.
 } frame;
 
 struct Light {
@@ -231,6 +240,50 @@ struct Vertex {
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vertices {
     Vertex at[];
+};
+
+struct BvhNode {
+    vec3 min_ws;                       // Smallest corner, world space.
+    uint first;                        // Leaf: its first triangle. Otherwise the first of its two children, which are neighbors.
+    vec3 max_ws;                       // Largest corner, world space.
+    uint count;                        // Leaf: its number of triangles. Otherwise 0.
+};
+
+struct TracedTriangle {
+    vec3 corner_ws;                    // Its first corner, world space.
+    vec3 edge_1_ws;                    // From the first corner to the second.
+    vec3 edge_2_ws;                    // From the first corner to the third.
+};
+
+struct TracedCorners {
+    uvec3 normals_ws;                  // Each corner's normal, world space: octahedral, packSnorm2x16.
+    uvec3 colors;                      // Each corner's COLOR_0, linear RGBA: packUnorm4x8.
+    vec2 uv_0;                         // Texture coordinates of the first corner.
+    vec2 uv_1;                         // Texture coordinates of the second corner.
+    vec2 uv_2;                         // Texture coordinates of the third corner.
+    uint material;                     // Index into the materials.
+};
+
+struct TracedMaterial {
+    vec4 base_color_factor;            // Linear RGBA.
+    vec3 emissive_factor;              // Linear RGB. Unlit materials: 0.
+    float metallic_factor;             // 0 dielectric .. 1 metal.
+    float roughness_factor;            // Perceptual roughness 0..1.
+    float alpha_cutoff;                // ALPHA_MASK: a hit with less coverage does not count.
+    uint alpha_mode;                   // ALPHA_*.
+    uint unlit;                        // 1: KHR_materials_unlit, the base color is emitted and nothing reflected; otherwise 0.
+    float transmission;                // Fraction of the rays that pass straight through: transmission of a dielectric, 0..1.
+    float ior;                         // Index of refraction of the dielectric.
+    vec3 f0;                           // Its reflectance at normal incidence, linear RGB.
+    float f90;                         // Its reflectance at grazing incidence.
+    uvec3 layers;                      // Layers of base color, metallic-roughness and emissive texture in BINDING_TRACED_TEXTURES, or NO_TEXTURE.
+    mat3x2 uv_from_texture[3];         // KHR_texture_transform of these textures, applied to (u, v, 1).
+};
+
+struct EnvironmentCell {
+    float keep;                        // Probability of staying in this cell instead of going on to `other`.
+    uint other;                        // The other cell.
+    float density;                     // Probability density of a point of the cell, per unit of area of a face that spans -1..1.
 };
 
 layout(push_constant, scalar) uniform Draw {

@@ -36,6 +36,12 @@ vec3 towards_viewer(vec3 direction_ws) { return gl_FrontFacing ? direction_ws : 
 // The interpolated vertex normal, unit, on the viewer's side. Falls back to v where normals are zero or cancel out.
 vec3 geometric_normal(Fragment f, vec3 v) { return safe_normalize(towards_viewer(f.normal_ws), v); }
 
+// The triangle's normal, on the viewer's side. Falls back to v where the triangle is edge-on and derivatives vanish.
+vec3 facet_normal(Fragment f, vec3 v) {
+    vec3 n = safe_normalize(cross(dFdx(f.position_ws), dFdy(f.position_ws)), v);
+    return dot(n, v) < 0.0 ? -n : n;
+}
+
 // Transforms a decoded normal texel to world space. Where the result is zero (a texel that decodes to zero, say), this
 // returns the geometric normal. A zero tangent makes the bitangent zero too, so the geometric normal is all that is
 // left. The fallback is selected before normalizing, so that only one vector is normalized.

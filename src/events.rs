@@ -25,6 +25,15 @@ pub enum Event<'a> {
     Reload(ReloadEvent),
     /// An environment was baked, or loaded from the disk cache.
     Bake(&'a BakeReport),
+    /// A picture was rendered in a mode that accumulates random paths.
+    Paths {
+        /// Slug of the mode.
+        mode: &'a str,
+        /// Random paths of each pixel.
+        paths_per_pixel: u64,
+        /// Milliseconds for all of its frames.
+        ms: f64,
+    },
     /// A screenshot was written.
     Screenshot {
         /// Its path.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineSet,
-    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, UploadError, View, wrong_values,
+    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, TraceError, UploadError, View, wrong_values,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
@@ -43,7 +43,8 @@ impl From<ProvideError> for HeadlessError {
     fn from(error: ProvideError) -> Self {
         match error {
             ProvideError::Bake(error) => error.into(),
-            ProvideError::Gpu(error) => error.into(),
+            ProvideError::Gpu(error) | ProvideError::Trace(TraceError::Gpu(error)) => error.into(),
+            ProvideError::Trace(error) => Self::Settings(error.to_string()),
             ProvideError::Measured(error) => error.into(),
             ProvideError::Stale => Self::Settings(error.to_string()),
         }
@@ -243,6 +244,16 @@ impl Headless {
         self.resources.set_model(&uploaded);
         self.upload_ms = start.elapsed().as_secs_f64() * 1e3;
         Ok(())
+    }
+
+    /// Random paths that [`Headless::render`] spends on each pixel; `None` if the mode does not accumulate.
+    ///
+    /// # Errors
+    /// As [`Headless::frame_state`].
+    pub fn paths_per_pixel(&self) -> Result<Option<u64>, HeadlessError> {
+        let request = self.frame_state()?.pipelines;
+        let paths = u64::from(request.paths_per_frame()) * u64::from(self.session.settings.view.frames);
+        Ok(request.accumulates.then_some(paths))
     }
 
     /// Renders a frame and reads it back. An accumulating mode averages `view.frames` frames.

@@ -10,7 +10,10 @@ mod constants;
 mod print;
 mod textures;
 
-pub use blocks::{BLOCKS, Block, Draw, Frame, Light, Material, Member, Task, Vertex, block};
+pub use blocks::{
+    BLOCKS, Block, BvhNode, Draw, EnvironmentCell, Frame, Light, Material, Member, Task, TracedCorners, TracedMaterial,
+    TracedTriangle, Vertex, block,
+};
 pub use constants::*;
 pub use print::glsl;
 pub use textures::*;
@@ -47,6 +50,8 @@ pub enum BindingKind {
     StorageBuffer,
     /// `sampler2D`.
     Sampler2D,
+    /// `sampler2DArray`.
+    Sampler2DArray,
     /// `samplerCube`.
     SamplerCube,
     /// `rgba16f image2DArray`: one mip level of an image with all its layers.
@@ -60,6 +65,7 @@ impl BindingKind {
             Self::UniformBuffer => "uniform block",
             Self::StorageBuffer => "buffer block",
             Self::Sampler2D => "sampler2D",
+            Self::Sampler2DArray => "sampler2DArray",
             Self::SamplerCube => "samplerCube",
             Self::StorageImage => "rgba16f image2DArray",
         }
@@ -132,6 +138,12 @@ const OTHERS: &[Binding] = &[
     binding(SET_FRAME, 11, "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
     binding(SET_FRAME, 12, "BINDING_DIFFUSE_ALBEDO", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 13, "BINDING_PREFILTERED_ODD", BindingKind::SamplerCube, 0),
+    binding(SET_FRAME, 14, "BINDING_BVH", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 15, "BINDING_TRACED_TRIANGLES", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 16, "BINDING_TRACED_CORNERS", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 17, "BINDING_TRACED_MATERIALS", BindingKind::StorageBuffer, 0),
+    binding(SET_FRAME, 18, "BINDING_TRACED_TEXTURES", BindingKind::Sampler2DArray, 0),
+    binding(SET_FRAME, 19, "BINDING_ENVIRONMENT_CELLS", BindingKind::StorageBuffer, 0),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),

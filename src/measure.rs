@@ -7,8 +7,8 @@ use bytemuck::{Pod, Zeroable};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::render::{
-    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, Tables, TablesKey, TargetFormat, Uniforms,
-    compute, ltc, measured_buffer,
+    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, Tables, TablesKey, TargetFormat,
+    Traced, Uniforms, compute, ltc, measured_buffer,
 };
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
@@ -125,6 +125,7 @@ struct Shared {
     set: Arc<PipelineSet>,
     environment: Arc<GpuEnvironment>,
     measured: Arc<Buffer>,
+    traced: Arc<Traced>,
     images: SharedImages,
 }
 
@@ -150,6 +151,7 @@ impl Bench {
             set,
             environment: GpuEnvironment::uniform(gpu, [1.0; 3])?,
             measured: measured_buffer(gpu, None)?,
+            traced: Traced::empty(gpu)?,
             images: SharedImages { ltc: ltc::table(gpu)?, linear },
         };
         Self::on(Arc::new(shared), settings)
@@ -167,7 +169,8 @@ impl Bench {
         let request = request(settings, &shared.set.shaders);
         shared.set.build(&request)?;
         let tables = Tables::bake(&shared.set, &TablesKey::new(&shared.set.shaders, &request.constants), None)?;
-        let sources = Sources { environment: shared.environment.clone(), tables, measured: shared.measured.clone() };
+        let (measured, traced) = (shared.measured.clone(), shared.traced.clone());
+        let sources = Sources { environment: shared.environment.clone(), tables, measured, traced };
         let mut uniforms = Uniforms::new(&shared.gpu)?;
         let params = values::params(&settings.shader, &shared.set.shaders.parameters);
         uniforms.write(&interface::Frame::default(), &[], &params);

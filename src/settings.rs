@@ -139,6 +139,8 @@ pub struct ViewSettings {
     pub msaa: u32,
     /// Number of frames that accumulating modes average when rendering without a window.
     pub frames: u32,
+    /// How often a random path goes on from the surface that it has hit, in the modes that trace the model. 0 leaves direct light.
+    pub bounces: u32,
 }
 
 /// The default background. Modes that show data instead of light also use it if the background is `env`.
@@ -146,7 +148,7 @@ const BACKGROUND: &str = "#1b1d21";
 
 impl Default for ViewSettings {
     fn default() -> Self {
-        Self { tonemap: Tonemap::default(), ev: 0.0, background: BACKGROUND.into(), msaa: 4, frames: 64 }
+        Self { tonemap: Tonemap::default(), ev: 0.0, background: BACKGROUND.into(), msaa: 4, frames: 64, bounces: 4 }
     }
 }
 
@@ -213,6 +215,9 @@ impl Settings {
         }
         if !(1..=100_000).contains(&self.view.frames) {
             return Err(format!("view.frames is {}; it can be 1 to 100000", self.view.frames));
+        }
+        if self.view.bounces > 64 {
+            return Err(format!("view.bounces is {}; it can be 0 to 64", self.view.bounces));
         }
         match self.view.msaa {
             1 | 4 => Ok(()),

@@ -21,7 +21,7 @@ const FIXED: &str = "final base-color alpha metallic roughness occlusion emissiv
 const SAME_ALL_OVER: [&str; 5] = ["alpha", "f90", "ior", "face-orientation", "tangent-sign"];
 
 /// Modes without data on the shader ball: a model that has the data, more settings, and the modes.
-const ELSEWHERE: [(&str, &[&str], &[&str]); 11] = [
+const ELSEWHERE: [(&str, &[&str], &[&str]); 12] = [
     ("clearcoat", &[], &["clearcoat", "clearcoat-roughness", "clearcoat-normal", "clearcoat-lobe", "clearcoat-light"]),
     ("anisotropy", &[], &["anisotropy", "anisotropy-direction"]),
     ("sheen", &[], &["sheen-color", "sheen-roughness", "sheen-lobe", "sheen-light"]),
@@ -35,9 +35,12 @@ const ELSEWHERE: [(&str, &[&str], &[&str]); 11] = [
     (
         "sphere-grid",
         &["environment.name=studio"],
-        &["ibl-diffuse", "ibl-specular", "irradiance", "prefiltered", "environment", "monte-carlo", "ibl-error"],
+        &["ibl-diffuse", "ibl-specular", "irradiance", "prefiltered", "environment"],
     ),
+    ("sphere-grid", &["environment.name=studio"], &BY_PATHS),
 ];
+/// Modes of random paths that compare with image-based light.
+const BY_PATHS: [&str; 5] = ["monte-carlo", "ibl-error", "prefilter-error", "split-sum-error", "occlusion-error"];
 /// Modes that need a file: see `the_measured_modes_show_the_file`.
 const MEASURED: [&str; 3] = ["measured", "measured-split", "measured-error"];
 
@@ -182,8 +185,6 @@ fn absent_data_is_a_checkerboard() {
         "ibl-specular",
         "irradiance",
         "environment",
-        "monte-carlo",
-        "ibl-error",
         "area-light",
     ];
     let check = |headless: &mut Headless, slug: &str| {
@@ -195,7 +196,7 @@ fn absent_data_is_a_checkerboard() {
             "{slug} has no squares"
         );
     };
-    for slug in data.into_iter().chain(["texel-density"]) {
+    for slug in data.into_iter().chain(BY_PATHS).chain(["texel-density"]) {
         check(&mut headless, slug);
     }
     headless.settings_mut().assign("lights.source=none").unwrap();

@@ -78,19 +78,12 @@ float g1_ggx(vec3 v, vec2 alpha) {
     return 2.0 * v.z / (v.z + root);
 }
 
-// Visible normals of GGX, density G1 D VoH / NoV (Heitz 2018, listing 1): stretches GGX to a hemisphere, samples the
-// projected disk, and warps the half that the hemisphere occludes. Requires v.z >= 0.
+// Visible normals of GGX, density G1 D VoH / NoV, by spherical caps (Dupuy & Benyoub 2023, listing 3): stretched, GGX
+// becomes a hemisphere of mirrors, which reflects v uniformly into the cap z > -v.z. The facet is halfway between v and
+// the reflection. Requires v.z >= 0.
 vec3 sample_ggx_vndf(vec2 u, vec3 v, vec2 alpha) {
     vec3 stretched = normalize(vec3(alpha * v.xy, v.z));
-    float across = dot(stretched.xy, stretched.xy);
-    vec3 t = across > 0.0 ? vec3(-stretched.y, stretched.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0);
-    vec3 b = cross(stretched, t);
-
-    float radius = sqrt(u.x);
-    float phi = 2.0 * PI * u.y;
-    float x = radius * cos(phi);
-    float y = mix(sqrt(1.0 - x * x), radius * sin(phi), 0.5 + 0.5 * stretched.z);
-    vec3 h = x * t + y * b + sqrt(max(1.0 - x * x - y * y, 0.0)) * stretched;
+    vec3 h = stretched + direction_from_cosine((1.0 - u.x) * (1.0 + stretched.z) - stretched.z, u.y);
     return normalize(vec3(alpha * h.xy, max(h.z, 1e-6)));   // 1e-6: an edge-on facet still has a direction
 }
 

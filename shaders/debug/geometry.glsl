@@ -29,13 +29,6 @@ vec3 texel_density_color(Fragment f) {
     float density_log2 = 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));
     return heat((density_log2 - 4.0) / 10.0);
 }
-
-// The triangle's normal, on the viewer's side. Falls back to v where the triangle is edge-on and derivatives vanish.
-vec3 facet_normal(Fragment f, vec3 v) {
-    vec3 n = safe_normalize(cross(dFdx(f.position_ws), dFdy(f.position_ws)), v);
-    return dot(n, v) < 0.0 ? -n : n;
-}
-
 bool debug_geometry(Fragment f, Surface s, vec3 v, out vec3 value) {
     bool has_frame = has_attribute(ATTRIBUTE_TANGENT_FRAME);
     bool has_base_color = has_texture(TEXTURE_BASE_COLOR);

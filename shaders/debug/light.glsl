@@ -40,10 +40,6 @@ Surface surface_of_mode(Surface s) {
     if (MODE == MODE_CLAY) return as_clay(s);
     if (MODE == MODE_DIELECTRIC) s.metallic = 0.0;
     if (MODE == MODE_METAL) s.metallic = 1.0;
-    if (MODE == MODE_IBL_ERROR) s.occlusion = 1.0;   // Monte Carlo ignores occlusion
-    // Below roughness 0.1 the error of the estimate (FURNACE_PATHS) can exceed the tolerance and flag white metals.
-    if (MODE == MODE_ENERGY) s.roughness = max(s.roughness, 0.1);
-    if (MODE == MODE_ENERGY) s.clearcoat_roughness = max(s.clearcoat_roughness, 0.1);
     return s;
 }
 

@@ -9,7 +9,6 @@
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
 #include "debug/surface.glsl"
-#include "lighting/monte_carlo.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
 #include "material.glsl"
@@ -66,24 +65,6 @@ vec3 f0_range_color(Surface s) {
     return vec3(0.25 * f0);
 }
 
-// The tolerance above 1 is the error of the estimate.
-vec3 energy_color(vec3 albedo) { return max_component(albedo) > 1.005 ? TOO_HIGH : albedo; }
-
-bool debug_paths(Surface s, vec3 v, Lit lit, out vec3 value) {
-    if (MODE != MODE_MONTE_CARLO && MODE != MODE_IBL_ERROR && MODE != MODE_ENERGY) return false;
-    bool furnace = MODE == MODE_ENERGY;
-    uint count = furnace ? FURNACE_PATHS : frame.sample_count;
-    uint first = furnace ? 0u : frame.sample_index * frame.sample_count;
-    vec3 by_paths = monte_carlo(s, v, furnace, first, count);
-    vec3 by_split_sum = lit.ambient.all;
-    lit.ambient.all = by_paths;
-    if (MODE == MODE_ENERGY) value = energy_color(by_paths);
-    else if (MODE == MODE_IBL_ERROR) value = by_paths - by_split_sum;
-    else value = outgoing_radiance(s, v, lit);
-    value = if_present((furnace || has_feature(FEATURE_ENVIRONMENT)) && !has_feature(FEATURE_UNLIT), value);
-    return true;
-}
-
 // `lit` and `radiance`: the picture.
 bool debug_truth(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     bool known = true;
@@ -93,7 +74,7 @@ bool debug_truth(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     else if (MODE == MODE_FALSE_COLOR) value = false_color(radiance);
     else if (MODE == MODE_ALBEDO_RANGE) value = albedo_range_color(s);
     else if (MODE == MODE_F0_RANGE) value = f0_range_color(s);
-    else known = debug_paths(s, v, lit, value);
+    else known = false;
     return known;
 }
 

@@ -7,9 +7,6 @@
 
 // Converts an equirectangular image to level 0 of a cube map. One invocation per texel; z is the face.
 //
-// Alpha holds the largest component. In the levels below it holds the largest of all texels covered, which
-// lighting/sun.glsl follows to the brightest texel.
-//
 // The image's center column is seen looking down -Z; columns to its right are towards +X:
 // u = 0.5 + atan(x, -z) / 2 pi, v = acos(y) / pi.
 
@@ -48,7 +45,7 @@ void main() {
     if (all(lessThan(texel.xy, task.size))) {
         vec3 radiance = mean_radiance(texel);
         float brightness = max_component(radiance);
-        imageStore(target, ivec3(texel), vec4(radiance, brightness));
+        imageStore(target, ivec3(texel), vec4(radiance, 1.0));
         atomicAdd(group_count[brightness_step(brightness)], 1u);
     }
     barrier();

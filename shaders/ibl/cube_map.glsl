@@ -16,6 +16,21 @@ vec3 cube_position(vec2 st, uint face) {
     }
 }
 
+// The inverse: the face in direction d, and the point on it.
+uint cube_face(vec3 d, out vec2 st) {
+    vec3 size = abs(d);
+    if (size.x >= size.y && size.x >= size.z) {
+        st = vec2(d.x > 0.0 ? -d.z : d.z, -d.y) / size.x;
+        return d.x > 0.0 ? 0u : 1u;
+    }
+    if (size.y >= size.z) {
+        st = vec2(d.x, d.y > 0.0 ? d.z : -d.z) / size.y;
+        return d.y > 0.0 ? 2u : 3u;
+    }
+    st = vec2(d.z > 0.0 ? d.x : -d.x, -d.y) / size.z;
+    return d.z > 0.0 ? 4u : 5u;
+}
+
 vec2 texel_center(uvec2 texel, uvec2 size) { return (vec2(texel) + 0.5) * (2.0 / vec2(size)) - 1.0; }
 
 // Steradians per unit area of the face: cos / distance^2 = (1 + s^2 + t^2)^(-3/2).

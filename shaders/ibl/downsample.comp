@@ -9,7 +9,7 @@
 // keeps the light of the one above, and a texel is the mean radiance of the area it covers. (A corner texel covers a
 // fifth of the solid angle of a center texel, so an unweighted mean would move light.)
 //
-// From level 0 to 1 small lights are removed (ibl/small_lights.glsl). Alpha still includes them.
+// From level 0 to 1 small lights are removed (ibl/small_lights.glsl).
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray level_above;
@@ -27,23 +27,20 @@ void main() {
 
     float reach = 0.5 / float(task.size.x);
     vec4 kept = vec4(0.0);     // w: solid angle
-    float brightest = 0.0;
     vec3 cut = vec3(0.0);
     vec3 center = vec3(0.0);   // of the removed light
     for (uint i = 0u; i < 4u; ++i) {
         uvec2 above = 2u * texel.xy + uvec2(i & 1u, i >> 1);
         vec2 st = texel_center(above, 2u * task.size);
         float steradians = solid_angle(st, reach);
-        vec4 texel_above = imageLoad(level_above, ivec3(above, texel.z));
-        vec3 radiance = texel_above.rgb;
-        brightest = max(brightest, texel_above.a);
+        vec3 radiance = imageLoad(level_above, ivec3(above, texel.z)).rgb;
         float brightness = max_component(radiance);
         float part = brightness > limit ? limit / brightness : 1.0;
         kept += vec4(radiance * part, 1.0) * steradians;
         cut += radiance * ((1.0 - part) * steradians);
         center += normalize(cube_position(st, texel.z)) * (brightness * (1.0 - part) * steradians);
     }
-    imageStore(target, ivec3(texel), vec4(rounded_to_half(kept.rgb / kept.w), brightest));
+    imageStore(target, ivec3(texel), vec4(rounded_to_half(kept.rgb / kept.w), 1.0));
 
     if (max_component(cut) > 0.0) {
         uint place = atomicAdd(small_light_count, 1u);

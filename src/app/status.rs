@@ -67,12 +67,12 @@ impl Notices {
 }
 
 /// The title over the picture: the mode on screen and the selected mode that is being built. The final picture has no title.
-/// `frames` is the number of frames in the mean of an accumulating mode.
-pub(super) fn title(shown: &Mode, set: Option<&Mode>, frames: Option<u32>) -> Option<String> {
-    match (set.filter(|set| set.slug != shown.slug), frames) {
+/// `paths` is the number of random paths per pixel so far in an accumulating mode.
+pub(super) fn title(shown: &Mode, set: Option<&Mode>, paths: Option<u32>) -> Option<String> {
+    match (set.filter(|set| set.slug != shown.slug), paths) {
         (Some(next), _) => Some(format!("{}  ➡  {} …", shown.name, next.name)),
-        (None, Some(1)) => Some(format!("{}   1 frame", shown.name)),
-        (None, Some(frames)) => Some(format!("{}   mean of {frames} frames", shown.name)),
+        (None, Some(1)) => Some(format!("{}   1 path per pixel", shown.name)),
+        (None, Some(paths)) => Some(format!("{}   {paths} paths per pixel", shown.name)),
         (None, None) => Some(shown.name.clone()).filter(|_| shown.slug != "final"),
     }
 }

@@ -179,6 +179,7 @@ impl Viewer {
         self.threads.baker.bake_tables(set, missing.tables, &self.resources);
         self.threads.baker.bake(set, missing.environment, &self.resources);
         self.threads.baker.read(missing.measured);
+        self.threads.baker.trace(missing.traced);
     }
 
     /// The state of the picture on screen.
@@ -186,10 +187,12 @@ impl Viewer {
         self.shown.as_ref().map(|shown| &*shown.frame.state)
     }
 
-    /// The title over the picture: see [`title`].
+    /// The title over the picture: see [`title`]. `frames` is the number of frames in the mean of an accumulating mode.
     pub(super) fn title(&self, frames: u32) -> Option<String> {
         let shown = self.shown()?;
-        title(shown.mode()?, self.session.mode(), shown.pipelines.accumulates.then_some(frames))
+        let request = &shown.pipelines;
+        let paths = request.accumulates.then(|| frames.saturating_mul(request.paths_per_frame()));
+        title(shown.mode()?, self.session.mode(), paths)
     }
 
     /// The text of a pixel's value; `None` where nothing covers the pixel.

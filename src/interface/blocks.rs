@@ -49,6 +49,7 @@ mod types {
     pub type vec3 = [f32; 3];
     pub type vec4 = [f32; 4];
     pub type uvec2 = [u32; 2];
+    pub type uvec3 = [u32; 3];
     pub type mat3 = [[f32; 3]; 3];
     pub type mat4 = [[f32; 4]; 4];
     pub type mat3x2 = [[f32; 2]; 3];
@@ -135,6 +136,8 @@ blocks! {
         sample_index: uint,
         /// Accumulating modes: random paths a pixel in each frame.
         sample_count: uint,
+        /// Modes that trace the model: number of times that a path goes on from the surface that it has hit.
+        path_bounces: uint,
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.
@@ -270,6 +273,84 @@ blocks! {
         uv1: vec2,
         /// COLOR_0, linear RGBA, or 1.
         color: vec4,
+    }
+
+    /// A node of the bounding volume hierarchy that random paths trace. The root is node 0.
+    BvhNode: "struct BvhNode", "" {
+        /// Smallest corner, world space.
+        min_ws: vec3,
+        /// Leaf: its first triangle. Otherwise the first of its two children, which are neighbors.
+        first: uint,
+        /// Largest corner, world space.
+        max_ws: vec3,
+        /// Leaf: its number of triangles. Otherwise 0.
+        count: uint,
+    }
+
+    /// A triangle that random paths can hit.
+    TracedTriangle: "struct TracedTriangle", "" {
+        /// Its first corner, world space.
+        corner_ws: vec3,
+        /// From the first corner to the second.
+        edge_1_ws: vec3,
+        /// From the first corner to the third.
+        edge_2_ws: vec3,
+    }
+
+    /// What the corners of a traced triangle carry. A triangle has the same index in both buffers.
+    TracedCorners: "struct TracedCorners", "" {
+        /// Each corner's normal, world space: octahedral, packSnorm2x16.
+        normals_ws: uvec3,
+        /// Each corner's COLOR_0, linear RGBA: packUnorm4x8.
+        colors: uvec3,
+        /// Texture coordinates of the first corner.
+        uv_0: vec2,
+        /// Texture coordinates of the second corner.
+        uv_1: vec2,
+        /// Texture coordinates of the third corner.
+        uv_2: vec2,
+        /// Index into the materials.
+        material: uint,
+    }
+
+    /// A material as random paths see it after the first hit.
+    TracedMaterial: "struct TracedMaterial", "" {
+        /// Linear RGBA.
+        base_color_factor: vec4,
+        /// Linear RGB. Unlit materials: 0.
+        emissive_factor: vec3,
+        /// 0 dielectric .. 1 metal.
+        metallic_factor: float,
+        /// Perceptual roughness 0..1.
+        roughness_factor: float,
+        /// ALPHA_MASK: a hit with less coverage does not count.
+        alpha_cutoff: float,
+        /// ALPHA_*.
+        alpha_mode: uint,
+        /// 1: KHR_materials_unlit, the base color is emitted and nothing reflected; otherwise 0.
+        unlit: uint,
+        /// Fraction of the rays that pass straight through: transmission of a dielectric, 0..1.
+        transmission: float,
+        /// Index of refraction of the dielectric.
+        ior: float,
+        /// Its reflectance at normal incidence, linear RGB.
+        f0: vec3,
+        /// Its reflectance at grazing incidence.
+        f90: float,
+        /// Layers of base color, metallic-roughness and emissive texture in BINDING_TRACED_TEXTURES, or NO_TEXTURE.
+        layers: uvec3,
+        /// KHR_texture_transform of these textures, applied to (u, v, 1).
+        uv_from_texture: [mat3x2; 3],
+    }
+
+    /// A cell of the environment's cube map, as an entry of an alias table. A face has cells x cells of them, row by row.
+    EnvironmentCell: "struct EnvironmentCell", "" {
+        /// Probability of staying in this cell instead of going on to `other`.
+        keep: float,
+        /// The other cell.
+        other: uint,
+        /// Probability density of a point of the cell, per unit of area of a face that spans -1..1.
+        density: float,
     }
 
     /// Push constants of one draw.

@@ -99,6 +99,11 @@ constants! {
     /// Added to the HDR target's alpha: the value is NaN or infinite.
     FLAG_NOT_FINITE = 256;
 
+    /// Levels of the deepest bounding volume hierarchy.
+    MAX_BVH_DEPTH = 64;
+    /// `TracedMaterial::layers`: there is no texture.
+    NO_TEXTURE = u32::MAX;
+
     /// `SPEC_TONEMAP`: debug modes whose values are not light skip exposure and tone mapping.
     TONEMAP_OFF = u32::MAX;
 }

@@ -56,3 +56,24 @@ pub(crate) fn upload(gpu: &Arc<Gpu>, images: &[(&Arc<Image>, &[u8])]) -> Result<
         Ok(())
     })
 }
+
+/// Bytes of the largest staging buffer of [`upload_buffer`].
+const STAGING_BYTES: usize = 32 << 20;
+
+/// Creates a storage buffer with this content, which must not be empty. A staging buffer of bounded size copies it in parts.
+pub(crate) fn upload_buffer(gpu: &Arc<Gpu>, name: &str, bytes: &[u8]) -> Result<Arc<Buffer>, GpuError> {
+    use vk::BufferUsageFlags as Usage;
+    let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST;
+    let buffer = Buffer::new(gpu, name, bytes.len() as u64, usage, Memory::Device)?;
+    let largest = bytes.len().min(STAGING_BYTES);
+    let staging = Buffer::new(gpu, "staging", largest as u64, Usage::TRANSFER_SRC, Memory::Upload)?;
+    for (part, own) in bytes.chunks(STAGING_BYTES).enumerate() {
+        staging.write(0, own);
+        one_shot(gpu, |encoder| {
+            encoder.copy_buffer(&staging, 0, &buffer, (part * STAGING_BYTES) as u64, own.len() as u64);
+            encoder.copies_done();
+            Ok(())
+        })?;
+    }
+    Ok(buffer)
+}

@@ -7,6 +7,7 @@
 mod brdf;
 pub(crate) mod compute;
 mod environment;
+mod paths;
 mod pipeline;
 mod resources;
 mod scene;
@@ -16,6 +17,7 @@ mod view;
 pub use brdf::tables::{Tables, wrong_values};
 pub(crate) use brdf::{ltc, measured::measured_buffer};
 pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
+pub use paths::{TraceError, TraceKey, TraceRequest, Traced};
 pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, stages};
 pub use resources::{BoundFrame, Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};

@@ -9,6 +9,7 @@ use crate::scene::{Measured, MeasuredError};
 use super::brdf::measured::measured_buffer;
 use super::brdf::tables::Tables;
 use super::environment::bake::{BakeControl, BakeError, GpuEnvironment};
+use super::paths::{TraceError, TraceKey, TraceRequest, Traced};
 use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};
 use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
@@ -23,6 +24,7 @@ pub struct BoundFrame {
     pub(super) tables: Arc<Tables>,
     pub(super) environment: Arc<GpuEnvironment>,
     pub(super) measured: Arc<Buffer>,
+    pub(super) traced: Arc<Traced>,
 }
 
 impl BoundFrame {
@@ -44,6 +46,7 @@ impl BoundFrame {
             && Arc::ptr_eq(&self.tables, &other.tables)
             && Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.measured, &other.measured)
+            && Arc::ptr_eq(&self.traced, &other.traced)
             && self.state.is_same(&other.state)
     }
 }
@@ -59,6 +62,8 @@ pub struct Missing {
     pub environment: Option<EnvironmentKey>,
     /// A measured BRDF to read.
     pub measured: Option<MeasuredKey>,
+    /// What random paths trace. It depends on the environment, so it is missing only once that is there.
+    pub traced: Option<TraceRequest>,
 }
 
 /// The last good resource with its key, and the key of the last failure.
@@ -101,7 +106,7 @@ impl<K: PartialEq, T> Slot<K, T> {
     }
 }
 
-/// Pipelines, model, environment and measured BRDF: the newest of each.
+/// Pipelines, model, environment, measured BRDF and what random paths trace: the newest of each.
 pub struct Resources {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -111,6 +116,7 @@ pub struct Resources {
     tables: Slot<TablesKey, Tables>,
     environment: Slot<EnvironmentKey, GpuEnvironment>,
     measured: Slot<MeasuredKey, Buffer>,
+    traced: Slot<TraceKey, Traced>,
 }
 
 impl Resources {
@@ -128,6 +134,7 @@ impl Resources {
             tables: Slot::new(Tables::of_mirror(gpu)?),
             environment: Slot::new(GpuEnvironment::uniform(gpu, ambient)?),
             measured: Slot::new(measured_buffer(gpu, None)?),
+            traced: Slot::new(Traced::empty(gpu)?),
         })
     }
 
@@ -167,6 +174,11 @@ impl Resources {
         self.measured.set(key, buffer);
     }
 
+    /// Takes what random paths trace; `None` if it could not be built.
+    pub fn set_traced(&mut self, key: TraceKey, traced: Option<Arc<Traced>>) {
+        self.traced.set(key, traced);
+    }
+
     /// The environment that was baked last.
     pub fn environment(&self) -> &Arc<GpuEnvironment> {
         self.environment.last_good()
@@ -177,12 +189,30 @@ impl Resources {
         self.environment.made.as_ref()
     }
 
+    /// The environment of `state`, or a stand-in for one that is still being baked. `None` while there is neither.
+    fn environment_of(&self, state: &FrameState, is_first: bool) -> Option<&Arc<GpuEnvironment>> {
+        // An edit of the bake stages shows at once, in the light that the previous shaders baked.
+        let is_edit = |key: &EnvironmentKey| state.environment.as_ref().is_some_and(|wanted| key.is_edit_of(wanted));
+        let made = self.environment.get(state.environment.as_ref());
+        let made = made.or_else(|| self.environment.before_edit(is_edit));
+        made.or_else(|| is_first.then(|| self.environment.last_good()))
+    }
+
+    /// Identifies what the paths of `state` trace; `None` for a mode without random paths.
+    fn trace_key(state: &FrameState, environment: &Arc<GpuEnvironment>) -> Option<TraceKey> {
+        let scene = state.scene.clone().filter(|_| state.pipelines.traces);
+        state.pipelines.paths.then(|| TraceKey { scene, environment: environment.clone() })
+    }
+
     /// The resources that `state` still lacks. The model is never missing, because states refer only to uploaded models.
     pub fn missing(&self, state: &FrameState) -> Missing {
         let has_pipelines = self.pipelines_of(state).is_some_and(|set| set.bind(&state.pipelines).is_some());
         let environment = state.environment.as_ref();
         let measured = state.measured.as_ref();
+        let traced = self.environment_of(state, false).and_then(|environment| Self::trace_key(state, environment));
+        let traced = traced.filter(|key| self.traced.get(Some(key)).is_none());
         Missing {
+            traced: traced.map(|key| TraceRequest { key, model: self.model.clone(), before: self.traced.made.clone() }),
             pipelines: !has_pipelines,
             tables: self.tables.get(Some(&state.tables)).is_none().then(|| state.tables.clone()),
             environment: environment.filter(|key| self.environment.get(Some(key)).is_none()).cloned(),
@@ -202,12 +232,10 @@ impl Resources {
         };
         let tables = self.tables.get(Some(&state.tables));
         let tables = tables.or_else(|| self.tables.before_edit(|key| key.is_edit_of(&state.tables))).cloned();
-        let environment = self.environment.get(state.environment.as_ref());
-        let environment = environment.or_else(|| {
-            let is_edit = |key: &EnvironmentKey| state.environment.as_ref().is_some_and(|wanted| key.is_edit_of(wanted));
-            self.environment.before_edit(is_edit).or(is_first.then(|| self.environment.last_good()))
-        });
-        let (Some(tables), Some(environment)) = (tables, environment.cloned()) else { return Ok(None) };
+        let environment = self.environment_of(state, is_first).cloned();
+        let (Some(tables), Some(environment)) = (tables, environment) else { return Ok(None) };
+        let key = Self::trace_key(state, &environment);
+        let Some(traced) = self.traced.get(key.as_ref()).cloned() else { return Ok(None) };
         let Some(measured) = self.measured.get(state.measured.as_ref()).cloned() else { return Ok(None) };
         let scene = match &state.scene {
             Some(scene) => match self.scene_of(scene)? {
@@ -216,7 +244,7 @@ impl Resources {
             },
             None => None,
         };
-        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured }))
+        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, traced }))
     }
 
     /// Creates everything that `state` lacks on this thread, and binds it.
@@ -241,6 +269,12 @@ impl Resources {
         }
         if missing.pipelines {
             set.build(&state.pipelines)?;
+        }
+        // Only now is the environment known.
+        if let Some(request) = self.missing(state).traced {
+            let built = Traced::new(&self.gpu, &request);
+            self.set_traced(request.key, built.as_ref().ok().cloned());
+            built?;
         }
         self.bind(state, false)?.ok_or(ProvideError::Stale)
     }
@@ -292,6 +326,9 @@ pub enum ProvideError {
     /// The measured BRDF could not be read.
     #[error(transparent)]
     Measured(#[from] MeasuredError),
+    /// The model cannot be traced.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
     /// A device error.
     #[error(transparent)]
     Gpu(#[from] GpuError),

@@ -4,6 +4,7 @@
 //! without checks. An error in the file becomes a [`LoadError`] or a warning of the model.
 
 mod built_in;
+mod bvh;
 mod camera;
 pub mod environment;
 mod error;
@@ -22,10 +23,12 @@ mod texture_source;
 use std::path::{Path, PathBuf};
 
 pub use built_in::{BUILT_IN, built_in};
+pub use bvh::Bvh;
 pub use camera::{CameraController, CameraView, FlyCamera, OrbitCamera, frame};
 pub use environment::{Environment, EnvironmentError, EnvironmentFile};
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
+pub use gltf::triangles;
 pub use lights::{light_count, lights};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;

@@ -217,8 +217,8 @@ mod tests {
         for (assignment, part) in [
             (
                 "view.exposure=1",
-                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, ev, frames, msaa, \
-                 tonemap (see `specula help set`)",
+                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, bounces, ev, \
+                 frames, msaa, tonemap (see `specula help set`)",
             ),
             ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? At the top there are camera, "),
             ("shader.rim.x=1", "unknown setting `shader.rim.x`. "),
@@ -226,7 +226,7 @@ mod tests {
             ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number, -30 to 30"),
             ("view.ev=", "view.ev has no value; it takes a number, -30 to 30"),
             ("view.msaa=-1", "view.msaa cannot be '-1'; it takes a whole number, 0 or more"),
-            ("view=1", "view cannot be '1'; it is a group of settings: background, ev,"),
+            ("view=1", "view cannot be '1'; it is a group of settings: background, bounces,"),
             ("lights.orbit=1", "lights.orbit cannot be '1'; it is a list of settings, as lights.orbit.0"),
             ("lights.rect.enabled=yes", "lights.rect.enabled cannot be 'yes'; it takes true or false"),
             ("material.base_color=0.9,0.1", "cannot be '0.9,0.1'; it takes 3 numbers, as 0.9,0.1,0.1"),

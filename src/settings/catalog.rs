@@ -67,10 +67,16 @@ const DESCRIBED: [(&str, &str, &str); 38] = [
 ];
 
 /// The rest of [`DESCRIBED`]: what each can be is no range of floats.
-const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 3] = [
+const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 4] = [
     ("view.background", "", "", "none (transparent), env, or #rrggbb"),
     ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
     ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),
+    (
+        "view.bounces",
+        "reflections",
+        "0 to 64",
+        "Reflections of a random path after the first, in modes that trace the model",
+    ),
 ];
 
 /// All settings, in the order in which they are documented.

@@ -105,6 +105,59 @@ pub fn document(mesh: &Mesh, material: &Value) -> (Value, Vec<u8>) {
     (json, bin)
 }
 
+/// An axis-aligned box with flat normals. `outwards`: faces and normals point away from its center.
+pub fn cuboid(min: [f32; 3], max: [f32; 3], outwards: bool) -> Mesh {
+    let mut mesh = Mesh::default();
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (side, sign) in [(min, -1.0), (max, 1.0)] {
+            let first = mesh.positions.len() as u32;
+            for (at_u, at_v) in [(min[u], min[v]), (max[u], min[v]), (max[u], max[v]), (min[u], max[v])] {
+                let mut corner = side;
+                (corner[u], corner[v]) = (at_u, at_v);
+                mesh.positions.push(corner);
+                let mut normal = [0.0; 3];
+                normal[axis] = if outwards { sign } else { -sign };
+                mesh.normals.push(normal);
+            }
+            let corners = if outwards == (sign > 0.0) { [0, 1, 2, 0, 2, 3] } else { [0, 2, 1, 0, 3, 2] };
+            mesh.indices.extend(corners.map(|corner| first + corner));
+        }
+    }
+    mesh
+}
+
+/// A model of several meshes, each with a material of its own.
+pub fn scene(parts: &[(Mesh, Value)]) -> Vec<u8> {
+    let mut all = json!({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [] }] });
+    let mut bin: Vec<u8> = Vec::new();
+    let lists = ["bufferViews", "accessors", "meshes", "materials", "nodes"];
+    lists.iter().for_each(|list| all[*list] = json!([]));
+    for (index, (mesh, material)) in parts.iter().enumerate() {
+        let (mut json, own) = document(mesh, material);
+        let first = all["accessors"].as_array().unwrap().len();
+        let moved = |number: &mut Value, by: usize| *number = json!(number.as_u64().unwrap() as usize + by);
+        for view in json["bufferViews"].as_array_mut().unwrap() {
+            let offset = view["byteOffset"].as_u64().unwrap() as usize;
+            view["byteOffset"] = json!(offset + bin.len());
+        }
+        json["accessors"].as_array_mut().unwrap().iter_mut().for_each(|a| moved(&mut a["bufferView"], first));
+        let primitive = &mut json["meshes"][0]["primitives"][0];
+        moved(&mut primitive["indices"], first);
+        moved(&mut primitive["material"], index);
+        primitive["attributes"].as_object_mut().unwrap().values_mut().for_each(|accessor| moved(accessor, first));
+        json["nodes"][0]["mesh"] = json!(index);
+        for list in lists {
+            let own = json[list].as_array().unwrap().clone();
+            all[list].as_array_mut().unwrap().extend(own);
+        }
+        all["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(index));
+        bin.extend(own);
+    }
+    all["buffers"] = json!([{ "byteLength": bin.len() }]);
+    container(&all, &bin)
+}
+
 /// A model of one mesh and one material.
 pub fn model(mesh: &Mesh, material: &Value) -> Vec<u8> {
     let (json, bin) = document(mesh, material);

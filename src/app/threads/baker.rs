@@ -1,4 +1,4 @@
-//! The baker bakes environments and the tables of the BRDF, and reads measured BRDFs, each on a thread of its own. The window keeps drawing with the previous
+//! The baker bakes environments and the tables of the BRDF, reads measured BRDFs and builds what random paths trace, each on a thread of its own. The window keeps drawing with the previous
 //! one, and the newest request wins.
 
 use std::sync::Arc;
@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
 use super::{Message, Outbox, Role};
-use crate::gpu::{Buffer, Gpu, GpuError, fault};
+use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
 use crate::render::{
     BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, Resources, Tables, TablesKey,
+    TraceKey, TraceRequest, Traced,
     read_measured,
 };
 
@@ -22,6 +23,8 @@ pub(in crate::app) enum BakeMessage {
     Tables(TablesKey, Result<Arc<Tables>, GpuError>),
     /// A measured BRDF.
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
+    /// What random paths trace.
+    Traced(TraceKey, Result<Arc<Traced>, String>),
 }
 
 /// A running bake.
@@ -40,6 +43,8 @@ pub(in crate::app) struct Baker {
     tables: Option<TablesKey>,
     /// The newest read. The window takes its result, and ignores those of older ones.
     reading: Option<MeasuredKey>,
+    /// The newest hierarchy that is being built. The window takes its result, and ignores those of older ones.
+    tracing: Option<TraceKey>,
     /// Number of the newest bake. Older bakes end before their next pass.
     newest: Arc<AtomicU64>,
     threads: Vec<JoinHandle<()>>,
@@ -48,7 +53,16 @@ pub(in crate::app) struct Baker {
 impl Baker {
     pub(super) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
         let (newest, threads) = Default::default();
-        Self { gpu: gpu.clone(), outbox: outbox.clone(), bake: None, tables: None, reading: None, newest, threads }
+        Self {
+            gpu: gpu.clone(),
+            outbox: outbox.clone(),
+            bake: None,
+            tables: None,
+            reading: None,
+            tracing: None,
+            newest,
+            threads,
+        }
     }
 
     /// The fraction of the running bake that is done, and its next pass.
@@ -112,6 +126,21 @@ impl Baker {
         });
     }
 
+    /// Builds what random paths trace, unless it is being built.
+    pub(in crate::app) fn trace(&mut self, request: Option<TraceRequest>) {
+        let Some(request) = request.filter(|request| self.tracing.as_ref() != Some(request.key())) else { return };
+        self.tracing = Some(request.key().clone());
+        let gpu = self.gpu.clone();
+        self.spawn(Role::Tracer(request.key().clone()), move |outbox| {
+            let result = Traced::new(&gpu, &request).map_err(|error| error.to_string());
+            let key = request.key().clone();
+            // Release the device objects before the window takes the result.
+            drop((gpu, request));
+            return_freed_memory();
+            outbox.send(Message::Bake(BakeMessage::Traced(key, result)));
+        });
+    }
+
     /// Stores the progress of a bake, if it is the newest.
     pub(in crate::app) fn set_progress(&mut self, number: u64, done: f32, next: String) {
         if let Some(bake) = self.bake.as_mut().filter(|bake| bake.number == number) {
@@ -127,6 +156,11 @@ impl Baker {
     /// Marks tables as baked. Returns whether they are the newest.
     pub(in crate::app) fn has_tables(&mut self, key: &TablesKey) -> bool {
         self.tables.take_if(|tables| tables == key).is_some()
+    }
+
+    /// Marks a hierarchy as built. Returns whether it is the newest.
+    pub(in crate::app) fn has_traced(&mut self, key: &TraceKey) -> bool {
+        self.tracing.take_if(|tracing| tracing == key).is_some()
     }
 
     /// Marks a read as ended. Returns whether it is the newest.

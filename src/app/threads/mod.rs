@@ -15,7 +15,7 @@ use winit::event_loop::EventLoopProxy;
 
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
-use crate::render::{MeasuredKey, TablesKey};
+use crate::render::{MeasuredKey, TablesKey, TraceKey};
 use crate::shader::{Batch, Change, Compiler, Source, TreePath, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
@@ -38,6 +38,7 @@ pub(super) enum Role {
     Loader(u64),
     Baker(u64),
     Tables(TablesKey),
+    Tracer(TraceKey),
     Reader(MeasuredKey),
 }
 

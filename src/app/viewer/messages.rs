@@ -146,6 +146,12 @@ impl Viewer {
                     self.resources.set_measured(key, result.ok());
                 }
             }
+            BakeMessage::Traced(key, result) => {
+                if self.threads.baker.has_traced(&key) {
+                    let result = result.map_err(|message| self.say(message));
+                    self.resources.set_traced(key, result.ok());
+                }
+            }
         }
     }
 
@@ -200,6 +206,12 @@ impl Viewer {
                     self.resources.set_measured(key, None);
                 }
                 "reader"
+            }
+            Role::Tracer(key) => {
+                if self.threads.baker.has_traced(&key) {
+                    self.resources.set_traced(key, None);
+                }
+                "tracer"
             }
         };
         self.keep_saying(format!("Specula's {thread} thread failed ({text}). Please report this; your files are safe"));

@@ -9,7 +9,7 @@ use specula::events::{Event, ReloadEvent, emit};
 use specula::headless::Headless;
 use specula::message;
 use specula::picture;
-use specula::render::{Outcome, Reload};
+use specula::render::{Capture, Outcome, Reload};
 use specula::shader::{Change, Diagnostic};
 
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
@@ -200,15 +200,28 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
     if !all {
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
-        let capture = headless.render()?;
+        let capture = capture(headless, args)?;
         return picture::write(&capture, out).map_err(Failure::Input);
     }
     let slugs: Vec<String> = headless.shaders().modes.iter().map(|m| m.slug.clone()).collect();
     for slug in slugs {
         let path = picture::path_of_mode(out, &slug);
         headless.settings_mut().mode = slug;
-        let capture = headless.render()?;
+        let capture = capture(headless, args)?;
         picture::write(&capture, &path).map_err(Failure::Input)?;
     }
     Ok(())
+}
+
+/// Renders the picture, and reports the number of random paths behind it, if there are any.
+fn capture(headless: &mut Headless, args: &Args) -> Result<Capture, Failure> {
+    let begin = Instant::now();
+    let capture = headless.render()?;
+    if let Some(paths_per_pixel) = headless.paths_per_pixel()? {
+        let ms = begin.elapsed().as_secs_f64() * 1e3;
+        let mode = headless.settings_mut().mode.clone();
+        message::tell(format_args!("{mode}: {paths_per_pixel} paths per pixel in {:.1} s (view.frames)", ms * 1e-3));
+        emit(args.common.emits(), &Event::Paths { mode: &mode, paths_per_pixel, ms });
+    }
+    Ok(capture)
 }

@@ -13,6 +13,7 @@ use crate::gpu::{Gpu, GpuError, Use, one_shot};
 /// one that was never written.
 pub(in crate::gpu) struct Blank {
     pub(in crate::gpu) image: Arc<Image>,
+    pub(in crate::gpu) array: Arc<Image>,
     pub(in crate::gpu) cube: Arc<Image>,
     pub(in crate::gpu) sampler: Arc<Sampler>,
     pub(in crate::gpu) buffer: Arc<Buffer>,
@@ -24,14 +25,16 @@ impl Blank {
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::STORAGE;
         let format = vk::Format::R16G16B16A16_SFLOAT;
         let image = Image::new(gpu, "blank", ImageDesc::new(1, 1, format, usage))?;
+        let array = Image::new(gpu, "blank array", ImageDesc::new(1, 1, format, usage).array(1))?;
         let cube = Image::new(gpu, "blank cube", ImageDesc::cube(1, 1, format, usage))?;
         one_shot(gpu, |encoder| {
-            encoder.transition(&image, Use::Undefined, Use::Sampled);
-            encoder.transition(&cube, Use::Undefined, Use::Sampled);
+            for image in [&image, &array, &cube] {
+                encoder.transition(image, Use::Undefined, Use::Sampled);
+            }
             Ok(())
         })?;
         let sampler = Sampler::new(gpu, &SamplerDesc::NEAREST)?;
         let buffer = Buffer::new(gpu, "blank", 16, Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, Memory::Device)?;
-        Ok(Self { image, cube, sampler, buffer })
+        Ok(Self { image, array, cube, sampler, buffer })
     }
 }

@@ -97,7 +97,9 @@ fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::UniformBuffer => vk::DescriptorType::UNIFORM_BUFFER,
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
-        BindingKind::Sampler2D | BindingKind::SamplerCube => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        BindingKind::Sampler2D | BindingKind::Sampler2DArray | BindingKind::SamplerCube => {
+            vk::DescriptorType::COMBINED_IMAGE_SAMPLER
+        }
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
     }
 }
@@ -137,6 +139,7 @@ impl SetWriter {
             self = match binding.kind {
                 BindingKind::UniformBuffer | BindingKind::StorageBuffer => self.buffer(at, &blank.buffer),
                 BindingKind::Sampler2D => self.texture(at, &blank.image, &blank.sampler),
+                BindingKind::Sampler2DArray => self.texture(at, &blank.array, &blank.sampler),
                 BindingKind::SamplerCube => self.texture(at, &blank.cube, &blank.sampler),
                 BindingKind::StorageImage => self.storage_level(at, &blank.image, 0),
             };

@@ -19,8 +19,10 @@ pub struct ImageDesc {
     pub height: u32,
     /// Mip levels.
     pub mips: u32,
-    /// Layers: 1, or the six faces of a cube.
+    /// Layers: 1, the six faces of a cube, or any number of an array.
     pub layers: u32,
+    /// How shaders sample the image.
+    pub view: vk::ImageViewType,
     /// Samples per pixel.
     pub samples: u32,
     /// Format of a texel.
@@ -32,12 +34,19 @@ pub struct ImageDesc {
 impl ImageDesc {
     /// A single-sampled image with one level.
     pub fn new(width: u32, height: u32, format: vk::Format, usage: vk::ImageUsageFlags) -> Self {
-        Self { width, height, mips: 1, layers: 1, samples: 1, format, usage }
+        let view = vk::ImageViewType::TYPE_2D;
+        Self { width, height, mips: 1, layers: 1, view, samples: 1, format, usage }
+    }
+
+    /// The same as an array of `layers` images, for a shader's `sampler2DArray`.
+    #[must_use]
+    pub fn array(self, layers: u32) -> Self {
+        Self { layers, view: vk::ImageViewType::TYPE_2D_ARRAY, ..self }
     }
 
     /// A cube map, `side` texels wide, with `mips` levels.
     pub fn cube(side: u32, mips: u32, format: vk::Format, usage: vk::ImageUsageFlags) -> Self {
-        Self { mips, layers: CUBE_FACES, ..Self::new(side, side, format, usage) }
+        Self { mips, layers: 6, view: vk::ImageViewType::CUBE, ..Self::new(side, side, format, usage) }
     }
 
     /// Bytes of all levels and layers, tightly packed.
@@ -51,8 +60,6 @@ impl ImageDesc {
         side(self.width) * side(self.height) * u64::from(self.layers) * texel_bytes(self.format)
     }
 }
-
-const CUBE_FACES: u32 = 6;
 
 /// Bytes of a texel, for the formats that are copied to and from buffers.
 fn texel_bytes(format: vk::Format) -> u64 {
@@ -76,12 +83,12 @@ pub struct Image {
 }
 
 impl Image {
-    /// Creates an image: 2D, or a cube if it has six layers. GPU debuggers and validation messages show `name`.
+    /// Creates an image. GPU debuggers and validation messages show `name`.
     ///
     /// # Errors
     /// The device is out of memory ([`GpuError::OutOfMemory`]) or lacks the format.
     pub fn new(gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
-        let is_cube = desc.layers == CUBE_FACES;
+        let is_cube = desc.view == vk::ImageViewType::CUBE;
         let flags = if is_cube { vk::ImageCreateFlags::CUBE_COMPATIBLE } else { vk::ImageCreateFlags::empty() };
         let info = vk::ImageCreateInfo::default()
             .flags(flags)
@@ -170,8 +177,7 @@ fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
 }
 
 fn create_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc) -> Result<vk::ImageView, GpuError> {
-    let kind = if desc.layers == CUBE_FACES { vk::ImageViewType::CUBE } else { vk::ImageViewType::TYPE_2D };
-    view_of_levels(gpu, raw, desc, kind, 0..desc.mips)
+    view_of_levels(gpu, raw, desc, desc.view, 0..desc.mips)
 }
 
 /// A view of one level with all its layers, for a shader's `image2DArray`.

@@ -14,8 +14,8 @@ use crate::render::state::{Pass, PipelineKey, PipelineRequest};
 use crate::shader::{ShaderSet, specialize};
 
 /// The stages that draw a picture.
-const GRAPHICS: [&str; 7] =
-    ["pbr.vert", "pbr.frag", "sky.vert", "sky.frag", "tonemap.vert", "tonemap.frag", "average.frag"];
+const GRAPHICS: [&str; 8] =
+    ["pbr.vert", "pbr.frag", "paths.frag", "sky.vert", "sky.frag", "tonemap.vert", "tonemap.frag", "average.frag"];
 /// The stages that measure the BRDF, for `specula brdf`.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
@@ -39,10 +39,11 @@ impl Pass {
     /// Paths of the vertex and fragment stages.
     fn stages(self) -> [&'static str; 2] {
         match self {
-            Self::Model { .. } => [GRAPHICS[0], GRAPHICS[1]],
-            Self::Sky => [GRAPHICS[2], GRAPHICS[3]],
-            Self::Tonemap => [GRAPHICS[4], GRAPHICS[5]],
-            Self::Average => [GRAPHICS[4], GRAPHICS[6]],
+            Self::Model { paths: false, .. } => [GRAPHICS[0], GRAPHICS[1]],
+            Self::Model { paths: true, .. } => [GRAPHICS[0], GRAPHICS[2]],
+            Self::Sky => [GRAPHICS[3], GRAPHICS[4]],
+            Self::Tonemap => [GRAPHICS[5], GRAPHICS[6]],
+            Self::Average => [GRAPHICS[5], GRAPHICS[7]],
         }
     }
 }
@@ -212,7 +213,7 @@ impl PipelineSet {
         let module = |path: &str| self.module(path, &key.specialization);
         let [vertex, fragment] = key.pass.stages();
         let (depth, raster, class) = match key.pass {
-            Pass::Model { raster, class } => (true, raster, class),
+            Pass::Model { raster, class, .. } => (true, raster, class),
             Pass::Sky => (true, Raster::Solid, PrimitiveClass::Triangles),
             Pass::Average => (false, Raster::Averaged, PrimitiveClass::Triangles),
             Pass::Tonemap => (false, Raster::Solid, PrimitiveClass::Triangles),

@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use glam::Mat3;
 
-use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, SetLayouts, vk};
+use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
 use crate::interface::{Draw, Vertex};
 use crate::render::state::{Appearance, MaterialVariant, Scene};
-use crate::scene::{Instance, Model, Topology};
+use crate::scene::{Instance, Model, TextureSource, Topology};
 use materials::{Textures, materials};
 use upload::{Range, Uploaded, upload};
 
@@ -55,8 +55,8 @@ pub struct GpuModel {
     indices: Arc<Buffer>,
     ranges: Vec<Range>,
     materials: Vec<Arc<DescriptorSet>>,
-    /// The textures that are bound where a material has none.
-    default_textures: Textures,
+    /// The textures of the materials, and those that are bound where a material has none.
+    textures: Textures,
 }
 
 impl GpuModel {
@@ -67,13 +67,17 @@ impl GpuModel {
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, mut model: Model) -> Result<Arc<Self>, UploadError> {
         let Uploaded { vertices, indices, ranges, textures } = upload(gpu, &mut model)?;
         let materials = materials(gpu, layouts, &model, &textures)?;
-        let default_textures = textures.into_iter().filter(|(source, _)| source.image(&model).is_none()).collect();
-        Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, default_textures }))
+        Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, textures }))
     }
 
     /// The model that was uploaded, without the pixels of its images.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
+    }
+
+    /// The texture on the device that a material reads in a slot.
+    pub(crate) fn texture(&self, source: &TextureSource) -> Option<&Arc<Image>> {
+        self.textures.get(source)
     }
 
     /// The draws of a scene of this model. Uploads only a material override, if there is one.
@@ -85,7 +89,7 @@ impl GpuModel {
         let replacement_set = match &replacement {
             Some(material) => {
                 let alone = Model { materials: vec![material.clone()], ..Model::default() };
-                materials(gpu, layouts, &alone, &self.default_textures)?.pop()
+                materials(gpu, layouts, &alone, &self.textures)?.pop()
             }
             None => None,
         };
@@ -120,16 +124,11 @@ fn draw(
     let world = instance.world_from_object;
     let linear = Mat3::from_mat4(world);
     let determinant = linear.determinant();
-    // The cofactor matrix is the inverse transpose times the determinant. Unlike the inverse, it also exists for a flattened
-    // object. The shader normalizes, so only the sign of the determinant matters.
-    let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
-    let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
-    let normals = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
     GpuDraw {
         push: Draw {
             vertices: vertices + range.first_vertex * size_of::<Vertex>() as u64,
             world_from_object: world.to_cols_array_2d().map(|c| [c[0], c[1], c[2]]),
-            normal_ws_from_object: normals.to_cols_array_2d(),
+            normal_ws_from_object: normals_from(linear).to_cols_array_2d(),
             attributes: appearance.attributes,
             primitive_id: instance.primitive as u32,
             node_id: instance.node as u32,
@@ -143,6 +142,16 @@ fn draw(
         variant: appearance.variant,
         center_ws: world.transform_point3(primitive.bounds.center()),
     }
+}
+
+/// Transforms normals as `linear` transforms positions. The result is not normalized.
+///
+/// The cofactor matrix is the inverse transpose times the determinant. Unlike the inverse, it also exists for a flattened
+/// object. Only the sign of the determinant matters.
+pub(crate) fn normals_from(linear: Mat3) -> Mat3 {
+    let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
+    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
 }
 
 fn topology(topology: Topology) -> vk::PrimitiveTopology {

@@ -37,8 +37,12 @@ const ALIGNMENT: u64 = 16;
 /// a single image is split into tasks.
 const BYTES_A_TASK: usize = 1 << 20;
 
-const TEXTURE_USAGE: vk::ImageUsageFlags =
-    vk::ImageUsageFlags::from_raw(vk::ImageUsageFlags::SAMPLED.as_raw() | vk::ImageUsageFlags::TRANSFER_DST.as_raw());
+/// Random paths copy textures from the device, since the pixels have left the CPU.
+const TEXTURE_USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::SAMPLED.as_raw()
+        | vk::ImageUsageFlags::TRANSFER_SRC.as_raw()
+        | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
+);
 
 /// Uploads a model and waits until that is done. Then `rgba8` of each image is empty. Picking and framing read the rest of
 /// the model, so the rest stays.

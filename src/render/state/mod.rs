@@ -24,9 +24,6 @@ use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet, values};
 
-/// Paths per pixel and frame in an accumulating mode.
-const PATHS_PER_FRAME: u32 = 8;
-
 /// Everything that a picture depends on.
 #[derive(Clone, Copy)]
 pub struct FrameInputs<'a> {
@@ -125,7 +122,8 @@ impl FrameState {
             environment_rotation: [turn.cos(), turn.sin()],
             environment_intensity: if lit { settings.environment.intensity } else { 0.0 },
             environment_blur: settings.environment.blur,
-            sample_count: PATHS_PER_FRAME,
+            sample_count: pipelines.paths_per_frame(),
+            path_bounces: settings.view.bounces,
             ..Default::default()
         };
         Self {

@@ -74,6 +74,10 @@ pub struct PipelineRequest {
     pub sky: bool,
     /// Whether the picture is the mean of all frames since it last changed.
     pub accumulates: bool,
+    /// Whether `paths.frag` draws the model instead of `pbr.frag`.
+    pub paths: bool,
+    /// Whether the mode traces rays through the model.
+    pub traces: bool,
     /// Whether transmissive surfaces look up the final picture behind them instead of this mode's.
     pub through: bool,
 }
@@ -90,8 +94,8 @@ pub(crate) struct PipelineKey {
 /// The pass that a pipeline belongs to. It determines the stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Pass {
-    /// The model: `pbr.vert`, `pbr.frag`.
-    Model { raster: Raster, class: PrimitiveClass },
+    /// The model: `pbr.vert`, and `pbr.frag` or, for a mode of random paths, `paths.frag`.
+    Model { raster: Raster, class: PrimitiveClass, paths: bool },
     /// The environment behind it: `sky.vert`, `sky.frag`.
     Sky,
     /// Adds a frame to the mean: `tonemap.vert`, `average.frag`.
@@ -117,6 +121,8 @@ impl PipelineRequest {
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
             sky: settings.environment.is_shown(&settings.view) && mode.is_some_and(|m| m.tonemap),
             accumulates: mode.is_some_and(|m| m.accumulate),
+            paths: mode.is_some_and(|m| m.paths),
+            traces: mode.is_some_and(|m| m.traces),
             through: mode.is_some_and(|m| m.through),
         }
     }
@@ -130,6 +136,8 @@ impl PipelineRequest {
             draw: mode.draw,
             sky: self.sky && mode.tonemap,
             accumulates: mode.accumulate,
+            paths: mode.paths,
+            traces: mode.traces,
             through: mode.through,
             ..self.clone()
         }
@@ -146,19 +154,30 @@ impl PipelineRequest {
         let raster = match self.draw {
             DrawAs::Lines => Raster::Lines,
             DrawAs::Layers => Raster::Added,
-            DrawAs::Surfaces if material.alpha == interface::ALPHA_BLEND => match self.mode {
-                interface::MODE_FINAL => Raster::Blended,
+            DrawAs::Surfaces if material.alpha == interface::ALPHA_BLEND => match self.shows_picture() {
+                true => Raster::Blended,
                 // A debug mode stores flags in alpha, which must not be blended.
-                _ => Raster::Replaced,
+                false => Raster::Replaced,
             },
             DrawAs::Surfaces => Raster::Solid,
         };
         PipelineKey {
-            pass: Pass::Model { raster, class: material.class },
+            pass: Pass::Model { raster, class: material.class, paths: self.paths },
             format: self.target.color,
             samples: self.target.samples,
             specialization,
         }
+    }
+
+    /// Random paths per pixel in each frame of an accumulating mode. Tracing the model takes so long on a software device that a
+    /// frame has one path.
+    pub fn paths_per_frame(&self) -> u32 {
+        if self.traces { 1 } else { 8 }
+    }
+
+    /// Whether the mode shows all light: the final picture, or the same by random paths.
+    fn shows_picture(&self) -> bool {
+        self.mode == interface::MODE_FINAL || (self.traces && self.tonemap != TONEMAP_OFF)
     }
 
     /// Whether opaque surfaces are drawn twice: as in the final picture for transmissive surfaces to look up, and as this mode
@@ -174,7 +193,8 @@ impl PipelineRequest {
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
-        Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, ..self.clone() }.model_key(material)
+        let picture = Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, paths: false, ..self.clone() };
+        picture.model_key(material)
     }
 
     pub(crate) fn tonemap_key(&self) -> PipelineKey {

@@ -144,6 +144,7 @@ impl View {
             environment: frame.environment.clone(),
             tables: frame.tables.clone(),
             measured: frame.measured.clone(),
+            traced: frame.traced.clone(),
         };
         let in_flight = &mut self.in_flight[slot];
         // This can fail, so it comes before the view changes.

@@ -7,6 +7,7 @@ use crate::interface::{self, Frame, Light};
 
 use crate::render::brdf::tables::Tables;
 use crate::render::environment::bake::GpuEnvironment;
+use crate::render::paths::Traced;
 
 /// The resources in set 0 that are replaced at times.
 #[derive(Clone)]
@@ -14,6 +15,7 @@ pub(crate) struct Sources {
     pub(crate) environment: Arc<GpuEnvironment>,
     pub(crate) tables: Arc<Tables>,
     pub(crate) measured: Arc<Buffer>,
+    pub(crate) traced: Arc<Traced>,
 }
 
 impl Sources {
@@ -21,6 +23,7 @@ impl Sources {
         Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.tables, &other.tables)
             && Arc::ptr_eq(&self.measured, &other.measured)
+            && Arc::ptr_eq(&self.traced, &other.traced)
     }
 }
 
@@ -67,7 +70,8 @@ impl Uniforms {
         if let Some((_, set)) = self.set.as_ref().filter(|(made_of, _)| made_of.is_same(sources)) {
             return Ok(set.clone());
         }
-        let Sources { environment, tables, measured } = sources;
+        let Sources { environment, tables, measured, traced } = sources;
+        let scene = &traced.scene;
         let writer = SetWriter::default()
             .buffer(0, &self.frame)
             .buffer(1, &self.lights)
@@ -81,7 +85,13 @@ impl Uniforms {
             .buffer(9, measured)
             .texture(10, &tables.sheen_albedo, &shared.linear)
             .texture(12, &tables.diffuse_albedo, &shared.linear)
-            .texture(13, &environment.prefiltered.odd, &environment.sampler);
+            .texture(13, &environment.prefiltered.odd, &environment.sampler)
+            .buffer(14, &scene.nodes)
+            .buffer(15, &scene.triangles)
+            .buffer(16, &scene.corners)
+            .buffer(17, &scene.materials)
+            .texture(18, &scene.textures, &scene.sampler)
+            .buffer(19, &traced.cells);
         let set = DescriptorSet::new(layouts, interface::SET_FRAME, writer)?;
         self.set = Some((sources.clone(), set.clone()));
         Ok(set)

@@ -7,6 +7,7 @@ mod built_in;
 mod direction;
 mod error;
 mod float_image;
+mod importance;
 mod open_exr;
 mod radiance;
 mod sky;
@@ -21,6 +22,7 @@ use xxhash_rust::xxh3::xxh3_128_with_seed;
 pub use built_in::BUILT_IN;
 pub use direction::{direction_from_uv, uv_from_direction};
 pub use error::{EnvironmentError, EnvironmentProblem};
+pub use importance::CubeLuminance;
 
 /// Largest supported width, pixels.
 pub const MAX_WIDTH: u32 = 16384;

@@ -23,6 +23,7 @@ use self::file::container;
 use self::geometry::accessor::Reader;
 use self::geometry::mesh::{self, Geometry};
 use self::geometry::tangents;
+pub use self::geometry::triangles::triangles;
 use self::materials::{images, material, placeholder};
 use super::LoadOptions;
 use super::error::Problem;

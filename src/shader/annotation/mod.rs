@@ -89,6 +89,10 @@ pub struct Mode {
     pub tonemap: bool,
     /// Whether the view averages frames, each of which is a noisy estimate.
     pub accumulate: bool,
+    /// Whether `paths.frag` computes the value instead of `pbr.frag`.
+    pub paths: bool,
+    /// Whether the mode traces rays through the model, which needs its bounding volume hierarchy. Implies `paths`.
+    pub traces: bool,
     /// Whether transmissive surfaces show the final picture behind them instead of this mode.
     pub through: bool,
     /// How the model is drawn.

@@ -117,6 +117,8 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         match key {
             "tonemap" => mode.tonemap = true,
             "accumulate" => mode.accumulate = true,
+            "paths" => mode.paths = true,
+            "traces" => (mode.paths, mode.traces) = (true, true),
             "through" => mode.through = true,
             "group" => mode.group = cursor.value(key)?.1,
             "doc" => mode.doc = cursor.value(key)?.1,
@@ -161,7 +163,8 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 mode.key = Some(one);
             }
             other => {
-                let known = "group=, encode=, components=, unit=, tonemap, accumulate, through, draw=, key= or doc=";
+                let known = "group=, encode=, components=, unit=, tonemap, accumulate, paths, traces, through, draw=, key= or \
+                    doc=";
                 let message = format!("expected {known}, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }

@@ -81,7 +81,7 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
         out.extend(check_block(block, "Draw", texts));
     }
     // Structs behind arrays and buffer references, which no descriptor shows.
-    for known in ["Light", "Vertex"].into_iter().filter_map(block) {
+    for known in interface::BLOCKS.iter().filter(|block| block.around[0].starts_with("struct ")) {
         let found = reflection.structs.get(known.name);
         out.extend(found.and_then(|found| check_block(found, known.name, texts)));
         let arrays = reflection.structs.values().flat_map(|block| &block.members);

@@ -194,6 +194,7 @@ impl Module {
             Type::Struct { .. } if storage => (Some(BindingKind::StorageBuffer), "buffer block".to_owned()),
             Type::Struct { .. } => (Some(BindingKind::UniformBuffer), "uniform block".to_owned()),
             _ if glsl == "sampler2D" => (Some(BindingKind::Sampler2D), glsl),
+            _ if glsl == "sampler2DArray" => (Some(BindingKind::Sampler2DArray), glsl),
             _ if glsl == "samplerCube" => (Some(BindingKind::SamplerCube), glsl),
             _ if glsl == BindingKind::StorageImage.glsl() => (Some(BindingKind::StorageImage), glsl),
             _ => (None, glsl),

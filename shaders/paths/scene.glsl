@@ -1,0 +1,149 @@
+// The model as random paths see it after their first hit: triangles in buffers, one struct per material, and base color,
+// metallic-roughness and emission as small layers of one array texture.
+//
+// Materials are metallic-roughness there, with the index of refraction and KHR_materials_specular's factors. Left out:
+// normal textures, specular and all other extension textures, clear coat, sheen, anisotropy, iridescence, volume; textures
+// repeat and have no mip levels. A transmissive surface lets a fraction of the rays straight through, without its tint.
+#ifndef PATHS_SCENE_GLSL
+#define PATHS_SCENE_GLSL
+
+#include "interface.glsl"
+#include "brdf/multiscatter.glsl"
+#include "brdf/surface.glsl"
+#include "common/math.glsl"
+#include "common/sampling.glsl"
+#include "user.glsl"
+
+layout(set = SET_FRAME, binding = BINDING_TRACED_TRIANGLES, scalar) readonly buffer TracedTriangles {
+    TracedTriangle traced_triangles[];
+};
+layout(set = SET_FRAME, binding = BINDING_TRACED_CORNERS, scalar) readonly buffer TracedCornersOfAll {
+    TracedCorners traced_corners[];
+};
+layout(set = SET_FRAME, binding = BINDING_TRACED_MATERIALS, scalar) readonly buffer TracedMaterials {
+    TracedMaterial traced_materials[];
+};
+layout(set = SET_FRAME, binding = BINDING_TRACED_TEXTURES) uniform sampler2DArray traced_textures;
+
+// A ray. Partly covered surfaces stop or let pass by chance, which `seed` decides.
+struct Ray {
+    vec3 origin_ws;
+    vec3 direction_ws;         // unit
+    uint seed;
+};
+
+// The place where a ray hits a triangle: corner + u edge_1 + v edge_2.
+struct Hit {
+    float distance;            // meters
+    uint triangle;
+    vec2 uv;
+};
+
+// The material at a hit, and the interpolated attributes that its textures are read with.
+struct HitMaterial {
+    TracedMaterial m;
+    vec2 uv;
+    vec4 color;                // COLOR_0
+};
+
+HitMaterial hit_material(Hit hit) {
+    TracedCorners c = traced_corners[hit.triangle];
+    vec3 weights = vec3(1.0 - hit.uv.x - hit.uv.y, hit.uv);
+    vec2 uv = c.uv_0 * weights.x + c.uv_1 * weights.y + c.uv_2 * weights.z;
+    mat3x4 colors = mat3x4(unpackUnorm4x8(c.colors.x), unpackUnorm4x8(c.colors.y), unpackUnorm4x8(c.colors.z));
+    return HitMaterial(traced_materials[c.material], uv, colors * weights);
+}
+
+// Texture `which` (0 base color, 1 metallic-roughness, 2 emissive), linear; white where there is none.
+vec4 hit_texture(HitMaterial hit, uint which) {
+    if (hit.m.layers[which] == NO_TEXTURE) return vec4(1.0);
+    vec2 uv = hit.m.uv_from_texture[which] * vec3(hit.uv, 1.0);
+    return textureLod(traced_textures, vec3(uv, float(hit.m.layers[which])), 0.0);
+}
+
+vec4 hit_base_color(HitMaterial hit) { return hit_texture(hit, 0u) * hit.m.base_color_factor * hit.color; }
+
+// Whether a ray stops at a hit, or passes through a hole, a partly covered or a transmissive surface. `random`: uniform.
+bool stops_ray(Hit hit, float random) {
+    TracedMaterial m = traced_materials[traced_corners[hit.triangle].material];
+    if (m.alpha_mode == ALPHA_OPAQUE) return random >= m.transmission;
+    float coverage = hit_base_color(hit_material(hit)).a;
+    if (m.alpha_mode == ALPHA_MASK) coverage = coverage < m.alpha_cutoff ? 0.0 : 1.0;
+    return random < coverage * (1.0 - m.transmission);
+}
+
+// An octahedron unfolded to a square (Meyer et al. 2010): the lower half is folded back.
+vec3 octahedral_normal(uint packed) {
+    vec2 xy = unpackSnorm2x16(packed);
+    float z = 1.0 - abs(xy.x) - abs(xy.y);
+    float fold = max(-z, 0.0);
+    return vec3(xy.x + (xy.x >= 0.0 ? -fold : fold), xy.y + (xy.y >= 0.0 ? -fold : fold), z);
+}
+
+// The interpolated normal, unit, on the side of facet_n. Where it faces away from v, the facet's normal replaces it.
+vec3 hit_normal(Hit hit, vec3 facet_n, vec3 v) {
+    uvec3 packed = traced_corners[hit.triangle].normals_ws;
+    vec3 n = normalize(octahedral_normal(packed.x)) * (1.0 - hit.uv.x - hit.uv.y);
+    n += normalize(octahedral_normal(packed.y)) * hit.uv.x + normalize(octahedral_normal(packed.z)) * hit.uv.y;
+    n = safe_normalize(n, facet_n);
+    if (dot(n, facet_n) < 0.0) n = -n;
+    return dot(n, v) > 0.0 ? n : facet_n;
+}
+
+// Normal of the triangle, unit, on the side of v.
+vec3 hit_facet_normal(Hit hit, vec3 v) {
+    TracedTriangle t = traced_triangles[hit.triangle];
+    vec3 n = safe_normalize(cross(t.edge_1_ws, t.edge_2_ws), v);
+    return dot(n, v) < 0.0 ? -n : n;
+}
+
+// Sets the members of extensions to neutral values. FEATURES is that of the first hit's material, so evaluate_brdf may
+// still read them.
+void clear_traced_extensions(inout Surface s) {
+    mat3 basis = basis_around(s.n);
+    s.t = basis[0];
+    s.b = basis[1];
+    s.anisotropy = 0.0;
+    complex_ior(s.base_color, EDGE_TINT, s.conductor_n, s.conductor_k);
+    s.clearcoat_n = s.n;
+    s.clearcoat = s.clearcoat_roughness = 0.0;
+    s.sheen_color = vec3(0.0);
+    s.sheen_roughness = 0.0;
+    s.iridescence = s.iridescence_nm = 0.0;
+    s.iridescence_ior = 1.0;
+    s.transmission = s.thickness = s.dispersion = 0.0;
+    s.attenuation_color = vec3(1.0);
+    s.attenuation_distance = 1.0;
+    s.diffuse_transmission = 0.0;
+    s.diffuse_transmission_color = vec3(1.0);
+}
+
+// The surface at a hit of `ray`, ready for evaluate_brdf, as user_surface leaves it.
+Surface hit_surface(Ray ray, Hit hit, vec3 facet_n) {
+    HitMaterial h = hit_material(hit);
+    vec4 metallic_roughness = hit_texture(h, 1u);
+    vec4 base_color = hit_base_color(h);
+    bool is_unlit = h.m.unlit != 0u;
+    vec3 v = -ray.direction_ws;
+
+    Surface s;
+    s.position_ws = ray.origin_ws + ray.direction_ws * hit.distance;
+    s.n = hit_normal(hit, facet_n, v);
+    // An unlit surface emits its color and reflects nothing.
+    s.base_color = is_unlit ? vec3(0.0) : base_color.rgb;
+    s.coverage = 1.0;
+    s.metallic = saturate(metallic_roughness.b * h.m.metallic_factor);
+    s.roughness = saturate(metallic_roughness.g * h.m.roughness_factor);
+    s.occlusion = 1.0;
+    s.emissive = is_unlit ? base_color.rgb : hit_texture(h, 2u).rgb * h.m.emissive_factor;
+    s.ior = h.m.ior;
+    s.f0 = is_unlit ? vec3(0.0) : h.m.f0;
+    s.f90 = is_unlit ? 0.0 : h.m.f90;
+    s.multiple = vec3(0.0);
+    clear_traced_extensions(s);
+    user_surface(s);
+    complete_surface(s, v);
+    return s;
+}
+
+#endif
