@@ -4,10 +4,9 @@
 #define IBL_LOBE_GLSL
 
 #include "interface.glsl"
-#include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"
-#include "brdf/visibility.glsl"
 #include "ibl/levels.glsl"
+#include "ibl/lobe_weight.glsl"
 
 const uint LARGEST_LOBE = 512u;
 const uint LOBE_LEVELS = 8u;
@@ -32,14 +31,5 @@ vec2 alpha_of_lobes(uint mip) {
     float odd = alpha_from_roughness(roughness_of_specular_level(2.0 * float(mip) - 1.0));
     return min(vec2(even, odd), 0.999);
 }
-
-// K = D V NoL of light that arrives at 1 - 2x to n = v, where x = sin^2 of the angle between n and h.
-float lobe_weight(float x, float alpha) {
-    float n_dot_l = 1.0 - 2.0 * x;
-    return n_dot_l > 0.0 ? d_specular(sqrt(1.0 - x), x, alpha) * v_specular(n_dot_l, 1.0, alpha) * n_dot_l : 0.0;
-}
-
-// False for values that D and V must not have. They count as 0.
-bool is_weight(float k) { return k >= 0.0 && k < 1e20; }
 
 #endif

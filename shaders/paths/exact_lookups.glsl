@@ -4,9 +4,11 @@
 #define PATHS_EXACT_LOOKUPS_GLSL
 
 #include "interface.glsl"
+#include "brdf/energy.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
+#include "ibl/lobe_weight.glsl"
 #include "lighting/albedo.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/image_based.glsl"
@@ -17,21 +19,15 @@
 // A lobe around an axis, which is normal, eye and mirror direction in one (Karis 2013).
 struct Kernel {
     vec3 axis;
-    float alpha;               // of GGX; 0: the cosine
+    float alpha;               // 0: the cosine
     float scale;               // makes the integral of the weight 1
 };
 
 Kernel cosine_kernel(vec3 axis) { return Kernel(axis, 0.0, 1.0 / PI); }
 
-// The weight is K = D NoL / 4. With x = NoH^2, its integral over the hemisphere is that of a^2 (2x - 1) / (1 + (a^2 - 1) x)^2
-// over 1/2 .. 1, where NoL = 2x - 1 is positive. At a = 1 the closed form is 0 / 0, and below 0.99 it keeps four digits.
-Kernel ggx_kernel(vec3 axis, float roughness) {
-    float alpha = min(alpha_from_roughness(roughness), 0.99);
-    float a2 = alpha * alpha;
-    float k = a2 - 1.0;
-    float low = 1.0 + 0.5 * k;
-    float integral = a2 / (k * k) * (2.0 * log(a2 / low) + (2.0 + k) * (1.0 / a2 - 1.0 / low));
-    return Kernel(normalize(axis), alpha, 1.0 / integral);
+// The weight is D V NoL with n = v, as in ibl/prefilter.comp. Its integral is the albedo E at normal incidence.
+Kernel lobe_kernel(vec3 axis, float roughness) {
+    return Kernel(normalize(axis), alpha_from_roughness(roughness), 1.0 / max(dfg_at(1.0, roughness).e, 1e-3));
 }
 
 // Density with which the kernel's own sampler draws l.
@@ -57,7 +53,11 @@ vec3 exact_mean(Kernel kernel, vec3 u) {
     float n_dot_l = dot(kernel.axis, l);
     if (n_dot_l <= 0.0) return vec3(0.0);
     float own = pdf_kernel(kernel, l);
-    float weight = kernel.alpha == 0.0 ? n_dot_l : own * n_dot_l;
+    float weight = n_dot_l;
+    if (kernel.alpha != 0.0) {
+        vec3 chord = l - kernel.axis;
+        weight = lobe_weight(0.25 * dot(chord, chord), kernel.alpha);
+    }
     return sky_radiance(l) * (weight * kernel.scale / (sky * pdf_environment(l) + (1.0 - sky) * own));
 }
 
@@ -68,13 +68,13 @@ vec3 lookup_difference(Surface s, vec3 v, Albedo albedo, uint path) {
     vec3 u = numbers_of(numbers, 0u, false);
     vec3 sum = (albedo.diffuse + albedo.multiple) * (exact_mean(cosine_kernel(s.n), u) - irradiance_over_pi(s.n));
     if ((FEATURES & FEATURE_ANISOTROPY) == 0u) {
-        Kernel kernel = ggx_kernel(lobe_direction(s.n, v, s.roughness), s.roughness);
+        Kernel kernel = lobe_kernel(lobe_direction(s.n, v, s.roughness), s.roughness);
         sum += albedo.specular * (exact_mean(kernel, u) - specular_radiance(s, v));
     }
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
         vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
         vec3 baked = prefiltered_radiance(direction, s.clearcoat_roughness);
-        sum += albedo.clearcoat * (exact_mean(ggx_kernel(direction, s.clearcoat_roughness), u) - baked);
+        sum += albedo.clearcoat * (exact_mean(lobe_kernel(direction, s.clearcoat_roughness), u) - baked);
     }
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         vec3 difference = exact_mean(cosine_kernel(-s.n), u) - irradiance_over_pi(-s.n);

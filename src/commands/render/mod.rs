@@ -203,13 +203,16 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
         let capture = capture(headless, args)?;
         return picture::write(&capture, out).map_err(Failure::Input);
     }
-    let slugs: Vec<String> = headless.shaders().modes.iter().map(|m| m.slug.clone()).collect();
-    for slug in slugs {
-        let path = picture::path_of_mode(out, &slug);
-        headless.settings_mut().mode = slug;
+    let frames = headless.settings_mut().view.frames;
+    for mode in &headless.shaders().modes {
+        let settings = headless.settings_mut();
+        settings.mode.clone_from(&mode.slug);
+        // A frame of a mode that traces the model takes seconds on a software device.
+        settings.view.frames = if mode.traces { 1 } else { frames };
         let capture = capture(headless, args)?;
-        picture::write(&capture, &path).map_err(Failure::Input)?;
+        picture::write(&capture, &picture::path_of_mode(out, &mode.slug)).map_err(Failure::Input)?;
     }
+    headless.settings_mut().view.frames = frames;
     Ok(())
 }
 

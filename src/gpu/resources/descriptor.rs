@@ -19,6 +19,16 @@ const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::COMPUTE.as_raw(),
 );
 
+/// The stages that may read a set. A device need not offer more than 32 samplers to one stage (lavapipe 22.3 does not), and all
+/// sets together have more.
+fn stages_of(set: u32) -> vk::ShaderStageFlags {
+    match set {
+        interface::SET_TASK => vk::ShaderStageFlags::COMPUTE,
+        interface::SET_MATERIAL | interface::SET_PASS => STAGES & !vk::ShaderStageFlags::COMPUTE,
+        _ => STAGES,
+    }
+}
+
 /// The descriptor set layouts of the contract, and the pipeline layout over them. All pipelines share it, so a reload
 /// replaces pipelines and nothing else.
 pub struct SetLayouts {
@@ -46,7 +56,7 @@ impl SetLayouts {
                         .binding(b.binding)
                         .descriptor_type(descriptor_type(b.kind))
                         .descriptor_count(1)
-                        .stage_flags(STAGES)
+                        .stage_flags(stages_of(set))
                 })
                 .collect();
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
