@@ -42,14 +42,16 @@ vec3 irradiance_over_pi(vec3 n) {
 
 // The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
 // (Karis 2013). The levels are in two cube maps (ibl/levels.glsl), so a lookup mixes an even with an odd level.
-vec3 prefiltered_radiance(vec3 r, float roughness) {
-    if (!HAS_ENVIRONMENT) return frame.ambient;
+vec3 prefiltered_level(vec3 r, float level) {
     vec3 direction = map_from_world(r);
-    float level = specular_level(roughness);
     float odd = min(floor(0.5 * level), 0.5 * SPECULAR_LEVELS - 1.0);
     vec3 even_radiance = textureLod(prefiltered_even, direction, floor(0.5 * level + 0.5)).rgb;
     vec3 odd_radiance = textureLod(prefiltered_odd, direction, odd).rgb;
     return frame.environment_intensity * mix(even_radiance, odd_radiance, 1.0 - abs(level - 2.0 * odd - 1.0));
+}
+
+vec3 prefiltered_radiance(vec3 r, float roughness) {
+    return HAS_ENVIRONMENT ? prefiltered_level(r, specular_level(roughness)) : frame.ambient;
 }
 
 // The same with the sheen distribution.
@@ -64,7 +66,7 @@ vec3 prefiltered_sheen(vec3 r, float roughness) {
 vec3 background_radiance(vec3 direction) {
     float level = specular_level(frame.environment_blur);
     if (level <= 0.0) return environment_radiance(direction, 0.0);
-    if (level >= 1.0) return prefiltered_radiance(direction, frame.environment_blur);
+    if (level >= 1.0) return prefiltered_level(direction, level);
     vec3 blurred = textureLod(prefiltered_odd, map_from_world(direction), 0.0).rgb * frame.environment_intensity;
     return mix(environment_radiance(direction, 0.0), blurred, level);
 }

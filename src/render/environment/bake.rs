@@ -134,7 +134,8 @@ impl GpuEnvironment {
     /// # Errors
     /// Out of memory.
     pub(crate) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
-        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        use vk::ImageUsageFlags as Usage;
+        let usage = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(|x| half::f16::from_f32(x).to_bits());
         let texels = bytemuck::cast_slice(&texel).repeat(6);
         let cube = |name: &str| {
