@@ -7,12 +7,12 @@ use specula::scene::environment::direction_from_uv;
 use specula::scene::{Environment, EnvironmentFile};
 use support::{Session, assert_validated, glb, load, ready, settings};
 
-const SIDE: u32 = 256;
-/// The level that holds roughness 1.
-const LAST: f64 = 5.0;
-/// Replaces the lookup by one at the texel center of the level with this roughness, like [`texel`].
-const AT_TEXEL: &str = "vec3 prefiltered_radiance(vec3 r, float roughness) {
-    float side = exp2(8.0 - round(5.0 * roughness * (2.0 - roughness)));
+const SIDE: f64 = 256.0;
+/// The level of roughness 1. Each level is 2^0.4 times as rough as the one before (ibl/levels.glsl).
+const LAST: f64 = 10.0;
+/// Replaces the lookup by one at the texel center of a whole level, like [`texel`].
+const AT_TEXEL: &str = "vec3 prefiltered_level(vec3 r, float level) {
+    float side = exp2(8.0 - ceil(0.5 * round(level)));
     vec3 p = r / max(max(abs(r.x), abs(r.y)), abs(r.z));
     vec3 center = (floor((p * 0.5 + 0.5) * side) + 0.5) / side * 2.0 - 1.0;
     r = mix(center, p, greaterThanEqual(abs(p), vec3(0.999999)));
@@ -62,11 +62,13 @@ impl Sky {
     }
 }
 
-/// D NoL of GGX with N = V = R, without constant factors (Karis 2013): NoH^2 = (1 + NoL) / 2.
+/// D V NoL of GGX with n = v, without constant factors: NoH^2 = (1 + NoL) / 2, and V = 1 / 2 (root + NoL) (Heitz 2014, eq. 99).
 fn ggx(alpha: f64) -> impl Fn(f64) -> f64 {
+    let a2 = alpha * alpha;
     move |n_dot_l| {
-        let q = 1.0 - (1.0 - alpha * alpha) * (1.0 + n_dot_l) / 2.0;
-        n_dot_l / (q * q)
+        let q = 1.0 - (1.0 - a2) * (1.0 + n_dot_l) / 2.0;
+        let root = (n_dot_l * n_dot_l * (1.0 - a2) + a2).sqrt();
+        n_dot_l / (q * q * (root + n_dot_l))
     }
 }
 
@@ -100,24 +102,22 @@ fn baked_like_brute_force(environment: &str) {
     ready(&session.edit("debug/light.glsl", "specular_radiance(s, v)", "prefiltered_radiance(s.n, s.roughness)"));
     let sky = Sky::new(&EnvironmentFile::open(environment).unwrap().decode().unwrap());
     session.set("material.enabled=true");
-    // Three kinds of lookup: between levels (not for the sky, where the blend of a sharper and a wider highlight
-    // dominates the error), on a level, where the sampler's interpolation contributes, and at texel centers, where only
-    // the bake does.
-    let between: &[u32] = if environment == "sky" { &[] } else { &[1, 3, 5, 7, 9] };
-    let edits = [(between, 0.1), (&[2, 4, 6, 8, 10], 0.025), (&[2, 4, 6, 8, 10], 0.01)];
-    for (pass, (steps, allowed)) in edits.into_iter().enumerate() {
+    // Three kinds of lookup: between levels, on a level, where the sampler's interpolation contributes, and at texel
+    // centers, where only the bake does.
+    let whole: &[f64] = &[3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0];
+    let edits = [(&[3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5][..], 0.03), (whole, 0.025), (whole, 0.01)];
+    for (pass, (levels, allowed)) in edits.into_iter().enumerate() {
         let at_texels = pass == 2;
         if at_texels {
-            let first_line = "vec3 prefiltered_radiance(vec3 r, float roughness) {\n";
+            let first_line = "vec3 prefiltered_level(vec3 r, float level) {\n";
             ready(&session.edit("lighting/environment.glsl", first_line, AT_TEXEL));
         }
-        for step in steps {
-            let level = f64::from(*step) / 2.0;
-            let roughness = 1.0 - (1.0 - level / LAST).sqrt();
+        for level in levels {
+            let roughness = (0.4 * (level - LAST)).exp2();
             session.set(&format!("material.roughness={roughness}"));
             let found = shown(&mut session, "prefiltered");
             let alpha = roughness * roughness;
-            let side = f64::from(SIDE >> (step / 2));
+            let side = SIDE / (0.5 * level).ceil().exp2();
             let place = |n: DVec3| if at_texels { texel(n, side) } else { Some(n) };
             let known = found.iter().filter_map(|(n, value)| Some((*value, place(*n)?)));
             let pairs: Vec<_> = known.map(|(value, at)| (value, sky.mean(at, ggx(alpha)))).collect();

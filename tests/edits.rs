@@ -127,16 +127,14 @@ fn an_edit_bakes_only_what_depends_on_it() {
     session.render();
     let first = session.headless.bake_report().clone();
     for (file, from, to) in [
-        // Not a function of the BRDF.
-        ("lighting/shade.glsl", "vec3 reflected", "vec3 reflected"),
-        // A model that is not selected.
-        ("brdf/ndf.glsl", "exp(-dot(slope, slope) / cos2)", "exp(-2.0 * dot(slope, slope) / cos2)"),
+        // A comment.
+        ("brdf/ndf.glsl", "// GGX, a rediscovery", "// This is GGX, a rediscovery"),
         // Lamps alone.
         ("lighting/punctual.glsl", "return ramp * ramp;", "return ramp;"),
+        // The diffuse lobe has a table, but no reflections.
+        ("brdf/diffuse.glsl", "return albedo / PI; }", "return 0.5 * albedo / PI; }"),
     ] {
-        if from != to {
-            ready(&session.edit(file, from, to));
-        }
+        session.edit(file, from, to);
         session.render();
         assert_eq!(session.headless.bake_report().total_ms, first.total_ms, "{file} baked the environment again");
     }
@@ -164,6 +162,20 @@ fn values_that_are_no_numbers_are_named_and_stay_out_of_the_tables() {
         assert!(dfg.raw.iter().flatten().all(|value| value.is_finite()), "{file}: the table is not finite");
         let warnings = session.headless.bake_warnings();
         assert!(warnings.iter().any(|warning| warning.contains(file)), "{file} -> {to}: {warnings:?}");
+    }
+    assert_validated();
+}
+
+/// Flat ambient light is a furnace: the same albedo of every lobe, without occlusion.
+#[test]
+fn ambient_light_is_that_of_a_furnace() {
+    for surface in [(0.0, 0.3), (1.0, 1.0)] {
+        let surface = material(surface);
+        let more: Vec<&str> = surface.iter().map(String::as_str).collect();
+        let furnace = mean(&session("furnace", &more).render());
+        let flat = ["lights.ambient_strength=1", "lights.ambient_color=[1, 1, 1]"];
+        let ambient = mean(&session("none", &[&more[..], &flat].concat()).render());
+        assert!((ambient / furnace - 1.0).abs() < 0.005, "ambient {ambient}, furnace {furnace}");
     }
     assert_validated();
 }

@@ -59,6 +59,7 @@ fn open(model: Model) -> Headless {
         "lights.source=orbit",
         "lights.ambient_strength=0",
         "MULTI_SCATTER=None",
+        "DIFFUSE_COUPLING=GltfSample",
     ]);
     renderer(model, settings, SIZE)
 }

@@ -21,11 +21,25 @@ const NDF: &str = "brdf/ndf.glsl";
 const USER: &str = "user.glsl";
 const PARAMS: &str = "user/params.glsl";
 /// Stages that sample the environment.
-const SKY: &[&str] = &["pbr.frag", "sky.frag"];
+const SKY: &[&str] = &["paths.frag", "pbr.frag", "sky.frag"];
+/// Stages that evaluate D: the picture, random paths, and the tables and reflections of light from all directions.
+const SPECULAR: &[&str] = &["ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
+/// Stages with the models' choices.
+const CHOICES: &[&str] = &[
+    "ibl/dfg.comp",
+    "ibl/diffuse_albedo.comp",
+    "ibl/lobe.comp",
+    "ibl/prefilter.comp",
+    "ibl/prefilter_sheen.comp",
+    "ibl/sheen_albedo.comp",
+    "paths.frag",
+    "pbr.frag",
+];
 /// Stages that round to half floats.
 const ROUNDING: &[&str] = &[
     "ibl/cube.comp",
     "ibl/dfg.comp",
+    "ibl/diffuse_albedo.comp",
     "ibl/downsample.comp",
     "ibl/irradiance.comp",
     "ibl/prefilter.comp",
@@ -74,12 +88,12 @@ fn a_broken_edit_changes_no_pixel_and_says_where() {
 fn an_edit_compiles_only_the_stages_that_use_it() {
     let mut session = sphere();
     for (file, from, to, expected) in [
-        (NDF, SQUARED, "float a2 = alpha;", &["pbr.frag"][..]),
-        ("common/tonemap.glsl", "x / (1.0 + x)", "x / (1.5 + x)", &["tonemap.frag"]),
-        ("common/fragment.glsl", "vec2 uv1;", "vec2 uv1;\n    vec2 uv2;", &["pbr.frag", "pbr.vert"]),
-        ("common/color.glsl", "0.0031308", "0.0031309", &["pbr.frag", "tonemap.frag"]),
+        (NDF, SQUARED, "float a2 = alpha;", SPECULAR),
+        ("common/tonemap.glsl", "x / (1.0 + x)", "x / (1.5 + x)", &["tonemap.frag"][..]),
+        ("common/fragment.glsl", "vec2 uv1;", "vec2 uv1;\n    vec2 uv2;", &["paths.frag", "pbr.frag", "pbr.vert"]),
+        ("common/color.glsl", "0.0031308", "0.0031309", &["paths.frag", "pbr.frag", "tonemap.frag"]),
         ("lighting/environment.glsl", "textureLod(environment_cube, ", "textureLod(environment_cube, -", SKY),
-        ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", &["ibl/dfg.comp", "pbr.frag"]),
+        ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", CHOICES),
         ("ibl/half.glsl", "65504.0", "65503.0", ROUNDING),
         (
             "user/vertex.glsl",

@@ -56,14 +56,28 @@ float table_roughness(Surface s) {
     return sqrt(sqrt(mix(alpha.y * alpha.y, alpha.x * alpha.x, 0.46)));
 }
 
-// Albedo of the specular lobe with this F.
+// Albedo of the specular lobe with this F. max: interpolation can go below an F of almost 0.
 vec3 single_albedo(Fresnel fresnel, bool is_sampled, Dfg dfg) {
-    if (is_sampled) return fresnel.sampled * dfg.weights + fresnel.at_normal * (dfg.e - dot(dfg.weights, vec4(1.0)));
+    if (is_sampled) {
+        float rest = dfg.e - dot(dfg.weights, vec4(1.0));
+        return max(fresnel.sampled * dfg.weights + fresnel.at_normal * rest, vec3(0.0));
+    }
     return fresnel.f0 * dfg.a + fresnel.f90 * dfg.b;
 }
 
-vec3 dielectric_albedo(Surface s, Dfg dfg) { return single_albedo(s.dielectric, DIELECTRIC_IS_SAMPLED, dfg); }
-vec3 metal_albedo(Surface s, Dfg dfg) { return single_albedo(s.metal, METAL_IS_SAMPLED, dfg); }
+// A single angle that represents the whole lobe, for a thin film, whose F changes too fast for five samples. B / E is the
+// mean of (1 - c)^5 over the lobe, so this angle has that value; exact for a mirror. 1e-10: the root has no slope at 0.
+float effective_cosine(Dfg dfg) { return 1.0 - pow(clamp(dfg.b / max(dfg.e, 1e-3), 1e-10, 1.0), 0.2); }
+
+vec3 dielectric_albedo(Surface s, Dfg dfg) {
+    if (HAS_FILM) return dielectric_fresnel(s, effective_cosine(dfg)) * dfg.e;
+    return single_albedo(s.dielectric, DIELECTRIC_IS_SAMPLED, dfg);
+}
+
+vec3 metal_albedo(Surface s, Dfg dfg) {
+    if (HAS_FILM) return metal_fresnel(s, effective_cosine(dfg)) * dfg.e;
+    return single_albedo(s.metal, METAL_IS_SAMPLED, dfg);
+}
 
 // Integral of f_diffuse NoL dl. The model need not be linear in the base color x (Oren-Nayar's is not): albedo / x is
 // interpolated by the parabola through its values at x = 1/3, 2/3 and 1.

@@ -3,6 +3,7 @@
 #define BRDF_TRANSMISSION_GLSL
 
 #include "brdf/energy.glsl"
+#include "brdf/models.glsl"
 #include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"
 #include "brdf/visibility.glsl"
@@ -22,8 +23,9 @@ vec3 unfolded(vec3 n, vec3 l) { return l - 2.0 * min(dot(n, l), 0.0) * n; }
 // f = (1 - F) D V base_color with h = (v + l') / |v + l'|, l' the mirrored l (KHR_materials_transmission, specular
 // BTDF). f_dielectric: F at v . h. A colored F counts by its largest component (KHR_materials_specular).
 //
-// Light that the lobe loses between the facets is transmitted too, so it is divided by its albedo for F = 1, towards v:
-// what is seen through the surface (lighting/transmission.glsl) loses nothing either. 1e-3: a D of 0.
+// With multiple scattering, light that the lobe loses between the facets is transmitted in the end, so the lobe is divided
+// by its albedo for F = 1, towards v. Without, it is lost, as in glTF. 1e-3: a D of 0. What is seen through the surface
+// keeps as much (lighting/albedo.glsl).
 //
 // Volumes refract what is seen through them (lighting/transmission.glsl), but light from a lamp inside or behind a
 // volume is transmitted as through a thin wall.
@@ -31,7 +33,7 @@ vec3 f_transmitted(Surface s, float n_dot_l, float n_dot_v, float n_dot_h, float
     float roughness = transmission_roughness(s.roughness, s.ior);
     float alpha = alpha_from_roughness(roughness);
     float lobe = d_specular(n_dot_h, sin2_h, alpha) * v_specular(n_dot_l, n_dot_v, alpha);
-    lobe /= max(dfg_at(n_dot_v, roughness).e, 1e-3);
+    if (MULTI_SCATTER != SINGLE_SCATTER) lobe /= max(dfg_at(n_dot_v, roughness).e, 1e-3);
     return s.base_color * ((1.0 - max_component(f_dielectric)) * lobe);
 }
 

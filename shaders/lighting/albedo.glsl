@@ -15,6 +15,7 @@
 #include "brdf/multiscatter.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/transmission.glsl"
 #include "common/math.glsl"
 
 struct Albedo {
@@ -73,9 +74,11 @@ Albedo directional_albedo(Surface s, vec3 v) {
     float enters = wide_base * (1.0 - s.metallic) * entering_albedo(s, n_dot_v);
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
         // The transmitted lobe has the facet angles of the specular lobe, so F is that lobe's mean: its albedo over its
-        // albedo for F = 1. Light lost between facets is counted as transmitted.
-        float f = max_component(single_dielectric) / max(s.dfg.e, 1e-3);   // 1e-3: a D of 0
+        // albedo for F = 1. 1e-3: a D of 0. Without multiple scattering, light between the facets is lost, as for lamps
+        // (brdf/transmission.glsl).
+        float f = max_component(single_dielectric) / max(s.dfg.e, 1e-3);
         float passes = base * (1.0 - s.metallic) * s.transmission;
+        if (MULTI_SCATTER == SINGLE_SCATTER) passes *= dfg_at(n_dot_v, transmission_roughness(s.roughness, s.ior)).e;
         albedo.transmitted = s.base_color * (1.0 - f) * passes;
         enters *= 1.0 - s.transmission;
     }

@@ -21,7 +21,7 @@ use watch::{Changes, Watch};
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// File to write, .png or .exr (raw values); with `--mode all`, FILE.<mode>.png for each
+    /// File to write, .png or .exr (raw values); with `--mode all`, FILE.<mode>.png for each; modes that trace the model then have one path per pixel
     #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
     out: PathBuf,
     /// Stay, and render again whenever a shader or the model is saved

@@ -7,8 +7,8 @@ use crate::render::brdf::tables::TABLE_STAGES;
 use crate::render::environment::bake::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES};
 use crate::shader::{ShaderSet, Stage};
 
-/// A compute stage with the author's constants that it declares. Two are equal if the driver gets the same module, so an edit
-/// of a function that the selected models do not call makes no difference.
+/// A compute stage with the author's constants that it declares. Two are equal if the driver gets the same module, so a
+/// constant that changes nothing in it makes no difference, nor does an edit of a comment.
 #[derive(Clone, Debug)]
 pub struct BakeStage {
     pub(crate) stage: Arc<Stage>,

@@ -43,8 +43,8 @@ impl PartialEq for Stage {
 }
 
 impl Stage {
-    /// Hash of the module that the driver gets for these constants. It does not cover functions that the constants leave
-    /// uncalled. Computed once.
+    /// Hash of the module that the driver gets for these constants, without the functions that the constants leave uncalled.
+    /// Computed once.
     pub fn specialized_hash(&self, constants: &[(u32, u32)]) -> u64 {
         let mut hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, hash)) = hashes.iter().find(|(known, _)| known == constants) {

@@ -1,0 +1,17 @@
+// The weight of the split sum's second factor, the mean radiance of a lobe.
+#ifndef IBL_LOBE_WEIGHT_GLSL
+#define IBL_LOBE_WEIGHT_GLSL
+
+#include "brdf/ndf.glsl"
+#include "brdf/visibility.glsl"
+
+// K = D V NoL of light that arrives at 1 - 2x to n = v, where x = sin^2 of the angle between n and h.
+float lobe_weight(float x, float alpha) {
+    float n_dot_l = 1.0 - 2.0 * x;
+    return n_dot_l > 0.0 ? d_specular(sqrt(1.0 - x), x, alpha) * v_specular(n_dot_l, 1.0, alpha) * n_dot_l : 0.0;
+}
+
+// False for values that D and V must not have. They count as 0.
+bool is_weight(float k) { return k >= 0.0 && k < 1e20; }
+
+#endif
