@@ -7,8 +7,8 @@ use bytemuck::{Pod, Zeroable};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
 use crate::render::{
-    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, Tables, TablesKey, TargetFormat,
-    Traced, Uniforms, compute, ltc, measured_buffer,
+    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, Tables, TablesKey,
+    TargetFormat, Traced, Uniforms, compute, ltc, measured_buffer,
 };
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};

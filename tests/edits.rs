@@ -138,7 +138,11 @@ fn an_edit_bakes_only_what_depends_on_it() {
         session.render();
         assert_eq!(session.headless.bake_report().total_ms, first.total_ms, "{file} baked the environment again");
     }
-    ready(&session.edit("brdf/ndf.glsl", "return a2 / (PI * spread * spread);", "return a2 / (3.0 * spread * spread);"));
+    ready(&session.edit(
+        "brdf/ndf.glsl",
+        "return a2 / (PI * spread * spread);",
+        "return a2 / (3.0 * spread * spread);",
+    ));
     session.render();
     let again = session.headless.bake_report();
     assert!(again.prefilter_ms > 0.0, "an edit of D does not bake the reflections");

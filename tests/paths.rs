@@ -163,7 +163,7 @@ fn light_bounces_from_wall_to_floor() {
 }
 
 /// The rectangle right above the floor is sampled on purpose and hit by chance; both ways together must agree with transformed
-/// cosines, which know no other error for a matte floor (with a coupling that hardly depends on the direction of light).
+/// cosines. Those take the floor's albedo as a mean over the hemisphere, which is off by 4 % for light from right above.
 #[test]
 fn a_rectangle_lights_as_transformed_cosines_say() {
     let rect = [
@@ -178,7 +178,7 @@ fn a_rectangle_lights_as_transformed_cosines_say() {
     let picture = mean(&render(&mut headless, "final"), MIDDLE.0, MIDDLE.1);
     let traced = mean(&render(&mut headless, "path-traced"), MIDDLE.0, MIDDLE.1);
     assert!(picture[0] > 0.01, "{picture:?}");
-    assert_near(traced, picture, 0.03 * picture[0], "a rectangle");
+    assert_near(traced, picture, 0.05 * picture[0], "a rectangle");
 }
 
 /// The estimate must not depend on how directions are drawn.

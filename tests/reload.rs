@@ -25,16 +25,8 @@ const SKY: &[&str] = &["paths.frag", "pbr.frag", "sky.frag"];
 /// Stages that evaluate D: the picture, random paths, and the tables and reflections of light from all directions.
 const SPECULAR: &[&str] = &["ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
 /// Stages with the models' choices.
-const CHOICES: &[&str] = &[
-    "ibl/dfg.comp",
-    "ibl/diffuse_albedo.comp",
-    "ibl/lobe.comp",
-    "ibl/prefilter.comp",
-    "ibl/prefilter_sheen.comp",
-    "ibl/sheen_albedo.comp",
-    "paths.frag",
-    "pbr.frag",
-];
+const CHOICES: &[&str] =
+    &["ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
 /// Stages that round to half floats.
 const ROUNDING: &[&str] = &[
     "ibl/cube.comp",

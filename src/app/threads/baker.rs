@@ -9,8 +9,7 @@ use super::{Message, Outbox, Role};
 use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
 use crate::render::{
     BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, Resources, Tables, TablesKey,
-    TraceKey, TraceRequest, Traced,
-    read_measured,
+    TraceKey, TraceRequest, Traced, read_measured,
 };
 
 /// Messages of the baker.

@@ -130,11 +130,7 @@ pub fn wrong_values(function: &str) -> String {
     format!("{function} returns NaN, infinite, negative or huge values, which count as 0 in light from all directions")
 }
 
-fn bake(
-    set: &PipelineSet,
-    table: &Table,
-    of: &BakeStage,
-) -> Result<(Arc<Image>, Vec<&'static str>), GpuError> {
+fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>, Vec<&'static str>), GpuError> {
     let gpu = &set.gpu;
     let (path, desc) = (of.stage.path.as_str(), table.desc());
     let image = Image::new(gpu, path, desc)?;

@@ -10,9 +10,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, 
 use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
-use crate::render::environment::passes::{
-    IRRADIANCE_LEVEL, Lobes, Passes, Target, small_lights, small_lights_size,
-};
+use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, Target, small_lights, small_lights_size};
 use crate::render::pipeline::PipelineSet;
 use crate::render::state::{BakeStage, EnvironmentKey};
 

@@ -162,7 +162,8 @@ pub(super) fn build(compiler: &Compiler, snapshot: &Snapshot<'_>, path: &TreePat
     let errors = contract::check(&reflection, Texts { snapshot, stage: path, dependencies: &dependencies });
     let outcome = match StageKind::of(path) {
         Some(kind) if errors.is_empty() => {
-            let stage = Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies, hashes: Mutex::default() });
+            let stage =
+                Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies, hashes: Mutex::default() });
             Ok(Built { stage, hash, warnings: compiled.warnings })
         }
         _ => broken(errors),
