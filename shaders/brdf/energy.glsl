@@ -88,10 +88,10 @@ vec3 diffuse_albedo(vec3 base_color, float roughness, float n_dot_v) {
     return base_color * (q.x * 0.5 * (x - 2.0) * (x - 3.0) - q.y * (x - 1.0) * (x - 3.0) + q.z * 0.5 * (x - 1.0) * (x - 2.0));
 }
 
-// The mean of F over the half vectors of light that the diffuse lobe of a white surface sends towards v.
-vec3 mean_fresnel(Fresnel fresnel, float roughness, float n_dot_v) {
-    vec4 weights = textureLod(diffuse_table, table_uv(n_dot_v, roughness, DIFFUSE_WEIGHTS, DIFFUSE_SIDE, DIFFUSE_SLICES), 0.0);
-    return fresnel.sampled * weights + fresnel.at_normal * (1.0 - dot(weights, vec4(1.0)));
+// The mean of the dielectric's F over the half vectors of light that the diffuse lobe of a white surface sends towards v.
+vec3 mean_dielectric_fresnel(Surface s, float n_dot_v) {
+    vec2 uv = table_uv(n_dot_v, s.roughness, DIFFUSE_WEIGHTS, DIFFUSE_SIDE, DIFFUSE_SLICES);
+    return fresnel_mean(s.dielectric, DIELECTRIC_IS_SAMPLED, textureLod(diffuse_table, uv, 0.0));
 }
 
 // Columns are sqrt(NoV), since E is steep at grazing angles; rows as in the other tables. The error is below 0.001 for

@@ -81,8 +81,7 @@ void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
 // A white base returns exactly what the boundary transmitted. R = 1 everywhere would be 0 / 0; 1e-4 makes it 0.
 float entering(Surface s, Brdf f, Dfg dfg_l) {
     if (DIFFUSE_COUPLING == GLTF_SAMPLE_COUPLING) return 1.0 - max_component(f.f_dielectric);
-    float through = (1.0 - boundary_albedo(s, dfg_l)) * (1.0 - boundary_albedo(s, s.dfg));
-    return through / max(1.0 - boundary_albedo(s, s.mean_dfg), 1e-4);
+    return (1.0 - boundary_albedo(s, dfg_l)) * (1.0 - s.boundary) / max(1.0 - s.mean_boundary, 1e-4);
 }
 
 // KHR_materials_clearcoat: a layer with index of refraction 1.5 and its own normal and roughness,

@@ -51,6 +51,12 @@ vec3 f_multiple(Surface s, float lost_l) {
     return s.multiple;
 }
 
+// Total reflectance of the dielectric boundary, single and multiple scattering, in the direction of `dfg`, or on
+// average for s.mean_dfg. The rest enters.
+float boundary_albedo(Surface s, Dfg dfg) {
+    return min(max_component(dielectric_albedo(s, dfg) + dielectric_multiple_albedo(s, dfg)), 1.0);
+}
+
 // Computes what does not depend on a light, among it s.multiple: F_ms of Kulla & Conty, or the whole lobe of
 // Fdez-Aguera. Call it after the last change of the material and its normal, before lighting. `v`: towards the eye,
 // unit.
@@ -66,12 +72,8 @@ void complete_surface(inout Surface s, vec3 v) {
     } else if (MULTI_SCATTER == FDEZ_AGUERA) {
         s.multiple = mix(dielectric_multiple_albedo(s, s.dfg), metal_multiple_albedo(s, s.dfg), s.metallic) / PI;
     }
-}
-
-// Total reflectance of the dielectric boundary, single and multiple scattering, in the direction of `dfg`, or on
-// average for s.mean_dfg. The rest enters.
-float boundary_albedo(Surface s, Dfg dfg) {
-    return min(max_component(dielectric_albedo(s, dfg) + dielectric_multiple_albedo(s, dfg)), 1.0);
+    s.boundary = boundary_albedo(s, s.dfg);
+    s.mean_boundary = boundary_albedo(s, s.mean_dfg);
 }
 
 #endif

@@ -8,8 +8,8 @@
 struct Fresnel {
     vec3 f0;                   // Schlick's parameters
     vec3 f90;
-    vec3 at_normal;            // F at c = 1
-    mat4x3 sampled;            // F at F_COSINES
+    vec3 at_normal;            // F at c = 1, and at F_COSINES, unless F is f_schlick
+    mat4x3 sampled;
     vec3 average;              // cosine-weighted: 2 integral F(c) c dc
 };
 
@@ -32,6 +32,8 @@ struct Surface {
     Dfg dfg;                   // of the specular lobe towards the eye
     Dfg mean_dfg;              // the mean over all directions
     vec3 multiple;             // multiple scattering
+    float boundary;            // total reflectance of the dielectric boundary towards the eye
+    float mean_boundary;       // the mean over all directions
 
     // The members below are neutral unless FEATURES has the extension's bit.
     vec3 t;                    // FEATURE_ANISOTROPY: direction of the larger alpha, unit, perpendicular to n

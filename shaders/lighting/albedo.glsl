@@ -37,8 +37,8 @@ float n_dot_v_of(vec3 n, vec3 v) { return clamp(dot(n, v), MIN_N_DOT_V, 1.0); }
 // 1 at grazing angles, as it does for lamps; brdf/models.glsl claims no conservation for this coupling. Albedo: (1 -
 // R(l)) (1 - R(v)) / (1 - R_avg) integrates to 1 - R(v), all that the boundary does not reflect.
 float entering_albedo(Surface s, float n_dot_v) {
-    if (DIFFUSE_COUPLING == ALBEDO_COUPLING) return 1.0 - boundary_albedo(s, s.dfg);
-    return 1.0 - max_component(mean_fresnel(s.dielectric, s.roughness, n_dot_v));
+    if (DIFFUSE_COUPLING == ALBEDO_COUPLING) return 1.0 - s.boundary;
+    return 1.0 - max_component(mean_dielectric_fresnel(s, n_dot_v));
 }
 
 // The layers attenuate as in evaluate_brdf. Sheen attenuates by the larger of E(l) and E(v); for lobes that gather from

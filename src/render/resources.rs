@@ -260,7 +260,8 @@ impl Resources {
             tables?;
         }
         if let Some(key) = missing.environment {
-            self.bake(key, true)?;
+            let before = self.baked_environment().cloned();
+            self.bake_after(key, before.as_ref(), true)?;
         }
         if let Some(key) = missing.measured {
             let read = read_measured(&self.gpu, &key);
@@ -279,16 +280,23 @@ impl Resources {
         self.bind(state, false)?.ok_or(ProvideError::Stale)
     }
 
-    /// Bakes an environment with the newest pipelines on this thread. `from_disk` allows a cached result. On failure the last
-    /// good environment stays.
+    /// Bakes all parts of an environment with the newest pipelines on this thread. `from_disk` allows a cached result. On failure
+    /// the last good environment stays.
     ///
     /// # Errors
     /// As [`GpuEnvironment::bake`].
     pub fn bake(&mut self, key: EnvironmentKey, from_disk: bool) -> Result<(), ProvideError> {
+        self.bake_after(key, None, from_disk)
+    }
+
+    fn bake_after(
+        &mut self,
+        key: EnvironmentKey,
+        before: Option<&(EnvironmentKey, Arc<GpuEnvironment>)>,
+        from_disk: bool,
+    ) -> Result<(), ProvideError> {
         let set = self.pipelines.clone().ok_or(ProvideError::Stale)?;
         let control = BakeControl { progress: &|_, _| {}, superseded: &|| false, from_disk };
-        // A bench wants all parts anew.
-        let before = self.baked_environment().filter(|_| from_disk);
         match GpuEnvironment::bake(&set, &key, before, &control) {
             Ok(environment) => self.set_environment(key, Some(environment)),
             Err(error) => {

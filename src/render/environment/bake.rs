@@ -82,7 +82,7 @@ pub struct BakeReport {
     pub prefilter_ms: f64,
     /// Sheen prefilter of all levels.
     pub sheen_ms: f64,
-    /// From the opened file to the last pass, without writing the cache.
+    /// From the file to the last pass, without writing the cache.
     pub total_ms: f64,
 }
 
@@ -176,7 +176,7 @@ impl GpuEnvironment {
     ) -> Result<Arc<Self>, BakeError> {
         let start = Instant::now();
         let report = BakeReport { environment: key.name.clone(), cached: true, ..BakeReport::default() };
-        let mut bake = Bake { gpu: &set.gpu, set, key, control, report };
+        let mut bake = Bake { gpu: &set.gpu, set, key, control, report, storing_ms: 0.0 };
         let before = before.filter(|(old, _)| old.has_radiance_of(key));
         let radiance = match before {
             Some((_, old)) => {
@@ -196,7 +196,7 @@ impl GpuEnvironment {
         (control.progress)(1.0, "");
         let mut this = Self::of(&set.gpu, radiance, prefiltered, sheen)?;
         this.report = bake.report;
-        this.report.total_ms = ms(start);
+        this.report.total_ms = ms(start) - bake.storing_ms;
         Ok(Arc::new(this))
     }
 }
@@ -208,6 +208,8 @@ struct Bake<'a> {
     key: &'a EnvironmentKey,
     control: &'a BakeControl<'a>,
     report: BakeReport,
+    /// Time of reading back and writing to the disk, milliseconds.
+    storing_ms: f64,
 }
 
 impl Bake<'_> {
@@ -336,9 +338,11 @@ impl Bake<'_> {
         self.passes(&lights).irradiance(&cube, &irradiance)?;
         self.report.irradiance_ms = ms(time);
 
+        let time = Instant::now();
         let mut entry = self.read(&images, Some(&lights))?;
         entry.extend(f32::to_ne_bytes(scale));
         disk_cache::store(&disk_key, &entry);
+        self.storing_ms += ms(time);
         Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights: Some(lights), map: file.fingerprint }))
     }
 
@@ -371,12 +375,14 @@ impl Bake<'_> {
             self.passes(lights).prefilter(prefilter, &radiance.cube, &to, levels)?;
         }
         self.report.prefilter_ms = ms(time);
+        let time = Instant::now();
         let read = self.read(&[&even, &odd], Some(&lobes.buffer))?;
         let (texels, lobe_bytes) = read.split_at(size as usize);
         let wrong = lobes.wrong(lobe_bytes);
         if !wrong {
             disk_cache::store(&disk_key, texels);
         }
+        self.storing_ms += ms(time);
         Ok(Arc::new(Prefiltered { even, odd, wrong }))
     }
 
@@ -397,7 +403,9 @@ impl Bake<'_> {
         let to = Target { image: &image, samples: &samples, specular: None };
         self.passes(lights).prefilter(stage, &radiance.cube, &to, 0..SHEEN_LEVELS)?;
         self.report.sheen_ms = ms(time);
+        let time = Instant::now();
         disk_cache::store(&disk_key, &self.read(&[&image], None)?);
+        self.storing_ms += ms(time);
         Ok(image)
     }
 }
