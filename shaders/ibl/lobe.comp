@@ -13,7 +13,8 @@
 
 layout(local_size_x = 256) in;
 
-// Cells of equal ratio from x = 1e-7, a tenth of the narrowest peak; the first also covers what is below.
+// Cells of equal ratio from x = 1e-7, a tenth of the narrowest peak; the first also covers what is below. task.size.x is
+// their number: drivers would unroll loops to a constant.
 const uint CELLS = 1024u;
 const float RATIO = 15.4249;   // log(0.5 / 1e-7)
 
@@ -37,7 +38,7 @@ vec2 weights_at(float x) {
 // The integrals of both K over x.
 vec2 integrals() {
     vec2 sum = vec2(0.0);
-    for (uint cell = gl_LocalInvocationIndex; cell < CELLS; cell += gl_WorkGroupSize.x) {
+    for (uint cell = gl_LocalInvocationIndex; cell < task.size.x; cell += gl_WorkGroupSize.x) {
         float first = start_of_cell(cell);
         float last = end_of_cell(cell);
         sum += weights_at(0.5 * (first + last)) * (last - first);
@@ -70,7 +71,7 @@ void main() {
     if (own == 0u) wrong = 0u;
     barrier();
     vec2 integral = integrals();
-    for (uint cell = own; cell < CELLS; cell += gl_WorkGroupSize.x) {
+    for (uint cell = own; cell < task.size.x; cell += gl_WorkGroupSize.x) {
         float first = start_of_cell(cell);
         float last = end_of_cell(cell);
         vec2 k = weights_at(0.5 * (first + last)) / max(integral, vec2(1e-30));
@@ -78,9 +79,9 @@ void main() {
     }
     barrier();
     if (own == 0u) {
-        for (uint cell = 1u; cell < CELLS; ++cell) below[cell] += below[cell - 1u];
+        for (uint cell = 1u; cell < task.size.x; ++cell) below[cell] += below[cell - 1u];
         // A D of 0 everywhere: uniform samples without weight.
-        if (below[CELLS - 1u] <= 0.0) for (uint cell = 0u; cell < CELLS; ++cell) below[cell] = end_of_cell(cell);
+        if (below[CELLS - 1u] <= 0.0) for (uint cell = 0u; cell < task.size.x; ++cell) below[cell] = end_of_cell(cell);
         lobes[task.level].integral = 4.0 * PI * integral;
     }
     barrier();
