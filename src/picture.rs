@@ -25,7 +25,7 @@ pub fn check_ending(path: &Path) -> Result<(), String> {
 /// Writes a frame as `specula-N.png` with the first free number, in the working directory. Returns the path.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_numbered(capture: &Capture) -> Result<PathBuf, String> {
     let free = (1..).map(|n| PathBuf::from(format!("specula-{n}.png"))).find(|path| !path.exists());
     let path = free.unwrap_or_else(|| "specula.png".into());

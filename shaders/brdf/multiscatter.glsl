@@ -10,8 +10,9 @@
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 
-// F of all further orders: after each reflection E_avg of the light leaves and the rest hits another facet (Kulla &
-// Conty 2017, after Jakob et al. 2014):
+// F of all further orders: after each reflection E_avg of the light leaves and the rest hits another facet. The first of
+// them lies behind one reflection that lost its light between the facets, hence the square (Hill 2018, "A Multi-Faceted
+// Exploration", a correction of Kulla & Conty 2017, whose term has one F_avg less):
 //
 //   F_ms = F_avg^2 E_avg / (1 - F_avg (1 - E_avg))        F_avg = 1 -> 1: a white metal loses nothing
 vec3 multiple_fresnel(vec3 f_avg, float lost_avg) {
