@@ -39,7 +39,7 @@ float pdf_of_rectangle(Light light, vec3 to_light) {
 
 LightSample sample_lamp(vec3 position_ws, vec3 u, float probability) {
     uint index = min(uint(u.z * float(lamp_count())), lamp_count() - 1u);
-    Light light = lights[index];
+    Light light = light_at(index, position_ws);
     probability /= float(lamp_count());
     if (light.kind == LIGHT_RECT) {
         vec2 at = 2.0 * u.xy - 1.0;
