@@ -75,7 +75,7 @@ vec3 rectangles_along(Ray ray, float farthest, float pdf) {
     if ((FEATURES & FEATURE_RECT_LIGHTS) == 0u) return sum;
     float probability = (1.0 - sky_probability(true)) / float(lamp_count());
     for (uint i = 0u; i < lamp_count(); ++i) {
-        Light light = lights[i];
+        Light light = light_at(i, ray.origin_ws);
         float facing = dot(ray.direction_ws, light.direction_ws);
         if (light.kind != LIGHT_RECT || facing >= 0.0) continue;
         float distance = dot(light.position_ws.xyz - ray.origin_ws, light.direction_ws) / facing;
