@@ -148,25 +148,6 @@ void read_transmission(Fragment f, inout Surface s) {
     }
 }
 
-// Sets every member that belongs to an extension to its neutral value.
-void clear_extensions(inout Surface s) {
-    s.t = s.b = vec3(0.0);
-    s.anisotropy = 0.0;
-    s.conductor_n = vec3(1.0);
-    s.conductor_k = vec3(0.0);
-    s.clearcoat_n = s.n;
-    s.clearcoat = s.clearcoat_roughness = 0.0;
-    s.sheen_color = vec3(0.0);
-    s.sheen_roughness = 0.0;
-    s.iridescence = s.iridescence_nm = 0.0;
-    s.iridescence_ior = 1.0;
-    s.transmission = s.thickness = s.dispersion = 0.0;
-    s.attenuation_color = vec3(1.0);
-    s.attenuation_distance = 1.0;
-    s.diffuse_transmission = 0.0;
-    s.diffuse_transmission_color = vec3(1.0);
-}
-
 // `v`: towards the eye, world space, unit. complete_surface (brdf/multiscatter.glsl) fills in the rest.
 Surface make_surface(Fragment f, vec3 v) {
     vec4 base_color = texture(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR));

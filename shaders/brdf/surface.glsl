@@ -58,6 +58,25 @@ struct Surface {
     vec3 diffuse_transmission_color;
 };
 
+// Sets every member that belongs to an extension to its neutral value.
+void clear_extensions(inout Surface s) {
+    s.t = s.b = vec3(0.0);
+    s.anisotropy = 0.0;
+    s.conductor_n = vec3(1.0);
+    s.conductor_k = vec3(0.0);
+    s.clearcoat_n = s.n;
+    s.clearcoat = s.clearcoat_roughness = 0.0;
+    s.sheen_color = vec3(0.0);
+    s.sheen_roughness = 0.0;
+    s.iridescence = s.iridescence_nm = 0.0;
+    s.iridescence_ior = 1.0;
+    s.transmission = s.thickness = s.dispersion = 0.0;
+    s.attenuation_color = vec3(1.0);
+    s.attenuation_distance = 1.0;
+    s.diffuse_transmission = 0.0;
+    s.diffuse_transmission_color = vec3(1.0);
+}
+
 // Smallest alpha. The peak 1 / (pi alpha^2) must fit into a half float (65504), the format of the scene color, so
 // alpha > 0.0022; and alpha^2 must be far above the rounding error of NoH^2, 6e-8. 0.0025 is a roughness of 0.05. (With
 // alpha = 0, a punctual light would have no reflection at all.)

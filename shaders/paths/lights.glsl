@@ -68,7 +68,7 @@ LightSample sample_light(vec3 position_ws, vec3 u, bool with_lamps) {
 // been drawn with density `other`.
 float balance(float own, float other) { return own / (own + other); }
 
-// What the rectangles closer than `farthest` shine back along a ray whose direction was drawn of a lobe with density `pdf`.
+// Light of the rectangles closer than `farthest` along a ray whose direction was drawn of a lobe with density `pdf`.
 // They are not part of the model and hide nothing.
 vec3 rectangles_along(Ray ray, float farthest, float pdf) {
     vec3 sum = vec3(0.0);

@@ -97,25 +97,13 @@ vec3 hit_facet_normal(Hit hit, vec3 v) {
     return dot(n, v) < 0.0 ? -n : n;
 }
 
-// Sets the members of extensions to neutral values. FEATURES is that of the first hit's material, so evaluate_brdf may
-// still read them.
+// Neutral extensions. FEATURES is that of the first hit's material, so evaluate_brdf may still read these.
 void clear_traced_extensions(inout Surface s) {
+    clear_extensions(s);
     mat3 basis = basis_around(s.n);
     s.t = basis[0];
     s.b = basis[1];
-    s.anisotropy = 0.0;
     complex_ior(s.base_color, EDGE_TINT, s.conductor_n, s.conductor_k);
-    s.clearcoat_n = s.n;
-    s.clearcoat = s.clearcoat_roughness = 0.0;
-    s.sheen_color = vec3(0.0);
-    s.sheen_roughness = 0.0;
-    s.iridescence = s.iridescence_nm = 0.0;
-    s.iridescence_ior = 1.0;
-    s.transmission = s.thickness = s.dispersion = 0.0;
-    s.attenuation_color = vec3(1.0);
-    s.attenuation_distance = 1.0;
-    s.diffuse_transmission = 0.0;
-    s.diffuse_transmission_color = vec3(1.0);
 }
 
 // The surface at a hit of `ray`, ready for evaluate_brdf, as user_surface leaves it.

@@ -22,7 +22,7 @@ pub(in crate::app) enum BakeMessage {
     Tables(TablesKey, Result<Arc<Tables>, GpuError>),
     /// A measured BRDF.
     Measured(MeasuredKey, Result<Arc<Buffer>, String>),
-    /// What random paths trace.
+    /// The resources of random paths.
     Traced(TraceKey, Result<Arc<Traced>, String>),
 }
 

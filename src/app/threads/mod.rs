@@ -32,7 +32,7 @@ pub(super) enum Message {
     Panicked(Role, String),
 }
 
-/// What a thread does, with the number or key of its work.
+/// The work of a thread, with its number or key.
 pub(super) enum Role {
     Worker,
     Loader(u64),

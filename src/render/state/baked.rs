@@ -59,7 +59,7 @@ pub struct EnvironmentKey {
     pub(crate) radiance: Vec<BakeStage>,
     /// Those of the prefilter, which depend on the selected NDF too.
     pub(crate) prefilter: Vec<BakeStage>,
-    /// That of the sheen's prefilter.
+    /// The stage of the sheen's prefilter.
     pub(crate) sheen: Vec<BakeStage>,
 }
 
