@@ -8,8 +8,7 @@
 #include "material.glsl"
 #include "user.glsl"
 
-// One fragment of the model in a mode of random paths: what pbr.frag is for all other modes. A stage of its own, so that
-// pbr.frag compiles without it.
+// One fragment of the model in a mode of random paths: what pbr.frag is for the picture.
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;

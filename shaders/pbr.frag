@@ -3,15 +3,14 @@
 #include "brdf/multiscatter.glsl"
 #include "common/fragment.glsl"
 #include "common/pixel.glsl"
-#include "debug/absent.glsl"
-#include "debug/debug.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
 #include "material.glsl"
 #include "material_antialiasing.glsl"
 #include "user.glsl"
 
-// One fragment of the model, or one debug mode of it: scene-referred linear RGB as common/pixel.glsl stores it.
+// One fragment of the model in the picture: scene-referred linear RGB as common/pixel.glsl stores it. debug.frag and
+// paths.frag do the same for the debug modes and for random paths.
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 out_color;
@@ -22,20 +21,11 @@ void main() {
     user_surface(surface);
     antialias_specular(surface);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
-    surface = surface_of_mode(surface);
     complete_surface(surface, v);
 
-    // Shaded once, for the picture and for all modes: each call would cost the driver another copy of it to compile.
-    // The mode drops the parts that it does not show.
-    Lit lit = shade(surface, v, lights_of_mode());
-    vec3 radiance = outgoing_radiance(surface, v, lit);
-    vec3 value;
-    float coverage = 1.0;
-    if (!debug_value(fragment, surface, v, lit, radiance, value)) {
-        value = radiance;
-        if (ALPHA_MODE == ALPHA_BLEND) coverage = surface.coverage;
-    }
-    out_color = hdr_pixel(value, coverage, no_data);
-    // The blend unit takes alpha for coverage, so a blended fragment of the picture has no flags.
-    if (ALPHA_MODE == ALPHA_BLEND && MODE == MODE_FINAL) out_color.a = coverage;
+    vec3 radiance = outgoing_radiance(surface, v, shade(surface, v, all_lights()));
+    float coverage = ALPHA_MODE == ALPHA_BLEND ? surface.coverage : 1.0;
+    out_color = hdr_pixel(radiance, coverage, false);
+    // The blend unit takes alpha for coverage, so a blended fragment has no flags.
+    if (ALPHA_MODE == ALPHA_BLEND) out_color.a = coverage;
 }

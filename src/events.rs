@@ -23,6 +23,8 @@ pub enum Event<'a> {
     },
     /// A reload is finished.
     Reload(ReloadEvent),
+    /// After a reload: the stages that the picture did not need have been compiled.
+    Completed(CompletedEvent),
     /// An environment was baked, or loaded from the disk cache.
     Bake(&'a BakeReport),
     /// A picture was rendered in a mode that accumulates random paths.
@@ -67,6 +69,27 @@ pub struct ReloadEvent {
     pub pipeline_ms: f64,
     /// From the swap to the end of the first frame.
     pub first_frame_ms: f64,
+}
+
+/// The stages of a reload that the picture did not need.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct CompletedEvent {
+    /// Shader generation.
+    pub generation: u64,
+    /// Stages that were compiled.
+    pub stages: Vec<String>,
+    /// Whether all are good. If not, `diagnostic` events came before.
+    pub ok: bool,
+    /// Compiling the stages.
+    pub compile_ms: f64,
+}
+
+impl CompletedEvent {
+    /// The event of a reload that has been finished.
+    pub fn new(reload: &Reload, generation: u64) -> Self {
+        let ReloadEvent { stages, ok, compile_ms, .. } = ReloadEvent::new(reload, generation, 0.0, 0.0);
+        Self { generation, stages, ok, compile_ms }
+    }
 }
 
 impl ReloadEvent {

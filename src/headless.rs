@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineSet,
+    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineRequest,
+    PipelineSet,
     ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, TraceError, UploadError, View, wrong_values,
 };
 use crate::scene::{self, MeasuredError, Model};
@@ -217,10 +218,28 @@ impl Headless {
 
     /// Reloads changed shaders. On failure the last good shaders stay.
     pub fn update(&mut self, change: Change) -> Reload {
+        self.reload(|reloader, request| reloader.update(change, request))
+    }
+
+    /// Reloads what the next frame needs of the changed shaders. [`Headless::finish`] compiles the rest.
+    pub fn update_first(&mut self, change: Change) -> Reload {
+        self.reload(|reloader, request| reloader.update_first(change, true, request, || false))
+    }
+
+    /// Compiles the stages that [`Headless::update_first`] has left; `None` if there are none.
+    pub fn finish(&mut self) -> Option<Reload> {
+        let is_pending = self.session.shaders.as_ref().is_some_and(|shaders| !shaders.pending.is_empty());
+        is_pending.then(|| self.reload(|reloader, request| reloader.finish(request, || false)))
+    }
+
+    fn reload(
+        &mut self,
+        reload: impl FnOnce(&mut Reloader, &dyn Fn(&Arc<ShaderSet>) -> PipelineRequest) -> Reload,
+    ) -> Reload {
         // `open` has checked that the target exists, so the fallback is never used unless the settings change.
         let target = self.target().unwrap_or(TargetFormat::full(1));
         let session = &self.session;
-        let reload = self.reloader.update(change, |shaders| session.pipelines(shaders, target), || false);
+        let reload = reload(&mut self.reloader, &|shaders| session.pipelines(shaders, target));
         match &reload.outcome {
             Outcome::Ready(set) => {
                 self.resources.set_pipelines(set);
@@ -288,6 +307,7 @@ impl Headless {
     /// # Errors
     /// As [`Headless::render`].
     pub fn pixel(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<PixelValue>, HeadlessError> {
+        self.finish_or_fail()?;
         self.provide()?;
         let whole = self.frame_state()?;
         let Some(scene) = whole.scene.clone() else { return Ok(Vec::new()) };
@@ -356,8 +376,19 @@ impl Headless {
         if let Some(problem) = self.session.problems(false).into_iter().next() {
             return Err(HeadlessError::Settings(problem));
         }
-        let state = Arc::new(self.frame_state()?);
-        Ok(self.resources.provide(&state)?)
+        let mut state = self.frame_state()?;
+        if state.pipelines.needs_pending(&state.shaders) {
+            self.finish_or_fail()?;
+            state = self.frame_state()?;
+        }
+        Ok(self.resources.provide(&Arc::new(state))?)
+    }
+
+    fn finish_or_fail(&mut self) -> Result<(), HeadlessError> {
+        match self.finish().map(|reload| reload.outcome) {
+            Some(Outcome::Failed(diagnostics)) => Err(HeadlessError::Shaders(diagnostics)),
+            _ => Ok(()),
+        }
     }
 
     /// Draws a frame to the output image, records `more`, and waits for both.

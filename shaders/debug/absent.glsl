@@ -4,7 +4,7 @@
 
 #include "common/color.glsl"
 
-// Whether the mode has no data at this fragment. pbr.frag stores it as a flag beside the value.
+// Whether the mode has no data at this fragment. debug.frag and paths.frag store it as a flag beside the value.
 bool no_data = false;
 
 // `value`, or a checkerboard and the flag where the data does not exist.

@@ -2,8 +2,8 @@
 //
 // To add a mode, write an annotation and a constant here, compute its value in `your_mode` below, and save.
 //
-//   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [tonemap] [accumulate]
-//         [paths] [traces] [through] [draw=lines|layers] [key=d] doc=""
+//   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [stage=pbr|debug|paths]
+//         [tonemap] [accumulate] [traces] [through] [draw=lines|layers] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
 // The first line is a comment that starts with the at sign. The number must be unique.
@@ -15,8 +15,8 @@
 //   tonemap   the value is light, so exposure and tone map apply
 //   accumulate  the value is an estimate from frame.sample_count random paths per pixel; the renderer shows the mean
 //             of all frames since the picture changed, and frame.sample_index counts these frames
-//   paths     paths.frag computes the value instead of pbr.frag
-//   traces    the same, and rays can be traced through the model (paths/bvh.glsl)
+//   stage     the file that computes the value: pbr.frag (the picture alone), debug.frag (default) or paths.frag
+//   traces    rays can be traced through the model (paths/bvh.glsl), in paths.frag
 //   through   transmissive surfaces show the final picture behind them instead of this mode
 //   key       letter key that selects the mode in the window
 //
@@ -28,7 +28,7 @@
 #include "brdf/surface.glsl"
 #include "common/fragment.glsl"
 
-//@mode final "Final" group="Picture" encode=color unit="cd/m^2" tonemap key=p doc="The final picture: all lights, environment and emission."
+//@mode final "Final" group="Picture" encode=color unit="cd/m^2" tonemap stage=pbr key=p doc="The final picture: all lights, environment and emission."
 const uint MODE_FINAL = 0u;
 //@mode clay "Clay" group="Picture" encode=color unit="cd/m^2" tonemap key=c doc="Matte gray of albedo 0.5 with the model's normals."
 const uint MODE_CLAY = 1u;
@@ -238,25 +238,25 @@ const uint MODE_ALBEDO_RANGE = 504u;
 //@mode f0-range "F0 range" group="Truth" encode=color doc="Blue below 0.02; red between 0.05 and metals (sRGB 180)."
 const uint MODE_F0_RANGE = 505u;
 // By random paths (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
-//@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate paths doc="The picture with an exact integral of the unoccluded environment."
+//@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths doc="The picture with an exact integral of the unoccluded environment."
 const uint MODE_MONTE_CARLO = 506u;
-//@mode ibl-error "Image-based light error" group="Truth" encode=vector unit="cd/m^2" accumulate paths doc="Exact integral of the unoccluded environment minus split sum."
+//@mode ibl-error "Image-based light error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths doc="Exact integral of the unoccluded environment minus split sum."
 const uint MODE_IBL_ERROR = 507u;
-//@mode energy "Energy" group="Truth" encode=data paths doc="Albedo under uniform white light; red above 1.005."
+//@mode energy "Energy" group="Truth" encode=data stage=paths doc="Albedo under uniform white light; red above 1.005."
 const uint MODE_ENERGY = 508u;
-//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate traces doc="The picture with shadows, occlusion and reflections between surfaces."
+//@mode path-traced "Path traced" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths traces doc="The picture with shadows, occlusion and reflections between surfaces."
 const uint MODE_PATH_TRACED = 509u;
-//@mode path-error "Error of the picture" group="Truth" encode=vector unit="cd/m^2" accumulate traces doc="Path traced minus the picture: the sum of the five errors below."
+//@mode path-error "Error of the picture" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Path traced minus the picture: the sum of the five errors below."
 const uint MODE_PATH_ERROR = 510u;
-//@mode prefilter-error "Prefilter error" group="Truth" encode=vector unit="cd/m^2" accumulate paths doc="Split sum with exact means of the environment minus with baked ones."
+//@mode prefilter-error "Prefilter error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths doc="Split sum with exact means of the environment minus with baked ones."
 const uint MODE_PREFILTER_ERROR = 511u;
-//@mode split-sum-error "Split sum error" group="Truth" encode=vector unit="cd/m^2" accumulate paths doc="Integral of the product minus product of the integrals, both exact."
+//@mode split-sum-error "Split sum error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths doc="Integral of the product minus product of the integrals, both exact."
 const uint MODE_SPLIT_SUM_ERROR = 512u;
-//@mode occlusion-error "Occlusion error" group="Truth" encode=vector unit="cd/m^2" accumulate traces doc="Environment light that the model blocks, minus what the texture blocks."
+//@mode occlusion-error "Occlusion error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Environment light that the model blocks, minus what the texture blocks."
 const uint MODE_OCCLUSION_ERROR = 513u;
-//@mode shadow-error "Shadow error" group="Truth" encode=vector unit="cd/m^2" accumulate traces doc="Light of the lamps with shadows minus without."
+//@mode shadow-error "Shadow error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Light of the lamps with shadows minus without."
 const uint MODE_SHADOW_ERROR = 514u;
-//@mode bounce-error "Bounce error" group="Truth" encode=vector unit="cd/m^2" accumulate traces doc="Light from other surfaces of the model, which the picture lacks."
+//@mode bounce-error "Bounce error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Light from other surfaces of the model, which the picture lacks."
 const uint MODE_BOUNCE_ERROR = 515u;
 
 // Your modes: computes a mode's value from the fragment, the shaded surface and the direction to the eye.

@@ -20,7 +20,7 @@ use crate::render::{BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Rev
 use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, ShaderSet, Source};
+use crate::shader::{Change, Source};
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
 struct LastComplete {
@@ -32,7 +32,7 @@ struct LastComplete {
 
 /// A reload whose first frame has not finished.
 struct FirstFrame {
-    shaders: Arc<ShaderSet>,
+    generation: u64,
     event: ReloadEvent,
 }
 
@@ -227,8 +227,9 @@ impl Viewer {
     /// Reports the first frame of a reload or of the model. `frame` has finished `ms` milliseconds after it began.
     pub(super) fn frame_done(&mut self, frame: Option<&BoundFrame>, ms: f64) {
         let Some(state) = frame.map(|frame| &frame.state) else { return };
-        if let Some(first) = self.first_frame.take_if(|first| Arc::ptr_eq(&first.shaders, &state.shaders)) {
+        if let Some(first) = self.first_frame.take_if(|first| first.generation == state.shaders.generation) {
             self.report(ReloadEvent { first_frame_ms: ms, ..first.event });
+            self.threads.worker.shown();
         }
         if !self.ready && state.scene.is_some() {
             self.ready = true;

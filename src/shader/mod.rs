@@ -16,7 +16,7 @@ pub mod spirv;
 pub mod values;
 pub mod watch;
 
-pub use annotation::{Constant, DrawAs, Encode, Mode, Parameter};
+pub use annotation::{Constant, DrawAs, Encode, Mode, ModeStage, Parameter};
 pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};

@@ -5,9 +5,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, Sender, unbounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, unbounded};
 
 use super::{Message, Outbox, Role};
 use crate::gpu::{Gpu, SetLayouts, fault};
@@ -19,6 +19,9 @@ use crate::shader::{Change, Compiler, ShaderSet, Source};
 
 /// How often the thread starts again by itself if each attempt panics.
 const RESTARTS: u32 = 3;
+/// How long the worker waits for the first frame of a reload.
+const LONGEST_FRAME: Duration = Duration::from_secs(2);
+const PENDING: &str = "this mode's shader does not compile; its errors are in the list";
 
 /// The settings, scene and target that the window draws now. A reload builds their pipelines.
 #[derive(Clone)]
@@ -50,6 +53,8 @@ pub(in crate::app) enum WorkerMessage {
         /// Name of the tree.
         tree: String,
     },
+    /// The stages of the last reload that the picture did not need have been compiled.
+    Completed(Box<Reload>),
     /// The result of the last [`Worker::build`].
     Built(Result<(), String>),
 }
@@ -73,6 +78,15 @@ enum Job {
     Edit(Edit),
     OpenTree(Source),
     Build(Build),
+    /// The first frame of the last reload is on screen.
+    Shown,
+}
+
+impl Job {
+    /// Whether the job makes a running reload stale.
+    fn is_edit(&self) -> bool {
+        matches!(self, Self::Edit(_) | Self::OpenTree(_))
+    }
 }
 
 /// Sends jobs, and counts those that make a running reload stale.
@@ -84,7 +98,7 @@ struct Jobs {
 
 impl Jobs {
     fn send(&self, job: Job) {
-        if !matches!(job, Job::Build(_)) {
+        if job.is_edit() {
             self.edits.fetch_add(1, Ordering::SeqCst);
         }
         // Fails only while the window closes.
@@ -120,6 +134,8 @@ impl Worker {
             edits: edits.clone(),
             edits_taken: 0,
             panics: 0,
+            unfinished: false,
+            is_shown: false,
             outbox: outbox.clone(),
         };
         let thread = std::thread::spawn(move || state.run());
@@ -154,6 +170,11 @@ impl Worker {
     /// Marks the newest build as successful, or lets a failed one be tried again.
     pub(in crate::app) fn built(&mut self) {
         self.asked = None;
+    }
+
+    /// Tells the worker that the first frame of a reload is on screen, so that it compiles the stages that are not.
+    pub(in crate::app) fn shown(&self) {
+        self.send(Job::Shown);
     }
 
     /// Opens another shader tree.
@@ -197,6 +218,10 @@ struct Thread {
     edits_taken: u64,
     /// Panics since the last reload that ended.
     panics: u32,
+    /// Whether the last reload has left stages to [`Thread::finish`].
+    unfinished: bool,
+    /// Whether the first frame of the last reload is on screen. Until then, the driver needs the CPU.
+    is_shown: bool,
     outbox: Outbox,
 }
 
@@ -219,14 +244,18 @@ impl Thread {
         loop {
             let mut waiting = Vec::new();
             // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is closing.
-            if edit.is_none() && (build.is_none() || self.is_stale()) {
-                let Ok(job) = self.inbox.recv() else { return };
-                waiting.push(job);
+            if edit.is_none() && (self.is_stale() || (build.is_none() && !(self.unfinished && self.is_shown))) {
+                match self.next_job() {
+                    Ok(job) => waiting.push(job),
+                    Err(RecvTimeoutError::Timeout) => waiting.push(Job::Shown),
+                    Err(RecvTimeoutError::Disconnected) => return,
+                }
             }
             waiting.extend(self.inbox.try_iter());
             for job in waiting {
-                self.edits_taken += u64::from(!matches!(job, Job::Build(_)));
+                self.edits_taken += u64::from(job.is_edit());
                 match job {
+                    Job::Shown => self.is_shown = true,
                     Job::Edit(new) => edit = Some(join(edit, new)),
                     Job::OpenTree(source) => {
                         self.reloader.open(source);
@@ -238,10 +267,14 @@ impl Thread {
             if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
                 // Drop a request for an older set. The window sends one for the new set.
                 build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
-            } else if !self.is_stale()
-                && let Some((set, request)) = build.take()
-            {
+            } else if self.is_stale() {
+                // The edit goes first.
+            } else if self.unfinished && (self.is_shown || build.is_some()) {
+                self.finish();
+            } else if let Some((set, request)) = build.take() {
+                let pending = request.needs_pending(&set.shaders);
                 let built = set.build(&request).map_err(|error| error.to_string());
+                let built = if pending { Err(PENDING.to_owned()) } else { built };
                 self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
                 self.build_ahead(&set);
             }
@@ -264,26 +297,58 @@ impl Thread {
         let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
         let request =
             |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
-        let reload = self.reloader.update(edit.change, request, || edits.load(Ordering::SeqCst) > taken);
+        let superseded = || edits.load(Ordering::SeqCst) > taken;
+        let reload = self.reloader.update_first(edit.change, false, request, superseded);
         self.panics = 0;
         let set = match &reload.outcome {
             Outcome::Ready(set) => Some(set.clone()),
             Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
         };
+        self.unfinished = set.as_ref().is_some_and(|set| !set.shaders.pending.is_empty());
+        self.is_shown = false;
         let tree = self.reloader.library().source().name();
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
         let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, tree };
         self.outbox.send(Message::Worker(message));
-        // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
-        if let Some(set) = set.as_ref().filter(|_| self.snapshot().scene.is_some()) {
+        if let Some(set) = &set {
             self.build_ahead(set);
         }
         set
     }
 
+    /// Compiles the stages that the last reload has left, unless a newer edit arrives.
+    fn finish(&mut self) {
+        self.unfinished = false;
+        let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
+        let request =
+            |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
+        let reload = self.reloader.finish(request, || edits.load(Ordering::SeqCst) > taken);
+        let set = match &reload.outcome {
+            Outcome::Ready(set) => Some(set.clone()),
+            Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
+        };
+        self.outbox.send(Message::Worker(WorkerMessage::Completed(Box::new(reload))));
+        if let Some(set) = &set {
+            self.build_ahead(set);
+        }
+    }
+
+    /// Waits for a job. A window that shows nothing, since it is minimized, does not hold back the stages that the last reload
+    /// has left.
+    fn next_job(&self) -> Result<Job, RecvTimeoutError> {
+        match self.unfinished {
+            true => self.inbox.recv_timeout(LONGEST_FRAME),
+            false => self.inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        }
+    }
+
     /// Builds the modes before and after the current one, which `[` and `]` select, unless other work waits.
     fn build_ahead(&self, set: &Arc<PipelineSet>) {
         let (snapshot, modes) = (self.snapshot(), &set.shaders.modes);
+        // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
+        if snapshot.scene.is_none() || !set.shaders.pending.is_empty() {
+            return;
+        }
         let request = snapshot.request(&set.shaders);
         let Some(at) = modes.iter().position(|mode| mode.id == request.mode) else { return };
         for neighbor in [(at + 1) % modes.len(), (at + modes.len() - 1) % modes.len()] {

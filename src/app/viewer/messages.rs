@@ -9,10 +9,11 @@ use crate::app::threads::baker::BakeMessage;
 use crate::app::threads::loader::Loaded;
 use crate::app::threads::worker::WorkerMessage;
 use crate::app::threads::{Message, Role};
-use crate::events::{Event, ReloadEvent, emit};
+use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::message;
 use crate::render::{Outcome, Reload, wrong_values};
 use crate::settings::LightSource;
+use crate::shader::Diagnostic;
 
 impl Viewer {
     pub(in crate::app) fn on_message(&mut self, message: Message) {
@@ -24,11 +25,35 @@ impl Viewer {
                 self.shader.tree = tree;
                 self.on_reload(&reload, detect_ms);
             }
+            Message::Worker(WorkerMessage::Completed(reload)) => self.on_completed(&reload),
             Message::Loaded(loaded) => self.on_loaded(*loaded),
             Message::Bake(message) => self.on_bake(message),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
             Message::Panicked(role, text) => self.on_panic(role, &text),
         }
+    }
+
+    /// Takes the stages of a reload that the picture did not need.
+    fn on_completed(&mut self, reload: &Reload) {
+        let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        match &reload.outcome {
+            Outcome::Unchanged { .. } => return,
+            Outcome::Failed(diagnostics) => self.show_errors(diagnostics),
+            Outcome::Ready(set) => {
+                self.session.diagnostics.clone_from(&set.shaders.warnings);
+                self.session.shaders = Some(set.shaders.clone());
+                self.resources.set_pipelines(set);
+            }
+        }
+        emit(self.events, &Event::Completed(CompletedEvent::new(reload, generation)));
+    }
+
+    fn show_errors(&mut self, diagnostics: &[Diagnostic]) {
+        for diagnostic in diagnostics {
+            eprintln!("{}", diagnostic.full());
+            emit(self.events, &Event::Diagnostic(diagnostic));
+        }
+        self.session.diagnostics = diagnostics.to_vec();
     }
 
     fn on_reload(&mut self, reload: &Reload, detect_ms: f64) {
@@ -40,11 +65,7 @@ impl Viewer {
                 self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
             }
             Outcome::Failed(diagnostics) => {
-                for diagnostic in diagnostics {
-                    eprintln!("{}", diagnostic.full());
-                    emit(self.events, &Event::Diagnostic(diagnostic));
-                }
-                self.session.diagnostics.clone_from(diagnostics);
+                self.show_errors(diagnostics);
                 self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
             }
             Outcome::Ready(set) => {
@@ -53,7 +74,7 @@ impl Viewer {
                     eprintln!("{}", warning.full());
                 }
                 let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
-                self.first_frame = Some(FirstFrame { shaders: set.shaders.clone(), event });
+                self.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
                 let is_first = self.session.shaders.replace(set.shaders.clone()).is_none();
                 self.resources.set_pipelines(set);
                 self.check_names(is_first);

@@ -5,7 +5,7 @@ mod watch;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use specula::events::{Event, ReloadEvent, emit};
+use specula::events::{CompletedEvent, Event, ReloadEvent, emit};
 use specula::headless::Headless;
 use specula::message;
 use specula::picture;
@@ -58,6 +58,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     write(&mut headless, &args, all)?;
     warn_of_bakes(&headless);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
+    complete(&mut headless, &args, watch.is_some())?;
     if let Some(mut watch) = watch {
         eprintln!("specula: wrote {}; watching, Ctrl+C ends", args.out.display());
         while let Some(changes) = watch.next() {
@@ -73,14 +74,14 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
 /// Compiles the shaders and creates what the first frame needs. If the shaders fail and are watched, waits for the next save.
 /// Returns `false` if watching has ended before.
 fn first_picture(headless: &mut Headless, args: &Args, watch: Option<&mut Watch>) -> Result<bool, Failure> {
-    let mut reload = headless.update(Change::All);
+    let mut reload = headless.update_first(Change::All);
     if let Some(watch) = watch {
         while let Outcome::Failed(diagnostics) = &reload.outcome {
             tell(args, diagnostics);
             eprintln!("specula: no picture yet; waiting for the next save");
             let Some(changes) = watch.next() else { return Ok(false) };
             take_files(headless, args, watch, &changes)?;
-            reload = headless.update(headless.reloader().library().change_of(&changes.paths));
+            reload = headless.update_first(headless.reloader().library().change_of(&changes.paths));
         }
     }
     match reload.outcome {
@@ -97,7 +98,7 @@ fn first_picture(headless: &mut Headless, args: &Args, watch: Option<&mut Watch>
 fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, changes: &Changes) -> Result<(), Failure> {
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
     let new_files = take_files(headless, args, watch, changes)?;
-    let reload = headless.update(headless.reloader().library().change_of(&changes.paths));
+    let reload = headless.update_first(headless.reloader().library().change_of(&changes.paths));
     let mut first_frame_ms = 0.0;
     if new_files || matches!(reload.outcome, Outcome::Ready(_)) {
         let begin = Instant::now();
@@ -111,6 +112,21 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
         warn_of_bakes(headless);
     }
     report(&reload, headless, args, detect_ms, first_frame_ms);
+    complete(headless, args, true)
+}
+
+/// Compiles the stages that the picture did not need. Their errors end the command, unless it watches for the next save.
+fn complete(headless: &mut Headless, args: &Args, watches: bool) -> Result<(), Failure> {
+    let Some(rest) = headless.finish() else { return Ok(()) };
+    if let Outcome::Failed(diagnostics) = &rest.outcome {
+        if !watches {
+            return Err(Failure::Shaders(diagnostics.clone()));
+        }
+        tell(args, diagnostics);
+        eprintln!("specula: the picture is good; modes of the broken files are missing");
+    }
+    let generation = headless.shaders().generation;
+    emit(args.common.emits(), &Event::Completed(CompletedEvent::new(&rest, generation)));
     Ok(())
 }
 

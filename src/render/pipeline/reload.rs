@@ -4,10 +4,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Gpu, SetLayouts};
-use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, Update};
+use crate::shader::{Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, TreePath, Update};
 
 use super::set::{PipelineSet, stages};
 use crate::render::state::PipelineRequest;
+
+/// Stages that the first picture does not need: a window starts with the picture, and headless finishes before a mode.
+const LATER_STAGES: [&str; 2] = [ModeStage::Debug.path(), ModeStage::Paths.path()];
 
 /// Compiles a shader tree and builds its pipelines. In the window the worker thread owns it; headless calls it directly.
 pub struct Reloader {
@@ -64,16 +67,52 @@ impl Reloader {
     }
 
     /// Compiles the stages that `change` made dirty, and builds the pipelines that `request` returns for the new shaders.
+    pub fn update(&mut self, change: Change, request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest) -> Reload {
+        let update = self.library.update(&change);
+        self.build(update, request, || false)
+    }
+
+    /// [`Reloader::update`] of what is on screen: the stages and pipelines that `request` needs. If these are good, other
+    /// stages may be pending in the new set, and [`Reloader::finish`] compiles them.
     ///
+    /// With `with_light`, what bakes light counts as on screen. In a window, an edit of it shows in the old light first.
     /// `superseded` returns whether a newer edit waits. If so, the update ends after compiling with [`Outcome::Unchanged`], and
     /// the next update builds the pipelines.
-    pub fn update(
+    pub fn update_first(
         &mut self,
         change: Change,
-        request: impl FnOnce(&Arc<ShaderSet>) -> PipelineRequest,
+        with_light: bool,
+        request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest,
         superseded: impl Fn() -> bool,
     ) -> Reload {
-        let (shaders, report) = match self.library.update(&change) {
+        let on_screen = self.library.set().map(|shaders| request(shaders).stages());
+        // The first picture needs light in any case.
+        let with_light = with_light || on_screen.is_none();
+        let on_screen = on_screen.unwrap_or_default();
+        let is_first = |path: &TreePath| {
+            on_screen.contains(path.as_str()) || (with_light && !LATER_STAGES.contains(&path.as_str()))
+        };
+        let update = self.library.update_first(&change, is_first);
+        self.build(update, request, superseded)
+    }
+
+    /// Compiles the stages that [`Reloader::update_first`] has left. The set that it returns has the pipelines of the one before.
+    pub fn finish(
+        &mut self,
+        request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest,
+        superseded: impl Fn() -> bool + Sync,
+    ) -> Reload {
+        let update = self.library.finish(&superseded);
+        self.build(update, request, superseded)
+    }
+
+    fn build(
+        &mut self,
+        update: Update,
+        request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest,
+        superseded: impl Fn() -> bool,
+    ) -> Reload {
+        let (shaders, report) = match update {
             Update::Failed(diagnostics, report) => {
                 return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Failed(diagnostics) };
             }

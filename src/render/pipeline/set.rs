@@ -1,8 +1,10 @@
 //! The pipelines of one shader generation. Each frame uses exactly one set, so no frame mixes two generations.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use rayon::prelude::*;
 
 use crate::gpu::{
     ComputePipeline, Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule,
@@ -14,8 +16,17 @@ use crate::render::state::{Pass, PipelineKey, PipelineRequest};
 use crate::shader::{ShaderSet, specialize};
 
 /// The stages that draw a picture.
-const GRAPHICS: [&str; 8] =
-    ["pbr.vert", "pbr.frag", "paths.frag", "sky.vert", "sky.frag", "tonemap.vert", "tonemap.frag", "average.frag"];
+const GRAPHICS: [&str; 9] = [
+    "pbr.vert",
+    "pbr.frag",
+    "debug.frag",
+    "paths.frag",
+    "sky.vert",
+    "sky.frag",
+    "tonemap.vert",
+    "tonemap.frag",
+    "average.frag",
+];
 /// The stages that measure the BRDF, for `specula brdf`.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
@@ -33,19 +44,6 @@ pub fn all_stages() -> Vec<&'static str> {
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Pass {
-    /// Paths of the vertex and fragment stages.
-    fn stages(self) -> [&'static str; 2] {
-        match self {
-            Self::Model { paths: false, .. } => [GRAPHICS[0], GRAPHICS[1]],
-            Self::Model { paths: true, .. } => [GRAPHICS[0], GRAPHICS[2]],
-            Self::Sky => [GRAPHICS[3], GRAPHICS[4]],
-            Self::Tonemap => [GRAPHICS[5], GRAPHICS[6]],
-            Self::Average => [GRAPHICS[5], GRAPHICS[7]],
-        }
-    }
 }
 
 /// The pipelines of one [`PipelineRequest`].
@@ -160,25 +158,36 @@ impl PipelineSet {
         }
     }
 
-    /// Creates the missing pipelines of `request`. Any thread may call this while frames use the set.
+    /// Creates the missing pipelines of `request` in parallel, except those of pending stages. Any thread may call this while
+    /// frames use the set.
     ///
     /// # Errors
-    /// The driver rejects a pipeline. Pipelines created before it stay.
+    /// The driver rejects a pipeline. The others stay.
     pub fn build(&self, request: &PipelineRequest) -> Result<(), GpuError> {
         let number = self.requests.fetch_add(1, Ordering::SeqCst) + 1;
-        for key in request.keys() {
+        let keys: HashSet<PipelineKey> = request.keys().filter(|key| !self.is_pending(key)).collect();
+        keys.into_par_iter().try_for_each(|key| {
             if !lock(&self.graphics).touch(&key, number) {
                 let pipeline = self.make(&key)?;
                 lock(&self.graphics).insert(key, pipeline, number);
             }
-        }
+            Ok::<_, GpuError>(())
+        })?;
         lock(&self.graphics).trim(number);
         lock(&self.computes).trim(number);
         Ok(())
     }
 
+    /// Whether a stage of the pipeline is still to be compiled.
+    fn is_pending(&self, key: &PipelineKey) -> bool {
+        key.pass.stages().iter().any(|path| self.shaders.pending.contains(*path))
+    }
+
     /// The pipelines of `request`, or `None` if one is missing.
     pub(crate) fn bind(&self, request: &PipelineRequest) -> Option<BoundPipelines> {
+        if request.needs_pending(&self.shaders) {
+            return None;
+        }
         let graphics = lock(&self.graphics);
         let pipelines = request.keys().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
         let pipelines = pipelines.collect::<Option<_>>()?;

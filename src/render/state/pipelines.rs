@@ -10,7 +10,7 @@ use crate::interface::{
 };
 use crate::scene::light_count;
 use crate::settings::{LightSource, Settings, Tonemap};
-use crate::shader::{DrawAs, Encode, Mode, ShaderSet, values};
+use crate::shader::{DrawAs, Encode, Mode, ModeStage, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -74,8 +74,8 @@ pub struct PipelineRequest {
     pub sky: bool,
     /// Whether the picture is the mean of all frames since it last changed.
     pub accumulates: bool,
-    /// Whether `paths.frag` draws the model instead of `pbr.frag`.
-    pub paths: bool,
+    /// The stage that computes the mode.
+    pub stage: ModeStage,
     /// Whether the mode traces rays through the model.
     pub traces: bool,
     /// Whether transmissive surfaces look up the final picture behind them instead of this mode's.
@@ -94,14 +94,26 @@ pub(crate) struct PipelineKey {
 /// The pass that a pipeline belongs to. It determines the stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Pass {
-    /// The model: `pbr.vert`, and `pbr.frag` or, for a mode of random paths, `paths.frag`.
-    Model { raster: Raster, class: PrimitiveClass, paths: bool },
+    /// The model: `pbr.vert`, and the fragment stage of the mode.
+    Model { raster: Raster, class: PrimitiveClass, fragment: ModeStage },
     /// The environment behind it: `sky.vert`, `sky.frag`.
     Sky,
     /// Adds a frame to the mean: `tonemap.vert`, `average.frag`.
     Average,
     /// HDR to picture: `tonemap.vert`, `tonemap.frag`.
     Tonemap,
+}
+
+impl Pass {
+    /// Paths of the vertex and fragment stages.
+    pub(crate) fn stages(self) -> [&'static str; 2] {
+        match self {
+            Self::Model { fragment, .. } => ["pbr.vert", fragment.path()],
+            Self::Sky => ["sky.vert", "sky.frag"],
+            Self::Average => ["tonemap.vert", "average.frag"],
+            Self::Tonemap => ["tonemap.vert", "tonemap.frag"],
+        }
+    }
 }
 
 impl PipelineRequest {
@@ -121,7 +133,7 @@ impl PipelineRequest {
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
             sky: settings.environment.is_shown(&settings.view) && mode.is_some_and(|m| m.tonemap),
             accumulates: mode.is_some_and(|m| m.accumulate),
-            paths: mode.is_some_and(|m| m.paths),
+            stage: mode.map(|m| m.stage).unwrap_or_default(),
             traces: mode.is_some_and(|m| m.traces),
             through: mode.is_some_and(|m| m.through),
         }
@@ -136,7 +148,7 @@ impl PipelineRequest {
             draw: mode.draw,
             sky: self.sky && mode.tonemap,
             accumulates: mode.accumulate,
-            paths: mode.paths,
+            stage: mode.stage,
             traces: mode.traces,
             through: mode.through,
             ..self.clone()
@@ -162,7 +174,7 @@ impl PipelineRequest {
             DrawAs::Surfaces => Raster::Solid,
         };
         PipelineKey {
-            pass: Pass::Model { raster, class: material.class, paths: self.paths },
+            pass: Pass::Model { raster, class: material.class, fragment: self.stage },
             format: self.target.color,
             samples: self.target.samples,
             specialization,
@@ -177,14 +189,14 @@ impl PipelineRequest {
 
     /// Whether the mode shows all light: the final picture, or the same by random paths.
     fn shows_picture(&self) -> bool {
-        self.mode == interface::MODE_FINAL || (self.traces && self.tonemap != TONEMAP_OFF)
+        self.stage == ModeStage::Picture || (self.traces && self.tonemap != TONEMAP_OFF)
     }
 
     /// Whether opaque surfaces are drawn twice: as in the final picture for transmissive surfaces to look up, and as this mode
     /// shows them.
     pub(crate) fn draws_opaque_twice(&self) -> bool {
         let transmissive = self.materials.iter().any(|material| is_transmissive(*material));
-        transmissive && self.through && self.mode != interface::MODE_FINAL
+        transmissive && self.through && self.stage != ModeStage::Picture
     }
 
     /// The pipeline that draws a material in the pass `behind`.
@@ -193,7 +205,7 @@ impl PipelineRequest {
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
-        let picture = Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, paths: false, ..self.clone() };
+        let picture = Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, stage: ModeStage::Picture, ..self.clone() };
         picture.model_key(material)
     }
 
@@ -221,6 +233,18 @@ impl PipelineRequest {
             samples: 1,
             specialization: Vec::new(),
         })
+    }
+
+    /// The stages of the pipelines.
+    pub(crate) fn stages(&self) -> BTreeSet<&'static str> {
+        // Without a model the stages of the mode count too: the model is still loading.
+        let model = ["pbr.vert", self.stage.path()];
+        self.keys().flat_map(|key| key.pass.stages()).chain(model).collect()
+    }
+
+    /// Whether a picture needs stages that are still to be compiled.
+    pub fn needs_pending(&self, shaders: &ShaderSet) -> bool {
+        !shaders.pending.is_empty() && self.stages().iter().any(|path| shaders.pending.contains(*path))
     }
 
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {

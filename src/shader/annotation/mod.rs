@@ -66,6 +66,32 @@ pub enum DrawAs {
     Layers,
 }
 
+/// The fragment stage that computes a mode's value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+pub enum ModeStage {
+    /// The picture.
+    #[serde(rename = "pbr.frag")]
+    Picture,
+    /// Channels, terms and checks.
+    #[default]
+    #[serde(rename = "debug.frag")]
+    Debug,
+    /// Random paths.
+    #[serde(rename = "paths.frag")]
+    Paths,
+}
+
+impl ModeStage {
+    /// The path of the stage in the shader tree.
+    pub const fn path(self) -> &'static str {
+        match self {
+            Self::Picture => "pbr.frag",
+            Self::Debug => "debug.frag",
+            Self::Paths => "paths.frag",
+        }
+    }
+}
+
 /// A debug mode.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Mode {
@@ -89,9 +115,9 @@ pub struct Mode {
     pub tonemap: bool,
     /// Whether the view averages frames, each of which is a noisy estimate.
     pub accumulate: bool,
-    /// Whether `paths.frag` computes the value instead of `pbr.frag`.
-    pub paths: bool,
-    /// Whether the mode traces rays through the model, which needs its bounding volume hierarchy. Implies `paths`.
+    /// The stage that computes the value.
+    pub stage: ModeStage,
+    /// Whether the mode traces rays through the model, which needs its bounding volume hierarchy.
     pub traces: bool,
     /// Whether transmissive surfaces show the final picture behind them instead of this mode.
     pub through: bool,

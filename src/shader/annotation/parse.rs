@@ -2,7 +2,7 @@
 
 use super::cursor::{Cursor, Place};
 use super::value::{choices, claim, claimed, default, range};
-use super::{DrawAs, Encode, Mode, ParameterType};
+use super::{DrawAs, Encode, Mode, ModeStage, ParameterType};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, is_word, lines, tokens};
 use crate::shader::spirv::reflect::Scalar;
@@ -117,8 +117,7 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
         match key {
             "tonemap" => mode.tonemap = true,
             "accumulate" => mode.accumulate = true,
-            "paths" => mode.paths = true,
-            "traces" => (mode.paths, mode.traces) = (true, true),
+            "traces" => mode.traces = true,
             "through" => mode.through = true,
             "group" => mode.group = cursor.value(key)?.1,
             "doc" => mode.doc = cursor.value(key)?.1,
@@ -137,6 +136,18 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                     "vector" => Encode::Vector,
                     other => {
                         let message = format!("expected encode=color, encode=data or encode=vector, found `{other}`");
+                        return Err(cursor.error(bytes, message));
+                    }
+                };
+            }
+            "stage" => {
+                let (bytes, value) = cursor.value(key)?;
+                mode.stage = match value.as_str() {
+                    "pbr" => ModeStage::Picture,
+                    "debug" => ModeStage::Debug,
+                    "paths" => ModeStage::Paths,
+                    other => {
+                        let message = format!("expected stage=pbr, stage=debug or stage=paths, found `{other}`");
                         return Err(cursor.error(bytes, message));
                     }
                 };
@@ -163,12 +174,15 @@ fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode,
                 mode.key = Some(one);
             }
             other => {
-                let known = "group=, encode=, components=, unit=, tonemap, accumulate, paths, traces, through, draw=, key= or \
+                let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, key= or \
                     doc=";
                 let message = format!("expected {known}, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }
         }
+    }
+    if mode.traces && mode.stage != ModeStage::Paths {
+        return Err(cursor.expected("stage=paths beside `traces`: only paths.frag can trace rays"));
     }
     Ok(mode)
 }

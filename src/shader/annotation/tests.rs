@@ -126,7 +126,7 @@ fn what_does_not_parse_says_what_was_expected() {
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
-        "m.frag:3:34: error: expected group=, encode=, components=, unit=, tonemap, accumulate, paths, traces, through, draw=, key= or doc=, found `colour`",
+        "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, key= or doc=, found `colour`",
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" accumulate accumulate",

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::lines;
 use crate::shader::source::{SourceError, TreePath};
 
 /// Maximum depth of includes. glslang itself has no limit.
@@ -64,6 +65,31 @@ impl<'a> Includes<'a> {
     pub fn into_dependencies(self) -> BTreeSet<TreePath> {
         self.dependencies.into_inner()
     }
+}
+
+/// The files that `path` includes, directly or not, and the file itself, found without compiling: conditions are not
+/// evaluated, and includes that do not resolve are left out.
+pub fn files_of(snapshot: &Snapshot<'_>, path: &TreePath) -> BTreeSet<TreePath> {
+    let mut files = BTreeSet::new();
+    let mut open = vec![path.clone()];
+    while let Some(path) = open.pop() {
+        let Ok(text) = snapshot.read(&path) else { continue };
+        if files.insert(path.clone()) {
+            let included = lines(&text).into_iter().filter_map(|line| included_name(line.raw).map(str::to_owned));
+            let found = included.filter_map(|name| {
+                let mut candidates = path.sibling(&name).into_iter().chain(TreePath::parse(&name));
+                candidates.find(|candidate| snapshot.read(candidate).is_ok())
+            });
+            open.extend(found);
+        }
+    }
+    files
+}
+
+/// The name in `#include "name"`.
+fn included_name(line: &str) -> Option<&str> {
+    let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?.trim_start();
+    rest.strip_prefix('"')?.split_once('"').map(|(name, _)| name)
 }
 
 fn chain(stack: &[TreePath], last: Option<&TreePath>) -> String {

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::shader::annotation::{self, Annotations, Constant, Mode, Parameter};
+use crate::shader::compile::include::files_of;
 use crate::shader::compile::{Compiler, StageKind};
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
@@ -55,6 +56,9 @@ pub struct ShaderSet {
     pub generation: u64,
     /// The stages by path. A stage that an edit does not affect is the same `Arc` in both sets.
     pub stages: BTreeMap<String, Arc<Stage>>,
+    /// Stages that are still to be compiled for this edit, or that failed. [`ShaderSet::stages`] holds their last good
+    /// versions, which no picture may show together with the others.
+    pub pending: BTreeSet<String>,
     /// Debug modes, ordered by id.
     pub modes: Vec<Mode>,
     /// The author's specialization constants, ordered by id.
@@ -155,6 +159,13 @@ impl Library {
 
     /// Updates the library from the files, all or nothing: on any error the last good set remains.
     pub fn update(&mut self, change: &Change) -> Update {
+        self.update_first(change, |_| false)
+    }
+
+    /// [`Library::update`] in two steps. If the change reaches stages for which `is_first` returns true, only these are
+    /// compiled, and if they are good, the new set appears at once. Its other stages are [`ShaderSet::pending`] until
+    /// [`Library::finish`] compiles them.
+    pub fn update_first(&mut self, change: &Change, is_first: impl Fn(&TreePath) -> bool) -> Update {
         let start = Instant::now();
         let source = Arc::clone(&self.source);
         let snapshot = Snapshot::new(&source);
@@ -164,12 +175,68 @@ impl Library {
         if !stale.moved && self.slots.iter().all(|slot| slot.current.is_some()) && stale.compile.is_empty() {
             return Update::Unchanged { cleared: false };
         }
+        let (first, rest): (Vec<_>, Vec<_>) = stale.compile.into_iter().partition(|(_, path)| is_first(path));
+        self.compile(&first, &snapshot, &mut report, || false);
+        let is_complete = rest.is_empty() && self.slots.iter().all(Slot::is_good);
+        if !is_complete && first.iter().any(|(index, _)| self.slots[*index].is_new()) {
+            for (index, _) in &rest {
+                self.slots[*index].current = None;
+            }
+            // An error may come from what is not compiled yet, so only a complete update reports it.
+            let firsts_are_good = self.slots.iter().all(|slot| !is_first(&slot.path) || slot.is_good());
+            if let Some(Ok(linked)) = firsts_are_good.then(|| self.link(&snapshot, true)) {
+                report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
+                return self.commit(linked, self.next_generation(), &snapshot, report);
+            }
+        }
+        self.compile(&rest, &snapshot, &mut report, || false);
+        let linked = self.link(&snapshot, false);
+        report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
+        self.conclude(linked, self.next_generation(), &snapshot, report)
+    }
+
+    /// Compiles the stages that [`Library::update_first`] has left. The new set has the same generation. On an error the set
+    /// stays, without the stages that are still pending. Ends early if `superseded` returns that a newer edit waits, or if the
+    /// files have changed since.
+    pub fn finish(&mut self, superseded: impl Fn() -> bool + Sync) -> Update {
+        let pending = self.set.as_ref().filter(|set| !set.pending.is_empty());
+        let Some(generation) = pending.map(|set| set.generation) else { return Update::Unchanged { cleared: false } };
+        let start = Instant::now();
+        let source = Arc::clone(&self.source);
+        let snapshot = Snapshot::new(&source);
+        if self.slots.iter().any(|slot| !slot.is_current(&snapshot)) {
+            return Update::Unchanged { cleared: false };
+        }
+        let rest = self.slots.iter().map(|slot| slot.path.clone()).enumerate();
+        let rest: Vec<_> = rest.filter(|(index, _)| self.slots[*index].current.is_none()).collect();
+        let mut report = Report::default();
+        self.compile(&rest, &snapshot, &mut report, superseded);
+        if self.slots.iter().any(|slot| slot.current.is_none()) {
+            return Update::Unchanged { cleared: false };
+        }
+        let linked = self.link(&snapshot, false);
+        report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
+        self.conclude(linked, generation, &snapshot, report)
+    }
+
+    fn next_generation(&self) -> u64 {
+        self.set.as_ref().map_or(0, |set| set.generation) + 1
+    }
+
+    /// Compiles stages in parallel. Leaves out those that it has not begun when `superseded` returns true.
+    fn compile(
+        &mut self,
+        stages: &[(usize, TreePath)],
+        snapshot: &Snapshot<'_>,
+        report: &mut Report,
+        superseded: impl Fn() -> bool + Sync,
+    ) {
         let compiler = &self.compiler;
-        let compiled: Vec<(usize, Outcome, f64)> = stale
-            .compile
+        let compiled: Vec<(usize, Outcome, f64)> = stages
             .par_iter()
+            .filter(|_| !superseded())
             .map(|(index, path)| {
-                let (outcome, ms) = build(compiler, &snapshot, path);
+                let (outcome, ms) = build(compiler, snapshot, path);
                 (*index, outcome, ms)
             })
             .collect();
@@ -177,18 +244,6 @@ impl Library {
             let slot = &mut self.slots[index];
             report.stages.push((slot.path.to_string(), ms));
             slot.accept(outcome);
-        }
-        let linked = self.link(&snapshot);
-        report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
-        match linked {
-            Ok((annotations, warnings)) => {
-                let animated = self.reads_time(&snapshot);
-                self.commit(annotations, warnings, animated, report)
-            }
-            Err(diagnostics) => {
-                self.failed = true;
-                Update::Failed(unique(diagnostics), report)
-            }
         }
     }
 
@@ -223,12 +278,16 @@ impl Library {
         stale
     }
 
-    /// Links the stages: all must have compiled, interfaces must match, and annotations must parse.
-    fn link(&self, snapshot: &Snapshot<'_>) -> Result<(Annotations, Vec<Diagnostic>), Vec<Diagnostic>> {
+    /// Links the stages: all must have compiled, interfaces must match, and annotations must parse. If `is_partial`, stages
+    /// that have not compiled are left out, and their annotations are those in the files of their last good versions.
+    fn link(&self, snapshot: &Snapshot<'_>, is_partial: bool) -> Result<Linked, Vec<Diagnostic>> {
         let mut errors = Vec::new();
         let mut warnings = Vec::new();
         let mut files = BTreeSet::new();
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
+        let unseen = self.slots.iter().filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
+        let unseen: Vec<TreePath> = unseen.flat_map(|slot| files_of(snapshot, &slot.path)).collect();
+        files.extend(&unseen);
         match contract::interface_matches(snapshot) {
             Some(diagnostic) if diagnostic.severity == Severity::Error => errors.push(diagnostic),
             diagnostic => warnings.extend(diagnostic),
@@ -240,8 +299,12 @@ impl Library {
                     warnings.extend(built.warnings.iter().cloned());
                     modules.insert(&slot.path, &built.stage);
                 }
-                Some(Err(broken)) => errors.extend(broken.diagnostics.iter().cloned()),
-                None => {}
+                Some(Err(broken)) if !is_partial => errors.extend(broken.diagnostics.iter().cloned()),
+                Some(Err(_)) | None => {
+                    let good = slot.good.iter();
+                    files.extend(good.clone().flat_map(|built| &built.stage.dependencies));
+                    warnings.extend(good.flat_map(|built| &built.warnings).cloned());
+                }
             }
         }
         for (vertex, fragment) in &self.pairs {
@@ -256,7 +319,23 @@ impl Library {
         }
         let reflections: Vec<&Reflection> = modules.values().map(|stage| &stage.reflection).collect();
         let annotations = annotation::read(snapshot, files, &reflections)?;
-        Ok((annotations, unique(warnings)))
+        Ok(Linked { annotations, warnings: unique(warnings) })
+    }
+
+    fn conclude(
+        &mut self,
+        linked: Result<Linked, Vec<Diagnostic>>,
+        generation: u64,
+        snapshot: &Snapshot<'_>,
+        report: Report,
+    ) -> Update {
+        match linked {
+            Ok(linked) => self.commit(linked, generation, snapshot, report),
+            Err(diagnostics) => {
+                self.failed = true;
+                Update::Failed(unique(diagnostics), report)
+            }
+        }
     }
 
     /// Whether any file except the contract reads `frame.time_s`.
@@ -267,34 +346,43 @@ impl Library {
         self.dependencies().iter().any(|path| *path != contract && names_it(path))
     }
 
-    fn commit(
-        &mut self,
-        annotations: Annotations,
-        warnings: Vec<Diagnostic>,
-        animated: bool,
-        report: Report,
-    ) -> Update {
+    /// Makes a set of the stages that have compiled. The others are pending.
+    fn commit(&mut self, linked: Linked, generation: u64, snapshot: &Snapshot<'_>, report: Report) -> Update {
         let cleared = std::mem::replace(&mut self.failed, false);
-        let mut stages = BTreeMap::new();
+        let animated = self.reads_time(snapshot);
+        let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
         for slot in &mut self.slots {
-            let Some(Ok(built)) = &slot.current else { continue };
-            stages.insert(slot.path.to_string(), Arc::clone(&built.stage));
-            slot.good = Some(built.clone());
+            match &slot.current {
+                Some(Ok(built)) => slot.good = Some(built.clone()),
+                Some(Err(_)) | None => {
+                    pending.insert(slot.path.to_string());
+                }
+            }
+            if let Some(good) = &slot.good {
+                stages.insert(slot.path.to_string(), Arc::clone(&good.stage));
+            }
         }
-        let Annotations { modes, constants, parameters } = annotations;
+        let Linked { annotations: Annotations { modes, constants, parameters }, warnings } = linked;
         if let Some(set) = &self.set {
-            let same_stages = stages.values().zip(set.stages.values()).all(|(new, old)| Arc::ptr_eq(new, old));
+            let same_stages = stages.len() == set.stages.len()
+                && stages.values().zip(set.stages.values()).all(|(new, old)| Arc::ptr_eq(new, old));
             let same_texts = (&modes, &constants, &parameters, &warnings)
                 == (&set.modes, &set.constants, &set.parameters, &set.warnings);
-            if same_stages && same_texts {
+            if same_stages && same_texts && pending == set.pending {
                 return Update::Unchanged { cleared };
             }
         }
-        let generation = self.set.as_ref().map_or(0, |set| set.generation) + 1;
-        let set = Arc::new(ShaderSet { generation, stages, modes, constants, parameters, warnings, animated });
+        let set = ShaderSet { generation, stages, pending, modes, constants, parameters, warnings, animated };
+        let set = Arc::new(set);
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }
+}
+
+/// The parts of a set that all stages share.
+struct Linked {
+    annotations: Annotations,
+    warnings: Vec<Diagnostic>,
 }
 
 struct Stale {

@@ -101,6 +101,22 @@ impl Slot {
         Self { path, current: None, good: None }
     }
 
+    /// Whether the latest text has compiled.
+    pub fn is_good(&self) -> bool {
+        matches!(self.current, Some(Ok(_)))
+    }
+
+    /// Whether the latest text has compiled to another stage than that of the last good set.
+    pub fn is_new(&self) -> bool {
+        let Some(Ok(built)) = &self.current else { return false };
+        self.good.as_ref().is_none_or(|good| !Arc::ptr_eq(&good.stage, &built.stage))
+    }
+
+    /// Whether the current result, if there is one, is that of the snapshot's text.
+    pub fn is_current(&self, snapshot: &Snapshot<'_>) -> bool {
+        self.current.as_ref().is_none_or(|outcome| snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome))
+    }
+
     /// Every path whose change can affect the result.
     pub fn dependencies(&self) -> impl Iterator<Item = &TreePath> {
         let current = self.current.as_ref().map(dependencies_of);
@@ -113,8 +129,7 @@ impl Slot {
     pub fn recall(&mut self, snapshot: &Snapshot<'_>) -> Option<bool> {
         let good = self.good.clone().map(Ok);
         let known = [self.current.clone(), good].into_iter().flatten().find(|outcome| {
-            let hash = outcome.as_ref().map_or_else(|broken| broken.hash, |built| built.hash);
-            snapshot.closure_hash(dependencies_of(outcome)) == hash
+            snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome)
         })?;
         let moved = !self.current.as_ref().is_some_and(|current| same(current, &known));
         self.current = Some(known);
@@ -138,6 +153,10 @@ fn dependencies_of(outcome: &Outcome) -> &BTreeSet<TreePath> {
         Ok(built) => &built.stage.dependencies,
         Err(broken) => &broken.dependencies,
     }
+}
+
+fn hash_of(outcome: &Outcome) -> u64 {
+    outcome.as_ref().map_or_else(|broken| broken.hash, |built| built.hash)
 }
 
 fn same(a: &Outcome, b: &Outcome) -> bool {

@@ -1,0 +1,36 @@
+#version 460
+#include "interface.glsl"
+#include "brdf/multiscatter.glsl"
+#include "common/fragment.glsl"
+#include "common/pixel.glsl"
+#include "debug/absent.glsl"
+#include "debug/debug.glsl"
+#include "lighting/radiance.glsl"
+#include "lighting/shade.glsl"
+#include "material.glsl"
+#include "material_antialiasing.glsl"
+#include "user.glsl"
+
+// One fragment of the model in a debug mode: what pbr.frag is for the picture. A stage of its own, so that an edit of the
+// picture shows before the modes are compiled.
+
+layout(location = 0) in Fragment fragment;
+layout(location = 0) out vec4 out_color;
+
+void main() {
+    vec3 v = safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0));
+    Surface surface = make_surface(fragment, v);
+    user_surface(surface);
+    antialias_specular(surface);
+    if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
+    surface = surface_of_mode(surface);
+    complete_surface(surface, v);
+
+    // Shaded once for all modes: each call would cost the driver another copy of it to compile. The mode drops the parts
+    // that it does not show.
+    Lit lit = shade(surface, v, lights_of_mode());
+    vec3 radiance = outgoing_radiance(surface, v, lit);
+    vec3 value = radiance;
+    debug_value(fragment, surface, v, lit, radiance, value);
+    out_color = hdr_pixel(value, 1.0, no_data);
+}
