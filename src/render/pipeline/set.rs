@@ -134,6 +134,7 @@ impl PipelineSet {
         };
         if let Some(before) = before {
             set.take_over(before);
+            set.take_over_same(before, request);
         }
         set.build(request)?;
         Ok(Arc::new(set))
@@ -156,6 +157,24 @@ impl PipelineSet {
                 lock(&self.computes).entries.insert(key.clone(), entry.clone());
             }
         }
+    }
+
+    /// Takes over the pipelines of `request` whose stages are new, but do the same with the constants of the pipeline: an edit
+    /// of a clear coat changes only materials that have one, and an edit of a model that is not selected changes none.
+    fn take_over_same(&self, before: &Self, request: &PipelineRequest) {
+        let is_same = |path: &str, constants: &[(u32, u32)]| {
+            let stages = (before.shaders.stages.get(path), self.shaders.stages.get(path));
+            let (Some(old), Some(new)) = stages else { return false };
+            Arc::ptr_eq(old, new) || old.specialized_hash(constants) == new.specialized_hash(constants)
+        };
+        let keys: HashSet<PipelineKey> = request.keys().filter(|key| !self.is_pending(key)).collect();
+        keys.into_par_iter().for_each(|key| {
+            let old = lock(&before.graphics).entries.get(&key).cloned();
+            let Some(old) = old.filter(|_| !lock(&self.graphics).entries.contains_key(&key)) else { return };
+            if key.pass.stages().iter().all(|path| is_same(path, &key.specialization)) {
+                lock(&self.graphics).entries.insert(key, old);
+            }
+        });
     }
 
     /// Creates the missing pipelines of `request` in parallel, except those of pending stages. Any thread may call this while

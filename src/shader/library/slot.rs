@@ -3,15 +3,13 @@
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use xxhash_rust::xxh3::Xxh3;
-
 use crate::shader::compile::{Compiler, StageKind};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
-use crate::shader::spirv::specialize;
+use crate::shader::spirv::{behavior_hash, specialize};
 
 /// A compiled stage.
 #[derive(Debug)]
@@ -43,16 +41,13 @@ impl PartialEq for Stage {
 }
 
 impl Stage {
-    /// Hash of the module that the driver gets for these constants, without the functions that the constants leave uncalled.
-    /// Computed once.
+    /// [`behavior_hash`] of the module that the driver gets for these constants. Computed once.
     pub fn specialized_hash(&self, constants: &[(u32, u32)]) -> u64 {
         let mut hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, hash)) = hashes.iter().find(|(known, _)| known == constants) {
             return *hash;
         }
-        let mut hasher = Xxh3::new();
-        specialize(&self.spirv, constants).iter().for_each(|word| hasher.update(&word.to_le_bytes()));
-        let hash = hasher.digest();
+        let hash = behavior_hash(&specialize(&self.spirv, constants));
         // Dragging a constant's slider asks for many.
         hashes.truncate(HASHES_KEPT - 1);
         hashes.insert(0, (constants.to_vec(), hash));

@@ -3,8 +3,10 @@
 
 mod conditions;
 mod declared;
+mod hash;
 mod opcode;
 pub mod reflect;
 mod specialize;
 
+pub use hash::behavior_hash;
 pub use specialize::specialize;

@@ -1,0 +1,240 @@
+//! A hash of what a module does: equal for modules that differ only in the numbers of their ids, in names, or in
+//! declarations that nothing uses. An edit elsewhere in the source moves all ids behind it, so a hash of the words would
+//! tell most edits from each other that the driver cannot.
+
+use std::collections::HashMap;
+
+use xxhash_rust::xxh3::Xxh3;
+
+use super::opcode as op;
+
+const HEADER: usize = 5;
+
+/// Hashes a module with one entry point. Words that are not valid SPIR-V are hashed as they are.
+pub fn behavior_hash(words: &[u32]) -> u64 {
+    let hashed = Module::parse(words).map(|module| Hasher::new(&module).run());
+    hashed.unwrap_or_else(|| {
+        let mut hasher = Xxh3::new();
+        words.iter().for_each(|word| hasher.update(&word.to_le_bytes()));
+        hasher.digest()
+    })
+}
+
+/// The instructions of a module by what they define.
+#[derive(Default)]
+struct Module<'a> {
+    /// Capabilities, memory model, entry point, execution modes.
+    head: Vec<&'a [u32]>,
+    /// Types, constants and variables by id.
+    globals: HashMap<u32, &'a [u32]>,
+    /// `OpDecorate` and `OpMemberDecorate` by target, in the order of the module.
+    decorations: HashMap<u32, Vec<&'a [u32]>>,
+    functions: HashMap<u32, Vec<&'a [u32]>>,
+}
+
+impl<'a> Module<'a> {
+    fn parse(words: &'a [u32]) -> Option<Self> {
+        let mut module = Self::default();
+        let mut rest = words.get(HEADER..)?;
+        let mut function = None;
+        while let Some(first) = rest.first() {
+            let length = (first >> 16) as usize;
+            let i = rest.get(..length).filter(|i| !i.is_empty())?;
+            rest = &rest[length..];
+            let code = i[0] & 0xffff;
+            if code == op::FUNCTION {
+                function = Some(*i.get(2)?);
+            }
+            if let Some(id) = function {
+                module.functions.entry(id).or_default().push(i);
+                if code == op::FUNCTION_END {
+                    function = None;
+                }
+                continue;
+            }
+            match code {
+                // OpSource, its extensions, strings, names and lines say nothing to a driver.
+                2..=8 | 317 | 330 => {}
+                op::DECORATE | op::MEMBER_DECORATE => module.decorations.entry(*i.get(1)?).or_default().push(i),
+                // OpExtInstImport, and types: the result is the first operand.
+                11 | 19..=39 => _ = module.globals.insert(*i.get(1)?, i),
+                1 | 41..=52 | op::VARIABLE => _ = module.globals.insert(*i.get(2)?, i),
+                _ => module.head.push(i),
+            }
+        }
+        Some(module)
+    }
+}
+
+/// Hashes a module from its entry point on. Ids are numbered in the order in which they are met.
+struct Hasher<'a> {
+    module: &'a Module<'a>,
+    numbers: HashMap<u32, u32>,
+    /// Functions that were met and are still to be hashed.
+    open: Vec<u32>,
+    hasher: Xxh3,
+}
+
+impl<'a> Hasher<'a> {
+    fn new(module: &'a Module<'a>) -> Self {
+        Self { module, numbers: HashMap::new(), open: Vec::new(), hasher: Xxh3::new() }
+    }
+
+    fn run(mut self) -> u64 {
+        for i in &self.module.head {
+            self.instruction(i);
+        }
+        while let Some(id) = self.open.pop() {
+            for i in self.module.functions.get(&id).into_iter().flatten() {
+                self.instruction(i);
+            }
+        }
+        self.hasher.digest()
+    }
+
+    fn word(&mut self, word: u32) {
+        self.hasher.update(&word.to_le_bytes());
+    }
+
+    fn instruction(&mut self, i: &[u32]) {
+        self.word(i[0] & 0xffff);
+        // The entry point also lists the variables of functions that nothing calls.
+        let operands = if i[0] & 0xffff == op::ENTRY_POINT { i.len().min(3) } else { i.len() };
+        for (at, word) in i.iter().enumerate().take(operands).skip(1) {
+            match is_id(i, at) {
+                true => self.id(*word),
+                false => self.word(*word),
+            }
+        }
+    }
+
+    /// Hashes the number of an id, and at its first occurrence what defines it.
+    fn id(&mut self, id: u32) {
+        let next = self.numbers.len() as u32;
+        let number = *self.numbers.entry(id).or_insert(next);
+        self.word(number);
+        if number != next {
+            return;
+        }
+        for decoration in self.module.decorations.get(&id).into_iter().flatten() {
+            self.word(decoration[0]);
+            decoration[2..].iter().for_each(|word| self.word(*word));
+        }
+        if let Some(global) = self.module.globals.get(&id) {
+            self.instruction(global);
+        } else if self.module.functions.contains_key(&id) {
+            self.open.push(id);
+        }
+    }
+}
+
+/// Whether word `at` of an instruction is an id (SPIR-V specification, section 3.52). Literals of unknown instructions and
+/// ids are told apart by nothing, so unknown instructions count as literals: their hash then differs too often, never too
+/// rarely.
+fn is_id(i: &[u32], at: usize) -> bool {
+    // How many words are ids before the first literal. After it come more literals, unless said otherwise.
+    let leading = match i[0] & 0xffff {
+        // The model, then the function.
+        op::ENTRY_POINT => return at == 2,
+        // OpExecutionMode
+        16 => 1,
+        // OpUndef, OpConstantTrue, OpConstantFalse, composites, OpConstantNull
+        1 | 41 | 42 | 44 | 46 | 49..=51 => usize::MAX,
+        // OpExtInst: type, result, set, number, operands
+        12 => return at != 4,
+        // Types: their sizes, counts and formats are literals.
+        11 | 19..=22 => 1,
+        23..=25 => 2,
+        26..=30 | 33 => usize::MAX,
+        op::TYPE_POINTER => return at != 2,
+        // OpConstant
+        43 | 48 => 2,
+        // The operation, then its operands; of composites some are literals.
+        op::SPEC_CONSTANT_OP => return at <= 2 || (at > 3 && !matches!(i.get(3), Some(79 | 81 | 82))),
+        op::FUNCTION => return at != 3,
+        55..=57 => usize::MAX,
+        op::VARIABLE => return at != 3,
+        // OpLoad and OpStore: the rest is the memory access.
+        61 => 3,
+        62 => 2,
+        // OpAccessChain, OpInBoundsAccessChain
+        65 | 66 => usize::MAX,
+        // OpArrayLength
+        68 => 3,
+        77 | 78 => usize::MAX,
+        // OpVectorShuffle, OpCompositeExtract, OpCompositeInsert
+        79 => 4,
+        80 => usize::MAX,
+        81 => 3,
+        82 => 4,
+        83 | 84 | 86 => usize::MAX,
+        // Sampling, fetching, reading and writing: a mask of image operands stands between ids.
+        87 | 88 | 91 | 92 | 95 | 98 => return at != 5,
+        89 | 90 | 93 | 94 | 96 | 97 => return at != 6,
+        99 => return at != 4,
+        100 | 103..=107 => usize::MAX,
+        // Conversions, arithmetic, logic, bits, derivatives, barriers, atomics, OpPhi
+        109..=124 | 126..=152 | 154..=191 | 194..=205 | 207..=215 | 224 | 225 | 227..=242 | op::PHI => usize::MAX,
+        op::LOOP_MERGE => 2,
+        op::SELECTION_MERGE => 1,
+        op::LABEL | op::BRANCH | op::RETURN_VALUE => usize::MAX,
+        op::BRANCH_CONDITIONAL => 3,
+        // OpSwitch: selector, default, then pairs of a literal and a label
+        op::SWITCH => return at <= 2 || at % 2 == 0,
+        _ => 0,
+    };
+    at <= leading
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compile::Compiler;
+    use crate::shader::source::Source;
+    use crate::shader::source::snapshot::Snapshot;
+    use crate::shader::spirv::specialize;
+
+    fn hash(text: &str, kind: u32) -> u64 {
+        let source = Source::memory([("m.frag", text)]);
+        let words = Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap();
+        behavior_hash(&specialize(&words, &[(7, kind)]))
+    }
+
+    const TEXT: &str = "#version 460
+        layout(constant_id = 7) const uint KIND = 0u;
+        layout(location = 0) in vec4 x;
+        layout(location = 0) out vec4 color;
+        vec4 first() { vec4 y = x; for (int i = 0; i < 4; ++i) { if (y.x > 2.0) break; y.zw = cos(y).xy; } return y; }
+        vec4 second(vec4 z) { return exp(z) * 3.0; }
+        void main() { color = KIND == 0u ? vec4(1.0) : vec4(0.5); if (KIND == 0u) color += first(); else color = second(x); }";
+
+    #[test]
+    fn only_what_is_called_counts() {
+        let edits = [
+            // What no constant selects, with new types and constants in front of all others
+            ("exp(z) * 3.0", "mat2(z.x) * z.xy == vec2(7.0) ? exp2(z) : sin(z) * 5.0", false),
+            ("vec4 second(vec4 z)", "/* a comment */ vec4 second(vec4 renamed)", false),
+            ("y.x > 2.0", "y.y > 2.0", true),
+            ("y.x > 2.0", "y.x > 2.5", true),
+            ("i < 4", "i < 5", true),
+            (".xy;", ".yx;", true),
+            ("cos(y)", "sin(y)", true),
+            ("location = 0) in", "location = 1) in", true),
+            ("color += first()", "color -= first()", true),
+        ];
+        for (from, to, differs) in edits {
+            let to = to.replace("renamed)", "z)");
+            let edited = TEXT.replacen(from, &to, 1);
+            assert_ne!(edited, TEXT);
+            assert_eq!(hash(&edited, 0) != hash(TEXT, 0), differs, "{from} -> {to}");
+        }
+        assert_ne!(hash(TEXT, 0), hash(TEXT, 1));
+    }
+
+    #[test]
+    fn garbage_has_a_hash() {
+        assert_ne!(behavior_hash(&[]), behavior_hash(&[1, 2, 3]));
+        behavior_hash(&[0x0723_0203, 0, 0, 9, 0, 0xffff_0036]);
+        behavior_hash(&[0x0723_0203, 0, 0, 9, 0, 0x0001_000f]);
+    }
+}
