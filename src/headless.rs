@@ -1,6 +1,7 @@
 //! Rendering without a window: the same reload and the same frames as on screen, on one thread.
 
 use std::collections::BTreeSet;
+use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -90,6 +91,37 @@ impl Headless {
         }
         this.check_settings()?;
         this.provide()?;
+        Ok((this, reload))
+    }
+
+    /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the picture needs, and does not
+    /// create the resources of a frame. If the reload has failed, [`Headless::update_first`] may be called any number of times
+    /// before the first picture.
+    ///
+    /// # Errors
+    /// Those of `read`, settings or a model that do not fit, a device error.
+    pub fn start<E: From<HeadlessError>>(
+        gpu: &Arc<Gpu>,
+        compiler: &Arc<Compiler>,
+        source: Source,
+        settings: Settings,
+        size: (u32, u32),
+        read: impl FnOnce() -> Result<Model, E>,
+    ) -> Result<(Self, Reload), E> {
+        let variant = settings.variant.clone();
+        let settings = Settings { variant: String::new(), ..settings };
+        let mut this = Self::open(gpu, compiler, source, Model::default(), settings, size)?;
+        let reloader = &mut this.reloader;
+        let (compiled, model) = std::thread::scope(|scope| {
+            let compiled = scope.spawn(|| reloader.compile_first_picture());
+            let model = read();
+            (compiled.join().unwrap_or_else(|panic| resume_unwind(panic)), model)
+        });
+        let model = model?;
+        model.variant(&variant).map_err(HeadlessError::Settings)?;
+        this.session.settings.variant = variant;
+        this.set_model(model)?;
+        let reload = this.reload(|reloader, request| reloader.build(compiled, request, || false));
         Ok((this, reload))
     }
 

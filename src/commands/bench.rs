@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use specula::gpu::Gpu;
 use specula::headless::Headless;
 use specula::render::Outcome;
-use specula::scene::Model;
-use specula::shader::{Batch, Change, Compiler, Source, Watcher};
+use specula::scene::{LoadTiming, Model};
+use specula::shader::{Batch, Compiler, Source, Watcher};
 
 use super::common::{Common, check_validation, compiler};
 use super::{Failure, print_json};
@@ -165,7 +165,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
     }))
 }
 
-/// Loads the model repeatedly. Times the first load also from the start of the program.
+/// Loads the model repeatedly, while the shaders compile. Times the first load also from the start of the program.
 fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -> Result<Value, Failure> {
     let device_ms = ms(start);
     let names = [
@@ -183,11 +183,13 @@ fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -
     let mut cold_ms = 0.0;
     for sample in 0..args.samples {
         let begin = Instant::now();
-        let model: Model = args.common.model_silently(args.model.as_deref())?;
-        let (load_ms, timing) = (ms(begin), model.timing);
         let (source, settings) = (args.common.source()?, args.common.settings()?);
-        let mut headless = Headless::open(gpu, compiler, source, model, settings, args.common.size)?;
-        let reload = headless.update_first(Change::All);
+        let (mut load_ms, mut timing) = (0.0, LoadTiming::default());
+        let (mut headless, reload) = Headless::start(gpu, compiler, source, settings, args.common.size, || {
+            let model: Model = args.common.model_silently(args.model.as_deref())?;
+            (load_ms, timing) = (ms(begin), model.timing);
+            Ok::<_, Failure>(model)
+        })?;
         if let Outcome::Failed(diagnostics) = reload.outcome {
             return Err(Failure::Shaders(diagnostics));
         }

@@ -10,7 +10,7 @@ use specula::headless::Headless;
 use specula::message;
 use specula::picture;
 use specula::render::{Capture, Outcome, Reload};
-use specula::shader::{Change, Diagnostic};
+use specula::shader::Diagnostic;
 
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
 use super::{Failure, print_diagnostics};
@@ -43,13 +43,13 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     // Start watching before reading any file, so that no save is missed in between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
     let gpu = args.common.gpu()?;
-    let model = args.common.model(args.model.as_deref())?;
-    let size = args.common.size;
-    let mut headless = Headless::open(&gpu, &compiler()?, source, model, settings.clone(), size)?;
+    let read = || args.common.model(args.model.as_deref());
+    let (mut headless, reload) =
+        Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
     if let Some(watch) = &mut watch {
         watch.follow(&headless);
     }
-    if !first_picture(&mut headless, &args, watch.as_mut())? {
+    if !first_picture(&mut headless, reload, &args, watch.as_mut())? {
         return Ok(());
     }
     if settings.environment.is_lit() {
@@ -71,10 +71,14 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     check_validation(&gpu)
 }
 
-/// Compiles the shaders and creates what the first frame needs. If the shaders fail and are watched, waits for the next save.
-/// Returns `false` if watching has ended before.
-fn first_picture(headless: &mut Headless, args: &Args, watch: Option<&mut Watch>) -> Result<bool, Failure> {
-    let mut reload = headless.update_first(Change::All);
+/// Creates what the first frame needs. If the shaders have failed and are watched, waits for the next save. Returns `false` if
+/// watching has ended before.
+fn first_picture(
+    headless: &mut Headless,
+    mut reload: Reload,
+    args: &Args,
+    watch: Option<&mut Watch>,
+) -> Result<bool, Failure> {
     if let Some(watch) = watch {
         while let Outcome::Failed(diagnostics) = &reload.outcome {
             tell(args, diagnostics);

@@ -85,15 +85,20 @@ impl Reloader {
         request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest,
         superseded: impl Fn() -> bool,
     ) -> Reload {
-        let on_screen = self.library.set().map(|shaders| request(shaders).stages());
-        // The first picture needs light in any case.
-        let with_light = with_light || on_screen.is_none();
-        let on_screen = on_screen.unwrap_or_default();
+        let Some(on_screen) = self.library.set().map(|shaders| request(shaders).stages()) else {
+            let update = self.compile_first_picture();
+            return self.build(update, request, superseded);
+        };
         let is_first = |path: &TreePath| {
             on_screen.contains(path.as_str()) || (with_light && !LATER_STAGES.contains(&path.as_str()))
         };
         let update = self.library.update_first(&change, is_first);
         self.build(update, request, superseded)
+    }
+
+    /// Compiles what a first picture needs, while the model may still be loading. [`Reloader::build`] takes the result.
+    pub fn compile_first_picture(&mut self) -> Update {
+        self.library.update_first(&Change::All, |path| !LATER_STAGES.contains(&path.as_str()))
     }
 
     /// Compiles the stages that [`Reloader::update_first`] has left. The set that it returns has the pipelines of the one before.
@@ -106,7 +111,8 @@ impl Reloader {
         self.build(update, request, superseded)
     }
 
-    fn build(
+    /// Builds the pipelines that `request` returns for the shaders of an update. Ends early if `superseded` says so.
+    pub fn build(
         &mut self,
         update: Update,
         request: impl Fn(&Arc<ShaderSet>) -> PipelineRequest,
