@@ -65,6 +65,8 @@ pub struct ReloadEvent {
     pub detect_ms: f64,
     /// Compiling the stages.
     pub compile_ms: f64,
+    /// Pipelines that were created; others were reused.
+    pub pipelines: usize,
     /// Creating the pipelines.
     pub pipeline_ms: f64,
     /// From the swap to the end of the first frame.
@@ -102,6 +104,7 @@ impl ReloadEvent {
             ok: !matches!(reload.outcome, Outcome::Failed(_)),
             detect_ms: to_microseconds(detect_ms),
             compile_ms: to_microseconds(reload.report.compile_ms),
+            pipelines: reload.pipelines,
             pipeline_ms: to_microseconds(reload.pipeline_ms),
             first_frame_ms: to_microseconds(first_frame_ms),
         }

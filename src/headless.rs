@@ -367,7 +367,7 @@ impl Headless {
         for states in states.chunks(PipelineSet::REQUESTS_KEPT as usize / 2) {
             if let Some(set) = self.resources.pipelines() {
                 // A driver compiles a pipeline on the calling thread.
-                states.par_iter().try_for_each(|state| set.build(&state.pipelines))?;
+                states.par_iter().try_for_each(|state| set.build(&state.pipelines).map(|_| ()))?;
             }
             for state in states {
                 let frame = self.resources.provide(state)?;

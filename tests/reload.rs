@@ -2,8 +2,10 @@
 
 mod support;
 
+use std::collections::BTreeSet;
 use std::fs;
 
+use specula::headless::HeadlessError;
 use specula::render::Outcome;
 use specula::settings::ShaderValue;
 use specula::shader::{Change, Severity};
@@ -21,12 +23,13 @@ const NDF: &str = "brdf/ndf.glsl";
 const USER: &str = "user.glsl";
 const PARAMS: &str = "user/params.glsl";
 /// Stages that sample the environment.
-const SKY: &[&str] = &["paths.frag", "pbr.frag", "sky.frag"];
+const SKY: &[&str] = &["debug.frag", "paths.frag", "pbr.frag", "sky.frag"];
 /// Stages that evaluate D: the picture, random paths, and the tables and reflections of light from all directions.
-const SPECULAR: &[&str] = &["ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
+const SPECULAR: &[&str] =
+    &["debug.frag", "ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
 /// Stages with the models' choices.
 const CHOICES: &[&str] =
-    &["ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
+    &["debug.frag", "ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
 /// Stages that round to half floats.
 const ROUNDING: &[&str] = &[
     "ibl/cube.comp",
@@ -82,8 +85,8 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
     for (file, from, to, expected) in [
         (NDF, SQUARED, "float a2 = alpha;", SPECULAR),
         ("common/tonemap.glsl", "x / (1.0 + x)", "x / (1.5 + x)", &["tonemap.frag"][..]),
-        ("common/fragment.glsl", "vec2 uv1;", "vec2 uv1;\n    vec2 uv2;", &["paths.frag", "pbr.frag", "pbr.vert"]),
-        ("common/color.glsl", "0.0031308", "0.0031309", &["paths.frag", "pbr.frag", "tonemap.frag"]),
+        ("common/fragment.glsl", "vec2 uv1;", "vec2 uv1;\n    vec2 uv2;", &["debug.frag", "paths.frag", "pbr.frag", "pbr.vert"]),
+        ("common/color.glsl", "0.0031308", "0.0031309", &["debug.frag", "paths.frag", "pbr.frag", "tonemap.frag"]),
         ("lighting/environment.glsl", "textureLod(environment_cube, ", "textureLod(environment_cube, -", SKY),
         ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", CHOICES),
         ("ibl/half.glsl", "65504.0", "65503.0", ROUNDING),
@@ -101,6 +104,81 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
         assert_eq!(stages(&reload), expected, "after {file}");
         session.render();
     }
+}
+
+/// The picture does not wait for debug modes and random paths.
+#[test]
+fn what_is_on_screen_compiles_first() {
+    let mut session = sphere();
+    let before = session.render();
+    session.tree.write(NDF, &session.tree.edited(NDF, SQUARED, "float a2 = alpha;"));
+    let reload = session.headless.update_first(Change::Paths(BTreeSet::from([NDF.into()])));
+    ready(&reload);
+    assert_eq!(stages(&reload), ["ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "pbr.frag"]);
+    let after = session.render();
+    assert_differ(&before, &after, "another NDF, of which the modes are not compiled yet");
+    let rest = session.headless.finish().expect("stages are left");
+    ready(&rest);
+    assert_eq!((stages(&rest), rest.pipelines), (vec!["debug.frag", "paths.frag"], 0));
+    assert_same(&after, &session.render(), "after the rest was compiled");
+    assert!(session.headless.finish().is_none());
+
+    // In a mode, the mode comes first.
+    session.mode("d");
+    session.tree.write(NDF, &session.tree.edited(NDF, "float a2 = alpha;", SQUARED));
+    session.headless.settings_mut().mode = "d".into();
+    let reload = session.headless.update_first(Change::Paths(BTreeSet::from([NDF.into()])));
+    assert_eq!(stages(&reload), ["debug.frag", "ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp"]);
+    // A mode that needs what is left finishes first.
+    assert_same(&before, &session.mode("final"), "the first NDF again");
+}
+
+/// An error that only debug modes have is told, but does not hold the picture back.
+#[test]
+fn a_broken_mode_costs_the_modes_alone() {
+    const MODES: &str = "debug/modes.glsl";
+    let mut session = sphere();
+    let before = session.render();
+    session.tree.write(NDF, &session.tree.edited(NDF, SQUARED, "float a2 = alpha;"));
+    session.tree.write(MODES, &session.tree.edited(MODES, "    return false;", "    return nothing;"));
+    let reload = session.headless.update_first(Change::Paths([NDF, MODES].map(Into::into).into()));
+    ready(&reload);
+    let after = session.render();
+    assert_differ(&before, &after, "the new picture");
+    let rest = session.headless.finish().expect("stages are left");
+    assert!(failed(&rest)[0].file.ends_with(MODES), "{:?}", failed(&rest));
+    assert_same(&after, &session.render(), "the picture stays");
+    session.headless.settings_mut().mode = "d".into();
+    let Err(HeadlessError::Shaders(errors)) = session.headless.render() else { panic!("the mode has no shader") };
+    assert!(errors[0].file.ends_with(MODES), "{errors:?}");
+    session.headless.settings_mut().mode = "final".into();
+
+    // The picture goes on to follow edits, and the modes return with the repair.
+    session.tree.write(NDF, &session.tree.edited(NDF, "float a2 = alpha;", SQUARED));
+    ready(&session.headless.update_first(Change::Paths([NDF].map(Into::into).into())));
+    assert_same(&before, &session.render(), "the first NDF again");
+    assert!(matches!(session.headless.finish().expect("modes are still broken").outcome, Outcome::Failed(_)));
+    ready(&session.edit(MODES, "    return nothing;", "    return false;"));
+    assert!(session.mode("d").raw.iter().any(|value| value[0] > 0.0));
+}
+
+/// The driver compiles only what does something else with the constants of a pipeline.
+#[test]
+fn an_edit_of_what_is_not_selected_builds_no_pipeline() {
+    let mut session = Session::new(model("clearcoat"), settings(&["environment.name=none"]));
+    let before = session.render();
+    let all = session.headless.update(Change::All).pipelines;
+    assert_eq!(all, 0, "nothing has changed");
+    let beckmann = session.edit(NDF, "vec2 slope = h_ts.xy / alpha;", "vec2 slope = h_ts.xy / (alpha * 7.0);");
+    ready(&beckmann);
+    assert_eq!(beckmann.pipelines, 0, "the NDF is GGX");
+    assert_same(&before, &session.render(), "after an edit of Beckmann's D");
+    let coat = session.edit("brdf/evaluate.glsl", "float weight = s.clearcoat *", "float weight = 0.5 * s.clearcoat *");
+    ready(&coat);
+    assert_differ(&before, &session.render(), "half a coat");
+    let everything = session.edit(NDF, SQUARED, "float a2 = alpha;");
+    ready(&everything);
+    assert!(0 < coat.pipelines && coat.pipelines < everything.pipelines, "{} {}", coat.pipelines, everything.pipelines);
 }
 
 #[test]

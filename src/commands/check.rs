@@ -93,7 +93,7 @@ fn build_choices(
     };
     let plain = request(&settings);
     let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None) {
-        Ok(set) => set,
+        Ok((set, _)) => set,
         Err(error) => {
             diagnostics.push(Diagnostic::error(args.common.source()?.name(), error.to_string()));
             return Ok(None);

@@ -273,7 +273,7 @@ impl Thread {
                 self.finish();
             } else if let Some((set, request)) = build.take() {
                 let pending = request.needs_pending(&set.shaders);
-                let built = set.build(&request).map_err(|error| error.to_string());
+                let built = set.build(&request).map(|_| ()).map_err(|error| error.to_string());
                 let built = if pending { Err(PENDING.to_owned()) } else { built };
                 self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
                 self.build_ahead(&set);

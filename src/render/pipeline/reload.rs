@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Gpu, SetLayouts};
-use crate::shader::{Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, TreePath, Update};
+use crate::shader::{Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, StageKind, TreePath, Update};
 
 use super::set::{PipelineSet, stages};
 use crate::render::state::PipelineRequest;
@@ -38,7 +38,9 @@ pub enum Outcome {
 pub struct Reload {
     /// The compiled stages, and how long they took.
     pub report: Report,
-    /// Time to create the pipelines, milliseconds.
+    /// Number of pipelines that were created.
+    pub pipelines: usize,
+    /// Time to create them, milliseconds.
     pub pipeline_ms: f64,
     /// Its result.
     pub outcome: Outcome,
@@ -90,7 +92,7 @@ impl Reloader {
             return self.build(update, request, superseded);
         };
         let is_first = |path: &TreePath| {
-            on_screen.contains(path.as_str()) || (with_light && !LATER_STAGES.contains(&path.as_str()))
+            on_screen.contains(path.as_str()) || (with_light && StageKind::of(path) == Some(StageKind::Compute))
         };
         let update = self.library.update_first(&change, is_first);
         self.build(update, request, superseded)
@@ -120,7 +122,7 @@ impl Reloader {
     ) -> Reload {
         let (shaders, report) = match update {
             Update::Failed(diagnostics, report) => {
-                return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Failed(diagnostics) };
+                return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(diagnostics) };
             }
             Update::Ready(shaders, report) => {
                 self.unbuilt = true;
@@ -130,26 +132,28 @@ impl Reloader {
                 Some(shaders) if self.unbuilt => (shaders.clone(), Report::default()),
                 _ => {
                     let outcome = Outcome::Unchanged { cleared };
-                    return Reload { report: Report::default(), pipeline_ms: 0.0, outcome };
+                    return Reload { report: Report::default(), pipelines: 0, pipeline_ms: 0.0, outcome };
                 }
             },
         };
         if superseded() {
-            return Reload { report, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
+            return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
         }
         let start = Instant::now();
         let before = self.current.as_deref();
         let request = request(&shaders);
         let built = PipelineSet::new(&self.gpu, &self.layouts, shaders, &request, before);
         let pipeline_ms = start.elapsed().as_secs_f64() * 1e3;
-        let outcome = match built {
-            Ok(set) => {
+        let (outcome, pipelines) = match built {
+            Ok((set, pipelines)) => {
                 self.unbuilt = false;
                 self.current = Some(set.clone());
-                Outcome::Ready(set)
+                (Outcome::Ready(set), pipelines)
             }
-            Err(error) => Outcome::Failed(vec![Diagnostic::error(self.library.source().name(), error.to_string())]),
+            Err(error) => {
+                (Outcome::Failed(vec![Diagnostic::error(self.library.source().name(), error.to_string())]), 0)
+            }
         };
-        Reload { report, pipeline_ms, outcome }
+        Reload { report, pipelines, pipeline_ms, outcome }
     }
 }

@@ -123,7 +123,7 @@ impl PipelineSet {
         shaders: Arc<ShaderSet>,
         request: &PipelineRequest,
         before: Option<&Self>,
-    ) -> Result<Arc<Self>, GpuError> {
+    ) -> Result<(Arc<Self>, usize), GpuError> {
         let set = Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
@@ -136,8 +136,8 @@ impl PipelineSet {
             set.take_over(before);
             set.take_over_same(before, request);
         }
-        set.build(request)?;
-        Ok(Arc::new(set))
+        let built = set.build(request)?;
+        Ok((Arc::new(set), built))
     }
 
     /// Takes over the pipelines of unchanged stages. Frames may use `before` at the same time, so its locks are held briefly.
@@ -177,24 +177,24 @@ impl PipelineSet {
         });
     }
 
-    /// Creates the missing pipelines of `request` in parallel, except those of pending stages. Any thread may call this while
-    /// frames use the set.
+    /// Creates the missing pipelines of `request` in parallel, except those of pending stages, and returns their number. Any
+    /// thread may call this while frames use the set.
     ///
     /// # Errors
     /// The driver rejects a pipeline. The others stay.
-    pub fn build(&self, request: &PipelineRequest) -> Result<(), GpuError> {
+    pub fn build(&self, request: &PipelineRequest) -> Result<usize, GpuError> {
         let number = self.requests.fetch_add(1, Ordering::SeqCst) + 1;
         let keys: HashSet<PipelineKey> = request.keys().filter(|key| !self.is_pending(key)).collect();
-        keys.into_par_iter().try_for_each(|key| {
-            if !lock(&self.graphics).touch(&key, number) {
-                let pipeline = self.make(&key)?;
-                lock(&self.graphics).insert(key, pipeline, number);
-            }
+        let missing: Vec<PipelineKey> =
+            keys.into_iter().filter(|key| !lock(&self.graphics).touch(key, number)).collect();
+        missing.par_iter().try_for_each(|key| {
+            let pipeline = self.make(key)?;
+            lock(&self.graphics).insert(key.clone(), pipeline, number);
             Ok::<_, GpuError>(())
         })?;
         lock(&self.graphics).trim(number);
         lock(&self.computes).trim(number);
-        Ok(())
+        Ok(missing.len())
     }
 
     /// Whether a stage of the pipeline is still to be compiled.

@@ -173,6 +173,8 @@ fn is_id(i: &[u32], at: usize) -> bool {
         89 | 90 | 93 | 94 | 96 | 97 => return at != 6,
         99 => return at != 4,
         100 | 103..=107 => usize::MAX,
+        // OpCopyLogical
+        400 => usize::MAX,
         // Conversions, arithmetic, logic, bits, derivatives, barriers, atomics, OpPhi
         109..=124 | 126..=152 | 154..=191 | 194..=205 | 207..=215 | 224 | 225 | 227..=242 | op::PHI => usize::MAX,
         op::LOOP_MERGE => 2,
