@@ -104,7 +104,10 @@ impl Failure {
 
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
-        Self::Device(error.to_string())
+        match error {
+            GpuError::EndlessLoop(_) => Self::Input(error.to_string()),
+            _ => Self::Device(error.to_string()),
+        }
     }
 }
 

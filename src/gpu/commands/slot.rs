@@ -8,7 +8,7 @@ use ash::vk;
 use super::encoder::Encoder;
 use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer};
 use crate::gpu::error::Context;
-use crate::gpu::{Gpu, GpuError, fault};
+use crate::gpu::{Buffer, Gpu, GpuError, Memory, fault};
 
 /// How long a wait may take before the device counts as lost, in nanoseconds. A frame this long would freeze the desktop.
 const FENCE_TIMEOUT_NS: u64 = 60_000_000_000;
@@ -41,6 +41,8 @@ pub(in crate::gpu) struct Slot {
     /// Names of the timed passes of the last submission; `None` before the first.
     passes: Option<Vec<String>>,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
+    /// What the stages of the last submission wrote about loops that did not end, and whether they have such loops.
+    loops: (Option<Arc<Buffer>>, bool),
 }
 
 impl Slot {
@@ -56,6 +58,7 @@ impl Slot {
             pending: false,
             passes: None,
             kept: Vec::new(),
+            loops: (None, false),
         };
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
         // SAFETY: the device is live.
@@ -99,6 +102,28 @@ impl Slot {
         !self.pending || unsafe { self.gpu.device.get_fence_status(self.fence) } == Ok(true)
     }
 
+    /// Whether the last submission has stages whose loops might not end.
+    pub(in crate::gpu) fn has_loops(&self) -> bool {
+        self.loops.1
+    }
+
+    /// The words that name a loop of the last submission that did not end; `None` if all ended. The submission must be finished.
+    pub(in crate::gpu) fn endless_loop(&self) -> Option<[u32; 2]> {
+        let (buffer, _) = (self.loops.0.as_ref()?, self.loops.1.then_some(())?);
+        let word = |at: usize| buffer.content().get(at..at + 4)?.try_into().ok().map(u32::from_ne_bytes);
+        Some([word(0)?, word(4)?]).filter(|words| *words != [0; 2])
+    }
+
+    /// The buffer that [`Slot::endless_loop`] reads.
+    fn loops_buffer(&mut self, size: u64) -> Result<Arc<Buffer>, GpuError> {
+        if let Some(buffer) = &self.loops.0 {
+            return Ok(buffer.clone());
+        }
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let buffer = Buffer::new(&self.gpu, "loops readback", size, usage, Memory::Readback)?;
+        Ok(self.loops.0.insert(buffer).clone())
+    }
+
     /// SYNC: waits for the slot's last submission, whose command buffer and timestamps are then recorded anew.
     pub(in crate::gpu) fn begin(&mut self) -> Result<Encoder, GpuError> {
         self.wait()?;
@@ -121,6 +146,11 @@ impl Slot {
 
     /// Submits the commands of the last [`Slot::begin`]. If that fails, the slot can begin again.
     pub(in crate::gpu) fn submit(&mut self, mut encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
+        self.loops.1 = encoder.loops.is_some();
+        if let Some(loops) = encoder.loops.take() {
+            let buffer = self.loops_buffer(loops.size())?;
+            encoder.take_written(&loops, &buffer);
+        }
         let device = &self.gpu.device;
         let passes = encoder.timer.take().map(|timer| timer.names);
         if passes.is_some() {

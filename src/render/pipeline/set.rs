@@ -10,8 +10,9 @@ use crate::gpu::{
 };
 use crate::render::brdf::tables::TABLE_STAGES;
 use crate::render::environment::bake::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES};
+use crate::render::pipeline::bounds::shader_module;
 use crate::render::state::{Pass, PipelineKey, PipelineRequest};
-use crate::shader::{ShaderSet, specialize};
+use crate::shader::ShaderSet;
 
 /// The stages that draw a picture.
 const GRAPHICS: [&str; 8] =
@@ -192,7 +193,7 @@ impl PipelineSet {
 
     /// The module of a stage, specialized with these constants.
     fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
-        ShaderModule::new(&self.gpu, path, &specialize(self.spirv(path)?, constants))
+        shader_module(&self.gpu, path, self.spirv(path)?, constants)
     }
 
     /// A compute pipeline, created at its first use.
