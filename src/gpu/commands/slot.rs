@@ -149,7 +149,7 @@ impl Slot {
         self.loops.1 = encoder.loops.is_some();
         if let Some(loops) = encoder.loops.take() {
             let buffer = self.loops_buffer(loops.size())?;
-            encoder.take_written(&loops, &buffer);
+            encoder.take_loops(&loops, &buffer);
         }
         let device = &self.gpu.device;
         let passes = encoder.timer.take().map(|timer| timer.names);

@@ -9,7 +9,7 @@ use super::image::{Image, ImageDesc};
 use super::sampler::{Sampler, SamplerDesc};
 use crate::gpu::{Gpu, GpuError, Use, one_shot};
 
-/// Bytes of [`Blank::loops`]: two words that name a loop, and whether any loop used up its budget.
+/// Bytes of [`Blank::loops`]: two words that name a loop, and one that is 0 once a budget was used up.
 pub(in crate::gpu) const LOOP_WORDS_BYTES: u64 = 12;
 
 /// One placeholder of each kind of descriptor. lavapipe reads every descriptor of a bound set, used or not, and crashes on
@@ -20,7 +20,7 @@ pub(in crate::gpu) struct Blank {
     pub(in crate::gpu) cube: Arc<Image>,
     pub(in crate::gpu) sampler: Arc<Sampler>,
     pub(in crate::gpu) buffer: Arc<Buffer>,
-    /// What the stages write when one of their loops does not end. Every submission leaves it filled with zeros.
+    /// What the stages write when one of their loops does not end. Every submission leaves it cleared.
     pub(in crate::gpu) loops: Arc<Buffer>,
 }
 
@@ -35,7 +35,7 @@ impl Blank {
         let words = Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let loops = Buffer::new(gpu, "loops", LOOP_WORDS_BYTES, words, Memory::Device)?;
         one_shot(gpu, |encoder| {
-            encoder.clear_buffer(&loops);
+            encoder.clear_loops(&loops);
             encoder.copies_done();
             for image in [&image, &array, &cube] {
                 encoder.transition(image, Use::Undefined, Use::Sampled);

@@ -36,8 +36,8 @@ pub struct Bounds {
     pub mark: Option<[f32; 4]>,
 }
 
-/// The first two of the three words that a bounded module writes to its buffer; all are 0 at first. The third says whether a
-/// budget was used up.
+/// The first two of the three words that a bounded module writes to its buffer; both are 0 at first. The third is 1 at first,
+/// and 0 once an invocation has used up its budget. (Mesa's lavapipe reads 0 for helper invocations, and would wait for them.)
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overrun {
     /// The loop that took at least half of an invocation's budget, as [`Place::find`] knows it; 0 if there is none.
@@ -335,7 +335,7 @@ impl Module {
             // Scope: device. No order with other memory.
             instruction(op::ATOMIC_COMPARE_EXCHANGE, &[uint, old, place, one, zero, zero, value, zero]),
             instruction(op::ACCESS_CHAIN, &[pointer, flag, variable, zero, two]),
-            instruction(op::STORE, &[flag, one]),
+            instruction(op::STORE, &[flag, zero]),
         ]
     }
 
@@ -350,7 +350,7 @@ impl Module {
             code.extend([
                 instruction(op::ACCESS_CHAIN, &[report.pointer, place, report.variable, shared.zero, report.two]),
                 instruction(op::LOAD, &[shared.uint, flag, place]),
-                instruction(op::INOT_EQUAL, &[shared.boolean, is_late, flag, shared.zero]),
+                instruction(op::IEQUAL, &[shared.boolean, is_late, flag, shared.zero]),
                 instruction(op::SELECT, &[shared.uint, chosen, is_late, late, shared.zero]),
             ]);
         }
