@@ -4,7 +4,7 @@ mod support;
 
 use std::time::{Duration, Instant};
 
-use support::process::run;
+use support::process::{finish, run, specula};
 use support::window::Viewer;
 use support::{Session, Tree, assert_same, assert_validated, glb, line_of, lines, load, ready, settings};
 
@@ -197,6 +197,20 @@ fn commands_fail_with_the_line() {
         assert!(start.elapsed() < Duration::from_secs(30), "{command:?}: {:?}", start.elapsed());
     }
     assert!(!tree.beside("a.png").exists(), "a picture that was cut short");
+}
+
+/// The wait for the device hangs, as it does on a hung GPU.
+#[test]
+fn a_device_that_hangs_ends_a_command() {
+    let tree = Tree::new();
+    for args in [&["render", "sphere-grid"][..], &["probe", "sphere-grid", "--at", "10,10"], &["bench", "frame"]] {
+        let mut command = specula(&tree.beside(""));
+        command.args(args).args(["--timeout", "2", "--env", "none", "--size", "64x64"]);
+        let start = Instant::now();
+        finish(command.env("SPECULA_FAULT", "frame-hang-ms:60000")).expect(3, &["within 2 s", "--timeout"]);
+        assert!(start.elapsed() < Duration::from_secs(20), "{args:?}: {:?}", start.elapsed());
+    }
+    run(&tree.beside(""), &["render", "--timeout", "0"]).expect(2, &["--timeout"]);
 }
 
 #[test]

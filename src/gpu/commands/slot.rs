@@ -2,16 +2,18 @@
 
 use std::any::Any;
 use std::sync::Arc;
+use std::time::Duration;
 
 use ash::vk;
 
 use super::encoder::Encoder;
 use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer};
 use crate::gpu::error::Context;
+use crate::gpu::watchdog::{self, Watched};
 use crate::gpu::{Buffer, Gpu, GpuError, Memory, fault};
 
-/// How long a wait may take before the device counts as lost, in nanoseconds. A frame this long would freeze the desktop.
-const FENCE_TIMEOUT_NS: u64 = 60_000_000_000;
+/// How long a wait may take before the device counts as lost. A frame this long would freeze the desktop.
+const FENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Semaphores of a submission that goes to a window.
 #[derive(Clone, Copy, Default)]
@@ -43,6 +45,8 @@ pub(in crate::gpu) struct Slot {
     kept: Vec<Arc<dyn Any + Send + Sync>>,
     /// What the stages of the last submission wrote about loops that did not end, and whether they have such loops.
     loops: (Option<Arc<Buffer>>, bool),
+    /// The watch over the last submission until it is waited for.
+    watched: Option<Watched>,
 }
 
 impl Slot {
@@ -59,6 +63,7 @@ impl Slot {
             passes: None,
             kept: Vec::new(),
             loops: (None, false),
+            watched: None,
         };
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
         // SAFETY: the device is live.
@@ -85,12 +90,17 @@ impl Slot {
     /// SYNC: waits until the device has run this slot's last submission, then releases the resources that it used.
     pub(in crate::gpu) fn wait(&mut self) -> Result<(), GpuError> {
         if self.pending {
+            fault::delay("frame-hang-ms");
+            // A watchdog ends the process at its limit, before this wait ends.
+            let timeout = FENCE_TIMEOUT.max(watchdog::limit().unwrap_or_default().saturating_mul(2));
+            let timeout_ns = u64::try_from(timeout.as_nanos()).unwrap_or(u64::MAX);
             // SAFETY: the fence is live, and a submission signals it.
-            match unsafe { self.gpu.device.wait_for_fences(&[self.fence], true, FENCE_TIMEOUT_NS) } {
+            match unsafe { self.gpu.device.wait_for_fences(&[self.fence], true, timeout_ns) } {
                 Err(vk::Result::TIMEOUT) => return Err(GpuError::DeviceLost("waiting a minute for a frame")),
                 other => other.context("waiting for a frame")?,
             }
             self.pending = false;
+            self.watched = None;
         }
         self.kept.clear();
         Ok(())
@@ -172,6 +182,12 @@ impl Slot {
         if sync.signal.is_some() {
             fault::refuse("frame-submit", "submitting a frame")?;
         }
+        let watched = Watched::begin(|| match passes.as_deref() {
+            Some([_, ..]) => {
+                format!("drawing a frame (passes: {})", passes.iter().flatten().cloned().collect::<Vec<_>>().join(", "))
+            }
+            _ => "running compute shaders or copies".to_owned(),
+        });
         let queue = self.gpu.lock_queue();
         // SAFETY: no submission is pending on the fence, the queue is locked, and `kept` holds all that the commands use.
         unsafe {
@@ -180,6 +196,7 @@ impl Slot {
         }
         // A failed submission never signals the fence, so only a successful one is waited for.
         self.pending = true;
+        self.watched = watched;
         self.passes = passes;
         Ok(())
     }

@@ -8,6 +8,7 @@ use ash::vk;
 use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use crate::gpu::error::Context;
+use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError};
 
 const MAIN: &CStr = c"main";
@@ -175,10 +176,11 @@ impl Pipeline {
             .dynamic_state(&dynamic)
             .layout(layouts.pipeline)
             .push_next(&mut rendering);
+        let name = desc.name();
+        let _watched = Watched::begin(|| format!("compiling the pipeline `{name}`"));
         // SAFETY: every pointer in `info` lives until the call returns; modules and layout are live. The cache is internally
         // synchronized.
         let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None) };
-        let name = desc.name();
         let raw = made.map_err(|(_, result)| result).context_of("creating the pipeline", &format!("`{name}`"))?[0];
         gpu.name(raw, &name);
         let names_loops = desc.vertex.names_loops || desc.fragment.names_loops;

@@ -61,6 +61,10 @@ pub(super) fn shader_module(
         mark,
     };
     let is_bounded = loops::bound(&mut words, spirv, &bounds);
+    tracing::debug!(
+        "{path}: {}",
+        if is_bounded { "has loops that count their rounds" } else { "all loops are counted" }
+    );
     ShaderModule::new(gpu, path, &words, is_bounded && stores)
 }
 
