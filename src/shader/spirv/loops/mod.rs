@@ -10,7 +10,7 @@ mod rounds;
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use xxhash_rust::xxh3::xxh3_64;
 
 use super::opcode as op;
 use super::specialize::control_flow::{Block, Function};
@@ -100,9 +100,7 @@ fn text(words: &[u32]) -> String {
 
 /// Identifies a module before specialization.
 fn seed(words: &[u32]) -> u64 {
-    let mut hasher = Xxh3::new();
-    words.iter().for_each(|word| hasher.update(&word.to_le_bytes()));
-    hasher.digest()
+    xxh3_64(bytemuck::cast_slice(words))
 }
 
 /// The number by which a buffer names the loop with this header; 0 names the module.
@@ -114,7 +112,10 @@ fn name(seed: u64, header: Id) -> u32 {
 /// Bounds the loops of `specialized`, a specialization of the module `original`. Returns whether the module has a loop that
 /// needs it; otherwise, and for words that are not valid SPIR-V, the module stays as it is.
 pub fn bound(specialized: &mut Vec<u32>, original: &[u32], bounds: &Bounds) -> bool {
-    let rewritten = Module::parse(specialized).and_then(|mut module| module.bound(seed(original), bounds));
+    // Most specialized modules have no loop at all.
+    let has_loops = instructions(specialized).is_some_and(|all| all.iter().any(|i| opcode(i) == op::LOOP_MERGE));
+    let module = has_loops.then(|| Module::parse(specialized)).flatten();
+    let rewritten = module.and_then(|mut module| module.bound(original, bounds));
     let is_bounded = rewritten.is_some();
     if let Some(words) = rewritten {
         *specialized = words;
@@ -167,7 +168,7 @@ impl Module {
         self.header[3] - 1
     }
 
-    fn bound(&mut self, seed: u64, bounds: &Bounds) -> Option<Vec<u32>> {
+    fn bound(&mut self, original: &[u32], bounds: &Bounds) -> Option<Vec<u32>> {
         let value = |i: &&Instruction| opcode(i) == op::CONSTANT && i.len() == 4;
         let constants = self.globals.iter().filter(value).map(|i| (i[2], i[3])).collect();
         let extended = self.globals.iter().find(|i| opcode(i) == op::EXT_INST_IMPORT).map(|i| i[1]);
@@ -177,6 +178,7 @@ impl Module {
         if bounded.iter().all(Vec::is_empty) {
             return None;
         }
+        let seed = seed(original);
         let entry = self.globals.iter().find(|i| opcode(i) == op::ENTRY_POINT)?.clone();
         let main = *self.at.get(entry.get(2)?)?;
         let shared = self.declare(bounds);

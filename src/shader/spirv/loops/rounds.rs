@@ -33,6 +33,9 @@ pub(super) struct Loop {
 /// Finds the loops of a function. `constants` are the values of 32-bit constants, `extended` the id of GLSL.std.450.
 pub(super) fn find(function: &Function, constants: &HashMap<Id, u32>, extended: Option<Id>) -> Vec<Loop> {
     let blocks = &function.blocks;
+    if blocks.iter().all(|block| block.structure().1.is_none()) {
+        return Vec::new();
+    }
     let at: HashMap<Id, usize> = blocks.iter().enumerate().map(|(index, block)| (block.label, index)).collect();
     let next = |index: usize| blocks[index].targets().into_iter().filter_map(|id| at.get(&id).copied());
     let mut loops = Vec::new();
