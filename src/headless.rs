@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::render::{
     BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineRequest,
-    PipelineSet,
-    ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, TraceError, UploadError, View, wrong_values,
+    PipelineSet, ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, TraceError, UploadError, View,
+    endless_loop, wrong_values,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;
@@ -21,8 +21,8 @@ use crate::shader::{Change, Compiler, Diagnostic, Mode, PixelValue, ShaderSet, S
 /// Why rendering failed.
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
-    /// The shaders do not compile, and there are no earlier ones.
-    #[error("the shaders do not compile")]
+    /// The shaders do not compile, and there are no earlier ones; or one of their loops does not end.
+    #[error("the shaders are wrong")]
     Shaders(Vec<Diagnostic>),
     /// A setting does not fit the shaders, the model or the device.
     #[error("{0}")]
@@ -180,7 +180,7 @@ impl Headless {
     /// As [`Headless::provide`].
     pub fn bake(&mut self, from_disk: bool) -> Result<(), HeadlessError> {
         match self.frame_state()?.environment {
-            Some(key) => Ok(self.resources.bake(key, from_disk)?),
+            Some(key) => self.resources.bake(key, from_disk).map_err(|error| self.explained(error.into())),
             None => Ok(()),
         }
     }
@@ -370,7 +370,7 @@ impl Headless {
                 states.par_iter().try_for_each(|state| set.build(&state.pipelines).map(|_| ()))?;
             }
             for state in states {
-                let frame = self.resources.provide(state)?;
+                let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
                 let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
                 for _ in 0..frames {
                     self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
@@ -413,7 +413,7 @@ impl Headless {
             self.finish_or_fail()?;
             state = self.frame_state()?;
         }
-        Ok(self.resources.provide(&Arc::new(state))?)
+        self.resources.provide(&Arc::new(state)).map_err(|error| self.explained(error.into()))
     }
 
     fn finish_or_fail(&mut self) -> Result<(), HeadlessError> {
@@ -442,7 +442,22 @@ impl Headless {
         }
         let result = submitted?;
         self.frames.wait()?;
-        Ok(result)
+        match self.frames.endless_loop(self.frames.current()) {
+            Some(words) => Err(self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words)))),
+            None => Ok(result),
+        }
+    }
+
+    /// Replaces the error of a loop that did not end by a diagnostic with the loop's line.
+    fn explained(&self, error: HeadlessError) -> HeadlessError {
+        let words = match &error {
+            HeadlessError::Gpu(GpuError::EndlessLoop(words))
+            | HeadlessError::Bake(BakeError::Gpu(GpuError::EndlessLoop(words))) => *words,
+            _ => return error,
+        };
+        let library = self.reloader.library();
+        let diagnostic = endless_loop(&self.gpu, words, &self.shaders(), library.compiler(), library.source());
+        diagnostic.map_or(error, |diagnostic| HeadlessError::Shaders(vec![diagnostic]))
     }
 
     fn output_image(&mut self) -> Result<Arc<Image>, HeadlessError> {

@@ -89,6 +89,10 @@ pub const BINDING_TARGET: u32 = 3;
 /// Binding in [`SET_TASK`] of a mip level that a task reads.
 pub const BINDING_LEVEL_ABOVE: u32 = 4;
 
+/// Sets and bindings of the buffer that Specula adds to a stage with loops that might not end: see `shader::spirv::loops`.
+/// Compute stages have it in [`SET_TASK`], the others in [`SET_FRAME`].
+pub const LOOPS: [(u32, u32); 2] = [(SET_FRAME, 20), (SET_TASK, 8)];
+
 /// One descriptor of the contract. A shader may use any subset.
 #[derive(Clone, Copy, Debug)]
 pub struct Binding {
@@ -144,6 +148,7 @@ const OTHERS: &[Binding] = &[
     binding(SET_FRAME, 17, "BINDING_TRACED_MATERIALS", BindingKind::StorageBuffer, 0),
     binding(SET_FRAME, 18, "BINDING_TRACED_TEXTURES", BindingKind::Sampler2DArray, 0),
     binding(SET_FRAME, 19, "BINDING_ENVIRONMENT_CELLS", BindingKind::StorageBuffer, 0),
+    binding(LOOPS[0].0, LOOPS[0].1, "BINDING_LOOPS", BindingKind::StorageBuffer, 0),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
     binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
     binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),
@@ -155,6 +160,7 @@ const OTHERS: &[Binding] = &[
     binding(SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
     binding(SET_TASK, BINDING_LOBES, "BINDING_LOBES", BindingKind::StorageBuffer, 0),
     binding(SET_TASK, BINDING_TARGET_ODD, "BINDING_TARGET_ODD", BindingKind::StorageImage, 0),
+    binding(LOOPS[1].0, LOOPS[1].1, "BINDING_TASK_LOOPS", BindingKind::StorageBuffer, 0),
 ];
 
 /// A specialization constant that Rust sets.

@@ -103,7 +103,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
     let compiler = shaderc::Compiler::new().unwrap();
     let module = |name: &str, kind, glsl: &str| {
         let spirv = compiler.compile_into_spirv(glsl, kind, name, "main", None).unwrap();
-        ShaderModule::new(&gpu, name, spirv.as_binary()).unwrap()
+        ShaderModule::new(&gpu, name, spirv.as_binary(), false).unwrap()
     };
     let vertex =
         module("one.vert", shaderc::ShaderKind::Vertex, "#version 450\nvoid main() { gl_Position = vec4(1); }");

@@ -70,7 +70,8 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     lit.behind = vec3(0.0);
     lit.emitted = s.emissive * albedo.under_coat;
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
-    for (uint i = range.first; i < range.end; ++i) {
+    // With a limit that the compiler can see, the loop needs no budget of rounds.
+    for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) {
         Light light = light_at(i, s.position_ws);
         // For BRDF terms a rectangle counts as a point light at its center.
         bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && light.kind == LIGHT_RECT;

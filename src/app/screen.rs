@@ -15,7 +15,7 @@ use crate::gpu::{
     Attachments, Encoder, Frames, Gpu, GpuError, Image, Rect, SetLayouts, Surface, Swapchain, UiRenderer, Use,
 };
 use crate::picture;
-use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
+use crate::render::{BoundFrame, FrameState, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 
 /// The CPU prepares a frame while the device draws the one before.
@@ -50,6 +50,12 @@ pub(super) struct Screen {
     last: Option<BoundFrame>,
     /// The lack of memory that the current frame met.
     shortage: Option<GpuError>,
+    /// The picture of each frame slot's last frame, until its loops are known to have ended.
+    unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
+    /// The last picture in which a loop did not end.
+    endless: Option<Arc<FrameState>>,
+    /// How many more frames are drawn only to learn whether the loops have ended.
+    checks: usize,
     /// The newest value under the mouse.
     pixel: Option<PixelAt>,
     pub(super) mouse: Mouse,
@@ -86,6 +92,9 @@ impl Screen {
             first: true,
             last: None,
             shortage: None,
+            unchecked: Default::default(),
+            endless: None,
+            checks: 0,
             pixel: None,
             mouse: Mouse::default(),
             camera: CameraController::default(),
@@ -153,6 +162,7 @@ impl Screen {
         // Record both to a swapchain image. `begin` waits for a frame slot.
         let mut encoder = self.frames.begin()?;
         let slot = self.frames.current();
+        self.check_loops(viewer);
         let acquired = self.swapchain.as_mut().map(Swapchain::acquire).transpose()?.flatten();
         let Some(acquired) = acquired else {
             self.frames.submit(encoder, Default::default())?;
@@ -167,6 +177,7 @@ impl Screen {
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
         self.frames.submit(encoder, acquired.submission)?;
+        self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {
             self.stale |= !swapchain.present(&acquired)?;
         }
@@ -175,6 +186,7 @@ impl Screen {
         let accumulates = frame.is_some_and(|frame| frame.state.pipelines.accumulates);
         let gets_better = accumulates && self.view.accumulated() < View::MOST_ACCUMULATED;
         let again = self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better;
+        let again = self.awaits_loops() || again;
         Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
     }
 
@@ -284,6 +296,36 @@ impl Screen {
     fn awaits_pixel(&self) -> bool {
         let current = self.view.probe.map(|at| (at, self.view.picture()));
         current.is_some() && self.pixel.map(|pixel| (pixel.at, pixel.picture)) != current
+    }
+
+    /// Takes what finished frames say about their loops, the older frame first.
+    fn check_loops(&mut self, viewer: &mut Viewer) {
+        // `begin` has waited for the current slot, whose frame is the oldest.
+        for newer in 0..FRAMES_IN_FLIGHT {
+            let slot = (self.frames.current() + newer) % FRAMES_IN_FLIGHT;
+            if !self.frames.is_finished(slot) {
+                continue;
+            }
+            let Some(state) = self.unchecked[slot].take() else { continue };
+            if let Some(words) = self.frames.endless_loop(slot) {
+                self.endless = Some(state);
+                viewer.on_endless_loop(words);
+            } else if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
+                viewer.all_loops_end();
+            }
+        }
+    }
+
+    /// Whether to draw a frame more, in which [`Self::check_loops`] learns about the ones before. A frame that is drawn for
+    /// nothing else is followed by as many as there are slots, so a window in which nothing happens comes to rest.
+    fn awaits_loops(&mut self) -> bool {
+        let awaits = (0..FRAMES_IN_FLIGHT).any(|slot| self.unchecked[slot].is_some() && self.frames.has_loops(slot));
+        self.checks = match (awaits, self.checks) {
+            (false, _) => 0,
+            (true, 0) => FRAMES_IN_FLIGHT,
+            (true, left) => left - 1,
+        };
+        self.checks > 0
     }
 
     /// Measures and reports the first frame of the window, of a reload and of the model. Returns whether panels must be redrawn.

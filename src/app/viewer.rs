@@ -16,11 +16,13 @@ use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
-use crate::render::{BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Revisions, Scene, TargetFormat, View};
+use crate::render::{
+    BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Revisions, Scene, TargetFormat, View, endless_loop,
+};
 use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, Source};
+use crate::shader::{Change, Compiler, Source};
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
 struct LastComplete {
@@ -65,6 +67,11 @@ pub(super) struct Viewer {
     allow_outside: bool,
     shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
+    /// The words of a loop that did not end. Its diagnostic is on screen, or on its way.
+    endless_loop: Option<[u32; 2]>,
+    compiler: Arc<Compiler>,
+    /// The shader tree.
+    source: Source,
     ready: bool,
     /// The message about a lack of memory.
     shortage: Option<String>,
@@ -102,6 +109,9 @@ impl Viewer {
             allow_outside: options.allow_outside,
             shown: None,
             first_frame: None,
+            endless_loop: None,
+            compiler: options.compiler,
+            source: source.clone(),
             ready: false,
             shortage: None,
             screenshot: false,
@@ -242,6 +252,22 @@ impl Viewer {
         }
     }
 
+    /// Looks for the line of a loop that did not end, on another thread. The diagnostic comes as a message.
+    pub(super) fn on_endless_loop(&mut self, words: [u32; 2]) {
+        let Some(shaders) = self.session.shaders.clone().filter(|_| self.endless_loop != Some(words)) else { return };
+        self.endless_loop = Some(words);
+        let (gpu, compiler, source) = (self.gpu.clone(), self.compiler.clone(), self.source.clone());
+        self.threads.explain(words, move || endless_loop(&gpu, words, &shaders, &compiler, &source));
+    }
+
+    /// Removes the diagnostic of a loop that did not end: in the current picture, all loops end.
+    pub(super) fn all_loops_end(&mut self) {
+        if self.endless_loop.take().is_some() {
+            let warnings = self.session.shaders.as_ref().map(|shaders| shaders.warnings.clone());
+            self.session.diagnostics = warnings.unwrap_or_default();
+        }
+    }
+
     /// Shows a message for a few seconds.
     pub(super) fn say(&mut self, text: impl Into<String>) {
         let text = text.into();
@@ -287,6 +313,7 @@ impl Viewer {
             Command::Say(text) => self.say(text),
             Command::OpenTree(path) => {
                 let source = Source::Disk(path);
+                self.source = source.clone();
                 self.watch_tree(&source);
                 self.shader.compiling = true;
                 self.threads.worker.open_tree(source);

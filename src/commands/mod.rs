@@ -42,7 +42,8 @@ use specula::shader::Diagnostic;
        Or a check failed: check, diff, brdf and --validate.\n  \
     2  The command line is wrong: an unknown command, option or name, or a value that is not allowed, also one\n     \
        in a look file, and one that only this model, shader tree or device does not have.\n  \
-    3  There is no usable device or display, or none with the name of --device."
+    3  There is no usable device or display, or none with the name of --device; or the device has not finished\n     \
+       within --timeout."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -104,7 +105,10 @@ impl Failure {
 
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
-        Self::Device(error.to_string())
+        match error {
+            GpuError::EndlessLoop(_) => Self::Input(error.to_string()),
+            _ => Self::Device(error.to_string()),
+        }
     }
 }
 

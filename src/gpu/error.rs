@@ -25,6 +25,9 @@ pub enum GpuError {
          stops it after a few seconds. Undo the last edit and start again"
     )]
     DeviceLost(&'static str),
+    /// A loop of a compute shader used up its budget: the two words that name it, see `shader::spirv::loops`.
+    #[error("a loop of the shaders did not end")]
+    EndlessLoop([u32; 2]),
     /// Out of memory on the device or the host, with what Specula was doing.
     #[error(
         "out of graphics memory while {0}. A smaller window, fewer samples (`--set view.msaa=1`) or a smaller model \

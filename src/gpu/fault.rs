@@ -8,6 +8,7 @@
 //! - `swapchain:N`, `frame-set:N`, `frame-submit:N`, `ui-textures:N`, `ui-draw:N`: the Nth call of the process that creates a
 //!   swapchain, creates a descriptor set 0, submits a frame of a window, uploads egui's textures or draws the user interface fails
 //!   with [`super::GpuError::OutOfMemory`].
+//! - `frame-hang-ms:N`: every wait for a submission takes so much longer, as if the device hung.
 //!
 //! `app` knows these:
 //!

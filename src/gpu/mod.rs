@@ -10,6 +10,7 @@ mod error;
 pub mod fault;
 mod heap;
 mod resources;
+pub mod watchdog;
 mod window;
 
 pub use commands::encoder::{Attachments, Encoder, Rect, Use};

@@ -16,7 +16,7 @@ use winit::event_loop::EventLoopProxy;
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
 use crate::render::{MeasuredKey, TablesKey, TraceKey};
-use crate::shader::{Batch, Change, Compiler, Source, TreePath, Watcher};
+use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, TreePath, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
 use worker::{Snapshot, Worker, WorkerMessage};
@@ -26,6 +26,8 @@ pub(super) enum Message {
     Worker(WorkerMessage),
     Loaded(Box<Loaded>),
     Bake(BakeMessage),
+    /// The diagnostic of a loop that did not end, by the words that name it; `None` if it is none of the current shaders'.
+    EndlessLoop([u32; 2], Option<Box<Diagnostic>>),
     /// Watched files outside the shader tree have changed.
     FilesChanged(BTreeSet<PathBuf>),
     /// A thread has panicked, with this message.
@@ -40,6 +42,7 @@ pub(super) enum Role {
     Tables(TablesKey),
     Tracer(TraceKey),
     Reader(MeasuredKey),
+    Explainer([u32; 2]),
 }
 
 /// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
@@ -92,6 +95,8 @@ pub(super) struct Threads {
     pub(super) worker: Worker,
     pub(super) loader: Loader,
     pub(super) baker: Baker,
+    /// Threads that look for the line of a loop.
+    explainers: Vec<JoinHandle<()>>,
     outbox: Outbox,
 }
 
@@ -112,8 +117,17 @@ impl Threads {
             worker: Worker::start(device, compiler, source, snapshot, outbox),
             loader: Loader::new(device, outbox),
             baker: Baker::new(device.0, outbox),
+            explainers: Vec::new(),
             outbox: outbox.clone(),
         }
+    }
+
+    /// Sends the diagnostic that `find` returns, which compiles a stage, for a loop that did not end.
+    pub(super) fn explain(&mut self, words: [u32; 2], find: impl FnOnce() -> Option<Diagnostic> + Send + 'static) {
+        self.explainers.retain(|thread| !thread.is_finished());
+        self.explainers.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
+            outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
+        }));
     }
 
     /// Watches a shader tree instead of the previous one. Changes go to the worker.
@@ -142,6 +156,14 @@ impl Threads {
         }
         self.watched = files;
         Ok(())
+    }
+}
+
+impl Drop for Threads {
+    fn drop(&mut self) {
+        for thread in self.explainers.drain(..) {
+            let _ = thread.join();
+        }
     }
 }
 

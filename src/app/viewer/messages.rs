@@ -10,10 +10,11 @@ use crate::app::threads::loader::Loaded;
 use crate::app::threads::worker::WorkerMessage;
 use crate::app::threads::{Message, Role};
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
+use crate::gpu::GpuError;
 use crate::message;
-use crate::render::{Outcome, Reload, wrong_values};
+use crate::render::{BakeError, Outcome, Reload, wrong_values};
 use crate::settings::LightSource;
-use crate::shader::Diagnostic;
+use crate::shader::{Diagnostic, Severity};
 
 impl Viewer {
     pub(in crate::app) fn on_message(&mut self, message: Message) {
@@ -28,6 +29,7 @@ impl Viewer {
             Message::Worker(WorkerMessage::Completed(reload)) => self.on_completed(&reload),
             Message::Loaded(loaded) => self.on_loaded(*loaded),
             Message::Bake(message) => self.on_bake(message),
+            Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
             Message::Panicked(role, text) => self.on_panic(role, &text),
         }
@@ -61,6 +63,7 @@ impl Viewer {
         match &reload.outcome {
             Outcome::Unchanged { cleared: false } => {}
             Outcome::Unchanged { cleared: true } => {
+                self.endless_loop = None;
                 self.session.diagnostics.clear();
                 self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
             }
@@ -69,6 +72,7 @@ impl Viewer {
                 self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
             }
             Outcome::Ready(set) => {
+                self.endless_loop = None;
                 self.session.diagnostics.clone_from(&set.shaders.warnings);
                 for warning in &self.session.diagnostics {
                     eprintln!("{}", warning.full());
@@ -80,6 +84,15 @@ impl Viewer {
                 self.check_names(is_first);
             }
         }
+    }
+
+    /// Shows the diagnostic of a loop that did not end, unless a newer picture has taken its place.
+    fn show_endless_loop(&mut self, words: [u32; 2], diagnostic: Option<Diagnostic>) {
+        let Some(diagnostic) = diagnostic.filter(|_| self.endless_loop == Some(words)) else { return };
+        eprintln!("{}", diagnostic.full());
+        emit(self.events, &Event::Diagnostic(&diagnostic));
+        self.session.diagnostics.retain(|old| old.severity == Severity::Warning);
+        self.session.diagnostics.insert(0, diagnostic);
     }
 
     pub(super) fn report(&mut self, event: ReloadEvent) {
@@ -147,6 +160,9 @@ impl Viewer {
                         self.resources.set_environment(key, Some(environment));
                     }
                     Err(error) => {
+                        if let BakeError::Gpu(GpuError::EndlessLoop(words)) = error {
+                            self.on_endless_loop(words);
+                        }
                         self.resources.set_environment(key, None);
                         self.say(format!("{error}\nThe previous environment stays."));
                     }
@@ -156,6 +172,9 @@ impl Viewer {
                 if self.threads.baker.has_tables(&key) {
                     if let Ok(tables) = &result {
                         self.warn_of(tables.wrong.iter().copied());
+                    }
+                    if let Err(GpuError::EndlessLoop(words)) = result {
+                        self.on_endless_loop(words);
                     }
                     let result = result.map_err(|error| self.say(error.to_string()));
                     self.resources.set_tables(key, result.ok());
@@ -227,6 +246,12 @@ impl Viewer {
                     self.resources.set_measured(key, None);
                 }
                 "reader"
+            }
+            Role::Explainer(words) => {
+                if self.endless_loop == Some(words) {
+                    self.endless_loop = None;
+                }
+                "explainer"
             }
             Role::Tracer(key) => {
                 if self.threads.baker.has_traced(&key) {

@@ -21,7 +21,7 @@ use specula::shader::{Change, Constant, Library, ShaderSet, Update};
 
 use super::Failure;
 use super::common::parse::number;
-use super::common::{check_validation, compiler, open_gpu, source};
+use super::common::{TIMEOUT_S, check_validation, compiler, open_gpu, source};
 
 /// Options of `brdf`.
 #[derive(clap::Args)]
@@ -129,7 +129,7 @@ impl Opened {
         if let Some(message) = unknown_names(&settings.shader, &shaders).or(misfit) {
             return Err(Failure::Usage(message));
         }
-        let gpu = open_gpu(options.device.as_deref(), options.validate)?;
+        let gpu = open_gpu(options.device.as_deref(), options.validate, TIMEOUT_S)?;
         let bench = Bench::new(&gpu, &shaders, &settings)?;
         Ok(Self { gpu, shaders, settings, bench })
     }

@@ -10,7 +10,7 @@ use specula::settings::{LightSource, MaterialOverride};
 
 use super::{Options, SurfaceOptions};
 use crate::commands::common::names::check_environment;
-use crate::commands::common::{check_mode, check_validation, compiler, open_gpu, source};
+use crate::commands::common::{TIMEOUT_S, check_mode, check_validation, compiler, open_gpu, source};
 use crate::commands::{Failure, print_json};
 
 /// The sphere of this model is measured.
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage("split-sum needs an environment: use --env studio, sky, furnace or a file".into()));
     }
 
-    let gpu = open_gpu(args.options.device.as_deref(), args.options.validate)?;
+    let gpu = open_gpu(args.options.device.as_deref(), args.options.validate, TIMEOUT_S)?;
     let model = scene::open(Some(Path::new(MODEL)), &LoadOptions::default());
     let model = model.map_err(|e| Failure::Input(e.to_string()))?;
     let tree = source(args.options.shaders.as_deref())?;

@@ -5,9 +5,10 @@ pub mod parse;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use clap::ValueEnum;
-use specula::gpu::{Gpu, GpuOptions};
+use specula::gpu::{Gpu, GpuOptions, watchdog};
 use specula::message::{self, did_you_mean};
 use specula::picture;
 use specula::scene::{self, LoadOptions, Model};
@@ -17,6 +18,9 @@ use specula::shader::{Compiler, ShaderSet, Source, is_specula_tree};
 use super::Failure;
 use names::{check_environment, check_model_path};
 use parse::{ev, fovy, size, vector};
+
+/// Seconds after which a device that does not answer counts as hung.
+pub const TIMEOUT_S: u32 = 60;
 
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]
@@ -75,6 +79,9 @@ pub struct Common {
     /// Turn the Vulkan validation layers on; each of their messages fails the command
     #[arg(long)]
     pub validate: bool,
+    /// Without a window: end with exit code 3 when the device takes longer than this for a frame, a bake or a pipeline
+    #[arg(long, value_name = "SECONDS", default_value_t = TIMEOUT_S, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    timeout: u32,
 }
 
 /// How events are printed.
@@ -165,7 +172,7 @@ impl Common {
 
     /// Opens the device without a window.
     pub fn gpu(&self) -> Result<Arc<Gpu>, Failure> {
-        open_gpu(self.device.as_deref(), self.validate)
+        open_gpu(self.device.as_deref(), self.validate, self.timeout)
     }
 
     /// Whether events are printed.
@@ -208,9 +215,25 @@ pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
     }
 }
 
-/// Opens the device whose name contains `name`, or the best one, without a window.
-pub fn open_gpu(name: Option<&str>, validation: bool) -> Result<Arc<Gpu>, Failure> {
+/// Opens the device whose name contains `name`, or the best one, without a window. If the device hangs, the process ends after
+/// `timeout_s` seconds.
+pub fn open_gpu(name: Option<&str>, validation: bool, timeout_s: u32) -> Result<Arc<Gpu>, Failure> {
+    watchdog::end_after(Duration::from_secs(timeout_s.into()), end_of_device);
     Ok(Gpu::new(&GpuOptions { device: name.map(str::to_owned), validation, display: None })?)
+}
+
+/// Ends the process: every wait for the device, and every destructor that waits, would hang.
+fn end_of_device(what: &str, limit: Duration) -> ! {
+    message::tell(format_args!(
+        "the graphics device has not finished {what} within {} s. A very long shader may need more time (`--timeout SECONDS`). \
+         If the device hangs, as in an endless loop, other programs may hang too until it is reset",
+        limit.as_secs()
+    ));
+    let _halt = picture::remove_unfinished();
+    #[cfg(unix)]
+    signal_hook::low_level::exit(3);
+    #[cfg(not(unix))]
+    std::process::exit(3);
 }
 
 /// Fails before any work when no picture can be written to `path`.

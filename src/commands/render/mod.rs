@@ -55,7 +55,13 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     if settings.environment.is_lit() {
         emit(args.common.emits(), &Event::Bake(headless.bake_report()));
     }
-    write(&mut headless, &args, all)?;
+    match write(&mut headless, &args, all) {
+        Err(Failure::Shaders(diagnostics)) if watch.is_some() => {
+            tell(&args, &diagnostics);
+            eprintln!("specula: no picture yet; waiting for the next save");
+        }
+        result => result?,
+    }
     warn_of_bakes(&headless);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     complete(&mut headless, &args, watch.is_some())?;
@@ -111,6 +117,11 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
         // Continue after a wrong value, mode or folder, since the next edit may correct it.
         match drawn.and_then(|()| write(headless, args, all)) {
             Err(Failure::Input(message) | Failure::Usage(message)) => message::tell(message),
+            // A loop that does not end.
+            Err(Failure::Shaders(diagnostics)) => {
+                tell(args, &diagnostics);
+                eprintln!("specula: the last good picture stays");
+            }
             result => result?,
         }
         warn_of_bakes(headless);

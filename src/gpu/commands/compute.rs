@@ -18,6 +18,7 @@ impl Encoder {
     ) {
         let point = vk::PipelineBindPoint::COMPUTE;
         self.keep(pipeline);
+        self.loops = self.loops.take().or_else(|| pipeline.loops.clone());
         for set in sets {
             self.keep(*set);
             // SAFETY: this encoder records the command buffer; the set is kept, and all pipelines share the layout.

@@ -17,6 +17,30 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_copy_buffer(self.raw, from.raw, to.raw, &region) };
     }
 
+    /// Fills the buffer that names loops with its first words: 0, 0, 1.
+    pub(in crate::gpu) fn clear_loops(&mut self, buffer: &Arc<Buffer>) {
+        self.keep(buffer);
+        // SAFETY: this encoder records the command buffer; the buffer is kept and has three words.
+        unsafe {
+            self.gpu.device.cmd_fill_buffer(self.raw, buffer.raw, 0, 8, 0);
+            self.gpu.device.cmd_fill_buffer(self.raw, buffer.raw, 8, 4, 1);
+        }
+    }
+
+    /// Copies what shaders wrote to the buffer that names loops, and clears it for the next submission.
+    /// SYNC: after all earlier commands, and before all later ones and the CPU's read after the fence.
+    pub(in crate::gpu) fn take_loops(&mut self, from: &Arc<Buffer>, to: &Arc<Buffer>) {
+        use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
+        self.order(
+            (S::ALL_COMMANDS, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE),
+            (S::ALL_TRANSFER, A::TRANSFER_READ),
+        );
+        self.copy_buffer(from, 0, to, 0, from.size());
+        self.order((S::ALL_TRANSFER, A::TRANSFER_READ), (S::ALL_TRANSFER, A::TRANSFER_WRITE));
+        self.clear_loops(from);
+        self.copies_done();
+    }
+
     /// Fills every mip level of an image in [`crate::gpu::Use::CopyTo`]. The buffer holds the levels one after the other, each with
     /// all its layers, tightly packed.
     pub fn copy_to_image(&mut self, from: &Arc<Buffer>, offset: u64, to: &Arc<Image>) {

@@ -103,11 +103,13 @@ pub struct Encoder {
     pub(in crate::gpu) kept: Vec<Arc<dyn Any + Send + Sync>>,
     pub(in crate::gpu) timer: Option<PassTimer>,
     pub(in crate::gpu) is_rendering: bool,
+    /// The buffer that stages write when a loop does not end, if a pipeline has such loops.
+    pub(in crate::gpu) loops: Option<Arc<Buffer>>,
 }
 
 impl Encoder {
     pub(in crate::gpu) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer, timer: Option<PassTimer>) -> Self {
-        Self { gpu: gpu.clone(), raw, kept: Vec::new(), timer, is_rendering: false }
+        Self { gpu: gpu.clone(), raw, kept: Vec::new(), timer, is_rendering: false, loops: None }
     }
 
     /// Keeps `object` alive until the device has run the commands.
@@ -230,6 +232,7 @@ impl Encoder {
     /// Binds a graphics pipeline.
     pub fn bind_pipeline(&mut self, pipeline: &Arc<Pipeline>) {
         self.keep(pipeline);
+        self.loops = self.loops.take().or_else(|| pipeline.loops.clone());
         // SAFETY: this encoder records the command buffer; the pipeline is kept.
         unsafe { self.gpu.device.cmd_bind_pipeline(self.raw, vk::PipelineBindPoint::GRAPHICS, pipeline.raw) };
     }
@@ -293,13 +296,21 @@ impl Encoder {
 
     /// SYNC: makes earlier writes of a stage visible to all later commands, and to the CPU after the fence.
     pub(in crate::gpu) fn writes_done(&mut self, stage: vk::PipelineStageFlags2, access: vk::AccessFlags2) {
+        use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
+        self.order((stage, access), (S::ALL_COMMANDS | S::HOST, A::MEMORY_READ | A::MEMORY_WRITE | A::HOST_READ));
+    }
+
+    /// SYNC: orders earlier commands of some stages before later ones.
+    pub(in crate::gpu) fn order(
+        &mut self,
+        from: (vk::PipelineStageFlags2, vk::AccessFlags2),
+        to: (vk::PipelineStageFlags2, vk::AccessFlags2),
+    ) {
         let barrier = [vk::MemoryBarrier2::default()
-            .src_stage_mask(stage)
-            .src_access_mask(access)
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
-            .dst_access_mask(
-                vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE | vk::AccessFlags2::HOST_READ,
-            )];
+            .src_stage_mask(from.0)
+            .src_access_mask(from.1)
+            .dst_stage_mask(to.0)
+            .dst_access_mask(to.1)];
         let info = vk::DependencyInfo::default().memory_barriers(&barrier);
         // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.raw, &info) };

@@ -47,6 +47,17 @@ impl Frames {
         self.slots.get(slot).is_none_or(Slot::is_finished)
     }
 
+    /// Whether the last frame of `slot` has stages whose loops might not end.
+    pub fn has_loops(&self, slot: usize) -> bool {
+        self.slots.get(slot).is_some_and(Slot::has_loops)
+    }
+
+    /// The words that name a loop which did not end in the last frame of `slot`; `None` if all ended. SYNC: after that frame's
+    /// fence.
+    pub fn endless_loop(&self, slot: usize) -> Option<[u32; 2]> {
+        self.slots.get(slot).and_then(Slot::endless_loop)
+    }
+
     /// Device time, in milliseconds, of the newest frame that a wait has found finished. `None` before the first, or without
     /// timestamps.
     pub fn last_device_ms(&self) -> Option<f64> {
@@ -111,7 +122,7 @@ impl Frames {
 /// times.
 ///
 /// # Errors
-/// `commands` fails, or the device is lost or out of memory.
+/// `commands` fails, a loop of a stage does not end, or the device is lost or out of memory.
 pub fn one_shot<T>(gpu: &Arc<Gpu>, commands: impl FnOnce(&mut Encoder) -> Result<T, GpuError>) -> Result<T, GpuError> {
     let mut slot = Slot::new(gpu, "one-shot commands", false)?;
     let mut encoder = slot.begin()?;
@@ -119,5 +130,5 @@ pub fn one_shot<T>(gpu: &Arc<Gpu>, commands: impl FnOnce(&mut Encoder) -> Result
     slot.submit(encoder, Submission::default())?;
     // SYNC: callers read results on the CPU and drop resources next, and the slot frees its command buffer.
     slot.wait()?;
-    Ok(result)
+    slot.endless_loop().map_or(Ok(result), |words| Err(GpuError::EndlessLoop(words)))
 }

@@ -2,16 +2,18 @@
 
 use std::any::Any;
 use std::sync::Arc;
+use std::time::Duration;
 
 use ash::vk;
 
 use super::encoder::Encoder;
 use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer};
 use crate::gpu::error::Context;
-use crate::gpu::{Gpu, GpuError, fault};
+use crate::gpu::watchdog::{self, Watched};
+use crate::gpu::{Buffer, Gpu, GpuError, Memory, fault};
 
-/// How long a wait may take before the device counts as lost, in nanoseconds. A frame this long would freeze the desktop.
-const FENCE_TIMEOUT_NS: u64 = 60_000_000_000;
+/// How long a wait may take before the device counts as lost. A frame this long would freeze the desktop.
+const FENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Semaphores of a submission that goes to a window.
 #[derive(Clone, Copy, Default)]
@@ -41,6 +43,10 @@ pub(in crate::gpu) struct Slot {
     /// Names of the timed passes of the last submission; `None` before the first.
     passes: Option<Vec<String>>,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
+    /// What the stages of the last submission wrote about loops that did not end, and whether they have such loops.
+    loops: (Option<Arc<Buffer>>, bool),
+    /// The watch over the last submission until it is waited for.
+    watched: Option<Watched>,
 }
 
 impl Slot {
@@ -56,6 +62,8 @@ impl Slot {
             pending: false,
             passes: None,
             kept: Vec::new(),
+            loops: (None, false),
+            watched: None,
         };
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
         // SAFETY: the device is live.
@@ -82,12 +90,17 @@ impl Slot {
     /// SYNC: waits until the device has run this slot's last submission, then releases the resources that it used.
     pub(in crate::gpu) fn wait(&mut self) -> Result<(), GpuError> {
         if self.pending {
+            fault::delay("frame-hang-ms");
+            // A watchdog ends the process at its limit, before this wait ends.
+            let timeout = FENCE_TIMEOUT.max(watchdog::limit().unwrap_or_default().saturating_mul(2));
+            let timeout_ns = u64::try_from(timeout.as_nanos()).unwrap_or(u64::MAX);
             // SAFETY: the fence is live, and a submission signals it.
-            match unsafe { self.gpu.device.wait_for_fences(&[self.fence], true, FENCE_TIMEOUT_NS) } {
+            match unsafe { self.gpu.device.wait_for_fences(&[self.fence], true, timeout_ns) } {
                 Err(vk::Result::TIMEOUT) => return Err(GpuError::DeviceLost("waiting a minute for a frame")),
                 other => other.context("waiting for a frame")?,
             }
             self.pending = false;
+            self.watched = None;
         }
         self.kept.clear();
         Ok(())
@@ -97,6 +110,28 @@ impl Slot {
     pub(in crate::gpu) fn is_finished(&self) -> bool {
         // SAFETY: the fence is live.
         !self.pending || unsafe { self.gpu.device.get_fence_status(self.fence) } == Ok(true)
+    }
+
+    /// Whether the last submission has stages whose loops might not end.
+    pub(in crate::gpu) fn has_loops(&self) -> bool {
+        self.loops.1
+    }
+
+    /// The words that name a loop of the last submission that did not end; `None` if all ended. The submission must be finished.
+    pub(in crate::gpu) fn endless_loop(&self) -> Option<[u32; 2]> {
+        let (buffer, _) = (self.loops.0.as_ref()?, self.loops.1.then_some(())?);
+        let word = |at: usize| buffer.content().get(at..at + 4)?.try_into().ok().map(u32::from_ne_bytes);
+        Some([word(0)?, word(4)?]).filter(|words| *words != [0; 2])
+    }
+
+    /// The buffer that [`Slot::endless_loop`] reads.
+    fn loops_buffer(&mut self, size: u64) -> Result<Arc<Buffer>, GpuError> {
+        if let Some(buffer) = &self.loops.0 {
+            return Ok(buffer.clone());
+        }
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let buffer = Buffer::new(&self.gpu, "loops readback", size, usage, Memory::Readback)?;
+        Ok(self.loops.0.insert(buffer).clone())
     }
 
     /// SYNC: waits for the slot's last submission, whose command buffer and timestamps are then recorded anew.
@@ -121,6 +156,11 @@ impl Slot {
 
     /// Submits the commands of the last [`Slot::begin`]. If that fails, the slot can begin again.
     pub(in crate::gpu) fn submit(&mut self, mut encoder: Encoder, sync: Submission) -> Result<(), GpuError> {
+        self.loops.1 = encoder.loops.is_some();
+        if let Some(loops) = encoder.loops.take() {
+            let buffer = self.loops_buffer(loops.size())?;
+            encoder.take_loops(&loops, &buffer);
+        }
         let device = &self.gpu.device;
         let passes = encoder.timer.take().map(|timer| timer.names);
         if passes.is_some() {
@@ -142,6 +182,12 @@ impl Slot {
         if sync.signal.is_some() {
             fault::refuse("frame-submit", "submitting a frame")?;
         }
+        let watched = Watched::begin(|| match passes.as_deref() {
+            Some([_, ..]) => {
+                format!("drawing a frame (passes: {})", passes.iter().flatten().cloned().collect::<Vec<_>>().join(", "))
+            }
+            _ => "running compute shaders or copies".to_owned(),
+        });
         let queue = self.gpu.lock_queue();
         // SAFETY: no submission is pending on the fence, the queue is locked, and `kept` holds all that the commands use.
         unsafe {
@@ -150,6 +196,7 @@ impl Slot {
         }
         // A failed submission never signals the fence, so only a successful one is waited for.
         self.pending = true;
+        self.watched = watched;
         self.passes = passes;
         Ok(())
     }

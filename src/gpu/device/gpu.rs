@@ -40,6 +40,8 @@ pub struct Gpu {
     timestamp_bits: u32,
     pub(in crate::gpu) anisotropy: bool,
     pub(in crate::gpu) wireframe: bool,
+    vertex_stores: bool,
+    fragment_stores: bool,
     info: AdapterInfo,
 }
 
@@ -93,6 +95,8 @@ impl Gpu {
             timestamp_bits: families.get(queue_family as usize).map_or(0, |family| family.timestamp_valid_bits),
             anisotropy: supported.sampler_anisotropy == vk::TRUE,
             wireframe: supported.fill_mode_non_solid == vk::TRUE,
+            vertex_stores: supported.vertex_pipeline_stores_and_atomics == vk::TRUE,
+            fragment_stores: supported.fragment_stores_and_atomics == vk::TRUE,
             info,
         };
         gpu.name(gpu.device.handle(), "device");
@@ -116,6 +120,11 @@ impl Gpu {
         let limits = &self.properties.limits;
         let counts = limits.framebuffer_color_sample_counts & limits.framebuffer_depth_sample_counts;
         counts.contains(vk::SampleCountFlags::from_raw(samples))
+    }
+
+    /// Whether vertex and fragment stages can write buffers. Compute stages always can.
+    pub fn graphics_stores(&self) -> (bool, bool) {
+        (self.vertex_stores, self.fragment_stores)
     }
 
     /// Largest width or height of a 2D image, in pixels.
@@ -197,6 +206,8 @@ fn create_device(
         sampler_anisotropy: supported.sampler_anisotropy,
         large_points: supported.large_points,
         fill_mode_non_solid: supported.fill_mode_non_solid,
+        vertex_pipeline_stores_and_atomics: supported.vertex_pipeline_stores_and_atomics,
+        fragment_stores_and_atomics: supported.fragment_stores_and_atomics,
         geometry_shader: vk::TRUE,
         ..Default::default()
     };

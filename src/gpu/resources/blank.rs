@@ -9,6 +9,9 @@ use super::image::{Image, ImageDesc};
 use super::sampler::{Sampler, SamplerDesc};
 use crate::gpu::{Gpu, GpuError, Use, one_shot};
 
+/// Bytes of [`Blank::loops`]: two words that name a loop, and one that is 0 once a budget was used up.
+pub(in crate::gpu) const LOOP_WORDS_BYTES: u64 = 12;
+
 /// One placeholder of each kind of descriptor. lavapipe reads every descriptor of a bound set, used or not, and crashes on
 /// one that was never written.
 pub(in crate::gpu) struct Blank {
@@ -17,6 +20,8 @@ pub(in crate::gpu) struct Blank {
     pub(in crate::gpu) cube: Arc<Image>,
     pub(in crate::gpu) sampler: Arc<Sampler>,
     pub(in crate::gpu) buffer: Arc<Buffer>,
+    /// What the stages write when one of their loops does not end. Every submission leaves it cleared.
+    pub(in crate::gpu) loops: Arc<Buffer>,
 }
 
 impl Blank {
@@ -27,7 +32,11 @@ impl Blank {
         let image = Image::new(gpu, "blank", ImageDesc::new(1, 1, format, usage))?;
         let array = Image::new(gpu, "blank array", ImageDesc::new(1, 1, format, usage).array(1))?;
         let cube = Image::new(gpu, "blank cube", ImageDesc::cube(1, 1, format, usage))?;
+        let words = Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
+        let loops = Buffer::new(gpu, "loops", LOOP_WORDS_BYTES, words, Memory::Device)?;
         one_shot(gpu, |encoder| {
+            encoder.clear_loops(&loops);
+            encoder.copies_done();
             for image in [&image, &array, &cube] {
                 encoder.transition(image, Use::Undefined, Use::Sampled);
             }
@@ -35,6 +44,6 @@ impl Blank {
         })?;
         let sampler = Sampler::new(gpu, &SamplerDesc::NEAREST)?;
         let buffer = Buffer::new(gpu, "blank", 16, Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, Memory::Device)?;
-        Ok(Self { image, array, cube, sampler, buffer })
+        Ok(Self { image, array, cube, sampler, buffer, loops })
     }
 }

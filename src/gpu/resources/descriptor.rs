@@ -35,7 +35,7 @@ pub struct SetLayouts {
     gpu: Arc<Gpu>,
     sets: Vec<vk::DescriptorSetLayout>,
     pub(in crate::gpu) pipeline: vk::PipelineLayout,
-    blank: Blank,
+    pub(in crate::gpu) blank: Blank,
 }
 
 impl SetLayouts {
@@ -147,6 +147,7 @@ impl SetWriter {
                 continue;
             }
             self = match binding.kind {
+                _ if interface::LOOPS.contains(&(set, at)) => self.buffer(at, &blank.loops),
                 BindingKind::UniformBuffer | BindingKind::StorageBuffer => self.buffer(at, &blank.buffer),
                 BindingKind::Sampler2D => self.texture(at, &blank.image, &blank.sampler),
                 BindingKind::Sampler2DArray => self.texture(at, &blank.array, &blank.sampler),

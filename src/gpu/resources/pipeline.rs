@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use crate::gpu::error::Context;
+use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError};
 
 const MAIN: &CStr = c"main";
@@ -16,20 +18,22 @@ pub struct ShaderModule {
     gpu: Arc<Gpu>,
     raw: vk::ShaderModule,
     name: String,
+    names_loops: bool,
 }
 
 impl ShaderModule {
     /// Creates a module from SPIR-V. `name` is the stage's path, as `pbr.frag`; pipelines are named after their modules.
+    /// `names_loops`: the module writes `interface::LOOPS` when a loop does not end.
     ///
     /// # Errors
     /// The driver rejects the module or is out of memory.
-    pub fn new(gpu: &Arc<Gpu>, name: &str, spirv: &[u32]) -> Result<Arc<Self>, GpuError> {
+    pub fn new(gpu: &Arc<Gpu>, name: &str, spirv: &[u32], names_loops: bool) -> Result<Arc<Self>, GpuError> {
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the words come from shaderc and `shader::specialize`, whose output is valid SPIR-V.
         let raw = unsafe { gpu.device.create_shader_module(&info, None) };
         let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
         gpu.name(raw, name);
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned() }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned(), names_loops }))
     }
 }
 
@@ -104,10 +108,17 @@ impl PipelineDesc<'_> {
 pub struct Pipeline {
     gpu: Arc<Gpu>,
     _layouts: Arc<SetLayouts>,
+    /// The buffer that its stages write when a loop does not end, if they have such loops.
+    pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
 }
 
 impl Pipeline {
+    /// Whether a stage writes a buffer when a loop does not end.
+    pub fn names_loops(&self) -> bool {
+        self.loops.is_some()
+    }
+
     /// Creates a pipeline. Its debug name is made of the names of its modules and its raster state.
     ///
     /// # Errors
@@ -170,13 +181,16 @@ impl Pipeline {
             .dynamic_state(&dynamic)
             .layout(layouts.pipeline)
             .push_next(&mut rendering);
+        let name = desc.name();
+        let _watched = Watched::begin(|| format!("compiling the pipeline `{name}`"));
         // SAFETY: every pointer in `info` lives until the call returns; modules and layout are live. The cache is internally
         // synchronized.
         let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None) };
-        let name = desc.name();
         let raw = made.map_err(|(_, result)| result).context_of("creating the pipeline", &format!("`{name}`"))?[0];
         gpu.name(raw, &name);
-        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw }))
+        let names_loops = desc.vertex.names_loops || desc.fragment.names_loops;
+        let loops = names_loops.then(|| layouts.blank.loops.clone());
+        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), loops, raw }))
     }
 }
 
@@ -184,6 +198,8 @@ impl Pipeline {
 pub struct ComputePipeline {
     gpu: Arc<Gpu>,
     _layouts: Arc<SetLayouts>,
+    /// The buffer that its stages write when a loop does not end, if they have such loops.
+    pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
 }
 
@@ -204,7 +220,8 @@ impl ComputePipeline {
         let name = format!("`{}`", module.name);
         let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
         gpu.name(raw, &module.name);
-        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), raw }))
+        let loops = module.names_loops.then(|| layouts.blank.loops.clone());
+        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), loops, raw }))
     }
 }
 

@@ -1,8 +1,10 @@
 //! Pipelines: one set per shader generation, and the reload that creates the next set.
 
+mod bounds;
 mod reload;
 mod set;
 
+pub use bounds::endless_loop;
 pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;
 pub use set::{MEASURE_STAGES, PipelineSet, all_stages, stages};

@@ -12,8 +12,9 @@ use crate::gpu::{
 };
 use crate::render::brdf::tables::TABLE_STAGES;
 use crate::render::environment::bake::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES};
+use crate::render::pipeline::bounds::shader_module;
 use crate::render::state::{Pass, PipelineKey, PipelineRequest};
-use crate::shader::{ShaderSet, specialize};
+use crate::shader::ShaderSet;
 
 /// The stages that draw a picture.
 const GRAPHICS: [&str; 9] = [
@@ -171,6 +172,10 @@ impl PipelineSet {
         keys.into_par_iter().for_each(|key| {
             let old = lock(&before.graphics).entries.get(&key).cloned();
             let Some(old) = old.filter(|_| !lock(&self.graphics).entries.contains_key(&key)) else { return };
+            // Its stages name loops by the module that they were compiled as.
+            if old.0.names_loops() {
+                return;
+            }
             if key.pass.stages().iter().all(|path| is_same(path, &key.specialization)) {
                 lock(&self.graphics).entries.insert(key, old);
             }
@@ -220,7 +225,7 @@ impl PipelineSet {
 
     /// The module of a stage, specialized with these constants.
     fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
-        ShaderModule::new(&self.gpu, path, &specialize(self.spirv(path)?, constants))
+        shader_module(&self.gpu, path, self.spirv(path)?, constants)
     }
 
     /// A compute pipeline, created at its first use.

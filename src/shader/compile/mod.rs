@@ -105,6 +105,16 @@ impl Compiler {
         }
     }
 
+    /// Compiles a file as [`Compiler::compile`] does, with the lines of its instructions (`OpLine`). The instructions are the
+    /// same. `None` if it does not compile.
+    pub fn compile_with_lines(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Option<Vec<u32>> {
+        let text = snapshot.read(stage).ok()?;
+        let includes = Includes::new(snapshot, stage.clone());
+        let mut options = options().ok()?;
+        options.set_generate_debug_info();
+        self.run(options, &includes, stage, &text, StageKind::of(stage)?).ok().map(|(spirv, _)| spirv)
+    }
+
     /// Compiles a library as if a stage of this kind included nothing else, so the library must include what it uses.
     pub fn compile_library(&self, snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> Compiled {
         // The wrapper has no text of the user. `rename` below keeps its name out of messages.
@@ -130,7 +140,7 @@ impl Compiler {
     fn compile_text(&self, snapshot: &Snapshot<'_>, path: &TreePath, text: &str, kind: StageKind) -> Compiled {
         let start = Instant::now();
         let includes = Includes::new(snapshot, path.clone());
-        let outcome = self.run(&includes, path, text, kind);
+        let outcome = options().and_then(|options| self.run(options, &includes, path, text, kind));
         let ms = start.elapsed().as_secs_f64() * 1e3;
         let dependencies = includes.into_dependencies();
         let (result, text) = match outcome {
@@ -150,14 +160,14 @@ impl Compiler {
     }
 
     /// Returns the module and the log of warnings, or the log of errors. File names in the log are tree paths.
-    fn run(
+    fn run<'a>(
         &self,
-        includes: &Includes<'_>,
+        mut options: CompileOptions<'a>,
+        includes: &'a Includes<'_>,
         path: &TreePath,
         text: &str,
         kind: StageKind,
     ) -> Result<(Vec<u32>, String), String> {
-        let mut options = options()?;
         options.set_include_callback(|name, _type, _including, depth| {
             let (path, content) = includes.resolve(name, depth)?;
             Ok(ResolvedInclude { resolved_name: path.to_string(), content })

@@ -1,9 +1,10 @@
-//! Reads and rewrites SPIR-V modules: reflection for the contract check, and specialization before the driver sees a
-//! module.
+//! Reads and rewrites SPIR-V modules: reflection for the contract check; specialization and bounded loops before the driver
+//! sees a module.
 
 mod conditions;
 mod declared;
 mod hash;
+pub mod loops;
 mod opcode;
 pub mod reflect;
 mod specialize;

@@ -5,7 +5,7 @@
 //! all depend on constants, that is four times the code that a pipeline keeps. See the SPIR-V specification, section
 //! 2.11, for the rules of structured control flow, and section 3.52 for the opcodes.
 
-mod control_flow;
+pub(super) mod control_flow;
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,16 +13,17 @@ use super::opcode as op;
 use control_flow::Function;
 
 const SPEC_ID: u32 = 1;
-const HEADER: usize = 5;
+/// Words before the first instruction of a module.
+pub(super) const HEADER: usize = 5;
 
-type Id = u32;
-type Instruction = Vec<u32>;
+pub(super) type Id = u32;
+pub(super) type Instruction = Vec<u32>;
 
-fn opcode(instruction: &[u32]) -> u32 {
+pub(super) fn opcode(instruction: &[u32]) -> u32 {
     instruction[0] & 0xffff
 }
 
-fn instruction(opcode: u32, operands: &[u32]) -> Instruction {
+pub(super) fn instruction(opcode: u32, operands: &[u32]) -> Instruction {
     let mut words = vec![(operands.len() as u32 + 1) << 16 | opcode];
     words.extend_from_slice(operands);
     words
@@ -34,8 +35,8 @@ pub fn specialize(words: &[u32], values: &[(u32, u32)]) -> Vec<u32> {
     specialized(words, values).unwrap_or_else(|| words.to_vec())
 }
 
-/// `None` if an instruction is truncated.
-fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
+/// The instructions of a module; `None` if one is truncated.
+pub(super) fn instructions(words: &[u32]) -> Option<Vec<&[u32]>> {
     let mut rest = words.get(HEADER..)?;
     let mut all: Vec<&[u32]> = Vec::new();
     while let Some(first) = rest.first() {
@@ -43,8 +44,18 @@ fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
         all.push(rest.get(..length).filter(|i| !i.is_empty())?);
         rest = &rest[length..];
     }
-    let start = all.iter().position(|i| opcode(i) == op::FUNCTION).unwrap_or(all.len());
-    let (globals, code) = all.split_at(start);
+    Some(all)
+}
+
+/// The position of the first function among the instructions of a module.
+pub(super) fn first_function(all: &[&[u32]]) -> usize {
+    all.iter().position(|i| opcode(i) == op::FUNCTION).unwrap_or(all.len())
+}
+
+/// `None` if an instruction is truncated.
+fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
+    let all = instructions(words)?;
+    let (globals, code) = all.split_at(first_function(&all));
     let mut known = Known::default();
     let globals = known.globals(globals, values)?;
     let mut functions: Vec<Function> =
@@ -134,7 +145,7 @@ impl Known {
 }
 
 /// Evaluates an operation on 32-bit integers and booleans; `None` if it is not supported or an operand is unknown.
-fn evaluate(operation: u32, operands: &[u32], lookup: &dyn Fn(Id) -> Option<u32>) -> Option<u32> {
+pub(super) fn evaluate(operation: u32, operands: &[u32], lookup: &dyn Fn(Id) -> Option<u32>) -> Option<u32> {
     let value = |index: usize| operands.get(index).and_then(|id| lookup(*id));
     let (a, b) = (value(0)?, value(1));
     let (signed_a, signed_b) = (a.cast_signed(), b.map(u32::cast_signed));

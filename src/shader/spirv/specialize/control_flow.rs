@@ -5,14 +5,14 @@ use std::collections::{HashMap, HashSet};
 use super::{Id, Instruction, Known, evaluate, instruction, op, opcode};
 
 /// A basic block: its label and its instructions, including the branch at its end.
-struct Block {
-    label: Id,
-    body: Vec<Instruction>,
+pub(in crate::shader::spirv) struct Block {
+    pub(in crate::shader::spirv) label: Id,
+    pub(in crate::shader::spirv) body: Vec<Instruction>,
 }
 
 impl Block {
     /// The merge and continue blocks that the block's merge instruction names.
-    fn structure(&self) -> (Option<Id>, Option<Id>) {
+    pub(in crate::shader::spirv) fn structure(&self) -> (Option<Id>, Option<Id>) {
         let merge = self.body.iter().rev().nth(1);
         match merge.map(|i| (opcode(i), i)) {
             Some((op::SELECTION_MERGE, i)) => (i.get(1).copied(), None),
@@ -21,7 +21,7 @@ impl Block {
         }
     }
 
-    fn targets(&self) -> Vec<Id> {
+    pub(in crate::shader::spirv) fn targets(&self) -> Vec<Id> {
         let Some(last) = self.body.last() else { return Vec::new() };
         match opcode(last) {
             op::BRANCH => last[1..].to_vec(),
@@ -33,14 +33,14 @@ impl Block {
 }
 
 /// A function: the instructions before its first block, and its blocks.
-pub(super) struct Function {
-    pub(super) id: Id,
-    head: Vec<Instruction>,
-    blocks: Vec<Block>,
+pub(in crate::shader::spirv) struct Function {
+    pub(in crate::shader::spirv) id: Id,
+    pub(in crate::shader::spirv) head: Vec<Instruction>,
+    pub(in crate::shader::spirv) blocks: Vec<Block>,
 }
 
 impl Function {
-    pub(super) fn parse(instructions: &[&[u32]]) -> Option<Self> {
+    pub(in crate::shader::spirv) fn parse(instructions: &[&[u32]]) -> Option<Self> {
         let id = *instructions.first()?.get(2)?;
         let mut function = Self { id, head: Vec::new(), blocks: Vec::new() };
         for i in instructions.iter().filter(|i| opcode(i) != op::FUNCTION_END) {
@@ -198,7 +198,7 @@ impl Function {
         }
     }
 
-    pub(super) fn write(&self, out: &mut Vec<u32>) {
+    pub(in crate::shader::spirv) fn write(&self, out: &mut Vec<u32>) {
         out.extend(self.head.iter().flatten());
         for block in &self.blocks {
             out.extend(instruction(op::LABEL, &[block.label]));

@@ -1,0 +1,111 @@
+//! The last step before the driver: specialized modules whose loops end, and the diagnostic of a loop that did not.
+
+use std::sync::Arc;
+
+use crate::gpu::{Gpu, GpuError, ShaderModule};
+use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
+use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath, specialize};
+
+/// Rounds that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so that whatever its
+/// size, the first of them take a tenth of a second for short rounds and a second for long ones.
+const ROUNDS: u32 = 1 << 18;
+/// The same for an invocation of a bake, of which there are few.
+const ROUNDS_OF_BAKES: u32 = 1 << 20;
+/// The same on a software device. Mesa's lavapipe ends all loops after 65,535 rounds, those that are not counted here included.
+const ROUNDS_ON_CPU: u32 = 49_152;
+/// Rounds of each invocation that begins after another has used up its budget.
+const ROUNDS_AFTER: u32 = 1024;
+const ROUNDS_AFTER_ON_CPU: u32 = 256;
+/// Scene color of a pixel whose loops were cut short, magenta at every exposure, with the flag of common/pixel.glsl.
+const MARK: [f32; 4] = [60_000.0, 0.0, 60_000.0, 1.0 + FLAG_NOT_FINITE as f32];
+/// The same on the display.
+const MARK_ON_DISPLAY: [f32; 4] = [1.0, 0.0, 1.0, 1.0];
+
+fn rounds(gpu: &Gpu, kind: StageKind) -> u32 {
+    match kind {
+        _ if gpu.info().kind == "cpu" => ROUNDS_ON_CPU,
+        StageKind::Vertex | StageKind::Fragment => ROUNDS,
+        StageKind::Compute => ROUNDS_OF_BAKES,
+    }
+}
+
+/// The module of the stage at `path`, specialized with these constants, with loops that end.
+pub(super) fn shader_module(
+    gpu: &Arc<Gpu>,
+    path: &str,
+    spirv: &[u32],
+    constants: &[(u32, u32)],
+) -> Result<Arc<ShaderModule>, GpuError> {
+    let mut words = specialize(spirv, constants);
+    let kind = StageKind::of(&TreePath::from(path)).unwrap_or(StageKind::Fragment);
+    let stores = match kind {
+        StageKind::Vertex => gpu.graphics_stores().0,
+        StageKind::Fragment => gpu.graphics_stores().1,
+        StageKind::Compute => true,
+    };
+    let buffer = interface::LOOPS[usize::from(kind == StageKind::Compute)];
+    let is = |id: u32, value: u32| constants.contains(&(id, value));
+    let mark = match (kind, path) {
+        (StageKind::Vertex | StageKind::Compute, _) => None,
+        (_, "tonemap.frag") => Some(MARK_ON_DISPLAY),
+        // The blend unit takes alpha for coverage.
+        _ if is(SPEC_ALPHA_MODE, ALPHA_BLEND) && is(SPEC_MODE, MODE_FINAL) => None,
+        _ => Some(MARK),
+    };
+    let bounds = Bounds {
+        rounds: rounds(gpu, kind),
+        rounds_after: if gpu.info().kind == "cpu" { ROUNDS_AFTER_ON_CPU } else { ROUNDS_AFTER },
+        report: stores.then_some(buffer),
+        mark,
+    };
+    let is_bounded = loops::bound(&mut words, spirv, &bounds);
+    tracing::debug!(
+        "{path}: {}",
+        if is_bounded { "has loops that count their rounds" } else { "all loops are counted" }
+    );
+    ShaderModule::new(gpu, path, &words, is_bounded && stores)
+}
+
+/// The diagnostic of a loop that did not end: `words` name it, in one of the stages of `shaders`. Compiles the stage again, for
+/// the loop's line. `None` if the words are those of other shaders.
+pub fn endless_loop(
+    gpu: &Gpu,
+    [one, together]: [u32; 2],
+    shaders: &ShaderSet,
+    compiler: &Compiler,
+    source: &Source,
+) -> Option<Diagnostic> {
+    let overrun = Overrun { one, together };
+    let find = |stage: &Arc<Stage>| Some((stage.clone(), Place::find(overrun, &stage.spirv)?));
+    let (stage, place) = shaders.stages.values().find_map(find)?;
+    let rounds = rounds(gpu, stage.kind);
+    let snapshot = Snapshot::new(source);
+    let diagnostic = match &place {
+        Place { number: Some(number), function } => {
+            let lines = compiler.compile_with_lines(&snapshot, &stage.path);
+            let line = lines.and_then(|words| loops::line_of_loop(&words, *number));
+            let message = format!("this loop did not end ({rounds} iterations)");
+            match line {
+                Some((file, line)) => {
+                    let path = TreePath::from(file.as_str());
+                    let text = snapshot.read(&path).unwrap_or_default();
+                    let excerpt = text.lines().nth(line as usize - 1);
+                    Diagnostic::error(snapshot.display_path(&path), message).on_line(line, excerpt)
+                }
+                None => {
+                    let message = format!("a loop in `{function}` did not end ({rounds} iterations)");
+                    Diagnostic::error(snapshot.display_path(&stage.path), message)
+                }
+            }
+        }
+        Place { number: None, .. } => {
+            let message = format!("the loops of this stage did not end together ({rounds} iterations)");
+            Diagnostic::error(snapshot.display_path(&stage.path), message)
+        }
+    };
+    Some(diagnostic.with_help(
+        "it was cut short, so the result is wrong. Repair its condition, or set back the value that it depends on",
+    ))
+}

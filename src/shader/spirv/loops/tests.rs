@@ -1,0 +1,143 @@
+use super::*;
+use crate::shader::compile::Compiler;
+use crate::shader::source::Source;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::specialize;
+
+const BOUNDS: Bounds =
+    Bounds { rounds: 1000, rounds_after: 10, report: Some((0, 20)), mark: Some([1.0, 0.0, 1.0, 257.0]) };
+
+/// A fragment stage with this `main` and these functions.
+fn module(functions: &str, main: &str) -> Vec<u32> {
+    let text = format!(
+        "#version 460\nlayout(constant_id = 7) const uint COUNT = 5u;\n\
+         layout(location = 0) in flat uvec4 given;\nlayout(location = 1) in vec4 x;\nlayout(location = 0) out vec4 color;\n\
+         {functions}\nvoid main() {{ color = x;\n{main}\n}}\n"
+    );
+    let source = Source::memory([("m.frag", text.as_str())]);
+    Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap()
+}
+
+/// How many loops of a module count their rounds.
+fn counting(words: &[u32]) -> usize {
+    let mut bounded = specialize(words, &[]);
+    if !bound(&mut bounded, words, &BOUNDS) {
+        assert_eq!(bounded, specialize(words, &[]), "a module without such loops stays as it is");
+        return 0;
+    }
+    let all = instructions(&bounded).expect("whole instructions");
+    // A loop that counts leaves its header by a condition.
+    let is_header = |pair: &&[&[u32]]| opcode(pair[0]) == op::LOOP_MERGE && opcode(pair[1]) == op::BRANCH_CONDITIONAL;
+    all.windows(2).filter(is_header).count()
+}
+
+#[track_caller]
+fn assert_counting(main: &str, count: usize) {
+    assert_eq!(counting(&module("", main)), count, "{main}");
+}
+
+#[test]
+fn a_loop_with_a_constant_end_is_left_alone() {
+    for main in [
+        "for (int i = 0; i < 8; ++i) color += x;",
+        "for (uint i = 0u; i < COUNT; i += 2u) color += x;",
+        "for (int i = 7; i >= 0; --i) color += x;",
+        "for (int i = -5; i != 5; ++i) color += x;",
+        "int i = 0; while (i < 8) { color += x; ++i; }",
+        "for (int i = 0; i < 8; ++i) { if (color.x > 2.0) break; color += x; }",
+        "for (int i = 0; i < 8; ++i) { if (color.x > 2.0) continue; color += x; }",
+        "for (float t = 0.0; t < 1.0; t += 0.01) color += x;",
+        "for (uint n = 512u; n > 0u; n /= 2u) color += x;",
+        "for (uint n = 512u; n > 0u; n >>= 1) color += x;",
+        "for (int i = 0; i < 8; ++i) for (int j = 0; j < 8; ++j) color += x;",
+        "for (int i = 0; i < 8 && color.x < 2.0; ++i) color += x;",
+    ] {
+        assert_counting(main, 0);
+    }
+}
+
+#[test]
+fn a_loop_up_to_data_with_a_limit_is_left_alone() {
+    for main in [
+        "for (uint i = given.x; i < min(given.y, 200u); ++i) color += x;",
+        "uint end = min(given.y, 200u); for (uint i = given.x; i < end; ++i) color += x;",
+        "for (uint i = 0u; i <= given.y % 16u; ++i) color += x;",
+        "for (int i = -3; i < min(int(given.y), 200); ++i) color += x;",
+    ] {
+        assert_counting(main, 0);
+    }
+}
+
+#[test]
+fn every_other_loop_counts() {
+    for (main, count) in [
+        ("while (color.x < 2.0) color.x *= 0.5;", 1),
+        ("while (true) { color += x; if (color.x > 2.0) break; }", 1),
+        ("do { color += x; } while (color.x < 2.0);", 1),
+        ("for (uint i = 0u; i < given.x; ++i) color += x;", 1),
+        ("for (uint i = 0u; i < 8u; i += given.x) color += x;", 1),
+        ("for (uint i = 8u; i >= 0u; --i) color += x;", 1),
+        ("for (int i = 0; i < 8; ++i) { if (color.x > 2.0) --i; color += x; }", 1),
+        ("int i = 0; while (i < 8) { color += x; if (color.x > 2.0) continue; ++i; }", 1),
+        ("for (int i = 0; i < 8 || color.x < 2.0; ++i) color += x;", 1),
+        ("for (float t = 0.0; t < 1.0; t += 1e-9) color += x;", 1),
+        ("for (int i = int(given.x); i < 8; ++i) color += x;", 1),
+        // The number of rounds is known and too large.
+        ("for (int i = 0; i < 1000000; ++i) color += x;", 1),
+        ("for (int i = 0; i < 1000; ++i) for (int j = 0; j < 1000; ++j) color += x;", 2),
+        ("while (color.x < 2.0) { for (int i = 0; i < 4; ++i) color += x; }", 1),
+        ("while (color.x < 2.0) { while (color.y < 2.0) color += x; }", 2),
+    ] {
+        assert_counting(main, count);
+    }
+}
+
+#[test]
+fn loops_in_functions_count_with_those_around_the_call() {
+    let hundred = "vec4 f() { vec4 y = x; for (int i = 0; i < 100; ++i) y = cos(y); return y; }";
+    assert_eq!(counting(&module(hundred, "color = f();")), 0);
+    assert_eq!(counting(&module(hundred, "while (color.x < 2.0) color = f();")), 2);
+    assert_eq!(counting(&module(hundred, "for (int i = 0; i < 1000; ++i) color = f();")), 2);
+    // A parameter that the function changes.
+    let changes = "void f(inout int i) { i = i % 3; }";
+    assert_eq!(counting(&module(changes, "for (int i = 0; i < 8; ++i) { f(i); color += x; }")), 1);
+    // A loop that only a return leaves.
+    let returns = "vec4 f() { vec4 y = x; while (true) { y = cos(y); if (y.x > 2.0) return y; } }";
+    assert_eq!(counting(&module(returns, "color = f();")), 1);
+    assert_eq!(counting(&module("", "while (color.x < 2.0) { if (color.y > 3.0) discard; color *= 0.5; }")), 1);
+}
+
+#[test]
+fn an_overrun_finds_its_loop() {
+    let function = "vec4 f() { vec4 y = x;\n while (y.x < 2.0)\n  y *= 0.5; return y; }";
+    let words = module(function, "for (int i = 0; i < 8; ++i) color += x;\ncolor = f();");
+    let labels: Vec<Id> = {
+        let all = instructions(&words).unwrap();
+        let headers = all.iter().scan(0, |label, i| {
+            if opcode(i) == op::LABEL {
+                *label = i[1];
+            }
+            Some((opcode(i) == op::LOOP_MERGE).then_some(*label))
+        });
+        headers.flatten().collect()
+    };
+    let seed = seed(&words);
+    let places: Vec<Place> = labels
+        .iter()
+        .map(|label| Place::find(Overrun { one: name(seed, *label), together: 0 }, &words).expect("a loop"))
+        .collect();
+    let functions: Vec<(Option<usize>, &str)> = places.iter().map(|p| (p.number, p.function.as_str())).collect();
+    assert_eq!(functions, [(Some(0), "main"), (Some(1), "f")]);
+    let together = Overrun { one: 0, together: name(seed, 0) };
+    assert_eq!(Place::find(together, &words), Some(Place { number: None, function: String::new() }));
+    assert_eq!(Place::find(Overrun { one: 1, together: 0 }, &words), None);
+}
+
+#[test]
+fn garbage_stays() {
+    for words in [vec![], vec![1, 2, 3], vec![0x0723_0203, 0, 0, 9, 0, 0], vec![0x0723_0203, 0, 0, 9, 0, 0xffff_0036]] {
+        let mut bounded = words.clone();
+        assert!(!bound(&mut bounded, &words, &BOUNDS));
+        assert_eq!(bounded, words);
+    }
+}
