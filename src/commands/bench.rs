@@ -41,6 +41,9 @@ pub struct Args {
     /// Number of samples, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 20, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     samples: u32,
+    /// For reload: the file to edit, from the root of the tree. An edit of a file without `main()` changes nothing on screen
+    #[arg(long, value_name = "FILE", default_value = "pbr.frag")]
+    edit: String,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -85,14 +88,13 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     headless.render()?;
 
-    let path = folder.0.join("pbr.frag");
-    let original = std::fs::read_to_string(&path).map_err(|e| Failure::Input(e.to_string()))?;
+    let path = folder.0.join(&args.edit);
+    let original =
+        std::fs::read_to_string(&path).map_err(|e| Failure::Input(format!("--edit {}: {e}", args.edit)))?;
     let names = ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms", "total_ms", "overhead_ms", "rest_ms"];
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for sample in 0..args.samples {
-        // This edit changes the shader but not the picture: no fragment has a negative x.
-        let edit = format!("void main() {{\n    if (gl_FragCoord.x < -{}.0) discard;", sample + 1);
-        let text = original.replacen("void main() {", &edit, 1);
+        let text = edited(&original, sample + 1);
         let begin = Instant::now();
         std::fs::write(&path, text).map_err(|e| Failure::Input(e.to_string()))?;
         let batch = batches.recv().map_err(|e| Failure::Input(e.to_string()))?;
@@ -102,7 +104,9 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
         match reload.outcome {
             Outcome::Ready(_) => {}
             Outcome::Failed(diagnostics) => return Err(Failure::Shaders(diagnostics)),
-            Outcome::Unchanged { .. } => return Err(Failure::Input("the edit of pbr.frag changed nothing".into())),
+            Outcome::Unchanged { .. } => {
+                return Err(Failure::Input(format!("no stage uses {}, so its edit changed nothing", args.edit)));
+            }
         }
         let frame = Instant::now();
         headless.draw()?;
@@ -117,6 +121,17 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     }
     let table = names.iter().zip(samples).map(|(name, list)| ((*name).to_owned(), summary(list)));
     Ok(Value::Object(table.collect()))
+}
+
+/// The text of a shader file with an edit that does not change the picture: a stage discards fragments with a negative x, of
+/// which there are none, and a library gets a function that nothing calls.
+fn edited(text: &str, number: u32) -> String {
+    const MAIN: &str = "void main() {";
+    if text.contains(MAIN) {
+        return text.replacen(MAIN, &format!("{MAIN}\n    if (gl_FragCoord.x < -{number}.0) discard;"), 1);
+    }
+    let end = text.rfind("#endif").unwrap_or(text.len());
+    format!("{}float bench_edit(float x) {{ return x + {number}.0; }}\n{}", &text[..end], &text[end..])
 }
 
 /// Times frames of the selected mode, and the first and second frame of every mode.
