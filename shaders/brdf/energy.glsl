@@ -56,27 +56,21 @@ float table_roughness(Surface s) {
     return sqrt(sqrt(mix(alpha.y * alpha.y, alpha.x * alpha.x, 0.46)));
 }
 
-// Albedo of the specular lobe with this F. max: interpolation can go below an F of almost 0.
-vec3 single_albedo(Fresnel fresnel, bool is_sampled, Dfg dfg) {
-    if (is_sampled) {
-        float rest = dfg.e - dot(dfg.weights, vec4(1.0));
-        return max(fresnel.sampled * dfg.weights + fresnel.at_normal * rest, vec3(0.0));
-    }
-    return fresnel.f0 * dfg.a + fresnel.f90 * dfg.b;
-}
-
 // A single angle that represents the whole lobe, for a thin film, whose F changes too fast for five samples. B / E is the
 // mean of (1 - c)^5 over the lobe, so this angle has that value; exact for a mirror. 1e-10: the root has no slope at 0.
 float effective_cosine(Dfg dfg) { return 1.0 - pow(clamp(dfg.b / max(dfg.e, 1e-3), 1e-10, 1.0), 0.2); }
 
+// Albedo of the specular lobe, with the F of the dielectric and of the metal. max: interpolation can go below an F of almost 0.
 vec3 dielectric_albedo(Surface s, Dfg dfg) {
     if (HAS_FILM) return dielectric_fresnel(s, effective_cosine(dfg)) * dfg.e;
-    return single_albedo(s.dielectric, DIELECTRIC_IS_SAMPLED, dfg);
+    if (DIELECTRIC_IS_SAMPLED) return max(sampled_dielectric(s, dfg.weights, dfg.e), vec3(0.0));
+    return s.f0 * dfg.a + s.f90 * dfg.b;
 }
 
 vec3 metal_albedo(Surface s, Dfg dfg) {
     if (HAS_FILM) return metal_fresnel(s, effective_cosine(dfg)) * dfg.e;
-    return single_albedo(s.metal, METAL_IS_SAMPLED, dfg);
+    if (METAL_IS_SAMPLED) return max(sampled_metal(s, dfg.weights, dfg.e), vec3(0.0));
+    return s.base_color * dfg.a + dfg.b;
 }
 
 // Integral of f_diffuse NoL dl. The model need not be linear in the base color x (Oren-Nayar's is not): albedo / x is
@@ -91,7 +85,7 @@ vec3 diffuse_albedo(vec3 base_color, float roughness, float n_dot_v) {
 // The mean of the dielectric's F over the half vectors of light that the diffuse lobe of a white surface sends towards v.
 vec3 mean_dielectric_fresnel(Surface s, float n_dot_v) {
     vec2 uv = table_uv(n_dot_v, s.roughness, DIFFUSE_WEIGHTS, DIFFUSE_SIDE, DIFFUSE_SLICES);
-    return fresnel_mean(s.dielectric, DIELECTRIC_IS_SAMPLED, textureLod(diffuse_table, uv, 0.0));
+    return dielectric_mean(s, textureLod(diffuse_table, uv, 0.0));
 }
 
 // Columns are sqrt(NoV), since E is steep at grazing angles; rows as in the other tables. The error is below 0.001 for

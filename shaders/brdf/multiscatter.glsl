@@ -39,11 +39,11 @@ vec3 multiple_albedo(vec3 single, vec3 f_avg, Dfg dfg, float lost_mean) {
 }
 
 vec3 dielectric_multiple_albedo(Surface s, Dfg dfg) {
-    return multiple_albedo(dielectric_albedo(s, dfg), s.dielectric.average, dfg, s.mean_dfg.lost);
+    return multiple_albedo(dielectric_albedo(s, dfg), s.dielectric_average, dfg, s.mean_dfg.lost);
 }
 
 vec3 metal_multiple_albedo(Surface s, Dfg dfg) {
-    return multiple_albedo(metal_albedo(s, dfg), s.metal.average, dfg, s.mean_dfg.lost);
+    return multiple_albedo(metal_albedo(s, dfg), s.metal_average, dfg, s.mean_dfg.lost);
 }
 
 // The multiple-scattering lobe, 1/sr. lost_l: what the single-scattering lobe towards the light lacks.
@@ -62,14 +62,14 @@ float boundary_albedo(Surface s, Dfg dfg) {
 // Fdez-Aguera. Call it after the last change of the material and its normal, before lighting. `v`: towards the eye,
 // unit.
 void complete_surface(inout Surface s, vec3 v) {
-    s.dielectric = dielectric_of(s);
-    s.metal = metal_of(s);
+    s.dielectric_average = dielectric_mean(s, F_MEAN_WEIGHTS);
+    s.metal_average = metal_mean(s, F_MEAN_WEIGHTS);
     s.dfg = dfg_at(clamp(dot(s.n, v), MIN_N_DOT_V, 1.0), table_roughness(s));
     s.mean_dfg = dfg_mean(table_roughness(s));
     s.multiple = vec3(0.0);
     if (MULTI_SCATTER == KULLA_CONTY) {
-        vec3 f_dielectric = multiple_fresnel(s.dielectric.average, s.mean_dfg.lost);
-        s.multiple = mix(f_dielectric, multiple_fresnel(s.metal.average, s.mean_dfg.lost), s.metallic);
+        vec3 f_dielectric = multiple_fresnel(s.dielectric_average, s.mean_dfg.lost);
+        s.multiple = mix(f_dielectric, multiple_fresnel(s.metal_average, s.mean_dfg.lost), s.metallic);
     } else if (MULTI_SCATTER == FDEZ_AGUERA) {
         s.multiple = mix(dielectric_multiple_albedo(s, s.dfg), metal_multiple_albedo(s, s.dfg), s.metallic) / PI;
     }

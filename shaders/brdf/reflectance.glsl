@@ -19,25 +19,6 @@ const bool DIELECTRIC_IS_SAMPLED = FRESNEL_DIELECTRIC != SCHLICK_DIELECTRIC || H
 const bool METAL_IS_SAMPLED = FRESNEL_METAL != SCHLICK_METAL || HAS_FILM;
 const bool F_IS_SAMPLED = DIELECTRIC_IS_SAMPLED || METAL_IS_SAMPLED;
 
-// The mean of F with these weights of F_COSINES; the rest of 1 is the weight of c = 1.
-vec3 sampled_mean(Fresnel fresnel, vec4 weights) {
-    return fresnel.sampled * weights + fresnel.at_normal * (1.0 - dot(weights, vec4(1.0)));
-}
-
-// The same for f_schlick, which is linear in f0 and f90: its two functions of c are all constants.
-vec3 schlick_mean(vec3 f0, vec3 f90, vec4 weights) {
-    const vec3 F0 = vec3(1.0, 0.0, 0.0);
-    const vec3 F90 = vec3(0.0, 1.0, 0.0);
-    vec3 both = f_schlick(F0, F90, F_COSINES.x) * weights.x + f_schlick(F0, F90, F_COSINES.y) * weights.y;
-    both += f_schlick(F0, F90, F_COSINES.z) * weights.z + f_schlick(F0, F90, F_COSINES.w) * weights.w;
-    both += f_schlick(F0, F90, 1.0) * (1.0 - dot(weights, vec4(1.0)));
-    return f0 * both.x + f90 * both.y;
-}
-
-vec3 fresnel_mean(Fresnel fresnel, bool is_sampled, vec4 weights) {
-    return is_sampled ? sampled_mean(fresnel, weights) : schlick_mean(fresnel.f0, fresnel.f90, weights);
-}
-
 // How far the exact F has risen from F0 to 1, (F - F(1)) / (1 - F(1)): replaces Schlick's (1 - c)^5, so that
 // KHR_materials_specular's color and factor keep their meaning.
 float exact_rise(float ior, float c) {
@@ -80,30 +61,36 @@ vec3 metal_fresnel(Surface s, float c) {
     return f;
 }
 
-Fresnel dielectric_of(Surface s) {
-    Fresnel fresnel;
-    fresnel.f0 = s.f0;
-    fresnel.f90 = vec3(s.f90);
-    if (DIELECTRIC_IS_SAMPLED) {
-        fresnel.at_normal = dielectric_fresnel(s, 1.0);
-        fresnel.sampled = mat4x3(dielectric_fresnel(s, F_COSINES.x), dielectric_fresnel(s, F_COSINES.y),
-                                 dielectric_fresnel(s, F_COSINES.z), dielectric_fresnel(s, F_COSINES.w));
-    }
-    fresnel.average = fresnel_mean(fresnel, DIELECTRIC_IS_SAMPLED, F_MEAN_WEIGHTS);
-    return fresnel;
+// The sum of F at F_COSINES and at c = 1 with these weights, of which the last is what is left of `total`.
+vec3 sampled_dielectric(Surface s, vec4 weights, float total) {
+    vec3 sum = dielectric_fresnel(s, F_COSINES.x) * weights.x + dielectric_fresnel(s, F_COSINES.y) * weights.y;
+    sum += dielectric_fresnel(s, F_COSINES.z) * weights.z + dielectric_fresnel(s, F_COSINES.w) * weights.w;
+    return sum + dielectric_fresnel(s, 1.0) * (total - dot(weights, vec4(1.0)));
 }
 
-Fresnel metal_of(Surface s) {
-    Fresnel fresnel;
-    fresnel.f0 = s.base_color;
-    fresnel.f90 = vec3(1.0);
-    if (METAL_IS_SAMPLED) {
-        fresnel.at_normal = metal_fresnel(s, 1.0);
-        fresnel.sampled = mat4x3(metal_fresnel(s, F_COSINES.x), metal_fresnel(s, F_COSINES.y),
-                                 metal_fresnel(s, F_COSINES.z), metal_fresnel(s, F_COSINES.w));
-    }
-    fresnel.average = fresnel_mean(fresnel, METAL_IS_SAMPLED, F_MEAN_WEIGHTS);
-    return fresnel;
+vec3 sampled_metal(Surface s, vec4 weights, float total) {
+    vec3 sum = metal_fresnel(s, F_COSINES.x) * weights.x + metal_fresnel(s, F_COSINES.y) * weights.y;
+    sum += metal_fresnel(s, F_COSINES.z) * weights.z + metal_fresnel(s, F_COSINES.w) * weights.w;
+    return sum + metal_fresnel(s, 1.0) * (total - dot(weights, vec4(1.0)));
+}
+
+// The same for f_schlick and a total of 1. It is linear in f0 and f90: its two functions of c are all constants.
+vec3 schlick_mean(vec3 f0, vec3 f90, vec4 weights) {
+    const vec3 F0 = vec3(1.0, 0.0, 0.0);
+    const vec3 F90 = vec3(0.0, 1.0, 0.0);
+    vec3 both = f_schlick(F0, F90, F_COSINES.x) * weights.x + f_schlick(F0, F90, F_COSINES.y) * weights.y;
+    both += f_schlick(F0, F90, F_COSINES.z) * weights.z + f_schlick(F0, F90, F_COSINES.w) * weights.w;
+    both += f_schlick(F0, F90, 1.0) * (1.0 - dot(weights, vec4(1.0)));
+    return f0 * both.x + f90 * both.y;
+}
+
+// The mean of F with these weights of F_COSINES; the rest of 1 is the weight of c = 1.
+vec3 dielectric_mean(Surface s, vec4 weights) {
+    return DIELECTRIC_IS_SAMPLED ? sampled_dielectric(s, weights, 1.0) : schlick_mean(s.f0, vec3(s.f90), weights);
+}
+
+vec3 metal_mean(Surface s, vec4 weights) {
+    return METAL_IS_SAMPLED ? sampled_metal(s, weights, 1.0) : schlick_mean(s.base_color, vec3(1.0), weights);
 }
 
 #endif

@@ -4,15 +4,6 @@
 
 #include "brdf/dfg.glsl"
 
-// F of one boundary, for the tables (brdf/dfg.glsl).
-struct Fresnel {
-    vec3 f0;                   // Schlick's parameters
-    vec3 f90;
-    vec3 at_normal;            // F at c = 1, and at F_COSINES, unless F is f_schlick
-    mat4x3 sampled;
-    vec3 average;              // cosine-weighted: 2 integral F(c) c dc
-};
-
 struct Surface {
     vec3 position_ws;
     vec3 n;                    // shading normal, world space, unit
@@ -27,8 +18,8 @@ struct Surface {
     float ior;                 // of the dielectric
 
     // complete_surface (brdf/multiscatter.glsl) computes these from the members above.
-    Fresnel dielectric;        // of the boundary if it were all dielectric, and all metal
-    Fresnel metal;
+    vec3 dielectric_average;   // cosine-weighted F of the boundary, 2 integral F(c) c dc, if it were all dielectric
+    vec3 metal_average;        // the same if it were all metal
     Dfg dfg;                   // of the specular lobe towards the eye
     Dfg mean_dfg;              // the mean over all directions
     vec3 multiple;             // multiple scattering
