@@ -25,6 +25,11 @@ pub enum Event<'a> {
     Reload(ReloadEvent),
     /// After a reload: the stages that the picture did not need have been compiled.
     Completed(CompletedEvent),
+    /// The window shows all of the last reload: its stages are compiled and its light is baked.
+    Settled {
+        /// Shader generation.
+        generation: u64,
+    },
     /// An environment was baked, or loaded from the disk cache.
     Bake(&'a BakeReport),
     /// A picture was rendered in a mode that accumulates random paths.

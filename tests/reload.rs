@@ -28,8 +28,15 @@ const SKY: &[&str] = &["debug.frag", "paths.frag", "pbr.frag", "sky.frag"];
 const SPECULAR: &[&str] =
     &["debug.frag", "ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
 /// Stages with the models' choices.
-const CHOICES: &[&str] =
-    &["debug.frag", "ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
+const CHOICES: &[&str] = &[
+    "debug.frag",
+    "ibl/dfg.comp",
+    "ibl/diffuse_albedo.comp",
+    "ibl/lobe.comp",
+    "ibl/prefilter.comp",
+    "paths.frag",
+    "pbr.frag",
+];
 /// Stages that round to half floats.
 const ROUNDING: &[&str] = &[
     "ibl/cube.comp",
@@ -85,7 +92,12 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
     for (file, from, to, expected) in [
         (NDF, SQUARED, "float a2 = alpha;", SPECULAR),
         ("common/tonemap.glsl", "x / (1.0 + x)", "x / (1.5 + x)", &["tonemap.frag"][..]),
-        ("common/fragment.glsl", "vec2 uv1;", "vec2 uv1;\n    vec2 uv2;", &["debug.frag", "paths.frag", "pbr.frag", "pbr.vert"]),
+        (
+            "common/fragment.glsl",
+            "vec2 uv1;",
+            "vec2 uv1;\n    vec2 uv2;",
+            &["debug.frag", "paths.frag", "pbr.frag", "pbr.vert"],
+        ),
         ("common/color.glsl", "0.0031308", "0.0031309", &["debug.frag", "paths.frag", "pbr.frag", "tonemap.frag"]),
         ("lighting/environment.glsl", "textureLod(environment_cube, ", "textureLod(environment_cube, -", SKY),
         ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", CHOICES),

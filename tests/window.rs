@@ -46,6 +46,7 @@ fn open_resize_edit_break_screenshot_close() {
     viewer.tree.write(NDF, &original.replace("float a2 = alpha * alpha;", "float a2 = alpha;"));
     let reload = viewer.running.reload(true);
     assert!(reload["first_frame_ms"].as_f64() > Some(0.0), "{reload}");
+    viewer.running.settled(&reload);
     let edited = viewer.screenshot();
     assert_ne!(edited, resized, "the edit shows");
 
@@ -57,7 +58,8 @@ fn open_resize_edit_break_screenshot_close() {
     assert!(viewer.screenshot() == edited, "a broken edit changed the picture");
 
     viewer.tree.write(NDF, &original);
-    viewer.running.reload(true);
+    let reload = viewer.running.reload(true);
+    viewer.running.settled(&reload);
     assert!(viewer.screenshot() == resized, "the first shader again shows the first picture again");
     viewer.quit();
 }

@@ -67,6 +67,8 @@ pub(super) struct Viewer {
     allow_outside: bool,
     shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
+    /// The shader generation that was last shown with all of its stages and light.
+    settled: Option<u64>,
     /// The words of a loop that did not end. Its diagnostic is on screen, or on its way.
     endless_loop: Option<[u32; 2]>,
     compiler: Arc<Compiler>,
@@ -109,6 +111,7 @@ impl Viewer {
             allow_outside: options.allow_outside,
             shown: None,
             first_frame: None,
+            settled: None,
             endless_loop: None,
             compiler: options.compiler,
             source: source.clone(),
@@ -137,11 +140,15 @@ impl Viewer {
         let target = target(&self.gpu, &self.session.settings);
         let Some(state) = self.session.frame_state(time_s, size, target) else { return Ok(None) };
         let state = Arc::new(state);
-        self.request_missing(&state);
+        let is_complete = self.request_missing(&state) && state.shaders.pending.is_empty();
         // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
         if let Some(frame) = self.resources.bind(&state, is_first)? {
             prepare(&frame)?;
+            let generation = state.shaders.generation;
+            if is_complete && state.scene.is_some() && self.settled.replace(generation) != Some(generation) {
+                emit(self.events, &Event::Settled { generation });
+            }
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
             self.shown = Some(LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
             return Ok(Some(frame));
@@ -177,12 +184,13 @@ impl Viewer {
         }))
     }
 
-    /// Requests from the threads what a state lacks.
-    fn request_missing(&mut self, state: &FrameState) {
+    /// Requests from the threads what a state lacks. Returns whether it lacks nothing.
+    fn request_missing(&mut self, state: &FrameState) -> bool {
         let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
         self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target });
-        let Some(set) = self.resources.pipelines() else { return };
+        let Some(set) = self.resources.pipelines() else { return false };
         let missing = self.resources.missing(state);
+        let is_empty = missing.is_empty();
         if missing.pipelines {
             self.threads.worker.build(set, &state.pipelines);
         }
@@ -190,6 +198,7 @@ impl Viewer {
         self.threads.baker.bake(set, missing.environment, &self.resources);
         self.threads.baker.read(missing.measured);
         self.threads.baker.trace(missing.traced);
+        is_empty
     }
 
     /// The state of the picture on screen.

@@ -89,8 +89,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     headless.render()?;
 
     let path = folder.0.join(&args.edit);
-    let original =
-        std::fs::read_to_string(&path).map_err(|e| Failure::Input(format!("--edit {}: {e}", args.edit)))?;
+    let original = std::fs::read_to_string(&path).map_err(|e| Failure::Input(format!("--edit {}: {e}", args.edit)))?;
     let names = ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms", "total_ms", "overhead_ms", "rest_ms"];
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for sample in 0..args.samples {

@@ -67,6 +67,14 @@ pub struct Missing {
     pub traced: Option<TraceRequest>,
 }
 
+impl Missing {
+    /// Whether nothing is missing.
+    pub fn is_empty(&self) -> bool {
+        let Self { pipelines, tables, environment, measured, traced } = self;
+        !pipelines && tables.is_none() && environment.is_none() && measured.is_none() && traced.is_none()
+    }
+}
+
 /// The last good resource with its key, and the key of the last failure.
 struct Slot<K, T> {
     made: Option<(K, Arc<T>)>,

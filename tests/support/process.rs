@@ -163,6 +163,13 @@ impl Running {
         self.until(&format!("a reload with ok={ok}"), |event| event["event"] == "reload" && event["ok"] == ok)
     }
 
+    /// Waits until a window shows a reload with all of its stages and light.
+    #[track_caller]
+    pub fn settled(&mut self, reload: &Value) {
+        let generation = &reload["generation"];
+        self.until("settled", |event| event["event"] == "settled" && event["generation"] == *generation);
+    }
+
     /// Waits for the end of the program.
     #[track_caller]
     pub fn end(&mut self) -> ExitStatus {

@@ -108,6 +108,7 @@ fn a_panic_of_the_worker_costs_nothing() {
     viewer.tree.write(NDF, &original);
     let reload = viewer.running.reload(true);
     assert!(reload["changed"][0].as_str().is_some_and(|file| file.ends_with(NDF)), "{reload}");
+    viewer.running.settled(&reload);
     assert!(viewer.screenshot() == first, "the first text no longer shows the first picture");
     let stderr = viewer.quit();
     assert_eq!(stderr.matches("thread failed").count(), 1, "{stderr}");

@@ -44,8 +44,7 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
     let gpu = args.common.gpu()?;
     let read = || args.common.model(args.model.as_deref());
-    let (mut headless, reload) =
-        Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
+    let (mut headless, reload) = Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
     if let Some(watch) = &mut watch {
         watch.follow(&headless);
     }

@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Gpu, SetLayouts};
-use crate::shader::{Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, StageKind, TreePath, Update};
+use crate::shader::{
+    Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, StageKind, TreePath, Update,
+};
 
 use super::set::{PipelineSet, stages};
 use crate::render::state::PipelineRequest;

@@ -205,7 +205,8 @@ impl PipelineRequest {
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
-        let picture = Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, stage: ModeStage::Picture, ..self.clone() };
+        let picture =
+            Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, stage: ModeStage::Picture, ..self.clone() };
         picture.model_key(material)
     }
 

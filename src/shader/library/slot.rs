@@ -123,9 +123,10 @@ impl Slot {
     /// it differs from the current one.
     pub fn recall(&mut self, snapshot: &Snapshot<'_>) -> Option<bool> {
         let good = self.good.clone().map(Ok);
-        let known = [self.current.clone(), good].into_iter().flatten().find(|outcome| {
-            snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome)
-        })?;
+        let known = [self.current.clone(), good]
+            .into_iter()
+            .flatten()
+            .find(|outcome| snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome))?;
         let moved = !self.current.as_ref().is_some_and(|current| same(current, &known));
         self.current = Some(known);
         Some(moved)
