@@ -17,7 +17,7 @@ use specula::shader::{Batch, Compiler, Source, Watcher};
 use super::common::{Common, check_validation, compiler};
 use super::{Failure, print_json};
 
-/// What to measure.
+/// The process to measure.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum What {
     /// Time from a save to the end of the first frame with the new shader

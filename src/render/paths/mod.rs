@@ -1,4 +1,4 @@
-//! What random paths need beyond the resources of a picture: the model's triangles in a bounding volume hierarchy, its
+//! The resources that random paths need beyond those of a picture: the model's triangles in a bounding volume hierarchy, its
 //! materials in one buffer, and a table from which directions towards the environment's light are drawn.
 //!
 //! A path reaches any triangle of the model, and a descriptor set per material cannot be chosen by a shader on devices without
@@ -53,7 +53,7 @@ impl PartialEq for TraceKey {
     }
 }
 
-/// What to make for random paths, and from what.
+/// A request to make what random paths trace.
 #[derive(Clone)]
 pub struct TraceRequest {
     pub(super) key: TraceKey,
