@@ -13,8 +13,8 @@
 const uint LATTICE = 89u;
 vec2 lattice_point(uint i) { return vec2(float(i) + 0.5, float(i * 55u % LATTICE)) / float(LATTICE); }
 
-// The radiance that the surface reflects and transmits towards v under the same radiance 1 from everywhere. By reciprocity that is also
-// the fraction of a beam from the eye that is not absorbed.
+// The radiance that the surface reflects and transmits towards v under the same radiance 1 from everywhere. By reciprocity
+// that is also the fraction of a beam from the eye that is not absorbed.
 vec3 furnace_albedo(Surface s, vec3 v) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < LATTICE * LOBE_CHOICES; ++i) {

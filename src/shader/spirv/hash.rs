@@ -182,7 +182,7 @@ fn is_id(i: &[u32], at: usize) -> bool {
         op::LABEL | op::BRANCH | op::RETURN_VALUE => usize::MAX,
         op::BRANCH_CONDITIONAL => 3,
         // OpSwitch: selector, default, then pairs of a literal and a label
-        op::SWITCH => return at <= 2 || at % 2 == 0,
+        op::SWITCH => return at <= 2 || at.is_multiple_of(2),
         _ => 0,
     };
     at <= leading
