@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
 
-const uint INTERFACE_VERSION = 4u;
+const uint INTERFACE_VERSION = 5u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
@@ -25,7 +25,7 @@ const int BINDING_MEASURED = 9;
 const int BINDING_SHEEN_ALBEDO = 10;
 const int BINDING_UNUSED = 11;
 const int BINDING_DIFFUSE_ALBEDO = 12;
-const int BINDING_PREFILTERED_ODD = 13;
+const int BINDING_LAMP_DFG = 13;
 const int BINDING_BVH = 14;
 const int BINDING_TRACED_TRIANGLES = 15;
 const int BINDING_TRACED_CORNERS = 16;
@@ -42,8 +42,8 @@ const int BINDING_SOURCE_CUBE = 2;
 const int BINDING_TARGET = 3;
 const int BINDING_LEVEL_ABOVE = 4;
 const int BINDING_RESULTS = 5;
-const int BINDING_LOBES = 6;
-const int BINDING_TARGET_ODD = 7;
+const int BINDING_LOBE_TARGET = 6;
+const int BINDING_LOBE = 7;
 const int BINDING_TASK_LOOPS = 8;
 const int BINDING_BASE_COLOR_TEXTURE = 1;
 const int BINDING_METALLIC_ROUGHNESS_TEXTURE = 2;
@@ -108,6 +108,12 @@ const uint FLAG_NO_DATA = 16u;
 const uint FLAG_NOT_FINITE = 256u;
 const uint MAX_BVH_DEPTH = 64u;
 const uint NO_TEXTURE = 0xffffffffu;
+const uint IRRADIANCE_SIDE = 68u;
+const uint SPECULAR_LEVELS = 16u;
+const uint MIRROR_SIDE = 640u;
+const uint SPECULAR_SIDE = 320u;
+const uint SPECULAR_WIDTH = 648u;
+const uint SPECULAR_HEIGHT = 1792u;
 const uint TONEMAP_OFF = 0xffffffffu;
 const uint TEXTURE_BASE_COLOR = 0u;
 const uint TEXTURE_METALLIC_ROUGHNESS = 1u;

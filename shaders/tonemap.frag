@@ -24,16 +24,16 @@ vec3 display_value(vec3 value) {
 
 void main() {
     vec4 scene = texelFetch(scene_color, ivec2(gl_FragCoord.xy - frame.viewport_origin_px), 0);
-    scene.a = coverage_of(scene.a);
-    // The curves are not linear, so they want the color of the surface, not the color times how much of it there is.
-    vec3 front = display_value(scene.a > 0.0 ? scene.rgb / scene.a : vec3(0.0));
+    float coverage = coverage_of(scene.a);
+    // The curves are not linear, so they want the color of the surface, not the color times how much of it there is. 1e-6:
+    // where nothing covers the pixel, the color is 0.
+    vec3 front = display_value(scene.rgb / max(coverage, 1e-6));
 
     // Colors meet in linear light, as they do in a lens. Numbers have no such space: they meet the encoded background.
     vec3 back = ENCODE == ENCODE_COLOR ? frame.background.rgb : srgb_from_linear(frame.background.rgb);
 
-    // A over B (Porter & Duff 1984), with the result divided by its alpha.
-    float back_alpha = frame.background.a * (1.0 - scene.a);
-    float alpha = scene.a + back_alpha;
-    vec3 color = alpha > 0.0 ? (front * scene.a + back * back_alpha) / alpha : vec3(0.0);
+    // A over B (Porter & Duff 1984), divided by its alpha: the mean of both colors.
+    float alpha = mix(frame.background.a, 1.0, coverage);
+    vec3 color = mix(back, front, coverage / max(alpha, 1e-6));
     out_color = vec4(ENCODE == ENCODE_COLOR ? srgb_from_linear(color) : color, alpha);
 }

@@ -19,7 +19,7 @@ pub use print::glsl;
 pub use textures::*;
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;
@@ -74,10 +74,10 @@ impl BindingKind {
 
 /// Binding in [`SET_TASK`] of the buffer that a task writes numbers to. It is as large as the stages declare.
 pub const BINDING_RESULTS: u32 = 5;
-/// The samples of each level of a prefilter.
-pub const BINDING_LOBES: u32 = 6;
-/// The odd level of a prefilter, which is written along with the even one.
-pub const BINDING_TARGET_ODD: u32 = 7;
+/// Binding in [`SET_TASK`] of the samples of a pair of specular levels, for the task that chooses them.
+pub const BINDING_LOBE_TARGET: u32 = 6;
+/// Binding in [`SET_TASK`] of the same samples, for the task that reads them.
+pub const BINDING_LOBE: u32 = 7;
 /// Binding in [`SET_TASK`] of the block [`Task`].
 pub const BINDING_TASK: u32 = 0;
 /// Binding in [`SET_TASK`] of the image that a task reads.
@@ -130,9 +130,9 @@ const OTHERS: &[Binding] = &[
     binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::UniformBuffer, MAX_LIGHTS * size_of::<Light>()),
     binding(SET_FRAME, 2, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
     binding(SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
-    binding(SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::SamplerCube, 0),
+    binding(SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 5, "BINDING_PREFILTERED_SHEEN", BindingKind::SamplerCube, 0),
-    binding(SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::SamplerCube, 0),
+    binding(SET_FRAME, 6, "BINDING_IRRADIANCE", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 7, "BINDING_DFG", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 8, "BINDING_LTC", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 9, "BINDING_MEASURED", BindingKind::StorageBuffer, 0),
@@ -141,7 +141,8 @@ const OTHERS: &[Binding] = &[
     // own counters with those of a stage's fourth uniform block. So the fourth block is this one, which nothing reads.
     binding(SET_FRAME, 11, "BINDING_UNUSED", BindingKind::UniformBuffer, 16),
     binding(SET_FRAME, 12, "BINDING_DIFFUSE_ALBEDO", BindingKind::Sampler2D, 0),
-    binding(SET_FRAME, 13, "BINDING_PREFILTERED_ODD", BindingKind::SamplerCube, 0),
+    // Two channels of BINDING_DFG, for lamps: a software device reads them in two thirds of the time that four take.
+    binding(SET_FRAME, 13, "BINDING_LAMP_DFG", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 14, "BINDING_BVH", BindingKind::StorageBuffer, 0),
     binding(SET_FRAME, 15, "BINDING_TRACED_TRIANGLES", BindingKind::StorageBuffer, 0),
     binding(SET_FRAME, 16, "BINDING_TRACED_CORNERS", BindingKind::StorageBuffer, 0),
@@ -158,8 +159,9 @@ const OTHERS: &[Binding] = &[
     binding(SET_TASK, BINDING_TARGET, "BINDING_TARGET", BindingKind::StorageImage, 0),
     binding(SET_TASK, BINDING_LEVEL_ABOVE, "BINDING_LEVEL_ABOVE", BindingKind::StorageImage, 0),
     binding(SET_TASK, BINDING_RESULTS, "BINDING_RESULTS", BindingKind::StorageBuffer, 0),
-    binding(SET_TASK, BINDING_LOBES, "BINDING_LOBES", BindingKind::StorageBuffer, 0),
-    binding(SET_TASK, BINDING_TARGET_ODD, "BINDING_TARGET_ODD", BindingKind::StorageImage, 0),
+    binding(SET_TASK, BINDING_LOBE_TARGET, "BINDING_LOBE_TARGET", BindingKind::StorageBuffer, 0),
+    // 16 KiB is the largest uniform block that every device has.
+    binding(SET_TASK, BINDING_LOBE, "BINDING_LOBE", BindingKind::UniformBuffer, 16384),
     binding(LOOPS[1].0, LOOPS[1].1, "BINDING_TASK_LOOPS", BindingKind::StorageBuffer, 0),
 ];
 

@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWr
 use crate::interface::{self, Task};
 use crate::render::{
     GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, Tables, TablesKey,
-    TargetFormat, Traced, Uniforms, compute, ltc, measured_buffer,
+    TargetFormat, Traced, Uniforms, compute, measured_buffer,
 };
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
@@ -144,7 +144,6 @@ impl Bench {
     pub fn new(gpu: &Arc<Gpu>, shaders: &Arc<ShaderSet>, settings: &Settings) -> Result<Self, GpuError> {
         let layouts = SetLayouts::new(gpu)?;
         let (set, _) = PipelineSet::new(gpu, &layouts, shaders.clone(), &request(settings, shaders), None)?;
-        let linear = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
         let shared = Shared {
             gpu: gpu.clone(),
             layouts,
@@ -152,7 +151,7 @@ impl Bench {
             environment: GpuEnvironment::uniform(gpu, [1.0; 3])?,
             measured: measured_buffer(gpu, None)?,
             traced: Traced::empty(gpu)?,
-            images: SharedImages { ltc: ltc::table(gpu)?, linear },
+            images: SharedImages::new(gpu)?,
         };
         Self::on(Arc::new(shared), settings)
     }

@@ -2,30 +2,35 @@
 
 mod support;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
+use specula::interface::{MIRROR_SIDE, SPECULAR_LEVELS, SPECULAR_SIDE};
 use specula::scene::environment::direction_from_uv;
 use specula::scene::{Environment, EnvironmentFile};
 use support::{Session, assert_validated, glb, load, ready, settings};
 
-const SIDE: f64 = 256.0;
-/// The level of roughness 1. Each level is 2^0.4 times as rough as the one before (ibl/levels.glsl).
-const LAST: f64 = 10.0;
-/// Replaces the lookup by one at the texel center of a whole level, like [`texel`].
-const AT_TEXEL: &str = "vec3 prefiltered_level(vec3 r, float level) {
-    float side = exp2(8.0 - ceil(0.5 * round(level)));
-    vec3 p = r / max(max(abs(r.x), abs(r.y)), abs(r.z));
-    vec3 center = (floor((p * 0.5 + 0.5) * side) + 0.5) / side * 2.0 - 1.0;
-    r = mix(center, p, greaterThanEqual(abs(p), vec3(0.999999)));
-";
+/// The level of roughness 1. Each level is 2^(1/4) times as rough as the one before (ibl/levels.glsl).
+const LAST: f64 = SPECULAR_LEVELS as f64;
+/// Replaces a lookup by one at the center of the nearest texel, like [`texel`].
+const AT_TEXEL: &str = "vec2 place = floor(place_in_tile(p, tile)) + 0.5;";
 
-/// The center of the texel around `n` on a cube with `side` texels; `None` where rounding may select another texel.
-fn texel(n: DVec3, side: f64) -> Option<DVec3> {
-    let p = n / n.abs().max_element();
-    let place = (p * 0.5 + 0.5) * side;
-    let is_sure = |i: usize| p[i].abs() == 1.0 || (p[i].abs() < 0.9999 && (0.01..0.99).contains(&place[i].fract()));
-    let center = (place.floor() + 0.5) / side * 2.0 - 1.0;
-    let at = DVec3::select(p.abs().cmpeq(DVec3::ONE), p, center);
-    (0..3).all(is_sure).then(|| at.normalize())
+/// The center of the texel around `n` in the octahedral map of a level; `None` where rounding may select another texel.
+fn texel(n: DVec3, level: f64) -> Option<DVec3> {
+    let (widest, row) = (f64::from(SPECULAR_SIDE), (0.5 * level + 0.5).floor());
+    let scale = 0.75_f64.powf(row - 1.0);
+    let side = widest * scale;
+    let left = if level == 2.0 * row { widest } else { 0.0 };
+    let corner = DVec2::new(left, f64::from(MIRROR_SIDE) + 4.0 * widest * (1.0 - scale));
+    let d = n / n.abs().element_sum();
+    let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
+    let folded = DVec2::new((1.0 - d.z.abs()) * sign(d.x), (1.0 - d.x.abs()) * sign(d.z));
+    let p = if d.y >= 0.0 { DVec2::new(d.x, d.z) } else { folded };
+    let place = corner + 0.5 * side + p * (0.5 * side - 1.0);
+    let p = (place.floor() + 0.5 - corner - 0.5 * side) / (0.5 * side - 1.0);
+    let y = 1.0 - p.x.abs() - p.y.abs();
+    let at = DVec3::new(p.x - sign(p.x) * (-y).max(0.0), y, p.y - sign(p.y) * (-y).max(0.0)).normalize();
+    // The texels of the border are tested by the lookups between texels.
+    let is_sure = place.fract().cmpge(DVec2::splat(0.02)).all() && place.fract().cmple(DVec2::splat(0.98)).all();
+    (is_sure && p.abs().max_element() < 1.0).then_some(at)
 }
 
 /// Every texel of a map: unit direction, radiance times solid angle, solid angle.
@@ -104,24 +109,23 @@ fn baked_like_brute_force(environment: &str) {
     session.set("material.enabled=true");
     // Three kinds of lookup: between levels, on a level, where the sampler's interpolation contributes, and at texel
     // centers, where only the bake does.
-    let whole: &[f64] = &[3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0];
-    // The sun's highlight dominates the errors of the sky: between two levels one lobe is too sharp and one too wide, and a
-    // texel of 2.8 degrees is coarse for the narrowest lobe of its size.
-    let [between, on_level] = if environment == "sky" { [0.1, 0.08] } else { [0.03, 0.025] };
-    let edits = [(&[3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5][..], between), (whole, on_level), (whole, 0.015)];
+    let between: &[f64] = &[4.5, 6.5, 8.5, 9.5, 10.5, 12.5, 15.5];
+    let whole: &[f64] = &[4.0, 5.0, 7.0, 8.0, 10.0, 11.0, 13.0, 16.0];
+    // Under the sun, between two levels one lobe is too sharp and one too wide.
+    let allowed = if environment == "sky" { 0.05 } else { 0.03 };
+    let edits = [(between, allowed), (whole, 0.03), (whole, 0.017)];
     for (pass, (levels, allowed)) in edits.into_iter().enumerate() {
         let at_texels = pass == 2;
         if at_texels {
-            let first_line = "vec3 prefiltered_level(vec3 r, float level) {\n";
-            ready(&session.edit("lighting/environment.glsl", first_line, AT_TEXEL));
+            let place = "vec2 place = place_in_tile(p, tile);";
+            ready(&session.edit("lighting/environment.glsl", place, AT_TEXEL));
         }
         for level in levels {
-            let roughness = (0.4 * (level - LAST)).exp2();
+            let roughness = (0.25 * (level - LAST)).exp2();
             session.set(&format!("material.roughness={roughness}"));
             let found = shown(&mut session, "prefiltered");
             let alpha = roughness * roughness;
-            let side = SIDE / (0.5 * level).ceil().exp2();
-            let place = |n: DVec3| if at_texels { texel(n, side) } else { Some(n) };
+            let place = |n: DVec3| if at_texels { texel(n, *level) } else { Some(n) };
             let known = found.iter().filter_map(|(n, value)| Some((*value, place(*n)?)));
             let pairs: Vec<_> = known.map(|(value, at)| (value, sky.mean(at, ggx(alpha)))).collect();
             assert!(pairs.len() > 20, "{} texels", pairs.len());

@@ -226,8 +226,8 @@ fn the_prefilter_is_told_apart_from_the_split_sum() {
     let all = |session: &mut Session, mode: &str| mean(&session.mode(mode), 0..96, 0..64)[1];
     let [prefilter, split_sum] = ["prefilter-error", "split-sum-error"].map(|mode| all(&mut session, mode));
     let light = all(&mut session, "ibl-specular");
-    let from = "return frame.environment_intensity * mix(even_radiance";
-    let to = "return 1.2 * frame.environment_intensity * mix(even_radiance";
+    let from = "return frame.environment_intensity * mix(even,";
+    let to = "return 1.2 * frame.environment_intensity * mix(even,";
     ready(&session.edit("lighting/environment.glsl", from, to));
     let [wrong, unchanged] = ["prefilter-error", "split-sum-error"].map(|mode| all(&mut session, mode));
     assert!((wrong - prefilter + 0.2 * light).abs() < 0.002 * light, "{prefilter} {wrong}, of {light}");

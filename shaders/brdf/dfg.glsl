@@ -45,7 +45,7 @@ const vec4 F_MEAN_WEIGHTS = vec4(0.00039955, 0.01626559, 0.11843567, 0.42261210)
 const uint DFG_SIDE = 128u;
 const uint DFG_DIRECTION = 0u;           // a, b, e, lost
 const uint DFG_DIRECTION_WEIGHTS = 1u;   // weights
-const uint DFG_MEAN = 2u;                // means over directions: a, b, width of D (ggx_roughness), lost; in all columns
+const uint DFG_MEAN = 2u;                // means over directions: a, b, width of D (ggx_roughness), lost; see below
 const uint DFG_MEAN_WEIGHTS = 3u;
 const uint DFG_LOBE = 4u;                // mean of e, N, and DFG_FLAG bits of wrong values
 const uint DFG_SLICES = 5u;
@@ -56,6 +56,15 @@ const uint DIFFUSE_SIDE = 64u;
 const uint DIFFUSE_COLORS = 0u;          // albedo over base color, for base colors of 1/3, 2/3 and 1; flag
 const uint DIFFUSE_WEIGHTS = 1u;         // weights of F_COSINES over the half vectors of the diffuse lobe
 const uint DIFFUSE_SLICES = 2u;
+
+// The means do not depend on a cosine, so their slice has 128 x 127 + 1 values of roughness, one after the other: the one
+// of the nearest is as exact as a half float, and a software device reads it faster than it interpolates four texels.
+// Rust interpolates them between the rows that ibl/dfg.comp writes.
+ivec2 mean_texel(float roughness) {
+    int last = int(DFG_SIDE * (DFG_SIDE - 1u));
+    int i = clamp(int(roughness * float(last) + 0.5), 0, last);
+    return ivec2(i % int(DFG_SIDE), int(DFG_MEAN * DFG_SIDE) + i / int(DFG_SIDE));
+}
 
 vec2 table_uv(float cosine, float roughness, uint slice, uint side, uint slices) {
     float row = float(slice * side) + roughness * float(side - 1u) + 0.5;

@@ -5,11 +5,13 @@
 
 #include "interface.glsl"
 #include "brdf/dfg.glsl"
+#include "brdf/diffuse.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_DFG) uniform sampler2D dfg_table;
+layout(set = SET_FRAME, binding = BINDING_LAMP_DFG) uniform sampler2D lamp_dfg_table;
 layout(set = SET_FRAME, binding = BINDING_DIFFUSE_ALBEDO) uniform sampler2D diffuse_table;
 layout(set = SET_FRAME, binding = BINDING_SHEEN_ALBEDO) uniform sampler2D sheen_albedo_table;
 
@@ -26,9 +28,19 @@ Dfg dfg_at(float cosine, float roughness) {
     return dfg_of(dfg_texel(cosine, roughness, DFG_DIRECTION), weights);
 }
 
+// The moments towards a lamp. Its table holds B and `lost` alone. A follows from them: f_schlick(1, 1, c) does not depend on c,
+// so A + B is proportional to E, which is proportional to 1 - lost; the factor is that of the direction to the eye.
+Dfg dfg_towards_lamp(float cosine, float roughness, Dfg towards_eye) {
+    if (F_IS_SAMPLED) return dfg_at(cosine, roughness);
+    vec2 b_lost = textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
+    float factor = (towards_eye.a + towards_eye.b) / max(1.0 - towards_eye.lost, 1e-3);
+    float sum = (1.0 - b_lost.y) * factor;
+    return Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
+}
+
 // Their cosine-weighted means, 2 integral over 0..1 of x(mu) mu dmu.
 Dfg dfg_mean(float roughness) {
-    vec4 terms = dfg_texel(0.5, roughness, DFG_MEAN);
+    vec4 terms = texelFetch(dfg_table, mean_texel(roughness), 0);
     if (!F_IS_SAMPLED) return Dfg(terms.r, terms.g, 0.0, terms.a, vec4(0.0));
     float e = dfg_texel(0.5, roughness, DFG_LOBE).r;
     return Dfg(terms.r, terms.g, e, terms.a, dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS));
@@ -37,7 +49,7 @@ Dfg dfg_mean(float roughness) {
 // Roughness of the GGX whose facets spread as widely as those of the selected D: half of their area lies within tan =
 // alpha (Walter et al. 2007, eq. 35). For formulas and tables that only exist for GGX (lighting/area.glsl).
 float ggx_roughness(float roughness) {
-    return min(roughness * sqrt(dfg_texel(0.5, roughness, DFG_MEAN).b), 1.0);
+    return min(roughness * sqrt(texelFetch(dfg_table, mean_texel(roughness), 0).b), 1.0);
 }
 
 // alpha along t and b. Anisotropy raises alpha along t towards 1 (KHR_materials_anisotropy).
@@ -73,9 +85,20 @@ vec3 metal_albedo(Surface s, Dfg dfg) {
     return s.base_color * dfg.a + dfg.b;
 }
 
-// Integral of f_diffuse NoL dl. The model need not be linear in the base color x (Oren-Nayar's is not): albedo / x is
-// interpolated by the parabola through its values at x = 1/3, 2/3 and 1.
+// Whether f_diffuse is f_lambert, which is the same in all directions. The driver evaluates this when it compiles; an edit
+// of f_diffuse makes it false.
+bool diffuse_is_lambert() {
+    if (DIFFUSE != LAMBERT) return false;
+    const vec3 COLOR = vec3(0.3, 0.5, 0.7);
+    bool is_lambert = f_diffuse(COLOR, 0.3, 0.09, Cosines(0.2, 0.9, 0.7, 0.8, 0.28)) == f_lambert(COLOR);
+    return is_lambert && f_diffuse(COLOR, 0.8, 0.64, Cosines(0.7, 0.3, 0.6, 0.5, -0.5)) == f_lambert(COLOR);
+}
+
+// Integral of f_diffuse NoL dl. Lambert's needs no table, since the integral of NoL is pi. Other models need not be linear
+// in the base color x (Oren-Nayar's is not): albedo / x is interpolated by the parabola through its values at x = 1/3, 2/3
+// and 1.
 vec3 diffuse_albedo(vec3 base_color, float roughness, float n_dot_v) {
+    if (diffuse_is_lambert()) return PI * f_lambert(base_color);
     vec2 uv = table_uv(n_dot_v, roughness, DIFFUSE_COLORS, DIFFUSE_SIDE, DIFFUSE_SLICES);
     vec3 q = textureLod(diffuse_table, uv, 0.0).rgb;
     vec3 x = 3.0 * base_color;

@@ -19,6 +19,6 @@ vec4 hdr_pixel(vec3 value, float coverage, bool no_data) {
 }
 
 // Coverage 0..1 of the alpha of a pixel.
-float coverage_of(float alpha) { return mod(alpha, 2.0); }
+float coverage_of(float alpha) { return 2.0 * fract(0.5 * alpha); }
 
 #endif

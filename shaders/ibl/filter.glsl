@@ -29,8 +29,9 @@ vec3 filtered_radiance(vec3 d, float footprint) {
     float texels = max(footprint * side * side / (4.0 * major * major * major), 4.0);
     // A texel of a level covers four of the level above. Between two levels the filter's variance matters, so this
     // interpolates their areas, not the logarithms.
-    float level = floor(0.5 * log2(texels));
-    return textureLod(source_cube, d, level + (texels * exp2(-2.0 * level) - 1.0) / 3.0).rgb;
+    int level = ((floatBitsToInt(texels) >> 23) - 127) >> 1;   // floor(log4(texels)), from the exponent
+    float area = intBitsToFloat((127 + 2 * level) << 23);      // 4^level
+    return textureLod(source_cube, d, float(level) + (texels / area - 1.0) / 3.0).rgb;
 }
 
 // Variance of that filter along one axis, per unit of area: 1/12 for the box of a texel plus 1/6 for the tent of linear

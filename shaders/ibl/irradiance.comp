@@ -3,6 +3,7 @@
 #include "common/math.glsl"
 #include "ibl/cube_map.glsl"
 #include "ibl/half.glsl"
+#include "ibl/octahedral.glsl"
 #include "ibl/small_lights.glsl"
 
 // Diffuse light from the environment: the radiance that a white Lambertian surface with the normal n reflects,
@@ -17,9 +18,9 @@ layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform 
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
 void main() {
-    uvec3 texel = gl_GlobalInvocationID;
-    if (any(greaterThanEqual(texel.xy, task.size))) return;
-    vec3 n = normalize(cube_position(texel_center(texel.xy, task.size), texel.z));
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (!contains(irradiance_tile(), texel)) return;
+    vec3 n = octahedral_direction(point_of_texel(texel, irradiance_tile()));
 
     uint side = uint(imageSize(source).x);
     vec4 sum = vec4(0.0);
@@ -37,5 +38,5 @@ void main() {
     for (uint i = 0u; i < listed_lights(); ++i) {
         radiance += small_lights[i].intensity * (max(dot(n, small_lights[i].direction), 0.0) / PI);
     }
-    imageStore(target, ivec3(texel), vec4(rounded_to_half(radiance), 1.0));
+    imageStore(target, ivec3(texel, 0), vec4(rounded_to_half(radiance), 1.0));
 }

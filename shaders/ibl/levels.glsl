@@ -1,20 +1,39 @@
-// Maps roughness to levels of the prefiltered cube maps, for both the bake and the lookup.
+// Maps roughness to the prefiltered levels and each level to its place, for both the bake and the lookup.
 #ifndef IBL_LEVELS_GLSL
 #define IBL_LEVELS_GLSL
 
-// The specular lobe. From level 0, a mirror, to level 10, roughness 1, each is 2^0.4 = 1.32 times as rough as the one
-// before, since a mix of two lobes is off by the square of the logarithm of their ratio: 2.7 % of the light's contrast
-// at most. Even levels are mip levels of one cube map, odd ones of another with half the side, so that levels 2 m - 1
-// and 2 m have the same size. At roughness 1 that is 8 x 8 texels a face: with fewer, the sampler's interpolation is off
-// by up to a tenth.
-const float SPECULAR_LEVELS = 10.0;
+#include "interface.glsl"
+#include "ibl/octahedral.glsl"
+
+// The specular lobe. Level 0 is a mirror, and level SPECULAR_LEVELS has roughness 1. Each level is 2^(1/4) times as rough
+// as the one before: a mix of two lobes is off by the square of the logarithm of their ratio, at most 6 % at the peak of a
+// light that is smaller than the lobe.
 float specular_level(float roughness) {
-    float level = clamp(SPECULAR_LEVELS + 2.5 * log2(max(roughness, 1e-4)), 0.0, SPECULAR_LEVELS);
-    // Between two levels, where the tails of the rougher lobe reach dark places, a little less of it is closer.
-    float part = fract(level);
-    return level - 0.12 * part * (1.0 - part);
+    return clamp(float(SPECULAR_LEVELS) + 4.0 * log2(max(roughness, 1e-4)), 0.0, float(SPECULAR_LEVELS));
 }
-float roughness_of_specular_level(float level) { return exp2(0.4 * (level - SPECULAR_LEVELS)); }
+float roughness_of_specular_level(float level) { return exp2(0.25 * (level - float(SPECULAR_LEVELS))); }
+
+// All levels are octahedral maps in one image. The mirror is at the top. Below it are rows 1, 2, ... of two levels: the odd
+// one at the left, the even one after it, of the same size, at half the width. A row is 3/4 as high as the one above, so
+// its place is a geometric series.
+const float ROW_RATIO = 0.75;
+
+// The height of a row relative to the first: ROW_RATIO^(row - 1).
+float scale_of_row(float row) { return exp2(-0.41503750 * (row - 1.0)); }
+
+Tile tile_in_row(float left, float scale) {
+    float top = float(MIRROR_SIDE) + float(SPECULAR_SIDE) / (1.0 - ROW_RATIO) * (1.0 - scale);
+    return Tile(vec2(left, top), float(SPECULAR_SIDE) * scale);
+}
+
+// The tile of level 2 row - 1.
+Tile odd_tile(float scale) { return tile_in_row(0.0, scale); }
+
+// The tile of level 2 row. Selections instead of a branch: they cost a software device less.
+Tile even_tile(float row, float scale) {
+    Tile tile = tile_in_row(float(SPECULAR_SIDE), scale);
+    return Tile(row > 0.0 ? tile.corner : vec2(0.0), row > 0.0 ? tile.side : float(MIRROR_SIDE));
+}
 
 // Sheen. Roughness 1 is at the level with 8 x 8 texels a face. The smaller levels hold roughness 1 too; nothing looks
 // them up.

@@ -4,7 +4,7 @@
 #include "ibl/filter.glsl"
 #include "ibl/lobe.glsl"
 
-// Chooses the samples of the two lobes of a mip level, K = D V NoL with n = v (the split sum of Karis 2013), for the
+// Chooses the samples of the two lobes of a pair of levels, K = D V NoL with n = v (the split sum of Karis 2013), for the
 // selected D and V. One workgroup.
 //
 // With x = sin^2 of the angle to h, NoL = 1 - 2x, dl = 4 pi dx, and light above the horizon has x < 1/2. The density of
@@ -12,6 +12,7 @@
 // sky and mix the peak into it.
 
 layout(local_size_x = 256) in;
+layout(set = SET_TASK, binding = BINDING_LOBE_TARGET, scalar) buffer Target { Lobe lobe; };
 
 // Cells of equal ratio from x = 1e-7, a tenth of the narrowest peak; the first also covers what is below. task.size.x is
 // their number: drivers would unroll loops to a constant.
@@ -82,7 +83,7 @@ void main() {
         for (uint cell = 1u; cell < task.size.x; ++cell) below[cell] += below[cell - 1u];
         // A D of 0 everywhere: uniform samples without weight.
         if (below[CELLS - 1u] <= 0.0) for (uint cell = 0u; cell < task.size.x; ++cell) below[cell] = end_of_cell(cell);
-        lobes[task.level].integral = 4.0 * PI * integral;
+        lobe.integral = 4.0 * PI * integral;
     }
     barrier();
 
@@ -93,7 +94,10 @@ void main() {
         float width = x_of_fraction((float(i) + 1.0) / count) - x_of_fraction(float(i) / count);
         float footprint = max(4.0 * PI * width, finest_footprint());
         vec2 k = weights_at(x);
-        lobes[task.level].samples[i] = LobeSample(x, footprint, k * width);
+        float sin_theta = 2.0 * sqrt(x * (1.0 - x));
+        float phi = 2.0 * PI * golden_turns(i);
+        vec3 direction = vec3(sin_theta * cos(phi), sin_theta * sin(phi), 1.0 - 2.0 * x);
+        lobe.samples[i] = LobeSample(direction, footprint, k * width);
         sample_x[i] = x;
         blurred[i] = FILTER_VARIANCE * footprint * k;
     }
@@ -119,8 +123,8 @@ void main() {
         vec2 k = weights_at(x);
         // At most twice K: where D has a step, the correction has no meaning.
         vec2 sharpened = clamp(k - 0.5 * laplacian, vec2(0.0), 2.0 * k);
-        lobes[task.level].samples[i].weight *= sharpened / max(k, vec2(1e-30));
+        lobe.samples[i].weight *= sharpened / max(k, vec2(1e-30));
     }
     barrier();
-    if (own == 0u) lobes[task.level].wrong = wrong;
+    if (own == 0u) lobe.wrong = wrong;
 }

@@ -2,19 +2,21 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "ibl/cube_map.glsl"
 #include "ibl/filter.glsl"
 #include "ibl/half.glsl"
+#include "ibl/levels.glsl"
 #include "ibl/lobe.glsl"
+#include "ibl/octahedral.glsl"
 #include "ibl/small_lights.glsl"
 
-// Prefilters two levels for the specular lobe, an even one and the odd one before it, which have the same size: the mean
-// of radiance weighted by K = D V NoL with n = v (Karis 2013). Both read the same samples, with weights of their own;
-// ibl/lobe.comp has chosen them for the selected D and V.
+// Prefilters a pair of levels for the specular lobe, an odd one and the even one after it, which have the same size: the
+// mean of radiance weighted by K = D V NoL with n = v (Karis 2013). Both read the same samples, with weights of their own;
+// ibl/lobe.comp has chosen them for the selected D and V. Pair 0 is the mirror alone.
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray even_target;
-layout(set = SET_TASK, binding = BINDING_TARGET_ODD, rgba16f) writeonly uniform image2DArray odd_target;
+// A uniform block: a software device reads a storage buffer separately for each invocation of a group.
+layout(set = SET_TASK, binding = BINDING_LOBE, scalar) uniform Source { Lobe lobe; };
+layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
 struct Radiances {
     vec3 even;
@@ -27,14 +29,10 @@ Radiances filtered_means(vec3 n) {
     Radiances sum = Radiances(vec3(0.0), vec3(0.0));
     vec2 weight = vec2(0.0);
     for (uint i = 0u; i < task.samples; ++i) {
-        LobeSample lobe = lobes[task.level].samples[i];
-        float sin_theta = 2.0 * sqrt(lobe.x * (1.0 - lobe.x));
-        float phi = 2.0 * PI * golden_turns(i);
-        vec3 direction = basis * vec3(sin_theta * cos(phi), sin_theta * sin(phi), 1.0 - 2.0 * lobe.x);
-        vec3 radiance = filtered_radiance(direction, lobe.footprint);
-        sum.even += radiance * lobe.weight.x;
-        sum.odd += radiance * lobe.weight.y;
-        weight += lobe.weight;
+        vec3 radiance = filtered_radiance(basis * lobe.samples[i].direction, lobe.samples[i].footprint);
+        sum.even += radiance * lobe.samples[i].weight.x;
+        sum.odd += radiance * lobe.samples[i].weight.y;
+        weight += lobe.samples[i].weight;
     }
     return Radiances(sum.even / max(weight.x, 1e-30), sum.odd / max(weight.y, 1e-30));
 }
@@ -42,7 +40,7 @@ Radiances filtered_means(vec3 n) {
 // The small lights: sum of K intensity over the integral of K. A light's variance widens the lobe.
 void add_small_lights(vec3 n, inout Radiances to) {
     vec2 alpha = alpha_of_lobes(task.level);
-    vec2 scale = 1.0 / max(lobes[task.level].integral, vec2(1e-30));
+    vec2 scale = 1.0 / max(lobe.integral, vec2(1e-30));
     for (uint i = 0u; i < listed_lights(); ++i) {
         SmallLight light = small_lights[i];
         vec3 chord = light.direction - n;
@@ -54,18 +52,36 @@ void add_small_lights(vec3 n, inout Radiances to) {
     }
 }
 
+void store(Tile tile, ivec2 within, vec3 radiance) {
+    imageStore(target, ivec3(ivec2(floor(tile.corner)) + within, 0), vec4(rounded_to_half(radiance), 1.0));
+}
+
+// The mirror: the mean of 2 x 2 points of the texel, which may be larger than one of the source.
+vec3 mirrored(ivec2 texel, Tile tile) {
+    vec2 p = point_of_texel(texel, tile);
+    float reach = 0.25 * (point_of_texel(texel + 1, tile) - p).x;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec2 shift = vec2((i & 1) == 0 ? -reach : reach, i < 2 ? -reach : reach);
+        sum += textureLod(source_cube, octahedral_direction(p + shift), 0.0).rgb;
+    }
+    return 0.25 * sum;
+}
+
 void main() {
-    uvec3 texel = gl_GlobalInvocationID;
-    if (any(greaterThanEqual(texel.xy, task.size))) return;
-    vec3 n = normalize(cube_position(texel_center(texel.xy, task.size), texel.z));
+    // The tile of the even level is a whole number of texels to the right of that of the odd one.
+    float row = float(task.level);
+    Tile tile = even_tile(row, scale_of_row(row));
+    ivec2 within = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 texel = ivec2(floor(tile.corner)) + within;
+    if (!contains(tile, texel)) return;
     if (task.level == 0u) {
-        // A mirror. The source has as many texels a side, or twice as many: then n is where four of them meet, and
-        // linear interpolation averages them.
-        imageStore(even_target, ivec3(texel), vec4(rounded_to_half(textureLod(source_cube, n, 0.0).rgb), 1.0));
+        store(tile, within, mirrored(texel, tile));
         return;
     }
+    vec3 n = octahedral_direction(point_of_texel(texel, tile));
     Radiances radiance = filtered_means(n);
     add_small_lights(n, radiance);
-    imageStore(even_target, ivec3(texel), vec4(rounded_to_half(radiance.even), 1.0));
-    imageStore(odd_target, ivec3(texel), vec4(rounded_to_half(radiance.odd), 1.0));
+    store(tile, within, radiance.even);
+    store(odd_tile(scale_of_row(row)), within, radiance.odd);
 }

@@ -5,12 +5,12 @@
 
 #include "interface.glsl"
 #include "ibl/levels.glsl"
+#include "ibl/octahedral.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
-layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform samplerCube prefiltered_even;
-layout(set = SET_FRAME, binding = BINDING_PREFILTERED_ODD) uniform samplerCube prefiltered_odd;
+layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform sampler2D prefiltered_levels;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED_SHEEN) uniform samplerCube prefiltered_sheen_cube;
-layout(set = SET_FRAME, binding = BINDING_IRRADIANCE) uniform samplerCube irradiance_cube;
+layout(set = SET_FRAME, binding = BINDING_IRRADIANCE) uniform sampler2D irradiance_map;
 
 // Rotates a direction from the world into the map. The map turns by an angle around +Y, counterclockwise from above:
 // the camera sees its center column when it looks down -Z at 0 degrees, down -X at 90.
@@ -37,17 +37,26 @@ const bool HAS_ENVIRONMENT = (FEATURES & FEATURE_ENVIRONMENT) != 0u;
 // E / pi: the radiance that a white Lambertian surface with the normal n reflects.
 vec3 irradiance_over_pi(vec3 n) {
     if (!HAS_ENVIRONMENT) return frame.ambient;
-    return frame.environment_intensity * textureLod(irradiance_cube, map_from_world(n), 0.0).rgb;
+    vec2 place = place_in_tile(octahedral_point(map_from_world(n)), irradiance_tile());
+    return frame.environment_intensity * textureLod(irradiance_map, place / float(IRRADIANCE_SIDE), 0.0).rgb;
+}
+
+// The prefiltered radiance of one level, without the environment's intensity.
+vec3 prefiltered_at(vec2 p, Tile tile) {
+    vec2 place = place_in_tile(p, tile);
+    return textureLod(prefiltered_levels, place / vec2(SPECULAR_WIDTH, SPECULAR_HEIGHT), 0.0).rgb;
 }
 
 // The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
-// (Karis 2013). The levels are in two cube maps (ibl/levels.glsl), so a lookup mixes an even with an odd level.
+// (Karis 2013). It is interpolated between an even and an odd level (ibl/levels.glsl).
 vec3 prefiltered_level(vec3 r, float level) {
-    vec3 direction = map_from_world(r);
-    float odd = min(floor(0.5 * level), 0.5 * SPECULAR_LEVELS - 1.0);
-    vec3 even_radiance = textureLod(prefiltered_even, direction, floor(0.5 * level + 0.5)).rgb;
-    vec3 odd_radiance = textureLod(prefiltered_odd, direction, odd).rgb;
-    return frame.environment_intensity * mix(even_radiance, odd_radiance, 1.0 - abs(level - 2.0 * odd - 1.0));
+    vec2 p = octahedral_point(map_from_world(r));
+    float odd_row = min(floor(0.5 * level), float(SPECULAR_LEVELS / 2u - 1u)) + 1.0;
+    float even_row = floor(0.5 * level + 0.5);   // the same, or the one above
+    float scale = scale_of_row(odd_row);
+    vec3 odd = prefiltered_at(p, odd_tile(scale));
+    vec3 even = prefiltered_at(p, even_tile(even_row, even_row < odd_row ? scale / ROW_RATIO : scale));
+    return frame.environment_intensity * mix(even, odd, 1.0 - abs(level - (2.0 * odd_row - 1.0)));
 }
 
 vec3 prefiltered_radiance(vec3 r, float roughness) {
@@ -62,13 +71,12 @@ vec3 prefiltered_sheen(vec3 r, float roughness) {
 }
 
 // The background. environment_blur acts as a roughness. Below level 1 this blends with the unfiltered cube, which has
-// more texels than level 0 of the prefiltered one.
+// more texels than level 0 of the prefiltered levels.
 vec3 background_radiance(vec3 direction) {
     float level = specular_level(frame.environment_blur);
-    if (level <= 0.0) return environment_radiance(direction, 0.0);
     if (level >= 1.0) return prefiltered_level(direction, level);
-    vec3 blurred = textureLod(prefiltered_odd, map_from_world(direction), 0.0).rgb * frame.environment_intensity;
-    return mix(environment_radiance(direction, 0.0), blurred, level);
+    vec3 sharp = environment_radiance(direction, 0.0);
+    return level <= 0.0 ? sharp : mix(sharp, prefiltered_level(direction, 1.0), level);
 }
 
 #endif

@@ -1,5 +1,5 @@
 // Light from the environment, by the split sum (Karis 2013, "Real Shading in Unreal Engine 4"): each lobe's albedo
-// towards the eye (lighting/albedo.glsl) times its mean incident radiance, from cube maps that were prefiltered for a
+// towards the eye (lighting/albedo.glsl) times its mean incident radiance, from maps that were prefiltered for a
 // lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp). Without an environment the radiance is the same from
 // everywhere, and the product is exact.
 //
@@ -19,7 +19,7 @@
 
 // The direction in which to look up a lobe: the mirror direction, shifted towards n for rough lobes, since NoL weights
 // them (Lagarde & de Rousiers 2014, section 4.9.3). The weight of n is within 0.1 of the true mean's at most angles. A
-// mirror -> r, alpha = 1 -> n. Not normalized, since a cube lookup does not need it. The fit is for GGX.
+// mirror -> r, alpha = 1 -> n. Not normalized, since the lookup does not need it. The fit is for GGX.
 vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
     float alpha = pow(ggx_roughness(roughness), 2.0);
     float smoothness = 1.0 - alpha;

@@ -1,4 +1,4 @@
-// The split sum with exact lookups: the means that the baked cube maps approximate, by random directions. They separate the
+// The split sum with exact lookups: the means that the baked maps approximate, by random directions. They separate the
 // error of the bake and of its interpolation from that of the split sum itself.
 #ifndef PATHS_EXACT_LOOKUPS_GLSL
 #define PATHS_EXACT_LOOKUPS_GLSL

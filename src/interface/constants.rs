@@ -104,6 +104,19 @@ constants! {
     /// `TracedMaterial::layers`: there is no texture.
     NO_TEXTURE = u32::MAX;
 
+    /// Side of the octahedral map of irradiance in texels, with its border. Irradiance varies as slowly as the cosine.
+    IRRADIANCE_SIDE = 68;
+    /// The last level of prefiltered radiance, roughness 1 (ibl/levels.glsl).
+    SPECULAR_LEVELS = 16;
+    /// Side of level 0, a mirror, in texels, with its border.
+    MIRROR_SIDE = 640;
+    /// Side of level 1, half of it.
+    SPECULAR_SIDE = 320;
+    /// Width of the image that holds all levels. Rows of a multiple of 512 bytes would share few sets of a cache.
+    SPECULAR_WIDTH = 648;
+    /// Height of the image that holds all levels.
+    SPECULAR_HEIGHT = 1792;
+
     /// `SPEC_TONEMAP`: debug modes whose values are not light skip exposure and tone mapping.
     TONEMAP_OFF = u32::MAX;
 }

@@ -14,9 +14,10 @@ mod scene;
 mod state;
 mod view;
 
+pub(crate) use brdf::measured::measured_buffer;
 pub use brdf::tables::{Tables, wrong_values};
-pub(crate) use brdf::{ltc, measured::measured_buffer};
-pub use environment::bake::{BakeControl, BakeError, BakeReport, GpuEnvironment};
+pub use environment::bake::{BakeControl, BakeError};
+pub use environment::maps::{BakeReport, GpuEnvironment};
 pub use paths::{TraceError, TraceKey, TraceRequest, Traced};
 pub use pipeline::{MEASURE_STAGES, Outcome, PipelineSet, Reload, Reloader, all_stages, endless_loop, stages};
 pub use resources::{BoundFrame, Missing, ProvideError, Resources, read_measured};

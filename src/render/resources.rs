@@ -9,7 +9,8 @@ use crate::shader::ModeStage;
 
 use super::brdf::measured::measured_buffer;
 use super::brdf::tables::Tables;
-use super::environment::bake::{BakeControl, BakeError, GpuEnvironment};
+use super::environment::bake::{BakeControl, BakeError};
+use super::environment::maps::GpuEnvironment;
 use super::paths::{TraceError, TraceKey, TraceRequest, Traced};
 use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};

@@ -37,6 +37,8 @@ impl SamplerDesc {
         wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
         anisotropy: 1,
     };
+    /// Blends texels of level 0, clamped to the edge.
+    pub const BILINEAR: Self = Self { mag: vk::Filter::LINEAR, min: vk::Filter::LINEAR, ..Self::NEAREST };
     /// Blends texels and levels, clamped to the edge.
     pub const LINEAR: Self = Self {
         mag: vk::Filter::LINEAR,

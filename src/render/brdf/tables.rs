@@ -66,6 +66,8 @@ impl Table {
 pub struct Tables {
     /// Moments of the specular lobe: see brdf/dfg.glsl.
     pub(crate) dfg: Arc<Image>,
+    /// The two of them that lamps need (`dfg_towards_lamp` in brdf/energy.glsl).
+    pub(crate) lamp_dfg: Arc<Image>,
     /// Albedo of the diffuse lobe.
     pub(crate) diffuse_albedo: Arc<Image>,
     /// Albedo of the sheen lobe.
@@ -83,35 +85,46 @@ impl Tables {
     pub fn bake(set: &PipelineSet, key: &TablesKey, before: Option<&Self>) -> Result<Arc<Self>, GpuError> {
         let mut wrong = Vec::new();
         let mut images = Vec::new();
+        let mut lamp_dfg = before.map(|before| before.lamp_dfg.clone());
         for (table, stage) in TABLES.iter().zip(&key.0) {
             let known = before.and_then(|before| before.image_of(stage));
             // A table with wrong values is baked again, so that the warning comes again.
             match known.filter(|_| before.is_some_and(|before| before.wrong.is_empty())) {
                 Some(image) => images.push(image),
                 None => {
-                    let (image, functions) = bake(set, table, stage)?;
+                    let (image, texels) = bake(set, table, stage)?;
+                    if images.is_empty() {
+                        lamp_dfg = Some(table_of_lamps(&set.gpu, table, &texels)?);
+                        compute::upload(&set.gpu, &[(&image, &with_fine_means(table, &texels))])?;
+                    }
                     images.push(image);
-                    wrong.extend(functions);
+                    wrong.extend(table.wrong(&texels));
                 }
             }
         }
         let images: Result<[Arc<Image>; 3], _> = images.try_into();
         let missing = || GpuError::NoStage(TABLE_STAGES.join(", "));
         let [dfg, diffuse_albedo, sheen_albedo] = images.map_err(|_| missing())?;
-        Ok(Arc::new(Self { dfg, diffuse_albedo, sheen_albedo, wrong, stages: key.0.clone() }))
+        let lamp_dfg = lamp_dfg.ok_or_else(missing)?;
+        Ok(Arc::new(Self { dfg, lamp_dfg, diffuse_albedo, sheen_albedo, wrong, stages: key.0.clone() }))
     }
 
     /// Tables of one texel, for a mirror: what a picture is drawn with when no tables could be baked.
     pub(crate) fn of_mirror(gpu: &Arc<Gpu>) -> Result<Arc<Self>, GpuError> {
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
-        let texel = |name: &str, value: [f32; 4]| {
-            let image = Image::new(gpu, name, ImageDesc::new(1, 1, FORMAT, usage))?;
+        let filled = |name: &str, value: [f32; 4], desc: ImageDesc| {
+            let image = Image::new(gpu, name, desc)?;
             let halves = value.map(|x| half::f16::from_f32(x).to_bits());
-            compute::upload(gpu, &[(&image, bytemuck::cast_slice(&halves))])?;
+            let texels = halves.repeat((desc.width * desc.height) as usize);
+            compute::upload(gpu, &[(&image, bytemuck::cast_slice(&texels))])?;
             Ok::<_, GpuError>(image)
         };
+        let texel = |name: &str, value| filled(name, value, ImageDesc::new(1, 1, FORMAT, usage));
+        let dfg = ImageDesc { usage, ..TABLES[0].desc() };
         Ok(Arc::new(Self {
-            dfg: texel("mirror", [1.0, 0.0, 1.0, 0.0])?,
+            // Its shader reads single texels of it, which must exist.
+            dfg: filled("mirror", [1.0, 0.0, 1.0, 0.0], dfg)?,
+            lamp_dfg: texel("mirror towards lamps", [0.0; 4])?,
             diffuse_albedo: texel("Lambert", [1.0, 1.0, 1.0, 0.0])?,
             sheen_albedo: texel("no sheen", [0.0; 4])?,
             wrong: Vec::new(),
@@ -130,7 +143,38 @@ pub fn wrong_values(function: &str) -> String {
     format!("{function} returns NaN, infinite, negative or huge values, which count as 0 in light from all directions")
 }
 
-fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>, Vec<&'static str>), GpuError> {
+/// The DFG table with its third slice, the means, interpolated between its rows: `mean_texel` of brdf/dfg.glsl.
+fn with_fine_means(dfg: &Table, texels: &[u8]) -> Vec<u8> {
+    let mut halves: Vec<half::f16> =
+        bytemuck::pod_collect_to_vec::<u8, u16>(texels).into_iter().map(half::f16::from_bits).collect();
+    let (side, row) = (dfg.side as usize, dfg.side as usize * 4);
+    let means = &mut halves[2 * side * row..3 * side * row];
+    // All columns of a baked row are the same. The first stays.
+    for y in 0..side {
+        for x in 1..side {
+            for channel in 0..4 {
+                let below = means[(y + 1).min(side - 1) * row + channel].to_f32();
+                let above = means[y * row + channel].to_f32();
+                means[y * row + 4 * x + channel] =
+                    half::f16::from_f32(above + (below - above) * x as f32 / side as f32);
+            }
+        }
+    }
+    halves.into_iter().flat_map(half::f16::to_ne_bytes).collect()
+}
+
+/// B and `lost` of the directions of the DFG table: channels 1 and 3 of its first slice.
+fn table_of_lamps(gpu: &Arc<Gpu>, dfg: &Table, texels: &[u8]) -> Result<Arc<Image>, GpuError> {
+    let slice = texels.chunks_exact(8).take((dfg.side * dfg.side) as usize);
+    let both: Vec<u8> = slice.flat_map(|texel| [&texel[2..4], &texel[6..8]].concat()).collect();
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+    let image = Image::new(gpu, "lamp dfg", ImageDesc::new(dfg.side, dfg.side, vk::Format::R16G16_SFLOAT, usage))?;
+    compute::upload(gpu, &[(&image, &both)])?;
+    Ok(image)
+}
+
+/// A table with its texels.
+fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>, Vec<u8>), GpuError> {
     let gpu = &set.gpu;
     let (path, desc) = (of.stage.path.as_str(), table.desc());
     let image = Image::new(gpu, path, desc)?;
@@ -138,7 +182,7 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
     let key = disk_cache::key(&[&of.module.to_le_bytes(), bytemuck::bytes_of(&task)]);
     if let Some(bytes) = disk_cache::load(&key, desc.bytes()) {
         compute::upload(gpu, &[(&image, &bytes)])?;
-        return Ok((image, Vec::new()));
+        return Ok((image, bytes));
     }
     let pipeline = set.compute(path, &of.constants)?;
     let readback = vk::BufferUsageFlags::TRANSFER_DST;
@@ -155,9 +199,8 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
         Ok(())
     })?;
     let texels = buffer.read();
-    let wrong = table.wrong(&texels);
-    if wrong.is_empty() {
+    if table.wrong(&texels).is_empty() {
         disk_cache::store(&key, &texels);
     }
-    Ok((image, wrong))
+    Ok((image, texels))
 }

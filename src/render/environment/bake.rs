@@ -1,16 +1,19 @@
-//! Bakes an environment map into the images that image-based lighting reads. Any thread may bake; each pass is a submission
-//! of its own, so that frames run in between.
+//! Bakes an environment map into the images of `maps.rs`. Any thread may bake; each pass is a submission of its own, so that
+//! frames run in between.
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use crate::cancel::wait_unless;
 use crate::disk_cache;
-use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Sampler, Use, fault, one_shot, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, fault, vk};
+use crate::interface::{IRRADIANCE_SIDE, SPECULAR_HEIGHT, SPECULAR_LEVELS, SPECULAR_WIDTH};
 use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
-use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, Target, small_lights, small_lights_size};
+use crate::render::environment::maps::{BakeReport, GpuEnvironment, HALF, Prefiltered, Radiance};
+use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, small_lights, small_lights_size};
+use crate::render::environment::{shared_exponent, transfer};
 use crate::render::pipeline::PipelineSet;
 use crate::render::state::{BakeStage, EnvironmentKey};
 
@@ -27,22 +30,18 @@ pub(crate) const SHEEN_STAGES: [&str; 1] = [PREFILTER_SHEEN];
 
 const CUBE_SIDE: u32 = 512;
 const CUBE_LEVELS: u32 = 10;
-const PREFILTERED_SIDE: u32 = 256;
-/// Mip levels of the even levels of ibl/levels.glsl; the odd ones have one less.
-const PREFILTERED_LEVELS: u32 = 6;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 256;
-/// 32 texels are enough: irradiance varies as slowly as the cosine, except for a kink where a sun sets.
-const IRRADIANCE_SIDE: u32 = 32;
-const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 /// Largest half float.
 pub(crate) const LARGEST_HALF: f32 = 65504.0;
 /// A map is scaled down at most by this factor to fit half floats, and clipped beyond: more would lose its dark parts.
 const LARGEST_RANGE: f32 = 4096.0;
 
-/// Samples per texel of each mip level. Rougher lobes need more samples and have fewer texels.
-const PREFILTER_SAMPLES: [u32; PREFILTERED_LEVELS as usize] = [1, 64, 128, 256, 512, 512];
+/// Width and height of the image of all specular levels.
+const SPECULAR_SIZE: [u32; 2] = [SPECULAR_WIDTH, SPECULAR_HEIGHT];
+/// Samples per texel of the mirror and of each pair of levels that share their samples. Rougher lobes need more samples and have fewer texels.
+const SPECULAR_SAMPLES: [u32; SPECULAR_LEVELS as usize / 2 + 1] = [1, 20, 48, 80, 104, 136, 192, 288, 400];
 
 /// Why a bake failed.
 #[derive(Debug, thiserror::Error)]
@@ -61,61 +60,6 @@ pub enum BakeError {
     Superseded,
 }
 
-/// The time of each part of a bake, in milliseconds of wall time.
-#[derive(Clone, Debug, Default, serde::Serialize)]
-pub struct BakeReport {
-    /// Name of the environment.
-    pub environment: String,
-    /// Whether the result came from the disk cache.
-    pub cached: bool,
-    /// Looking into the cache, then decoding the file or computing the built-in map.
-    pub decode_ms: f64,
-    /// Creating the compute pipelines.
-    pub pipeline_ms: f64,
-    /// Copying the map, or the cached result, to the device.
-    pub upload_ms: f64,
-    /// Resampling the map to a cube map and its mip levels.
-    pub cube_ms: f64,
-    /// Integrating irradiance.
-    pub irradiance_ms: f64,
-    /// GGX prefilter of all levels.
-    pub prefilter_ms: f64,
-    /// Sheen prefilter of all levels.
-    pub sheen_ms: f64,
-    /// From the file to the last pass, without writing the cache.
-    pub total_ms: f64,
-}
-
-/// An environment on the device; all images in [`Use::Sampled`].
-pub struct GpuEnvironment {
-    pub(crate) radiance: Arc<Radiance>,
-    pub(crate) prefiltered: Arc<Prefiltered>,
-    pub(crate) sheen: Arc<Image>,
-    pub(crate) sampler: Arc<Sampler>,
-    /// How long the bake took.
-    pub report: BakeReport,
-}
-
-/// The part of an environment that depends on its map alone; images in [`Use::Sampled`].
-pub(crate) struct Radiance {
-    pub(crate) cube: Arc<Image>,
-    pub(crate) irradiance: Arc<Image>,
-    /// The images hold radiance times this factor.
-    pub(crate) scale: f32,
-    /// The list of ibl/small_lights.glsl. `None` in an environment that is never prefiltered.
-    small_lights: Option<Arc<Buffer>>,
-    /// Fingerprint of the map.
-    map: u128,
-}
-
-/// The levels of the specular lobe (ibl/levels.glsl), in [`Use::Sampled`].
-pub(crate) struct Prefiltered {
-    pub(crate) even: Arc<Image>,
-    pub(crate) odd: Arc<Image>,
-    /// Whether D or V returned values that are no densities. They count as 0.
-    wrong: bool,
-}
-
 /// Callbacks and options of a bake.
 pub struct BakeControl<'a> {
     /// Receives the fraction that is done, 0..1, and the name of the next pass.
@@ -127,42 +71,6 @@ pub struct BakeControl<'a> {
 }
 
 impl GpuEnvironment {
-    /// The same radiance from every direction, in images of one texel.
-    ///
-    /// # Errors
-    /// Out of memory.
-    pub(crate) fn uniform(gpu: &Arc<Gpu>, radiance: [f32; 3]) -> Result<Arc<Self>, GpuError> {
-        use vk::ImageUsageFlags as Usage;
-        let usage = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-        let texel = [radiance[0], radiance[1], radiance[2], 1.0].map(|x| half::f16::from_f32(x).to_bits());
-        let texels = bytemuck::cast_slice(&texel).repeat(6);
-        let cube = |name: &str| {
-            let image = Image::new(gpu, name, ImageDesc::cube(1, 1, HALF, usage))?;
-            compute::upload(gpu, &[(&image, &texels)])?;
-            Ok::<_, GpuError>(image)
-        };
-        let (even, odd) = (cube("uniform even levels")?, cube("uniform odd levels")?);
-        let (sheen, irradiance, cube) = (cube("uniform sheen")?, cube("uniform irradiance")?, cube("uniform cube")?);
-        let prefiltered = Arc::new(Prefiltered { even, odd, wrong: false });
-        let radiance = Arc::new(Radiance { cube, irradiance, scale: 1.0, small_lights: None, map: 0 });
-        Ok(Arc::new(Self::of(gpu, radiance, prefiltered, sheen)?))
-    }
-
-    fn of(
-        gpu: &Arc<Gpu>,
-        radiance: Arc<Radiance>,
-        prefiltered: Arc<Prefiltered>,
-        sheen: Arc<Image>,
-    ) -> Result<Self, GpuError> {
-        let sampler = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
-        Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
-    }
-
-    /// The functions that returned values which are no densities, and count as 0 in this light.
-    pub fn wrong(&self) -> Option<&'static str> {
-        self.prefiltered.wrong.then_some("D or V in brdf/ndf.glsl or brdf/visibility.glsl")
-    }
-
     /// Bakes the environment of `key`, built-in or a file, with the stages of `set`. A part is taken from `before` if its stages
     /// and its map are the same, else from the disk cache; else it is computed. Any thread may call this.
     ///
@@ -239,47 +147,28 @@ impl Bake<'_> {
         disk_cache::load(key, bytes).filter(|_| self.control.from_disk)
     }
 
-    fn image(&self, name: &str, side: u32, levels: u32) -> Result<Arc<Image>, GpuError> {
-        use vk::ImageUsageFlags as Usage;
-        let usage = Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-        Image::new(self.gpu, name, ImageDesc::cube(side, levels, HALF, usage))
-    }
-
-    /// Uploads the images one after the other.
+    /// Uploads a cached part.
     fn fill(&mut self, images: &[&Arc<Image>], bytes: &[u8]) -> Result<(), GpuError> {
         let time = Instant::now();
-        let mut rest = bytes;
-        let mut parts = Vec::new();
-        for image in images {
-            let (own, others) = rest.split_at(image.desc().bytes() as usize);
-            parts.push((*image, own));
-            rest = others;
-        }
-        compute::upload(self.gpu, &parts)?;
+        transfer::fill(self.gpu, images, bytes)?;
         self.report.upload_ms += ms(time);
         Ok(())
     }
 
-    /// Reads back the images one after the other, then the buffer.
-    fn read(&self, images: &[&Arc<Image>], buffer: Option<&Arc<Buffer>>) -> Result<Vec<u8>, GpuError> {
-        let size = |image: &&Arc<Image>| image.desc().bytes();
-        let bytes = images.iter().map(size).sum::<u64>() + buffer.map_or(0, |buffer| buffer.size());
-        let out = Buffer::new(self.gpu, "baked", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
-        one_shot(self.gpu, |encoder| {
-            let mut at = 0;
-            for image in images {
-                encoder.transition(image, Use::Sampled, Use::CopyFrom);
-                encoder.copy_levels_from_image(image, &out, at);
-                encoder.transition(image, Use::CopyFrom, Use::Sampled);
-                at += size(image);
-            }
-            if let Some(buffer) = buffer {
-                encoder.copy_buffer(buffer, 0, &out, at, buffer.size());
-            }
-            encoder.copies_done();
-            Ok(())
-        })?;
-        Ok(out.read())
+    /// A cube map that a pass writes.
+    fn cube(&self, name: &str, side: u32, levels: u32) -> Result<Arc<Image>, GpuError> {
+        Image::new(self.gpu, name, ImageDesc::cube(side, levels, HALF, written()))
+    }
+
+    /// An image of octahedral maps that a pass writes.
+    fn octahedral(&self, name: &str, [width, height]: [u32; 2]) -> Result<Arc<Image>, GpuError> {
+        Image::new(self.gpu, name, ImageDesc::new(width, height, HALF, written()))
+    }
+
+    /// The image of the same maps that lighting reads.
+    fn packed(&self, name: &str, [width, height]: [u32; 2]) -> Result<Arc<Image>, GpuError> {
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        Image::new(self.gpu, name, ImageDesc::new(width, height, shared_exponent::FORMAT, usage))
     }
 
     /// The cube map, the irradiance and the small lights of the map.
@@ -291,8 +180,8 @@ impl Bake<'_> {
         self.report.environment.clone_from(&file.name);
         let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits()];
         let disk_key = key(&[file.fingerprint], &self.key.radiance, &sizes);
-        let cube = self.image("environment", CUBE_SIDE, CUBE_LEVELS)?;
-        let irradiance = self.image("irradiance", IRRADIANCE_SIDE, 1)?;
+        let cube = self.cube("environment", CUBE_SIDE, CUBE_LEVELS)?;
+        let irradiance = self.packed("irradiance", [IRRADIANCE_SIDE; 2])?;
         let images = [&cube, &irradiance];
         let lights = small_lights_size(self.set);
         let bytes: u64 = images.iter().map(|image| image.desc().bytes()).sum();
@@ -335,11 +224,16 @@ impl Bake<'_> {
         self.report.cube_ms = ms(time);
 
         let time = self.begin(0.25, "irradiance")?;
-        self.passes(&lights).irradiance(&cube, &irradiance)?;
+        let baked = self.octahedral("baked irradiance", [IRRADIANCE_SIDE; 2])?;
+        self.passes(&lights).irradiance(&cube, &baked)?;
+        let texels = shared_exponent::from_halves(&transfer::read(self.gpu, &[&baked], &[])?);
+        compute::upload(self.gpu, &[(&irradiance, &texels)])?;
         self.report.irradiance_ms = ms(time);
 
         let time = Instant::now();
-        let mut entry = self.read(&images, Some(&lights))?;
+        let mut entry = transfer::read(self.gpu, &[&cube], &[])?;
+        entry.extend(texels);
+        entry.extend(transfer::read(self.gpu, &[], std::slice::from_ref(&lights))?);
         entry.extend(f32::to_ne_bytes(scale));
         disk_cache::store(&disk_key, &entry);
         self.storing_ms += ms(time);
@@ -349,48 +243,49 @@ impl Bake<'_> {
     /// The levels of the specular lobe.
     fn prefiltered(&mut self, radiance: &Radiance) -> Result<Arc<Prefiltered>, BakeError> {
         let stages = [&*self.key.radiance, &*self.key.prefilter].concat();
-        let mut sizes = vec![CUBE_SIDE, PREFILTERED_SIDE];
-        sizes.extend(PREFILTER_SAMPLES);
+        let mut sizes = vec![CUBE_SIDE, SPECULAR_WIDTH, SPECULAR_HEIGHT];
+        sizes.extend(SPECULAR_SAMPLES);
         let disk_key = key(&[radiance.map], &stages, &sizes);
-        let even = self.image("even levels", PREFILTERED_SIDE, PREFILTERED_LEVELS)?;
-        let odd = self.image("odd levels", PREFILTERED_SIDE / 2, PREFILTERED_LEVELS - 1)?;
-        let size = even.desc().bytes() + odd.desc().bytes();
-        if let Some(entry) = self.cached(&disk_key, size) {
-            self.fill(&[&even, &odd], &entry)?;
-            return Ok(Arc::new(Prefiltered { even, odd, wrong: false }));
+        let levels = self.packed("specular levels", SPECULAR_SIZE)?;
+        if let Some(entry) = self.cached(&disk_key, levels.desc().bytes()) {
+            self.fill(&[&levels], &entry)?;
+            return Ok(Arc::new(Prefiltered { levels, wrong: false }));
         }
         let Some(lights) = &radiance.small_lights else { return Err(GpuError::NoStage(CUBE.into()).into()) };
         self.begin(0.3, "pipelines")?;
         self.pipelines(&self.key.prefilter.clone())?;
         let time = self.begin(0.3, "reflections")?;
         let [lobe, prefilter] = &*self.key.prefilter else { return Err(GpuError::NoStage(PREFILTER.into()).into()) };
-        let lobes = Lobes::new(self.set, lobe, &PREFILTER_SAMPLES)?;
+        let lobes = Lobes::new(self.set, lobe, &SPECULAR_SAMPLES)?;
+        let baked = self.octahedral("baked levels", SPECULAR_SIZE)?;
         self.passes(lights).lobes(lobe, &lobes, &radiance.cube)?;
-        // A software device prefilters one level per submission, so that frames run in between. A GPU is fast enough for all.
-        let at_once = if self.gpu.info().kind == "cpu" { 1 } else { PREFILTERED_LEVELS };
-        for first in (0..PREFILTERED_LEVELS).step_by(at_once as usize) {
-            self.begin(0.3 + 0.6 * first as f32 / PREFILTERED_LEVELS as f32, "reflections")?;
-            let levels = first..(first + at_once).min(PREFILTERED_LEVELS);
-            let to = Target { image: &even, samples: &PREFILTER_SAMPLES, specular: Some((&odd, &lobes.buffer)) };
-            self.passes(lights).prefilter(prefilter, &radiance.cube, &to, levels)?;
+        // A software device prefilters one pair per submission, so that frames run in between. A GPU is fast enough for all.
+        let count = SPECULAR_SAMPLES.len();
+        let at_once = if self.gpu.info().kind == "cpu" { 1 } else { count };
+        for first in (0..count).step_by(at_once) {
+            self.begin(0.3 + 0.6 * first as f32 / count as f32, "reflections")?;
+            let part = first as u32..(first + at_once).min(count) as u32;
+            self.passes(lights).specular(prefilter, &radiance.cube, &lobes, &baked, part)?;
         }
+        let read = transfer::read(self.gpu, &[&baked], &lobes.buffers)?;
+        let (texels, lobe_bytes) = read.split_at(baked.desc().bytes() as usize);
+        let texels = shared_exponent::from_halves(texels);
+        compute::upload(self.gpu, &[(&levels, &texels)])?;
         self.report.prefilter_ms = ms(time);
         let time = Instant::now();
-        let read = self.read(&[&even, &odd], Some(&lobes.buffer))?;
-        let (texels, lobe_bytes) = read.split_at(size as usize);
         let wrong = lobes.wrong(lobe_bytes);
         if !wrong {
-            disk_cache::store(&disk_key, texels);
+            disk_cache::store(&disk_key, &texels);
         }
         self.storing_ms += ms(time);
-        Ok(Arc::new(Prefiltered { even, odd, wrong }))
+        Ok(Arc::new(Prefiltered { levels, wrong }))
     }
 
     /// The levels of the sheen lobe.
     fn sheen(&mut self, radiance: &Radiance) -> Result<Arc<Image>, BakeError> {
         let stages = [&*self.key.radiance, &*self.key.sheen].concat();
         let disk_key = key(&[radiance.map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES]);
-        let image = self.image("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?;
+        let image = self.cube("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?;
         if let Some(entry) = self.cached(&disk_key, image.desc().bytes()) {
             self.fill(&[&image], &entry)?;
             return Ok(image);
@@ -399,15 +294,19 @@ impl Bake<'_> {
         self.pipelines(&self.key.sheen.clone())?;
         let time = self.begin(0.9, "sheen")?;
         let [stage] = &*self.key.sheen else { return Err(GpuError::NoStage(PREFILTER_SHEEN.into()).into()) };
-        let samples = [SHEEN_SAMPLES; SHEEN_LEVELS as usize];
-        let to = Target { image: &image, samples: &samples, specular: None };
-        self.passes(lights).prefilter(stage, &radiance.cube, &to, 0..SHEEN_LEVELS)?;
+        self.passes(lights).sheen(stage, &radiance.cube, &image, SHEEN_SAMPLES)?;
         self.report.sheen_ms = ms(time);
         let time = Instant::now();
-        disk_cache::store(&disk_key, &self.read(&[&image], None)?);
+        disk_cache::store(&disk_key, &transfer::read(self.gpu, &[&image], &[])?);
         self.storing_ms += ms(time);
         Ok(image)
     }
+}
+
+/// The usage of an image that a pass writes, lighting samples, and the cache copies.
+fn written() -> vk::ImageUsageFlags {
+    use vk::ImageUsageFlags as Usage;
+    Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST
 }
 
 /// The cache key of a part: a hash of the map, of the modules of its stages, and of sizes and sample counts.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, SetLayouts, SetWriter, Use, one_shot, vk};
 use crate::interface::{
-    BINDING_LEVEL_ABOVE, BINDING_LOBES, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET,
-    BINDING_TARGET_ODD, SET_TASK, Task,
+    BINDING_LEVEL_ABOVE, BINDING_LOBE, BINDING_LOBE_TARGET, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE,
+    BINDING_TARGET, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
 };
 
 use crate::render::compute;
@@ -45,39 +45,40 @@ pub(crate) fn small_lights(gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<Arc<Buffer>, 
     Ok(results)
 }
 
-/// The samples of every mip level of the specular lobe: ibl/lobe.glsl.
+/// Texels to a side that cover a tile of a pair of specular levels (`specular_tile` in ibl/levels.glsl), whose corner may lie
+/// within a texel. Pair 0 is the mirror.
+fn specular_side(pair: u32) -> u32 {
+    if pair == 0 {
+        return MIRROR_SIDE;
+    }
+    (SPECULAR_SIDE as f32 * 0.75_f32.powf(pair as f32 - 1.0)).ceil() as u32 + 1
+}
+
+/// The samples of every pair of specular levels: ibl/lobe.glsl.
 pub(crate) struct Lobes<'a> {
-    pub(crate) buffer: Arc<Buffer>,
-    /// Samples of each mip level.
+    /// A buffer for each pair. That of the mirror stays empty.
+    pub(crate) buffers: Vec<Arc<Buffer>>,
+    /// Samples of each pair.
     samples: &'a [u32],
 }
 
 impl<'a> Lobes<'a> {
-    /// Levels that the block of ibl/lobe.glsl has room for.
-    const LEVELS: usize = 8;
     /// Cells of ibl/lobe.comp. A driver that knew the number would unroll the loops over them: on NVIDIA that took a second.
     const CELLS: u32 = 1024;
 
     pub(crate) fn new(set: &PipelineSet, stage: &BakeStage, samples: &'a [u32]) -> Result<Self, GpuError> {
-        let size = declared_size(set, stage.stage.path.as_str(), BINDING_LOBES);
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
-        let buffer = Buffer::new(&set.gpu, "lobes", size, usage, Memory::Device)?;
-        Ok(Self { buffer, samples })
+        use vk::BufferUsageFlags as Usage;
+        let size = declared_size(set, stage.stage.path.as_str(), BINDING_LOBE_TARGET);
+        let usage = Usage::STORAGE_BUFFER | Usage::UNIFORM_BUFFER | Usage::TRANSFER_SRC;
+        let buffers = samples.iter().map(|_| Buffer::new(&set.gpu, "lobe", size, usage, Memory::Device));
+        Ok(Self { buffers: buffers.collect::<Result<_, _>>()?, samples })
     }
 
-    /// Whether D or V returned wrong values in one of the levels: the first word of a level. `bytes`: content of the buffer.
+    /// Whether D or V returned wrong values in one of the pairs: the first word of a buffer. `bytes`: content of all buffers.
     pub(crate) fn wrong(&self, bytes: &[u8]) -> bool {
-        let levels = bytes.chunks_exact((bytes.len() / Self::LEVELS).max(4)).take(self.samples.len()).skip(1);
-        levels.filter_map(|level| level.get(..4)).any(|word| word.iter().any(|byte| *byte != 0))
+        let lobes = bytes.chunks_exact((bytes.len() / self.samples.len()).max(4)).skip(1);
+        lobes.filter_map(|lobe| lobe.get(..4)).any(|word| word.iter().any(|byte| *byte != 0))
     }
-}
-
-/// The image that a prefilter writes, with the samples per texel of each level. For the specular lobe also the image of the odd
-/// levels, and the lobes' samples.
-pub(crate) struct Target<'a> {
-    pub(crate) image: &'a Arc<Image>,
-    pub(crate) samples: &'a [u32],
-    pub(crate) specular: Option<(&'a Arc<Image>, &'a Arc<Buffer>)>,
 }
 
 /// The arguments of all passes.
@@ -154,15 +155,15 @@ impl Passes<'_> {
         })
     }
 
-    /// Chooses the samples of every level but the first, which is a mirror.
+    /// Chooses the samples of every pair but the first, which is a mirror.
     pub(crate) fn lobes(&self, stage: &BakeStage, lobes: &Lobes<'_>, cube: &Arc<Image>) -> Result<(), GpuError> {
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
         let pipeline = self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
         let mut dispatches = Vec::new();
-        for (level, samples) in (0..).zip(lobes.samples).skip(1) {
+        for ((level, samples), buffer) in (0..).zip(lobes.samples).zip(&lobes.buffers).skip(1) {
             let task = Task { size: [Lobes::CELLS, 1], level, samples: *samples, ..Task::default() };
             dispatches.push(compute::bindings(self.gpu, self.layouts, &task, |writer| {
-                writer.texture(BINDING_SOURCE_CUBE, cube, &sampler).buffer(BINDING_LOBES, &lobes.buffer)
+                writer.texture(BINDING_SOURCE_CUBE, cube, &sampler).buffer(BINDING_LOBE_TARGET, buffer)
             })?);
         }
         one_shot(self.gpu, |encoder| {
@@ -174,43 +175,68 @@ impl Passes<'_> {
         })
     }
 
-    /// Prefilters `levels`. The last level leaves the image in [`Use::Sampled`].
-    pub(crate) fn prefilter(
+    /// Prefilters `pairs` of levels of the specular lobe. The last pair leaves the image in [`Use::Sampled`].
+    pub(crate) fn specular(
         &self,
         stage: &BakeStage,
         cube: &Arc<Image>,
-        to: &Target<'_>,
-        levels: Range<u32>,
+        lobes: &Lobes<'_>,
+        to: &Arc<Image>,
+        pairs: Range<u32>,
     ) -> Result<(), GpuError> {
-        let desc = *to.image.desc();
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
         let pipeline = self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
         let mut dispatches = Vec::new();
-        for level in levels {
-            let side = (desc.width >> level).max(1);
-            let samples = to.samples.get(level as usize).copied().unwrap_or(1);
-            let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
+        let all = (0..).zip(lobes.samples).zip(&lobes.buffers);
+        for ((level, samples), buffer) in all.skip(pairs.start as usize).take(pairs.len()) {
+            let side = specular_side(level);
+            let task = Task { size: [side; 2], level, samples: *samples, ..Task::default() };
             let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-                let writer = self.to(writer.texture(BINDING_SOURCE_CUBE, cube, &sampler), to.image, level);
-                to.specular.into_iter().fold(writer, |writer, (odd, lobes)| {
-                    // Level 0 has no odd one before it, and writes none.
-                    let odd_level = level.saturating_sub(1);
-                    writer.buffer(BINDING_LOBES, lobes).storage_level(BINDING_TARGET_ODD, odd, odd_level)
-                })
+                let writer = writer.texture(BINDING_SOURCE_CUBE, cube, &sampler).buffer(BINDING_LOBE, buffer);
+                self.to(writer, to, 0)
             })?;
-            dispatches.push((level, bindings, compute::groups(side, desc.layers)));
+            dispatches.push((bindings, compute::groups(side, 1)));
         }
         one_shot(self.gpu, |encoder| {
-            for (level, bindings, groups) in &dispatches {
-                let images = || [to.image].into_iter().chain(to.specular.map(|(odd, _)| odd));
-                if *level == 0 {
-                    images().for_each(|image| encoder.transition(image, Use::Undefined, Use::Storage));
-                }
-                encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
-                if level + 1 == desc.mips {
-                    images().for_each(|image| encoder.transition(image, Use::Storage, Use::Sampled));
-                }
+            if pairs.start == 0 {
+                encoder.transition(to, Use::Undefined, Use::Storage);
             }
+            for (bindings, groups) in &dispatches {
+                encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
+            }
+            if pairs.end as usize == lobes.samples.len() {
+                encoder.transition(to, Use::Storage, Use::Sampled);
+            }
+            Ok(())
+        })
+    }
+
+    /// Prefilters all levels for sheen. Leaves the image in [`Use::Sampled`].
+    pub(crate) fn sheen(
+        &self,
+        stage: &BakeStage,
+        cube: &Arc<Image>,
+        to: &Arc<Image>,
+        samples: u32,
+    ) -> Result<(), GpuError> {
+        let desc = *to.desc();
+        let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        let pipeline = self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
+        let mut dispatches = Vec::new();
+        for level in 0..desc.mips {
+            let side = (desc.width >> level).max(1);
+            let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
+            let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
+                self.to(writer.texture(BINDING_SOURCE_CUBE, cube, &sampler), to, level)
+            })?;
+            dispatches.push((bindings, compute::groups(side, desc.layers)));
+        }
+        one_shot(self.gpu, |encoder| {
+            encoder.transition(to, Use::Undefined, Use::Storage);
+            for (bindings, groups) in &dispatches {
+                encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
+            }
+            encoder.transition(to, Use::Storage, Use::Sampled);
             Ok(())
         })
     }

@@ -13,8 +13,6 @@ use capture::{PixelReadback, Readback};
 use targets::{TargetDesc, Targets};
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
-use super::brdf::ltc;
-use super::compute;
 use super::resources::BoundFrame;
 use super::state::TargetFormat;
 use crate::gpu::{
@@ -93,10 +91,7 @@ impl View {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             nearest: Sampler::new(gpu, &SamplerDesc::NEAREST)?,
-            shared: SharedImages {
-                ltc: ltc::table(gpu)?,
-                linear: compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?,
-            },
+            shared: SharedImages::new(gpu)?,
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,

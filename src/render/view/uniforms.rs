@@ -2,11 +2,15 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SetLayouts, SetWriter, vk};
+use crate::gpu::{
+    Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, vk,
+};
 use crate::interface::{self, Frame, Light};
 
+use crate::render::brdf::ltc;
 use crate::render::brdf::tables::Tables;
-use crate::render::environment::bake::GpuEnvironment;
+use crate::render::compute;
+use crate::render::environment::maps::GpuEnvironment;
 use crate::render::paths::Traced;
 
 /// The resources in set 0 that are replaced at times.
@@ -33,6 +37,16 @@ pub(crate) struct SharedImages {
     pub(crate) ltc: Arc<Image>,
     /// Trilinear, clamped.
     pub(crate) linear: Arc<Sampler>,
+    /// Bilinear, clamped, without mip levels.
+    pub(crate) flat: Arc<Sampler>,
+}
+
+impl SharedImages {
+    pub(crate) fn new(gpu: &Arc<Gpu>) -> Result<Self, GpuError> {
+        let linear = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
+        let flat = Sampler::new(gpu, &SamplerDesc::BILINEAR)?;
+        Ok(Self { ltc: ltc::table(gpu)?, linear, flat })
+    }
 }
 
 /// Buffers and set 0 of one frame slot.
@@ -77,15 +91,15 @@ impl Uniforms {
             .buffer(1, &self.lights)
             .buffer(2, &self.params)
             .texture(3, &environment.radiance.cube, &environment.sampler)
-            .texture(4, &environment.prefiltered.even, &environment.sampler)
+            .texture(4, &environment.prefiltered.levels, &shared.flat)
             .texture(5, &environment.sheen, &environment.sampler)
-            .texture(6, &environment.radiance.irradiance, &shared.linear)
-            .texture(7, &tables.dfg, &shared.linear)
+            .texture(6, &environment.radiance.irradiance, &shared.flat)
+            .texture(7, &tables.dfg, &shared.flat)
             .texture(8, &shared.ltc, &shared.linear)
             .buffer(9, measured)
             .texture(10, &tables.sheen_albedo, &shared.linear)
-            .texture(12, &tables.diffuse_albedo, &shared.linear)
-            .texture(13, &environment.prefiltered.odd, &environment.sampler)
+            .texture(12, &tables.diffuse_albedo, &shared.flat)
+            .texture(13, &tables.lamp_dfg, &shared.flat)
             .buffer(14, &scene.nodes)
             .buffer(15, &scene.triangles)
             .buffer(16, &scene.corners)
