@@ -10,7 +10,7 @@ const BIAS: u32 = 15 + 9;
 /// The largest value: 511 / 512 times 2^16.
 const LARGEST: f32 = 65408.0;
 
-/// Converts texels of four half floats, none negative. Alpha is dropped.
+/// Converts texels of four half floats. Negative values, negative zero and NaN become 0. Alpha is dropped.
 pub(super) fn from_halves(texels: &[u8]) -> Vec<u8> {
     let mut packed = Vec::with_capacity(texels.len() / 2);
     for texel in texels.chunks_exact(8) {
@@ -21,11 +21,12 @@ pub(super) fn from_halves(texels: &[u8]) -> Vec<u8> {
 }
 
 fn pack(rgb: [f32; 3]) -> u32 {
-    let largest = rgb[0].max(rgb[1]).max(rgb[2]).min(LARGEST);
+    let rgb = rgb.map(|x| if x > 0.0 { x.min(LARGEST) } else { 0.0 });
+    let largest = rgb[0].max(rgb[1]).max(rgb[2]);
     // The exponent of the largest channel after rounding to 9 bits: 0x4000 is half of the last of them.
     let exponent = ((largest.to_bits() + 0x4000) >> 23).saturating_sub(127 - 16);
     let scale = f32::from_bits((127 + BIAS - exponent) << 23);
-    let [r, g, b] = rgb.map(|x| (x.min(LARGEST) * scale + 0.5) as u32);
+    let [r, g, b] = rgb.map(|x| (x * scale + 0.5) as u32);
     exponent << 27 | b << 18 | g << 9 | r
 }
 
@@ -46,6 +47,14 @@ mod tests {
             for (packed, exact) in unpack(pack(rgb)).into_iter().zip(rgb) {
                 assert!((packed - exact).abs() <= allowed, "{rgb:?} -> {:?}", unpack(pack(rgb)));
             }
+        }
+    }
+
+    /// A GPU returns negative zero where a software device returns zero.
+    #[test]
+    fn what_is_no_radiance_is_black() {
+        for rgb in [[-0.0; 3], [-1.0, f32::NAN, -0.0], [f32::NAN; 3]] {
+            assert_eq!(pack(rgb), 0, "{rgb:?}");
         }
     }
 }
