@@ -129,7 +129,10 @@ fn an_edit_of_sheen_reaches_lamps_table_and_prefiltered_light() {
     let charlie = "return d_charlie(n_dot_h, alpha)";
     let reload = session.edit("brdf/sheen.glsl", charlie, "return 0.5 * pow(n_dot_l, 4.0) * d_charlie(n_dot_h, alpha)");
     ready(&reload);
-    assert_eq!(stages(&reload), ["ibl/prefilter_sheen.comp", "ibl/sheen_albedo.comp", "paths.frag", "pbr.frag"]);
+    assert_eq!(
+        stages(&reload),
+        ["debug.frag", "ibl/prefilter_sheen.comp", "ibl/sheen_albedo.comp", "paths.frag", "pbr.frag"]
+    );
     let (narrower, less) = mean_light(&mut session);
     session.set("lights.source=model");
     session.set("environment.name=none");
