@@ -30,7 +30,7 @@ void main() {
     // that it does not show.
     Lit lit = shade(surface, v, lights_of_mode());
     vec3 radiance = outgoing_radiance(surface, v, lit);
-    vec3 value = radiance;
-    debug_value(fragment, surface, v, lit, radiance, value);
+    vec3 value;
+    if (!debug_value(fragment, surface, v, lit, radiance, value)) value = radiance;
     out_color = hdr_pixel(value, 1.0, no_data);
 }

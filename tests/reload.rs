@@ -428,6 +428,17 @@ fn a_mode_added_to_modes_glsl_works_at_the_next_save() {
     assert_eq!(facing.rgba8[at + 1..at + 3], [64, 255], "data is stored as it is, and clipped");
 }
 
+/// A mode that is declared, but of which no code returns a value, shows the picture and not memory that nobody wrote.
+#[test]
+fn a_mode_without_a_value_shows_the_picture() {
+    let mut session = sphere();
+    let picture = session.render();
+    let mode = "//@mode later \"Later\" group=\"Mine\" encode=color tonemap doc=\"Not written yet.\"\n\
+                const uint MODE_LATER = 1001u;\nbool your_mode(";
+    ready(&session.edit("debug/modes.glsl", "bool your_mode(", mode));
+    assert_same(&picture, &session.mode("later"), "a mode without a value");
+}
+
 #[test]
 fn a_parameter_added_appears_and_values_survive_by_name() {
     let mut session = sphere();

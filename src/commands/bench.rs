@@ -33,7 +33,7 @@ enum What {
 /// Options of `bench`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// What to measure
+    /// The process to measure
     #[arg(value_enum)]
     what: What,
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]

@@ -9,7 +9,7 @@ const TICK: Duration = Duration::from_millis(50);
 
 struct Watch {
     limit: Duration,
-    /// What the device is doing, by number, with the time by which it must be done.
+    /// The work of the device, by number, with the time by which it must be done.
     tasks: Mutex<Vec<(u64, Instant, String)>>,
 }
 

@@ -88,7 +88,7 @@ macro_rules! blocks {
 }
 
 blocks! {
-    /// What a frame shares: camera, output, counts.
+    /// Values that all draws of a frame share: camera, output, counts.
     Frame: "layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame", "frame" {
         /// World (meters, +Y up) to clip space (+Y down); depth is reversed: 1 near, 0 at infinity.
         clip_from_world: mat4,
@@ -232,7 +232,7 @@ blocks! {
         uv_from_texture: [mat3x2; TEXTURE_COUNT],
     }
 
-    /// What one compute dispatch works on.
+    /// The parameters of one compute dispatch.
     Task: "layout(set = SET_TASK, binding = BINDING_TASK, scalar) uniform Task", "task" {
         /// Width and height of the output: texels, or columns and rows of BINDING_RESULTS.
         size: uvec2,
@@ -297,7 +297,7 @@ blocks! {
         edge_2_ws: vec3,
     }
 
-    /// What the corners of a traced triangle carry. A triangle has the same index in both buffers.
+    /// Attributes at the corners of a traced triangle. A triangle has the same index in both buffers.
     TracedCorners: "struct TracedCorners", "" {
         /// Each corner's normal, world space: octahedral, packSnorm2x16.
         normals_ws: uvec3,

@@ -64,7 +64,7 @@ pub struct Missing {
     pub environment: Option<EnvironmentKey>,
     /// A measured BRDF to read.
     pub measured: Option<MeasuredKey>,
-    /// What random paths trace. It depends on the environment, so it is missing only once that is there.
+    /// The request for what random paths trace. It depends on the environment, so it is missing only once that is there.
     pub traced: Option<TraceRequest>,
 }
 

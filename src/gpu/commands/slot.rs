@@ -43,7 +43,7 @@ pub(in crate::gpu) struct Slot {
     /// Names of the timed passes of the last submission; `None` before the first.
     passes: Option<Vec<String>>,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
-    /// What the stages of the last submission wrote about loops that did not end, and whether they have such loops.
+    /// The words that the stages of the last submission wrote about loops that did not end, and whether they have such loops.
     loops: (Option<Arc<Buffer>>, bool),
     /// The watch over the last submission until it is waited for.
     watched: Option<Watched>,

@@ -20,7 +20,7 @@ pub(in crate::gpu) struct Blank {
     pub(in crate::gpu) cube: Arc<Image>,
     pub(in crate::gpu) sampler: Arc<Sampler>,
     pub(in crate::gpu) buffer: Arc<Buffer>,
-    /// What the stages write when one of their loops does not end. Every submission leaves it cleared.
+    /// The buffer that stages write when one of their loops does not end. Every submission leaves it cleared.
     pub(in crate::gpu) loops: Arc<Buffer>,
 }
 

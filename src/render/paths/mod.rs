@@ -59,7 +59,7 @@ pub struct TraceRequest {
     pub(super) key: TraceKey,
     /// The model of the key's scene.
     pub(super) model: Option<Arc<GpuModel>>,
-    /// What was made last. Its parts are taken over where the key is the same.
+    /// The result that was made last. Its parts are taken over where the key is the same.
     pub(super) before: Option<(TraceKey, Arc<Traced>)>,
 }
 

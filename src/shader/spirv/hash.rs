@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn only_what_is_called_counts() {
         let edits = [
-            // What no constant selects, with new types and constants in front of all others
+            // Code that no constant selects, with new types and constants in front of all others
             ("exp(z) * 3.0", "mat2(z.x) * z.xy == vec2(7.0) ? exp2(z) : sin(z) * 5.0", false),
             ("vec4 second(vec4 z)", "/* a comment */ vec4 second(vec4 renamed)", false),
             ("y.x > 2.0", "y.y > 2.0", true),

@@ -210,7 +210,7 @@ impl Module {
         let (header, merge) = (blocks[of.header].label, blocks[of.merge].label);
         let own_name = self.constant(uint, name(seed, header));
 
-        // What the loop has taken is what was counted since before it.
+        // The loop has taken the rounds that were counted since it was entered.
         let start = match of.before {
             Some(block) => {
                 let body = &mut self.functions[function].blocks[block].body;
