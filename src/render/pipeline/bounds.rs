@@ -1,4 +1,4 @@
-//! The last step before the driver: specialized modules whose loops end, and the diagnostic of a loop that did not.
+//! The last step before the driver: specialized, optimized modules whose loops end, and the diagnostic of a loop that did not.
 
 use std::sync::Arc;
 
@@ -6,6 +6,7 @@ use crate::gpu::{Gpu, GpuError, ShaderModule};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
+use crate::shader::spirv::optimize;
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath, specialize};
 
 /// Rounds that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so that whatever its
@@ -31,7 +32,7 @@ fn rounds(gpu: &Gpu, kind: StageKind) -> u32 {
     }
 }
 
-/// The module of the stage at `path`, specialized with these constants, with loops that end.
+/// The module of the stage at `path`, specialized with these constants, with loops that end, optimized.
 pub(super) fn shader_module(
     gpu: &Arc<Gpu>,
     path: &str,
@@ -61,8 +62,11 @@ pub(super) fn shader_module(
         mark,
     };
     let is_bounded = loops::bound(&mut words, spirv, &bounds);
+    let specialized = words.len();
+    let words = optimize(words);
     tracing::debug!(
-        "{path}: {}",
+        "{path}: {specialized} words, optimized {}, {}",
+        words.len(),
         if is_bounded { "has loops that count their rounds" } else { "all loops are counted" }
     );
     ShaderModule::new(gpu, path, &words, is_bounded && stores)

@@ -2,11 +2,12 @@
 //! declarations that nothing uses. An edit elsewhere in the source moves all ids behind it, so a hash of the words would
 //! tell most edits from each other that the driver cannot.
 
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 use xxhash_rust::xxh3::Xxh3;
 
 use super::opcode as op;
+use super::operands::is_id;
 
 const HEADER: usize = 5;
 
@@ -101,7 +102,9 @@ impl<'a> Hasher<'a> {
         // The entry point also lists the variables of functions that nothing calls.
         let operands = if i[0] & 0xffff == op::ENTRY_POINT { i.len().min(3) } else { i.len() };
         for (at, word) in i.iter().enumerate().take(operands).skip(1) {
-            match is_id(i, at) {
+            // The literals of an unknown instruction cannot be told from its ids. As literals, they make hashes differ too
+            // often, never too rarely.
+            match is_id(i, at).unwrap_or(false) {
                 true => self.id(*word),
                 false => self.word(*word),
             }
@@ -126,66 +129,6 @@ impl<'a> Hasher<'a> {
             self.open.push(id);
         }
     }
-}
-
-/// Whether word `at` of an instruction is an id (SPIR-V specification, section 3.52). Literals of unknown instructions and
-/// ids are told apart by nothing, so unknown instructions count as literals: their hash then differs too often, never too
-/// rarely.
-fn is_id(i: &[u32], at: usize) -> bool {
-    // How many words are ids before the first literal. After it come more literals, unless said otherwise.
-    let leading = match i[0] & 0xffff {
-        // The model, then the function.
-        op::ENTRY_POINT => return at == 2,
-        // OpExecutionMode
-        16 => 1,
-        // OpUndef, OpConstantTrue, OpConstantFalse, composites, OpConstantNull
-        1 | 41 | 42 | 44 | 46 | 49..=51 => usize::MAX,
-        // OpExtInst: type, result, set, number, operands
-        12 => return at != 4,
-        // Types: their sizes, counts and formats are literals.
-        11 | 19..=22 => 1,
-        23..=25 => 2,
-        26..=30 | 33 => usize::MAX,
-        op::TYPE_POINTER => return at != 2,
-        // OpConstant
-        43 | 48 => 2,
-        // The operation, then its operands; of composites some are literals.
-        op::SPEC_CONSTANT_OP => return at <= 2 || (at > 3 && !matches!(i.get(3), Some(79 | 81 | 82))),
-        op::FUNCTION => return at != 3,
-        55..=57 => usize::MAX,
-        op::VARIABLE => return at != 3,
-        // OpLoad and OpStore: the rest is the memory access.
-        61 => 3,
-        62 => 2,
-        // OpAccessChain, OpInBoundsAccessChain
-        65 | 66 => usize::MAX,
-        // OpArrayLength
-        68 => 3,
-        77 | 78 => usize::MAX,
-        // OpVectorShuffle, OpCompositeExtract, OpCompositeInsert
-        79 => 4,
-        80 => usize::MAX,
-        81 => 3,
-        82 => 4,
-        83 | 84 | 86 => usize::MAX,
-        // Sampling, fetching, reading and writing: a mask of image operands stands between ids.
-        87 | 88 | 91 | 92 | 95 | 98 => return at != 5,
-        89 | 90 | 93 | 94 | 96 | 97 => return at != 6,
-        99 => return at != 4,
-        100 | 103..=107 => usize::MAX,
-        // OpCopyLogical
-        400 => usize::MAX,
-        // Conversions, arithmetic, logic, bits, derivatives, barriers, atomics, OpPhi
-        109..=124 | 126..=152 | 154..=191 | 194..=205 | 207..=215 | 224 | 225 | 227..=242 | op::PHI => usize::MAX,
-        op::LOOP_MERGE => 2,
-        op::SELECTION_MERGE => 1,
-        op::LABEL | op::BRANCH | op::RETURN_VALUE => usize::MAX,
-        op::BRANCH_CONDITIONAL => 3,
-        // OpSwitch: selector, default, then pairs of a literal and a label
-        op::SWITCH => return at <= 2 || at.is_multiple_of(2),
-        _ => 0,
-    };
-    at <= leading
 }
 
 #[cfg(test)]

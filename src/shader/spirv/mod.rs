@@ -6,8 +6,11 @@ mod declared;
 mod hash;
 pub mod loops;
 mod opcode;
+mod operands;
+mod optimize;
 pub mod reflect;
 mod specialize;
 
 pub use hash::behavior_hash;
+pub use optimize::optimize;
 pub use specialize::specialize;

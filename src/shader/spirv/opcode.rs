@@ -23,6 +23,7 @@ pub const TYPE_ARRAY: u32 = 28;
 pub const TYPE_RUNTIME_ARRAY: u32 = 29;
 pub const TYPE_STRUCT: u32 = 30;
 pub const TYPE_POINTER: u32 = 32;
+pub const TYPE_FUNCTION: u32 = 33;
 pub const TYPE_FORWARD_POINTER: u32 = 39;
 pub const CONSTANT_TRUE: u32 = 41;
 pub const CONSTANT_FALSE: u32 = 42;
@@ -40,8 +41,15 @@ pub const VARIABLE: u32 = 59;
 pub const LOAD: u32 = 61;
 pub const STORE: u32 = 62;
 pub const ACCESS_CHAIN: u32 = 65;
+pub const IN_BOUNDS_ACCESS_CHAIN: u32 = 66;
+pub const ARRAY_LENGTH: u32 = 68;
 pub const DECORATE: u32 = 71;
 pub const MEMBER_DECORATE: u32 = 72;
+pub const VECTOR_SHUFFLE: u32 = 79;
+pub const COMPOSITE_CONSTRUCT: u32 = 80;
+pub const COMPOSITE_EXTRACT: u32 = 81;
+pub const COMPOSITE_INSERT: u32 = 82;
+pub const COPY_OBJECT: u32 = 83;
 pub const IADD: u32 = 128;
 pub const ISUB: u32 = 130;
 pub const LOGICAL_AND: u32 = 167;
@@ -62,7 +70,11 @@ pub const KILL: u32 = 252;
 pub const RETURN: u32 = 253;
 pub const RETURN_VALUE: u32 = 254;
 pub const UNREACHABLE: u32 = 255;
+pub const NO_LINE: u32 = 317;
+pub const COPY_LOGICAL: u32 = 400;
 pub const TERMINATE_INVOCATION: u32 = 4416;
+pub const DEMOTE_TO_HELPER_INVOCATION: u32 = 5380;
 
 /// Opcodes within functions that have no result id: stores, merges, branches, barriers.
-pub const WITHOUT_RESULT: [u32; 17] = [0, 8, 62, 63, 99, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 317, 4416];
+pub const WITHOUT_RESULT: [u32; 20] =
+    [0, 8, 62, 63, 99, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 254, 255, 317, 4416, 5380];

@@ -7,7 +7,7 @@
 
 pub(super) mod control_flow;
 
-use std::collections::{HashMap, HashSet};
+use foldhash::{HashMap, HashSet, HashSetExt};
 
 use super::opcode as op;
 use control_flow::Function;
@@ -67,7 +67,7 @@ fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
     }
     // Find the functions that are reachable from the entry point.
     let entry = globals.iter().find(|i| opcode(i) == op::ENTRY_POINT)?.get(2).copied()?;
-    let (mut called, mut open) = (HashSet::from([entry]), vec![entry]);
+    let (mut called, mut open) = (HashSet::from_iter([entry]), vec![entry]);
     while let Some(id) = open.pop() {
         let calls = functions.iter().filter(|f| f.id == id).flat_map(Function::calls);
         open.extend(calls.filter(|id| called.insert(*id)).collect::<Vec<_>>());
@@ -87,8 +87,8 @@ fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
 
 /// Values known at compile time.
 #[derive(Default)]
-struct Known {
-    values: HashMap<Id, u32>,
+pub(super) struct Known {
+    pub(super) values: HashMap<Id, u32>,
     /// Return values, by function.
     returned: HashMap<Id, u32>,
 }

@@ -3,7 +3,7 @@
 //! Expects glslang's unoptimized code: a loop variable lives in memory, the condition is in the block behind the header, and
 //! one store per round changes the variable.
 
-use std::collections::{HashMap, HashSet};
+use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 
 use super::super::opcode as op;
 use super::super::specialize::control_flow::Function;
@@ -42,7 +42,7 @@ pub(super) fn find(function: &Function, constants: &HashMap<Id, u32>, extended: 
     for (header, block) in blocks.iter().enumerate() {
         let (Some(merge), Some(continues)) = block.structure() else { continue };
         let (Some(merge), Some(continues)) = (at.get(&merge).copied(), at.get(&continues).copied()) else { continue };
-        let (mut members, mut open) = (HashSet::from([header]), vec![header]);
+        let (mut members, mut open) = (HashSet::from_iter([header]), vec![header]);
         while let Some(index) = open.pop() {
             open.extend(next(index).filter(|to| *to != merge && members.insert(*to)).collect::<Vec<_>>());
         }
@@ -203,7 +203,7 @@ impl<'a> Values<'a> {
             return None;
         }
         // Every round passes the store: without its block, the continue block cannot be reached.
-        let (mut seen, mut open) = (HashSet::from([of.header]), vec![of.header]);
+        let (mut seen, mut open) = (HashSet::from_iter([of.header]), vec![of.header]);
         while let Some(index) = open.pop().filter(|_| step.block != continues) {
             let ways = next(index).filter(|to| *to != step.block && *to != of.merge && seen.insert(*to));
             open.extend(ways.collect::<Vec<_>>());

@@ -1,6 +1,6 @@
 //! The blocks of a function: takes branches on known values and drops unreachable blocks.
 
-use std::collections::{HashMap, HashSet};
+use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 
 use super::{Id, Instruction, Known, evaluate, instruction, op, opcode};
 
@@ -63,7 +63,7 @@ impl Function {
 
     /// Takes decided branches and drops unreachable blocks until nothing changes: dropping a block can decide another
     /// branch.
-    pub(super) fn fold(&mut self, known: &Known, removed: &mut HashSet<Id>) {
+    pub(in crate::shader::spirv) fn fold(&mut self, known: &Known, removed: &mut HashSet<Id>) {
         let mut any = false;
         while self.take_branches(known) {
             self.drop_unreached(removed);
@@ -136,7 +136,7 @@ impl Function {
         any
     }
 
-    fn drop_unreached(&mut self, removed: &mut HashSet<Id>) {
+    pub(in crate::shader::spirv) fn drop_unreached(&mut self, removed: &mut HashSet<Id>) {
         let at: HashMap<Id, usize> = self.blocks.iter().enumerate().map(|(index, b)| (b.label, index)).collect();
         let block = |id: &Id| at.get(id).map(|index| &self.blocks[*index]);
         let mut reached = HashSet::new();
@@ -184,13 +184,13 @@ impl Function {
         }
     }
 
-    pub(super) fn calls(&self) -> impl Iterator<Item = Id> {
+    pub(in crate::shader::spirv) fn calls(&self) -> impl Iterator<Item = Id> {
         let all = self.blocks.iter().flat_map(|b| &b.body);
         all.filter(|i| opcode(i) == op::FUNCTION_CALL).filter_map(|i| i.get(3).copied())
     }
 
     /// Adds every id that the function defines.
-    pub(super) fn results(&self, out: &mut HashSet<Id>) {
+    pub(in crate::shader::spirv) fn results(&self, out: &mut HashSet<Id>) {
         results(&self.head, out);
         for block in &self.blocks {
             out.insert(block.label);

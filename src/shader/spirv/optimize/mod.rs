@@ -1,0 +1,58 @@
+//! Optimizes a specialized module before the driver sees it: functions are inlined, local variables become values, and what is
+//! computed twice or never used goes.
+//!
+//! A driver does the same, but the time it takes follows the words and the memory traffic that it is given: on NVIDIA, half of
+//! the time of a pipeline goes into what glslang leaves undone. SPIRV-Tools' optimizer needs as much time as it saves. This one
+//! does only what pays: it keeps the structure of control flow, moves no code, and does no arithmetic on floats, so that
+//! results are the same bits.
+
+mod dead;
+mod graph;
+mod inline;
+mod module;
+mod promote;
+mod simplify;
+mod tidy;
+
+use module::Module;
+
+use super::specialize::control_flow::Function;
+
+/// The instructions that inlining may make of a module: more would take longer than they save.
+const MOST_INSTRUCTIONS: usize = 150_000;
+
+/// Optimizes a module with one entry point. Returns words with instructions that are unknown here as they are.
+pub fn optimize(words: Vec<u32>) -> Vec<u32> {
+    optimized(&words).unwrap_or(words)
+}
+
+/// `None` if the module has unknown instructions, or grows too much.
+fn optimized(words: &[u32]) -> Option<Vec<u32>> {
+    let mut module = Module::parse(words)?;
+    for function in &mut module.functions {
+        // A switch that a constant decided would keep a function from being inlined.
+        tidy::tidy(function);
+    }
+    inline::inline_calls(&mut module)?;
+    let mut functions = std::mem::take(&mut module.functions);
+    let is_whole = functions.len() == 1;
+    for function in &mut functions {
+        reduce(&mut module, function, is_whole);
+    }
+    module.functions = functions;
+    Some(module.write())
+}
+
+/// Reduces a function to what it computes, with `with_private` also the private variables of the module.
+fn reduce(module: &mut Module, function: &mut Function, with_private: bool) {
+    tidy::tidy(function);
+    promote::promote(module, function, with_private);
+    simplify::simplify(module, function);
+    // Values of parameters decide branches.
+    tidy::fold(module, function);
+    dead::drop_unused(module, function);
+    tidy::tidy(function);
+}
+
+#[cfg(test)]
+mod tests;

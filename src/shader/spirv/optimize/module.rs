@@ -1,0 +1,317 @@
+//! A module in parts, with the tables that optimizing needs.
+
+use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
+
+use crate::shader::spirv::opcode as op;
+use crate::shader::spirv::operands::is_id;
+use crate::shader::spirv::specialize::control_flow::Function;
+use crate::shader::spirv::specialize::{
+    HEADER, Id, Instruction, Known, first_function, instruction, instructions, opcode,
+};
+
+/// Place of the bound on ids in a module's header.
+const BOUND: usize = 3;
+/// The word after an entry point's name that ends it has a zero byte.
+const INTERFACE: usize = 3;
+
+/// A type, as far as values are concerned.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Type {
+    Struct(Vec<Id>),
+    /// Element and length.
+    Array(Id, u32),
+    /// Component, or column, and their number.
+    Vector(Id, u32),
+    /// Storage class.
+    Pointer(u32, Id),
+}
+
+/// A module whose instructions are all known.
+pub(super) struct Module {
+    header: Vec<u32>,
+    globals: Vec<Instruction>,
+    /// New constants.
+    more: Vec<Instruction>,
+    pub(super) functions: Vec<Function>,
+    pub(super) entry: Id,
+    types: HashMap<Id, Type>,
+    /// Values of 32-bit constants and of booleans.
+    pub(super) known: Known,
+    /// Instructions that make composites of other values.
+    pub(super) composites: HashMap<Id, Instruction>,
+    /// The type of each id.
+    result_types: Vec<Id>,
+    /// The value that stands for an id; 0 for itself.
+    replaced: Vec<Id>,
+    /// Decorations of ids that functions define.
+    decorations: HashMap<Id, Vec<Instruction>>,
+    undefined: HashMap<Id, Id>,
+}
+
+impl Module {
+    /// `None` if the module is not valid, or has instructions that are not known here.
+    pub(super) fn parse(words: &[u32]) -> Option<Self> {
+        let all = instructions(words)?;
+        let (globals, code) = all.split_at(first_function(&all));
+        let bound = *words.get(BOUND)? as usize;
+        if bound > words.len() * 8 {
+            return None;
+        }
+        let mut this = Self {
+            header: words[..HEADER].to_vec(),
+            globals: Vec::new(),
+            more: Vec::new(),
+            functions: Vec::new(),
+            entry: 0,
+            types: HashMap::new(),
+            known: Known::default(),
+            composites: HashMap::new(),
+            result_types: vec![0; bound],
+            replaced: vec![0; bound],
+            decorations: HashMap::new(),
+            undefined: HashMap::new(),
+        };
+        for i in globals {
+            this.global(i)?;
+        }
+        let code: Vec<&[u32]> = code.iter().copied().filter(|i| !matches!(opcode(i), op::LINE | op::NO_LINE)).collect();
+        for i in &code {
+            is_id(i, 1)?;
+            if let Some((kind, id)) = typed_result(i) {
+                *this.result_types.get_mut(id as usize)? = kind;
+            }
+        }
+        for function in code.split_inclusive(|i| opcode(i) == op::FUNCTION_END) {
+            this.functions.push(Function::parse(function)?);
+        }
+        let mut own: HashSet<Id> = HashSet::new();
+        this.functions.iter().for_each(|function| function.results(&mut own));
+        for i in this.globals.extract_if(.., |i| opcode(i) == op::DECORATE && own.contains(&i[1])) {
+            this.decorations.entry(i[1]).or_default().push(i);
+        }
+        (this.entry != 0).then_some(this)
+    }
+
+    fn global(&mut self, i: &[u32]) -> Option<()> {
+        let code = opcode(i);
+        match (code, i) {
+            // Source, strings and names
+            (2..=8 | 317 | 330, _) => return Some(()),
+            // Ids that are given to decorations are not looked for.
+            (op::DECORATE | op::MEMBER_DECORATE | op::CAPABILITY | 10 | 14, _) => {}
+            (332 | 5632 | 5633, _) => return None,
+            // Two entry points have two interfaces.
+            (op::ENTRY_POINT, [_, _, id, ..]) if self.entry == 0 => self.entry = *id,
+            (op::ENTRY_POINT, _) => return None,
+            (op::TYPE_STRUCT, [_, id, members @ ..]) => _ = self.types.insert(*id, Type::Struct(members.to_vec())),
+            (op::TYPE_VECTOR | op::TYPE_MATRIX, [_, id, of, count]) => {
+                self.types.insert(*id, Type::Vector(*of, *count));
+            }
+            (op::TYPE_ARRAY, [_, id, of, length]) => {
+                if let Some(length) = self.known.values.get(length) {
+                    self.types.insert(*id, Type::Array(*of, *length));
+                }
+            }
+            (op::TYPE_POINTER, [_, id, storage, of]) => _ = self.types.insert(*id, Type::Pointer(*storage, *of)),
+            (op::CONSTANT_TRUE, [_, _, id]) => _ = self.known.values.insert(*id, 1),
+            (op::CONSTANT_FALSE, [_, _, id]) => _ = self.known.values.insert(*id, 0),
+            (op::CONSTANT, [_, _, id, value]) => _ = self.known.values.insert(*id, *value),
+            (op::CONSTANT_COMPOSITE, [_, _, id, ..]) => _ = self.composites.insert(*id, i.to_vec()),
+            (op::SPEC_CONSTANT_TRUE..=op::SPEC_CONSTANT_OP, _) => {}
+            // Forward pointers name a storage class.
+            (op::TYPE_FORWARD_POINTER, _) => {}
+            _ => _ = is_id(i, 1)?,
+        }
+        if let (op::CONSTANT_TRUE..=op::SPEC_CONSTANT_OP | op::UNDEF | op::VARIABLE, Some(&[kind, id])) =
+            (code, i.get(1..3))
+        {
+            *self.result_types.get_mut(id as usize)? = kind;
+        }
+        self.globals.push(i.to_vec());
+        Some(())
+    }
+
+    pub(super) fn type_of(&self, id: Id) -> Id {
+        self.result_types[id as usize]
+    }
+
+    pub(super) fn get_type(&self, id: Id) -> Option<&Type> {
+        self.types.get(&id)
+    }
+
+    /// The type of a member of a composite.
+    pub(super) fn member_type(&self, of: Id, index: u32) -> Option<Id> {
+        match self.types.get(&of)? {
+            Type::Struct(members) => members.get(index as usize).copied(),
+            Type::Array(of, _) | Type::Vector(of, _) => Some(*of),
+            Type::Pointer(..) => None,
+        }
+    }
+
+    /// A new id for a value of this type; 0 for a label.
+    pub(super) fn fresh(&mut self, kind: Id) -> Id {
+        let id = self.result_types.len() as Id;
+        self.result_types.push(kind);
+        self.replaced.push(0);
+        id
+    }
+
+    /// The id that is given next.
+    pub(super) fn next_id(&self) -> Id {
+        self.result_types.len() as Id
+    }
+
+    /// A new id with the type and decorations of another.
+    pub(super) fn copy_of(&mut self, id: Id) -> Id {
+        let copy = self.fresh(self.type_of(id));
+        if let Some(decorations) = self.decorations.get(&id) {
+            let moved = |i: &Instruction| [&[i[0], copy], &i[2..]].concat();
+            let decorations = decorations.iter().map(moved).collect();
+            self.decorations.insert(copy, decorations);
+        }
+        copy
+    }
+
+    pub(super) fn is_decorated(&self, id: Id) -> bool {
+        self.decorations.contains_key(&id)
+    }
+
+    /// The undefined value of a type.
+    pub(super) fn undefined(&mut self, kind: Id) -> Id {
+        if let Some(id) = self.undefined.get(&kind) {
+            return *id;
+        }
+        let id = self.fresh(kind);
+        self.more.push(instruction(op::UNDEF, &[kind, id]));
+        self.undefined.insert(kind, id);
+        id
+    }
+
+    /// Any 32-bit integer constant.
+    pub(super) fn any_integer(&self) -> Option<Id> {
+        let is_integer = |i: &&Instruction| opcode(i) == op::TYPE_INT && i.get(2) == Some(&32);
+        let kind = self.globals.iter().find(is_integer)?[1];
+        let constant = self.globals.iter().find(|i| opcode(i) == op::CONSTANT && i[1] == kind)?;
+        Some(constant[2])
+    }
+
+    /// Private variables: id, type of the value, initial value.
+    pub(super) fn private_variables(&self) -> Vec<(Id, Id, Option<Id>)> {
+        const PRIVATE: u32 = 6;
+        let variables = self.globals.iter().filter(|i| opcode(i) == op::VARIABLE && i[3] == PRIVATE);
+        let pointee = |kind: Id| match self.types.get(&kind) {
+            Some(Type::Pointer(_, of)) => Some(*of),
+            _ => None,
+        };
+        variables.filter_map(|i| Some((i[2], pointee(i[1])?, i.get(4).copied()))).collect()
+    }
+
+    /// Lets a value stand for an id.
+    pub(super) fn replace(&mut self, id: Id, value: Id) {
+        if id != value {
+            self.replaced[id as usize] = value;
+        }
+    }
+
+    /// The value that stands for an id.
+    pub(super) fn resolve(&mut self, id: Id) -> Id {
+        let mut value = id;
+        while self.replaced[value as usize] != 0 {
+            value = self.replaced[value as usize];
+        }
+        let mut at = id;
+        while at != value {
+            at = std::mem::replace(&mut self.replaced[at as usize], value);
+        }
+        value
+    }
+
+    /// Replaces the operands of an instruction.
+    pub(super) fn resolve_operands(&mut self, i: &mut [u32]) {
+        for at in 1..i.len() {
+            if is_id(i, at) == Some(true) && self.replaced[i[at] as usize] != 0 {
+                i[at] = self.resolve(i[at]);
+            }
+        }
+    }
+
+    /// The module with the globals that its functions use.
+    pub(super) fn write(mut self) -> Vec<u32> {
+        let mut functions = std::mem::take(&mut self.functions);
+        for i in functions.iter_mut().flat_map(|f| &mut f.blocks).flat_map(|b| &mut b.body) {
+            self.resolve_operands(i);
+        }
+        let mut used = vec![false; self.result_types.len()];
+        let mark = |used: &mut [bool], i: &[u32]| {
+            for at in (1..i.len()).filter(|at| is_id(i, *at) == Some(true)) {
+                used[i[at] as usize] = true;
+            }
+        };
+        let mut locals = Vec::new();
+        for i in functions.iter().flat_map(|f| f.head.iter().chain(f.blocks.iter().flat_map(|b| &b.body))) {
+            mark(&mut used, i);
+            if let Some((_, id)) = typed_result(i) {
+                locals.extend(self.decorations.remove(&id).into_iter().flatten());
+            }
+        }
+        // Variables of the interface stay: the contract and the pipeline's stages know them. Definitions come before uses.
+        const PRIVATE: u32 = 6;
+        let defined = |i: &Instruction| match opcode(i) {
+            op::EXT_INST_IMPORT | op::TYPE_VOID..=op::TYPE_FUNCTION => Some(i[1]),
+            op::UNDEF | op::CONSTANT_TRUE..=op::SPEC_CONSTANT_OP | op::VARIABLE => Some(i[2]),
+            _ => None,
+        };
+        let all: Vec<Instruction> = std::mem::take(&mut self.globals).into_iter().chain(self.more).collect();
+        let forward: Vec<Id> = all.iter().filter(|i| opcode(i) == op::TYPE_FORWARD_POINTER).map(|i| i[1]).collect();
+        forward.iter().for_each(|id| used[*id as usize] = true);
+        for i in all.iter().rev() {
+            let is_kept = match (opcode(i), defined(i)) {
+                (op::VARIABLE, Some(id)) => i[3] != PRIVATE || used[id as usize],
+                (_, Some(id)) => used[id as usize],
+                (op::EXECUTION_MODE, _) => true,
+                _ => false,
+            };
+            if is_kept {
+                mark(&mut used, i);
+                if let Some(id) = defined(i) {
+                    used[id as usize] = true;
+                }
+            }
+        }
+        // A forward pointer's struct is defined after it, and may use types before it.
+        let mut out = self.header;
+        out[BOUND] = self.result_types.len() as u32;
+        let is_annotation = |i: &Instruction| defined(i).is_none() && opcode(i) != op::TYPE_FORWARD_POINTER;
+        for i in all.iter().filter(|i| is_annotation(i) || opcode(i) == op::EXT_INST_IMPORT) {
+            match opcode(i) {
+                op::ENTRY_POINT => out.extend(entry_point(i, &used)),
+                op::DECORATE | op::MEMBER_DECORATE if !used[i[1] as usize] => {}
+                _ => out.extend(i),
+            }
+        }
+        out.extend(locals.iter().flatten());
+        let is_definition = |i: &&Instruction| !is_annotation(i) && opcode(i) != op::EXT_INST_IMPORT;
+        for i in all.iter().filter(is_definition) {
+            if defined(i).is_none_or(|id| used[id as usize]) {
+                out.extend(i);
+            }
+        }
+        functions.iter().for_each(|function| function.write(&mut out));
+        out
+    }
+}
+
+/// The entry point with the variables of its interface that are left.
+fn entry_point(i: &[u32], used: &[bool]) -> Instruction {
+    let ends = |word: &u32| word.to_le_bytes().contains(&0);
+    let name = i[INTERFACE..].iter().position(ends).map_or(i.len(), |end| INTERFACE + end + 1);
+    let kept = i[name..].iter().filter(|id| used[**id as usize]);
+    instruction(op::ENTRY_POINT, &i[1..name].iter().chain(kept).copied().collect::<Vec<_>>())
+}
+
+/// Type and id of an instruction's result.
+pub(super) fn typed_result(i: &[u32]) -> Option<(Id, Id)> {
+    let code = opcode(i);
+    let is_untyped = matches!(code, op::LABEL | op::FUNCTION_END) || op::WITHOUT_RESULT.contains(&code);
+    if is_untyped { None } else { Some((*i.get(1)?, *i.get(2)?)) }
+}

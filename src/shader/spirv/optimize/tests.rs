@@ -1,0 +1,86 @@
+use super::*;
+use crate::shader::compile::Compiler;
+use crate::shader::source::Source;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::opcode as op;
+use crate::shader::spirv::specialize::{instructions, opcode};
+
+/// A fragment stage with these functions, optimized.
+#[track_caller]
+fn optimized_stage(functions: &str) -> Vec<u32> {
+    let text = format!(
+        "#version 460\nstruct Part {{ vec3 a; float b[3]; }};\nstruct Whole {{ Part part; float c; }};\n\
+         layout(location = 0) in vec4 x;\nlayout(location = 1) in flat ivec4 n;\nlayout(location = 0) out vec4 color;\n{functions}\n"
+    );
+    let source = Source::memory([("m.frag", text.as_str())]);
+    let words = Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap();
+    optimized(&words).expect("all instructions are known")
+}
+
+fn count(words: &[u32], code: u32) -> usize {
+    instructions(words).expect("whole instructions").into_iter().filter(|i| opcode(i) == code).count()
+}
+
+/// Variables of functions.
+fn locals(words: &[u32]) -> usize {
+    const FUNCTION: u32 = 7;
+    let all = instructions(words).expect("whole instructions");
+    all.into_iter().filter(|i| opcode(i) == op::VARIABLE && i[3] == FUNCTION).count()
+}
+
+#[test]
+fn calls_and_variables_become_values() {
+    for body in [
+        "float f(float a) { return a * 2.0; } void main() { color = vec4(f(x.x), f(x.y), 0.0, 1.0); }",
+        "void f(inout vec4 a) { a.y += 1.0; } void main() { vec4 v = x; f(v); color = v; }",
+        "Whole f(Whole w) { w.part.b[1] = w.c; return w; }
+         void main() { Whole w; w.c = x.x; w.part.a = x.xyz; w = f(w); color = vec4(w.part.a.xy, w.part.b[1], w.c); }",
+        // Early returns, from nested selections
+        "float f(float a) { if (a > 1.0) { if (a > 2.0) return 3.0; a += 1.0; } else return a; return a * a; }
+         void main() { color = vec4(f(x.x)); }",
+        // A loop with an exit, and a value that changes in it
+        "void main() { float sum = 0.0; for (int i = 0; i < n.x; ++i) { if (sum > 9.0) break; sum += x.x; } color = vec4(sum); }",
+        "float f(int i) { float a = 0.0; switch (i) { case 0: a = 1.0; break; case 1: a = 2.0; default: a += 5.0; } return a; }
+         void main() { color = vec4(f(n.x)); }",
+        "float state = 1.0; void f() { state += x.x; } void main() { f(); f(); color = vec4(state); }",
+    ] {
+        let words = optimized_stage(body);
+        assert_eq!((count(&words, op::FUNCTION_CALL), locals(&words)), (0, 0), "{body}");
+    }
+}
+
+#[test]
+fn what_stays_is_called_and_stored() {
+    // An array that an unknown index reads, and a return from within a loop
+    let words = optimized_stage("void main() { float a[3] = float[](x.x, x.y, x.z); color = vec4(a[n.x]); }");
+    assert_eq!(locals(&words), 1);
+    let words = optimized_stage(
+        "float f(float a) { for (int i = 0; i < n.x; ++i) { if (a > 2.0) return a; a += x.x; } return 0.0; }
+         void main() { color = vec4(f(x.x)); }",
+    );
+    assert_eq!(count(&words, op::FUNCTION_CALL), 1);
+}
+
+#[test]
+fn what_is_computed_twice_or_not_used_goes() {
+    const SIN: u32 = 13;
+    let words = optimized_stage(
+        "float f(float a) { return sin(a); }
+         void main() { float unused = cos(x.y); Part p; p.a = vec3(x.x, x.yz); p.b[0] = f(p.a.x); color = vec4(f(x.x), p.b[0], 0.0, 1.0); }",
+    );
+    let all = instructions(&words).expect("whole instructions");
+    let functions: Vec<u32> = all.iter().filter(|i| opcode(i) == op::EXT_INST).map(|i| i[4]).collect();
+    assert_eq!(functions, [SIN]);
+    // A parameter decides a branch.
+    let words = optimized_stage(
+        "float f(bool is_sine) { if (is_sine) return sin(x.x); return cos(x.x); } void main() { color = vec4(f(true)); }",
+    );
+    assert_eq!((count(&words, op::EXT_INST), count(&words, op::BRANCH_CONDITIONAL)), (1, 0));
+}
+
+#[test]
+fn words_that_are_no_module_come_back() {
+    for words in [vec![], vec![1, 2, 3], vec![0x0723_0203, 0, 0, 9, 0, 0], vec![0x0723_0203, 0, 0, 9, 0, 0xffff_0036]] {
+        assert_eq!(optimize(words.clone()), words);
+    }
+}
