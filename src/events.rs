@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::render::{BakeReport, Outcome, Reload};
+use crate::pipeline::{Outcome, Reload};
+use crate::render::BakeReport;
 use crate::shader::Diagnostic;
 
 /// An event. The field `event` names its kind.

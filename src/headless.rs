@@ -7,11 +7,12 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use crate::frame::{FrameInputs, FrameState, PipelineRequest, TargetFormat};
 use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
+use crate::pipeline::{Outcome, PipelineSet, Reload, Reloader, endless_loop};
 use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, FrameInputs, FrameState, GpuModel, Outcome, Output, PipelineRequest,
-    PipelineSet, ProvideError, Redraw, Reload, Reloader, Resources, TargetFormat, TraceError, UploadError, View,
-    endless_loop, wrong_values,
+    BakeError, BakeReport, BoundFrame, Capture, GpuModel, Output, ProvideError, Redraw, Resources, TraceError,
+    UploadError, View, wrong_values,
 };
 use crate::scene::{self, MeasuredError, Model};
 use crate::session::Session;

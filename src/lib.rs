@@ -9,15 +9,18 @@
 //! - [`shader`]: compiles files to SPIR-V. Has no device and no scene.
 //! - [`gpu`]: Vulkan objects, the only `unsafe` code. Reads no files and no glTF.
 //! - [`scene`]: CPU data: glTF, tangents, camera, lights.
-//! - [`render`]: draws scenes with shaders on a device: frame states, resources, views.
+//! - [`frame`]: a picture as a value: the frame state, a pure function of settings, shaders and scene.
+//! - [`pipeline`]: pipelines of a shader generation, and the reload that makes the next.
+//! - [`render`]: draws frame states on a device: resources, views.
 //! - [`events`]: events as JSON lines.
 //! - [`session`]: what the user works on; it survives the loss of the device.
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
 //! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
+//! - `threads`: what a window does in the background: compiles, loads, bakes.
 //! - [`app`]: the window.
 //!
 //! An edit passes three steps. [`shader::watch`] collects the changed paths, [`shader::library`] compiles the dirty stages, and
-//! [`render::Reloader`] builds a new pipeline set, which the next frame uses as a whole. An error in any step yields diagnostics
+//! [`pipeline::Reloader`] builds a new pipeline set, which the next frame uses as a whole. An error in any step yields diagnostics
 //! and changes nothing else.
 
 pub mod app;
@@ -26,14 +29,17 @@ pub mod comparison;
 mod disk_cache;
 pub mod events;
 pub mod file_kind;
+pub mod frame;
 pub mod gpu;
 pub mod headless;
 pub mod interface;
 pub mod measure;
 pub mod message;
 pub mod picture;
+pub mod pipeline;
 pub mod render;
 pub mod scene;
 pub mod session;
 pub mod settings;
 pub mod shader;
+mod threads;

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::frame::stages::MEASURE_STAGES;
+use crate::frame::{PipelineRequest, TablesKey, TargetFormat};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Memory, SetLayouts, SetWriter, Specialization, one_shot, vk};
 use crate::interface::{self, Task};
-use crate::render::{
-    GpuEnvironment, MEASURE_STAGES, PipelineRequest, PipelineSet, SharedImages, Sources, Tables, TablesKey,
-    TargetFormat, Traced, Uniforms, compute, measured_buffer,
-};
+use crate::pipeline::PipelineSet;
+use crate::render::{GpuEnvironment, SharedImages, Sources, Tables, Traced, Uniforms, compute, measured_buffer};
 use crate::settings::Settings;
 use crate::shader::{Constant, ShaderSet, values};
 
@@ -137,7 +137,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Prepares shaders with [`crate::render::all_stages`]. The author's constants and parameters come from `settings`.
+    /// Prepares shaders with [`crate::frame::stages::all_stages`]. The author's constants and parameters come from `settings`.
     ///
     /// # Errors
     /// The driver rejects a stage, or no memory is left.

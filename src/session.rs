@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::render::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
+use crate::frame::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
 use crate::scene::{Model, environment};
 use crate::settings::Settings;
 use crate::shader::values::{misfits, unknown_names};

@@ -5,8 +5,8 @@ mod support;
 use std::path::Path;
 
 use serde_json::Value;
+use specula::frame::stages::all_stages;
 use specula::measure::{Bench, Claim, Grid, Surface, choices, unclaimed};
-use specula::render::all_stages;
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::{Change, Constant, Library, Source, Update};
 use support::process::{Finished, run};

@@ -31,7 +31,8 @@ fn add_parameter(session: &mut Session, declaration: &str) {
 
 /// Fails unless `specula check` would pass.
 fn passes_check(session: &Session) {
-    let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &specula::render::stages());
+    let mut library =
+        Library::new(Source::Disk(session.tree.root()), compiler().clone(), &specula::frame::stages::stages());
     let found = check::check(&mut library);
     assert!(found.is_empty(), "{}", lines(&found).join("\n"));
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use specula::headless::HeadlessError;
-use specula::render::Outcome;
+use specula::pipeline::Outcome;
 use specula::settings::ShaderValue;
 use specula::shader::{Change, Severity};
 use support::{

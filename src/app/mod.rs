@@ -8,7 +8,6 @@ mod input;
 mod panels;
 mod screen;
 mod status;
-mod threads;
 mod viewer;
 
 use std::path::PathBuf;
@@ -27,9 +26,9 @@ use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
 
+use crate::threads::loader::{self, Reading};
+use crate::threads::{Message, Outbox, watch_files};
 use screen::Screen;
-use threads::loader::{self, Reading};
-use threads::{Message, Outbox, watch_files};
 use viewer::Viewer;
 
 /// How to open the window.

@@ -11,11 +11,12 @@ use super::input::Mouse;
 use super::panels::{self, Readings};
 use super::viewer::Viewer;
 use crate::events::{Event, emit};
+use crate::frame::FrameState;
 use crate::gpu::{
     Attachments, Encoder, Frames, Gpu, GpuError, Image, Rect, SetLayouts, Surface, Swapchain, UiRenderer, Use,
 };
 use crate::picture;
-use crate::render::{BoundFrame, FrameState, Output, PixelAt, Redraw, View};
+use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 
 /// The CPU prepares a frame while the device draws the one before.

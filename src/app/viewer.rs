@@ -9,20 +9,20 @@ use std::time::Instant;
 use super::command::{Command, open_as};
 use super::panels::PanelState;
 use super::status::{Notices, ShaderStatus, title};
-use super::threads::loader::{self, Reading};
-use super::threads::worker::Snapshot;
-use super::threads::{Outbox, Threads};
 use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
+use crate::frame::{FrameInputs, FrameState, Revisions, Scene, TargetFormat};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
-use crate::render::{
-    BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Revisions, Scene, TargetFormat, View, endless_loop,
-};
+use crate::pipeline::endless_loop;
+use crate::render::{BoundFrame, PixelAt, Resources, View};
 use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, Source};
+use crate::threads::loader::{self, Reading};
+use crate::threads::worker::Snapshot;
+use crate::threads::{Outbox, Threads};
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
 struct LastComplete {

@@ -10,7 +10,7 @@ use crossbeam_channel::unbounded;
 use serde_json::{Value, json};
 use specula::gpu::Gpu;
 use specula::headless::Headless;
-use specula::render::Outcome;
+use specula::pipeline::Outcome;
 use specula::scene::{LoadTiming, Model};
 use specula::shader::{Batch, Compiler, Source, TreePath, Watcher};
 

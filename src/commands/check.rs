@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use specula::events::{Event, emit};
+use specula::frame::{MaterialVariant, PipelineRequest, TargetFormat};
 use specula::gpu::{PrimitiveClass, SetLayouts};
 use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
 use specula::message::tell;
-use specula::render::{MaterialVariant, PipelineRequest, PipelineSet, TargetFormat};
+use specula::pipeline::PipelineSet;
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
@@ -28,7 +29,7 @@ pub struct Args {
 /// Runs the command. Compiling needs no device. If there is a device, this also builds the pipelines of every mode and choice.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let source = args.common.source()?;
-    let mut library = Library::new(source, compiler()?, &specula::render::all_stages());
+    let mut library = Library::new(source, compiler()?, &specula::frame::stages::all_stages());
     let start = std::time::Instant::now();
     let mut diagnostics = check::check(&mut library);
     let built = match library.set().cloned() {

@@ -17,7 +17,7 @@ pub struct Args {
 
 /// Runs the command. Needs no device.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let mut library = Library::new(args.common.source()?, compiler()?, &specula::render::stages());
+    let mut library = Library::new(args.common.source()?, compiler()?, &specula::frame::stages::stages());
     let shaders = match library.update(&specula::shader::Change::All) {
         Update::Ready(shaders, _) => shaders,
         Update::Failed(diagnostics, _) => return Err(Failure::Shaders(diagnostics)),

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
+use specula::frame::FrameState;
 use specula::headless::Headless;
 use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
-use specula::render::FrameState;
 use specula::shader::PixelValue;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 

@@ -12,9 +12,9 @@ use super::brdf::tables::Tables;
 use super::environment::bake::{BakeControl, BakeError};
 use super::environment::maps::GpuEnvironment;
 use super::paths::{TraceError, TraceKey, TraceRequest, Traced};
-use super::pipeline::{BoundPipelines, PipelineSet};
 use super::scene::{GpuModel, GpuScene};
-use super::state::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
+use crate::frame::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
+use crate::pipeline::{BoundPipelines, PipelineSet};
 
 /// A [`FrameState`] with all the pipelines and resources that draw it. It keeps them alive after newer ones replace them.
 #[derive(Clone)]

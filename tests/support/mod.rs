@@ -16,7 +16,8 @@ use std::sync::{Arc, OnceLock};
 
 use specula::gpu::{Gpu, GpuOptions};
 use specula::headless::Headless;
-use specula::render::{Capture, Outcome, Reload};
+use specula::pipeline::{Outcome, Reload};
+use specula::render::Capture;
 use specula::scene::{Model, built_in, load_bytes};
 use specula::settings::Settings;
 use specula::shader::{Change, Compiler, Diagnostic, Source, TreePath, embedded};

@@ -5,16 +5,17 @@ use std::path::PathBuf;
 
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
-use crate::app::threads::baker::BakeMessage;
-use crate::app::threads::loader::Loaded;
-use crate::app::threads::worker::WorkerMessage;
-use crate::app::threads::{Message, Role};
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
 use crate::message;
-use crate::render::{BakeError, Outcome, Reload, wrong_values};
+use crate::pipeline::{Outcome, Reload};
+use crate::render::{BakeError, wrong_values};
 use crate::settings::LightSource;
 use crate::shader::{Diagnostic, Severity};
+use crate::threads::baker::BakeMessage;
+use crate::threads::loader::Loaded;
+use crate::threads::worker::WorkerMessage;
+use crate::threads::{Message, Role};
 
 impl Viewer {
     pub(in crate::app) fn on_message(&mut self, message: Message) {

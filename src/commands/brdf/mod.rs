@@ -12,9 +12,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Subcommand;
+use specula::frame::stages::all_stages;
 use specula::gpu::Gpu;
 use specula::measure::{Bench, Claim, Surface, unclaimed};
-use specula::render::all_stages;
 use specula::settings::Settings;
 use specula::shader::values::{misfits, unknown_names};
 use specula::shader::{Change, Constant, Library, ShaderSet, Update};

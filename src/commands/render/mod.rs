@@ -9,7 +9,8 @@ use specula::events::{CompletedEvent, Event, ReloadEvent, emit};
 use specula::headless::Headless;
 use specula::message;
 use specula::picture;
-use specula::render::{Capture, Outcome, Reload};
+use specula::pipeline::{Outcome, Reload};
+use specula::render::Capture;
 use specula::shader::Diagnostic;
 
 use super::common::{Common, check_mode, check_out, check_validation, compiler};

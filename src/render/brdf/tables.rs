@@ -7,12 +7,10 @@ use crate::disk_cache;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, Use, one_shot, vk};
 use crate::interface::{BINDING_TARGET, Task};
 
+use crate::frame::stages::TABLE_STAGES;
+use crate::frame::{BakeStage, TablesKey};
+use crate::pipeline::PipelineSet;
 use crate::render::compute;
-use crate::render::pipeline::PipelineSet;
-use crate::render::state::{BakeStage, TablesKey};
-
-/// The stages that compute the tables.
-pub(crate) const TABLE_STAGES: [&str; 3] = ["ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/sheen_albedo.comp"];
 
 /// Size and sampling of a table: `slices` square maps below each other. Columns are a cosine, rows roughness.
 struct Table {

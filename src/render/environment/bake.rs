@@ -6,35 +6,23 @@ use std::time::Instant;
 
 use crate::cancel::wait_unless;
 use crate::disk_cache;
+use crate::frame::stages::{CUBE, PREFILTER, PREFILTER_SHEEN};
+use crate::frame::{BakeStage, EnvironmentKey, LARGEST_HALF};
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, fault, vk};
 use crate::interface::{IRRADIANCE_SIDE, SPECULAR_HEIGHT, SPECULAR_LEVELS, SPECULAR_WIDTH};
+use crate::pipeline::PipelineSet;
 use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
 use crate::render::environment::maps::{BakeReport, GpuEnvironment, HALF, Prefiltered, Radiance};
 use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, small_lights, small_lights_size};
 use crate::render::environment::{shared_exponent, transfer};
-use crate::render::pipeline::PipelineSet;
-use crate::render::state::{BakeStage, EnvironmentKey};
-
-pub(crate) const CUBE: &str = "ibl/cube.comp";
-pub(crate) const DOWNSAMPLE: &str = "ibl/downsample.comp";
-pub(crate) const IRRADIANCE: &str = "ibl/irradiance.comp";
-pub(crate) const PREFILTER: &str = "ibl/prefilter.comp";
-const PREFILTER_SHEEN: &str = "ibl/prefilter_sheen.comp";
-pub(crate) const LOBE: &str = "ibl/lobe.comp";
-/// The stages of each part of a bake. If one of them changes, the part is baked again.
-pub(crate) const RADIANCE_STAGES: [&str; 3] = [CUBE, DOWNSAMPLE, IRRADIANCE];
-pub(crate) const PREFILTER_STAGES: [&str; 2] = [LOBE, PREFILTER];
-pub(crate) const SHEEN_STAGES: [&str; 1] = [PREFILTER_SHEEN];
 
 const CUBE_SIDE: u32 = 512;
 const CUBE_LEVELS: u32 = 10;
 const SHEEN_SIDE: u32 = 32;
 const SHEEN_LEVELS: u32 = 6;
 const SHEEN_SAMPLES: u32 = 256;
-/// Largest half float.
-pub(crate) const LARGEST_HALF: f32 = 65504.0;
 /// A map is scaled down at most by this factor to fit half floats, and clipped beyond: more would lose its dark parts.
 const LARGEST_RANGE: f32 = 4096.0;
 

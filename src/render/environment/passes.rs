@@ -9,10 +9,10 @@ use crate::interface::{
     BINDING_TARGET, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
 };
 
+use crate::frame::BakeStage;
+use crate::frame::stages::{CUBE, DOWNSAMPLE, IRRADIANCE};
+use crate::pipeline::PipelineSet;
 use crate::render::compute;
-use crate::render::environment::bake::{CUBE, DOWNSAMPLE, IRRADIANCE};
-use crate::render::pipeline::PipelineSet;
-use crate::render::state::BakeStage;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
 pub(crate) const IRRADIANCE_LEVEL: u32 = 5;

@@ -3,10 +3,10 @@
 use glam::{Mat3, Vec3, Vec4};
 
 use super::TraceError;
+use crate::frame::Scene;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{ATTRIBUTE_COLOR, BvhNode, TracedCorners, TracedTriangle, Vertex};
 use crate::render::scene::normals_from;
-use crate::render::state::Scene;
 use crate::scene::{Bvh, Instance, Material, triangles};
 
 /// At most this many triangles are traced. Then nodes, triangles and corners take up to 128 MiB each, which is the largest

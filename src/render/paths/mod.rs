@@ -10,12 +10,12 @@ mod materials;
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::frame::Scene;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, Use, one_shot, vk};
 use crate::interface::{BvhNode, EnvironmentCell, TracedMaterial};
 use crate::render::compute;
 use crate::render::environment::maps::GpuEnvironment;
 use crate::render::scene::GpuModel;
-use crate::render::state::Scene;
 use crate::scene::environment::CubeLuminance;
 use geometry::Geometry;
 use materials::{Materials, layers};

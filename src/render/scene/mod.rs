@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use glam::Mat3;
 
+use crate::frame::{Appearance, MaterialVariant, Scene};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
 use crate::interface::{Draw, Vertex};
-use crate::render::state::{Appearance, MaterialVariant, Scene};
 use crate::scene::{Instance, Model, TextureSource, Topology};
 use materials::{Textures, materials};
 use upload::{Range, Uploaded, upload};

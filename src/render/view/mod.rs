@@ -14,7 +14,7 @@ use targets::{TargetDesc, Targets};
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use super::resources::BoundFrame;
-use super::state::TargetFormat;
+use crate::frame::TargetFormat;
 use crate::gpu::{
     Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::targets::Targets;
+use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
 use crate::render::resources::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
-use crate::render::state::{MaterialVariant, PipelineKey, PipelineRequest};
 
 /// The arguments of all passes of a frame.
 pub(super) struct Passes<'a> {

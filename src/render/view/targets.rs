@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::frame::TargetFormat;
 use crate::gpu::{DescriptorSet, Gpu, GpuError, Image, ImageDesc, Sampler, SetLayouts, SetWriter, vk};
 use crate::interface::SET_PASS;
-use crate::render::state::TargetFormat;
 use crate::scene::mips;
 
 /// The properties of a picture that determine its targets.

@@ -6,42 +6,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
+use crate::frame::{Pass, PipelineKey, PipelineRequest};
 use crate::gpu::{
     ComputePipeline, Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule,
     Specialization,
 };
-use crate::render::brdf::tables::TABLE_STAGES;
-use crate::render::environment::bake::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES};
-use crate::render::pipeline::bounds::shader_module;
-use crate::render::state::{Pass, PipelineKey, PipelineRequest};
+use crate::pipeline::bounds::shader_module;
 use crate::shader::ShaderSet;
-
-/// The stages that draw a picture.
-const GRAPHICS: [&str; 9] = [
-    "pbr.vert",
-    "pbr.frag",
-    "debug.frag",
-    "paths.frag",
-    "sky.vert",
-    "sky.frag",
-    "tonemap.vert",
-    "tonemap.frag",
-    "average.frag",
-];
-/// The stages that measure the BRDF, for `specula brdf`.
-pub const MEASURE_STAGES: [&str; 4] =
-    ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
-
-/// The stages that a shader tree must have, as paths from its root.
-pub fn stages() -> Vec<&'static str> {
-    let baked = TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES);
-    GRAPHICS.into_iter().chain(baked).collect()
-}
-
-/// [`stages`] and [`MEASURE_STAGES`]: every file of the built-in tree with a `main()`.
-pub fn all_stages() -> Vec<&'static str> {
-    stages().into_iter().chain(MEASURE_STAGES).collect()
-}
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)

@@ -8,8 +8,9 @@ use crate::shader::{
     Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, StageKind, TreePath, Update,
 };
 
-use super::set::{PipelineSet, stages};
-use crate::render::state::PipelineRequest;
+use super::set::PipelineSet;
+use crate::frame::PipelineRequest;
+use crate::frame::stages::stages;
 
 /// Stages that the first picture does not need: a window starts with the picture, and headless finishes before a mode.
 const LATER_STAGES: [&str; 2] = [ModeStage::Debug.path(), ModeStage::Paths.path()];

@@ -6,23 +6,26 @@
 mod baked;
 mod pipelines;
 mod scene;
+pub mod stages;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-pub(super) use baked::BakeStage;
+pub(crate) use baked::BakeStage;
 pub use baked::{EnvironmentKey, TablesKey};
 pub use pipelines::{MaterialVariant, PipelineRequest, TargetFormat};
-pub(super) use pipelines::{Pass, PipelineKey};
-pub(super) use scene::Appearance;
+pub(crate) use pipelines::{Pass, PipelineKey};
+pub(crate) use scene::Appearance;
 pub use scene::Scene;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHTS};
-use crate::render::environment::bake::LARGEST_HALF;
 use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
 use crate::shader::{Mode, ShaderSet, values};
+
+/// Largest half float.
+pub(crate) const LARGEST_HALF: f32 = 65504.0;
 
 /// Everything that a picture depends on.
 #[derive(Clone, Copy)]
@@ -164,13 +167,13 @@ impl FrameState {
     }
 
     /// The content of the author's parameter block, `PARAMS_SIZE` bytes.
-    pub(super) fn params(&self) -> &[u8] {
+    pub(crate) fn params(&self) -> &[u8] {
         &self.params
     }
 
     /// The frame constants for a picture at `rect` of the output. The environment's images hold radiance times `scale`.
     /// `sample_index` counts the frames of an accumulated picture from 0.
-    pub(super) fn constants(&self, rect: Rect, scale: f32, sample_index: u32) -> Frame {
+    pub(crate) fn constants(&self, rect: Rect, scale: f32, sample_index: u32) -> Frame {
         Frame {
             environment_intensity: self.constants.environment_intensity / scale,
             sample_index,

@@ -13,26 +13,26 @@ use crate::render::GpuModel;
 use crate::scene::{self, LoadError, LoadOptions, Model};
 
 /// A finished load.
-pub(in crate::app) struct Loaded {
+pub(crate) struct Loaded {
     /// Number of the load, counted by [`Loader::newest`].
-    pub(in crate::app) number: u64,
+    pub(crate) number: u64,
     /// The file; `None` is the built-in model.
-    pub(in crate::app) path: Option<PathBuf>,
+    pub(crate) path: Option<PathBuf>,
     /// The model on the device, or an error message and the files that were tried.
-    pub(in crate::app) result: Result<Arc<GpuModel>, (String, Vec<PathBuf>)>,
+    pub(crate) result: Result<Arc<GpuModel>, (String, Vec<PathBuf>)>,
     /// Duration in milliseconds.
-    pub(in crate::app) ms: f64,
+    pub(crate) ms: f64,
 }
 
 /// A model that is being read. This needs no device, so it starts before the window opens.
-pub(in crate::app) struct Reading {
+pub(crate) struct Reading {
     path: Option<PathBuf>,
     start: Instant,
     model: JoinHandle<Result<Model, LoadError>>,
 }
 
 /// Starts to read a model: parse, decode, generate tangents.
-pub(in crate::app) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
+pub(crate) fn read(path: Option<PathBuf>, options: LoadOptions) -> Reading {
     let file = path.clone();
     let model = std::thread::spawn(move || {
         let model = scene::open(file.as_deref(), &options);
@@ -43,24 +43,24 @@ pub(in crate::app) fn read(path: Option<PathBuf>, options: LoadOptions) -> Readi
 }
 
 /// Uploads models and counts the loads.
-pub(in crate::app) struct Loader {
+pub(crate) struct Loader {
     // Weak, because a load that outlives the window must not keep the device alive.
     gpu: Weak<Gpu>,
     layouts: Weak<SetLayouts>,
     gate: Arc<DeviceGate>,
     outbox: Outbox,
     /// Number of the newest load.
-    pub(in crate::app) newest: u64,
+    pub(crate) newest: u64,
 }
 
 impl Loader {
-    pub(super) fn new((gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>), outbox: &Outbox) -> Self {
+    pub(crate) fn new((gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>), outbox: &Outbox) -> Self {
         let (gpu, layouts) = (Arc::downgrade(gpu), Arc::downgrade(layouts));
         Self { gpu, layouts, gate: Arc::default(), outbox: outbox.clone(), newest: 0 }
     }
 
     /// Uploads a model once it has been read. Sends the result as a message.
-    pub(in crate::app) fn upload(&mut self, reading: Reading) {
+    pub(crate) fn upload(&mut self, reading: Reading) {
         self.newest += 1;
         let (gpu, layouts, gate, number) = (self.gpu.clone(), self.layouts.clone(), self.gate.clone(), self.newest);
         self.outbox.spawn(Role::Loader(number), move |outbox| {

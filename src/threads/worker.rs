@@ -10,10 +10,11 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, unbounded};
 
 use super::{Message, Outbox, Role};
+use crate::frame::{MaterialVariant, PipelineRequest, Scene, TargetFormat};
 use crate::gpu::{Gpu, SetLayouts, fault};
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
 use crate::message::panic_text;
-use crate::render::{MaterialVariant, Outcome, PipelineRequest, PipelineSet, Reload, Reloader, Scene, TargetFormat};
+use crate::pipeline::{Outcome, PipelineSet, Reload, Reloader};
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, ShaderSet, Source};
 
@@ -25,10 +26,10 @@ const PENDING: &str = "this mode's shader does not compile; its errors are in th
 
 /// The settings, scene and target that the window draws now. A reload builds their pipelines.
 #[derive(Clone)]
-pub(in crate::app) struct Snapshot {
-    pub(in crate::app) settings: Settings,
-    pub(in crate::app) scene: Option<Scene>,
-    pub(in crate::app) target: TargetFormat,
+pub(crate) struct Snapshot {
+    pub(crate) settings: Settings,
+    pub(crate) scene: Option<Scene>,
+    pub(crate) target: TargetFormat,
 }
 
 impl Snapshot {
@@ -44,7 +45,7 @@ impl Snapshot {
 }
 
 /// Messages of the worker.
-pub(in crate::app) enum WorkerMessage {
+pub(crate) enum WorkerMessage {
     /// A reload is finished.
     Reloaded {
         reload: Box<Reload>,
@@ -107,7 +108,7 @@ impl Jobs {
 }
 
 /// The window's end of the worker. Dropping it ends the thread and waits for it.
-pub(in crate::app) struct Worker {
+pub(crate) struct Worker {
     jobs: Option<Jobs>,
     snapshot: Arc<Mutex<Snapshot>>,
     /// The newest build request that has not succeeded yet.
@@ -117,7 +118,7 @@ pub(in crate::app) struct Worker {
 
 impl Worker {
     /// Starts the thread, which first compiles the whole tree.
-    pub(super) fn start(
+    pub(crate) fn start(
         (gpu, layouts): (&Arc<Gpu>, &Arc<SetLayouts>),
         compiler: &Arc<Compiler>,
         source: Source,
@@ -143,23 +144,23 @@ impl Worker {
     }
 
     /// Sets what the next reload builds pipelines for.
-    pub(in crate::app) fn set_snapshot(&self, snapshot: Snapshot) {
+    pub(crate) fn set_snapshot(&self, snapshot: Snapshot) {
         *self.snapshot.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
     }
 
     /// Compiles the stages that a change makes dirty. `since` is the time of its first file event.
-    pub(in crate::app) fn change(&self, change: Change, since: Instant) {
+    pub(crate) fn change(&self, change: Change, since: Instant) {
         self.send(Job::Edit(Edit::new(change, since)));
     }
 
     /// [`Worker::change`] for the watcher's thread, which must end before the worker does.
-    pub(super) fn changes(&self) -> impl Fn(Change, Instant) + Send + 'static {
+    pub(crate) fn changes(&self) -> impl Fn(Change, Instant) + Send + 'static {
         let jobs = self.jobs.clone();
         move |change, since| jobs.iter().for_each(|jobs| jobs.send(Job::Edit(Edit::new(change.clone(), since))))
     }
 
     /// Builds pipelines. The newest request wins. A request that is running or has failed is not sent again.
-    pub(in crate::app) fn build(&mut self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
+    pub(crate) fn build(&mut self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
         let is_asked = |(asked, for_this): &Build| Arc::ptr_eq(asked, set) && for_this == request;
         if !self.asked.as_ref().is_some_and(is_asked) {
             self.asked = Some((set.clone(), request.clone()));
@@ -168,17 +169,17 @@ impl Worker {
     }
 
     /// Marks the newest build as successful, or lets a failed one be tried again.
-    pub(in crate::app) fn built(&mut self) {
+    pub(crate) fn built(&mut self) {
         self.asked = None;
     }
 
     /// Tells the worker that the first frame of a reload is on screen, so that it compiles the stages that are not.
-    pub(in crate::app) fn shown(&self) {
+    pub(crate) fn shown(&self) {
         self.send(Job::Shown);
     }
 
     /// Opens another shader tree.
-    pub(in crate::app) fn open_tree(&self, source: Source) {
+    pub(crate) fn open_tree(&self, source: Source) {
         self.send(Job::OpenTree(source));
     }
 

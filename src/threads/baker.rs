@@ -6,14 +6,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
 use super::{Message, Outbox, Role};
+use crate::frame::{EnvironmentKey, MeasuredKey, TablesKey};
 use crate::gpu::{Buffer, Gpu, GpuError, fault, return_freed_memory};
+use crate::pipeline::PipelineSet;
 use crate::render::{
-    BakeControl, BakeError, EnvironmentKey, GpuEnvironment, MeasuredKey, PipelineSet, Resources, Tables, TablesKey,
-    TraceKey, TraceRequest, Traced, read_measured,
+    BakeControl, BakeError, GpuEnvironment, Resources, Tables, TraceKey, TraceRequest, Traced, read_measured,
 };
 
 /// Messages of the baker.
-pub(in crate::app) enum BakeMessage {
+pub(crate) enum BakeMessage {
     /// Number of the bake, the fraction that is done, 0..1, and the next pass.
     Progress(u64, f32, String),
     /// The result of a bake.
@@ -34,7 +35,7 @@ struct Bake {
 }
 
 /// Starts bakes, and cancels outdated ones.
-pub(in crate::app) struct Baker {
+pub(crate) struct Baker {
     gpu: Arc<Gpu>,
     outbox: Outbox,
     bake: Option<Bake>,
@@ -50,7 +51,7 @@ pub(in crate::app) struct Baker {
 }
 
 impl Baker {
-    pub(super) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
+    pub(crate) fn new(gpu: &Arc<Gpu>, outbox: &Outbox) -> Self {
         let (newest, threads) = Default::default();
         Self {
             gpu: gpu.clone(),
@@ -65,13 +66,13 @@ impl Baker {
     }
 
     /// The fraction of the running bake that is done, and its next pass.
-    pub(in crate::app) fn progress(&self) -> Option<&(f32, String)> {
+    pub(crate) fn progress(&self) -> Option<&(f32, String)> {
         self.bake.as_ref().map(|bake| &bake.progress)
     }
 
     /// Bakes `key` with `set` and cancels any other bake. `None` only cancels. `resources` has the last bake, of which
     /// unchanged parts are taken over.
-    pub(in crate::app) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>, resources: &Resources) {
+    pub(crate) fn bake(&mut self, set: &Arc<PipelineSet>, key: Option<EnvironmentKey>, resources: &Resources) {
         if self.bake.as_ref().map(|bake| &bake.key) == key.as_ref() {
             return;
         }
@@ -97,12 +98,7 @@ impl Baker {
     }
 
     /// Bakes the tables of `key` with `set`, unless they are being baked.
-    pub(in crate::app) fn bake_tables(
-        &mut self,
-        set: &Arc<PipelineSet>,
-        key: Option<TablesKey>,
-        resources: &Resources,
-    ) {
+    pub(crate) fn bake_tables(&mut self, set: &Arc<PipelineSet>, key: Option<TablesKey>, resources: &Resources) {
         let Some(key) = key.filter(|key| self.tables.as_ref() != Some(key)) else { return };
         self.tables = Some(key.clone());
         let (set, before) = (set.clone(), resources.tables().cloned());
@@ -114,7 +110,7 @@ impl Baker {
     }
 
     /// Reads a measured BRDF, unless it is being read.
-    pub(in crate::app) fn read(&mut self, key: Option<MeasuredKey>) {
+    pub(crate) fn read(&mut self, key: Option<MeasuredKey>) {
         let Some(key) = key.filter(|key| self.reading.as_ref() != Some(key)) else { return };
         self.reading = Some(key.clone());
         let gpu = self.gpu.clone();
@@ -126,7 +122,7 @@ impl Baker {
     }
 
     /// Builds what random paths trace, unless it is being built.
-    pub(in crate::app) fn trace(&mut self, request: Option<TraceRequest>) {
+    pub(crate) fn trace(&mut self, request: Option<TraceRequest>) {
         let Some(request) = request.filter(|request| self.tracing.as_ref() != Some(request.key())) else { return };
         self.tracing = Some(request.key().clone());
         let gpu = self.gpu.clone();
@@ -141,29 +137,29 @@ impl Baker {
     }
 
     /// Stores the progress of a bake, if it is the newest.
-    pub(in crate::app) fn set_progress(&mut self, number: u64, done: f32, next: String) {
+    pub(crate) fn set_progress(&mut self, number: u64, done: f32, next: String) {
         if let Some(bake) = self.bake.as_mut().filter(|bake| bake.number == number) {
             bake.progress = (done, next);
         }
     }
 
     /// Marks a bake as ended. Returns its key, unless it was canceled.
-    pub(in crate::app) fn ended(&mut self, number: u64) -> Option<EnvironmentKey> {
+    pub(crate) fn ended(&mut self, number: u64) -> Option<EnvironmentKey> {
         self.bake.take_if(|bake| bake.number == number).map(|bake| bake.key)
     }
 
     /// Marks tables as baked. Returns whether they are the newest.
-    pub(in crate::app) fn has_tables(&mut self, key: &TablesKey) -> bool {
+    pub(crate) fn has_tables(&mut self, key: &TablesKey) -> bool {
         self.tables.take_if(|tables| tables == key).is_some()
     }
 
     /// Marks a hierarchy as built. Returns whether it is the newest.
-    pub(in crate::app) fn has_traced(&mut self, key: &TraceKey) -> bool {
+    pub(crate) fn has_traced(&mut self, key: &TraceKey) -> bool {
         self.tracing.take_if(|tracing| tracing == key).is_some()
     }
 
     /// Marks a read as ended. Returns whether it is the newest.
-    pub(in crate::app) fn has_read(&mut self, key: &MeasuredKey) -> bool {
+    pub(crate) fn has_read(&mut self, key: &MeasuredKey) -> bool {
         self.reading.take_if(|reading| reading == key).is_some()
     }
 

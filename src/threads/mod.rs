@@ -1,9 +1,9 @@
 //! The background threads. Each sends its results to the window's thread, which alone changes what is on screen.
 //! ARCHITECTURE.md shows which thread sends what.
 
-pub(super) mod baker;
-pub(super) mod loader;
-pub(super) mod worker;
+pub(crate) mod baker;
+pub(crate) mod loader;
+pub(crate) mod worker;
 
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,16 +13,17 @@ use std::thread::JoinHandle;
 
 use winit::event_loop::EventLoopProxy;
 
+use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
-use crate::render::{MeasuredKey, TablesKey, TraceKey};
+use crate::render::TraceKey;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, TreePath, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
 use worker::{Snapshot, Worker, WorkerMessage};
 
 /// Messages of the threads to the window.
-pub(super) enum Message {
+pub(crate) enum Message {
     Worker(WorkerMessage),
     Loaded(Box<Loaded>),
     Bake(BakeMessage),
@@ -35,7 +36,7 @@ pub(super) enum Message {
 }
 
 /// The work of a thread, with its number or key.
-pub(super) enum Role {
+pub(crate) enum Role {
     Worker,
     Loader(u64),
     Baker(u64),
@@ -47,14 +48,14 @@ pub(super) enum Role {
 
 /// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
 #[derive(Clone)]
-pub(super) struct Outbox(EventLoopProxy<Message>);
+pub(crate) struct Outbox(EventLoopProxy<Message>);
 
 impl Outbox {
-    pub(super) fn new(proxy: EventLoopProxy<Message>) -> Self {
+    pub(crate) fn new(proxy: EventLoopProxy<Message>) -> Self {
         Self(proxy)
     }
 
-    pub(super) fn send(&self, message: Message) {
+    pub(crate) fn send(&self, message: Message) {
         let _ = self.0.send_event(message);
     }
 
@@ -71,7 +72,7 @@ impl Outbox {
 
 /// Lets threads use the device until the window closes. The process must not end while a thread is inside the driver.
 #[derive(Default)]
-pub(super) struct DeviceGate(Mutex<bool>);
+pub(crate) struct DeviceGate(Mutex<bool>);
 
 impl DeviceGate {
     /// Runs `work` unless the window is closing. Closing waits until `work` is done.
@@ -87,14 +88,14 @@ impl DeviceGate {
 
 /// All threads. Dropping this ends those that use the device and waits for them, but not for a model that is still being
 /// parsed.
-pub(super) struct Threads {
+pub(crate) struct Threads {
     // The watcher sends to the worker, so it is dropped first.
     tree_watcher: Option<Watcher>,
     file_watcher: Option<Watcher>,
     watched: Vec<PathBuf>,
-    pub(super) worker: Worker,
-    pub(super) loader: Loader,
-    pub(super) baker: Baker,
+    pub(crate) worker: Worker,
+    pub(crate) loader: Loader,
+    pub(crate) baker: Baker,
     /// Threads that look for the line of a loop.
     explainers: Vec<JoinHandle<()>>,
     outbox: Outbox,
@@ -102,7 +103,7 @@ pub(super) struct Threads {
 
 impl Threads {
     /// Starts the worker, which compiles the tree. `file_watcher` watches the files of the model that is being read.
-    pub(super) fn start(
+    pub(crate) fn start(
         device: (&Arc<Gpu>, &Arc<SetLayouts>),
         compiler: &Arc<Compiler>,
         source: Source,
@@ -123,7 +124,7 @@ impl Threads {
     }
 
     /// Sends the diagnostic that `find` returns, which compiles a stage, for a loop that did not end.
-    pub(super) fn explain(&mut self, words: [u32; 2], find: impl FnOnce() -> Option<Diagnostic> + Send + 'static) {
+    pub(crate) fn explain(&mut self, words: [u32; 2], find: impl FnOnce() -> Option<Diagnostic> + Send + 'static) {
         self.explainers.retain(|thread| !thread.is_finished());
         self.explainers.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
             outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
@@ -131,7 +132,7 @@ impl Threads {
     }
 
     /// Watches a shader tree instead of the previous one. Changes go to the worker.
-    pub(super) fn watch_tree(&mut self, source: &Source) -> Result<(), String> {
+    pub(crate) fn watch_tree(&mut self, source: &Source) -> Result<(), String> {
         self.tree_watcher = None;
         let Some(root) = source.root().map(Path::to_owned) else { return Ok(()) };
         let changes = self.worker.changes();
@@ -146,7 +147,7 @@ impl Threads {
     }
 
     /// Watches these files instead of the previous ones.
-    pub(super) fn watch_files(&mut self, files: Vec<PathBuf>) -> Result<(), String> {
+    pub(crate) fn watch_files(&mut self, files: Vec<PathBuf>) -> Result<(), String> {
         if files == self.watched {
             return Ok(());
         }
@@ -168,7 +169,7 @@ impl Drop for Threads {
 }
 
 /// Watches files, if there are any.
-pub(super) fn watch_files(files: &[PathBuf], outbox: &Outbox) -> Result<Option<Watcher>, String> {
+pub(crate) fn watch_files(files: &[PathBuf], outbox: &Outbox) -> Result<Option<Watcher>, String> {
     if files.is_empty() {
         return Ok(None);
     }

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::frame::stages::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES, TABLE_STAGES};
 use crate::gpu::Specialization;
-use crate::render::brdf::tables::TABLE_STAGES;
-use crate::render::environment::bake::{PREFILTER_STAGES, RADIANCE_STAGES, SHEEN_STAGES};
 use crate::shader::{ShaderSet, Stage};
 
 /// A compute stage with the author's constants that it declares. Two are equal if the driver gets the same module, so a

@@ -7,4 +7,4 @@ mod set;
 pub use bounds::endless_loop;
 pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;
-pub use set::{MEASURE_STAGES, PipelineSet, all_stages, stages};
+pub use set::PipelineSet;

@@ -1,0 +1,42 @@
+//! The stages that a shader tree must have, as paths from its root.
+
+/// The stages that draw a picture.
+const GRAPHICS: [&str; 9] = [
+    "pbr.vert",
+    "pbr.frag",
+    "debug.frag",
+    "paths.frag",
+    "sky.vert",
+    "sky.frag",
+    "tonemap.vert",
+    "tonemap.frag",
+    "average.frag",
+];
+
+pub(crate) const CUBE: &str = "ibl/cube.comp";
+pub(crate) const DOWNSAMPLE: &str = "ibl/downsample.comp";
+pub(crate) const IRRADIANCE: &str = "ibl/irradiance.comp";
+pub(crate) const PREFILTER: &str = "ibl/prefilter.comp";
+pub(crate) const PREFILTER_SHEEN: &str = "ibl/prefilter_sheen.comp";
+pub(crate) const LOBE: &str = "ibl/lobe.comp";
+/// The stages of each part of an environment's bake. If one of them changes, the part is baked again.
+pub(crate) const RADIANCE_STAGES: [&str; 3] = [CUBE, DOWNSAMPLE, IRRADIANCE];
+pub(crate) const PREFILTER_STAGES: [&str; 2] = [LOBE, PREFILTER];
+pub(crate) const SHEEN_STAGES: [&str; 1] = [PREFILTER_SHEEN];
+/// The stages of the BRDF's tables.
+pub(crate) const TABLE_STAGES: [&str; 3] = ["ibl/dfg.comp", "ibl/diffuse_albedo.comp", "ibl/sheen_albedo.comp"];
+
+/// The stages that measure the BRDF, for `specula brdf`.
+pub const MEASURE_STAGES: [&str; 4] =
+    ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
+
+/// The stages that a shader tree must have.
+pub fn stages() -> Vec<&'static str> {
+    let baked = TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES);
+    GRAPHICS.into_iter().chain(baked).collect()
+}
+
+/// [`stages`] and [`MEASURE_STAGES`]: every file of the built-in tree with a `main()`.
+pub fn all_stages() -> Vec<&'static str> {
+    stages().into_iter().chain(MEASURE_STAGES).collect()
+}
