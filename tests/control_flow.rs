@@ -1,0 +1,171 @@
+//! What the driver gets of a shader computes what its GLSL says: pictures of small programs, against the same programs in Rust.
+
+mod support;
+
+use support::{Session, assert_validated, glb, load, ready, settings};
+
+const HOOK: &str = "vec3 user_radiance(Surface s, vec3 v, vec3 radiance) {";
+
+/// Draws `program(int k, float x)`, for k of 0..7 and x of 0..5 by pixel, and compares every pixel with `expected`. Values must be
+/// half floats.
+#[track_caller]
+fn assert_computes(session: &mut Session, program: &str, expected: impl Fn(i32, f32) -> f32) {
+    let call = "int k = int(gl_FragCoord.x) % 7; float x = floor(mod(gl_FragCoord.y, 5.0));";
+    let text = format!("{program}\n{HOOK}\n    {call}\n    return vec3(float(k), x, program(k, x));");
+    ready(&session.edit("user.glsl", HOOK, &text));
+    let capture = session.render();
+    let mut seen = std::collections::HashSet::new();
+    for value in capture.raw.iter().filter(|value| value[3] == 1.0) {
+        let (k, x) = (value[0] as i32, value[1]);
+        assert_eq!(value[2], expected(k, x), "k {k}, x {x}: {program}");
+        seen.insert((k, x as i32));
+    }
+    assert_eq!(seen.len(), 35, "every k and x is drawn");
+    ready(&session.edit("user.glsl", &text, HOOK));
+    assert_validated();
+}
+
+fn session() -> Session {
+    let plain = ["view.msaa=1", "view.background=none", "environment.name=none", "lights.source=none"];
+    Session::new(load(&glb::model(&glb::sphere(24, 48), &glb::gray())), settings(&plain))
+}
+
+#[test]
+fn functions_return_early_and_late() {
+    let mut session = session();
+    assert_computes(
+        &mut session,
+        "float program(int k, float x) {
+            if (k > 3) { if (x > 2.0) return 10.0; x += 1.0; } else if (k == 2) { return x; }
+            return x * 2.0 + float(k);
+        }",
+        |k, x| match k {
+            4.. if x > 2.0 => 10.0,
+            4.. => (x + 1.0) * 2.0 + k as f32,
+            2 => x,
+            _ => x * 2.0 + k as f32,
+        },
+    );
+    // Returns from a loop, and calls of a function that returns early from within a function that does
+    assert_computes(
+        &mut session,
+        "float limited(float a) { if (a > 6.0) return 6.0; return a; }
+         float sum(int k, float x) {
+            float sum = 0.0;
+            for (int i = 0; i < k; ++i) { if (i == 3) continue; if (sum > 9.0) return sum; sum += limited(x * float(i)); }
+            return -sum;
+         }
+         float program(int k, float x) { if (k == 6) return limited(sum(k, x)); return limited(x) + sum(k, x); }",
+        |k, x| {
+            let limited = |a: f32| a.min(6.0);
+            let mut sum = 0.0;
+            let all = (0..k).filter(|i| *i != 3).all(|i| {
+                let goes_on = sum <= 9.0;
+                sum += if goes_on { limited(x * i as f32) } else { 0.0 };
+                goes_on
+            });
+            let sum = if all { -sum } else { sum };
+            if k == 6 { limited(sum) } else { limited(x) + sum }
+        },
+    );
+}
+
+#[test]
+fn loops_carry_values() {
+    let mut session = session();
+    // Two values that change places: phis that read each other
+    assert_computes(
+        &mut session,
+        "float program(int k, float x) {
+            float a = 1.0, b = x;
+            for (int i = 0; i < k; ++i) { float old = a; a = b; b = old; }
+            return a * 8.0 + b;
+        }",
+        |k, x| if k % 2 == 0 { 8.0 + x } else { x * 8.0 + 1.0 },
+    );
+    // A switch that falls through, within a loop that it cannot break
+    assert_computes(
+        &mut session,
+        "float program(int k, float x) {
+            float sum = x;
+            for (int i = 0; i < k; ++i) {
+                switch (i % 3) { case 0: sum += 1.0; case 1: sum += 2.0; break; default: if (sum > 9.0) continue; sum *= 2.0; }
+                sum += 0.25;
+            }
+            return sum;
+        }",
+        |k, x| {
+            (0..k).fold(x, |sum, i| match i % 3 {
+                0 => sum + 3.25,
+                1 => sum + 2.25,
+                _ if sum > 9.0 => sum,
+                _ => sum * 2.0 + 0.25,
+            })
+        },
+    );
+    // A function in the condition, which changes a global variable
+    assert_computes(
+        &mut session,
+        "int ticks = 5;
+         bool tick(int k) { ++ticks; return ticks < k; }
+         float program(int k, float x) {
+            int start = ticks;
+            ticks = 0;
+            do { x += 1.0; } while (tick(k));
+            bool is_more = k > 2 && tick(9);
+            return float(ticks + start) + (is_more ? x : 0.0);
+         }",
+        |k, x| {
+            let rounds = k.max(1);
+            if k > 2 { (rounds + 6) as f32 + x + rounds as f32 } else { (rounds + 5) as f32 }
+        },
+    );
+}
+
+#[test]
+fn composites_are_read_and_written_in_parts() {
+    let mut session = session();
+    assert_computes(
+        &mut session,
+        "struct Inner { float a[3]; vec2 b; };
+         struct Outer { Inner inner[2]; float c; };
+         void turn(inout Inner p, int i) {
+            float first = p.a[0]; p.a[0] = p.a[1]; p.a[1] = p.a[2]; p.a[2] = first;
+            p.b.y = p.a[i % 3];
+         }
+         float program(int k, float x) {
+            Outer o = Outer(Inner[2](Inner(float[](1.0, 2.0, 3.0), vec2(x)), Inner(float[](4.0, 5.0, 6.0), vec2(7.0))), x);
+            for (int i = 0; i < k; ++i) turn(o.inner[0], i);
+            o.inner[1] = o.inner[0];
+            Outer copy = o;
+            o.inner[1].b = vec2(0.0);
+            return copy.inner[1].a[0] * 16.0 + copy.inner[1].b.y * 4.0 + o.inner[1].b.x + o.c;
+         }",
+        |k, x| {
+            let (mut a, mut y) = ([1.0, 2.0, 3.0], x);
+            for i in 0..k as usize {
+                a.rotate_left(1);
+                y = a[i % 3];
+            }
+            a[0] * 16.0 + y * 4.0 + x
+        },
+    );
+    assert_computes(
+        &mut session,
+        "void both(out float a, float b) { a = 3.0; a += b; }
+         float program(int k, float x) {
+            mat2 m = mat2(1.0);
+            m[1][0] = x;
+            vec3 v = vec3(k, x, 1.0);
+            v.zx = v.xy;
+            v[k % 3] += 4.0;
+            both(x, x);
+            return (m * v.xy).x + v.z * 16.0 + x;
+         }",
+        |k, x| {
+            let mut v = [x, x, k as f32];
+            v[k as usize % 3] += 4.0;
+            v[0] + x * v[1] + v[2] * 16.0 + x + 3.0
+        },
+    );
+}
