@@ -1,8 +1,10 @@
+use super::place::{name, seed};
 use super::*;
 use crate::shader::compile::Compiler;
 use crate::shader::source::Source;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::specialize;
+use crate::shader::spirv::specialize::Id;
 
 const BOUNDS: Bounds =
     Bounds { rounds: 1000, rounds_after: 10, report: Some((0, 20)), mark: Some([1.0, 0.0, 1.0, 257.0]) };
