@@ -12,6 +12,7 @@
 //! - [`render`]: draws scenes with shaders on a device: frame states, resources, views.
 //! - [`events`]: events as JSON lines.
 //! - [`session`]: what the user works on; it survives the loss of the device.
+//! - [`recovery`]: what a window hands to the process that takes its place after a loss.
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
 //! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
 //! - [`app`]: the window.
@@ -32,6 +33,7 @@ pub mod interface;
 pub mod measure;
 pub mod message;
 pub mod picture;
+pub mod recovery;
 pub mod render;
 pub mod scene;
 pub mod session;

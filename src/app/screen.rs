@@ -15,6 +15,7 @@ use crate::gpu::{
     Attachments, Encoder, Frames, Gpu, GpuError, Image, Rect, SetLayouts, Surface, Swapchain, UiRenderer, Use,
 };
 use crate::picture;
+use crate::recovery::Geometry;
 use crate::render::{BoundFrame, FrameState, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 
@@ -52,6 +53,8 @@ pub(super) struct Screen {
     shortage: Option<GpuError>,
     /// The picture of each frame slot's last frame, until its loops are known to have ended.
     unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
+    /// The number of the work that each of them shows, see [`Viewer::record`].
+    attempts: [Option<u64>; FRAMES_IN_FLIGHT],
     /// The last picture in which a loop did not end.
     endless: Option<Arc<FrameState>>,
     /// How many more frames are drawn only to learn whether the loops have ended.
@@ -61,6 +64,8 @@ pub(super) struct Screen {
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
     pub(super) rect: PictureRect,
+    /// Upper left corner of the window on the desktop, in pixels, once the window system has told it.
+    pub(super) at: Option<(i32, i32)>,
     last_frame: Instant,
 }
 
@@ -93,12 +98,14 @@ impl Screen {
             last: None,
             shortage: None,
             unchecked: Default::default(),
+            attempts: [None; FRAMES_IN_FLIGHT],
             endless: None,
             checks: 0,
             pixel: None,
             mouse: Mouse::default(),
             camera: CameraController::default(),
             rect: PictureRect::default(),
+            at: None,
             last_frame: Instant::now(),
         })
     }
@@ -176,6 +183,7 @@ impl Screen {
         }
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
+        self.attempts[slot] = viewer.record(Geometry { size: window.inner_size().into(), at: self.at });
         self.frames.submit(encoder, acquired.submission)?;
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {
@@ -310,7 +318,10 @@ impl Screen {
             if let Some(words) = self.frames.endless_loop(slot) {
                 self.endless = Some(state);
                 viewer.on_endless_loop(words);
-            } else if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
+                continue;
+            }
+            viewer.drawn(&state, self.attempts[slot]);
+            if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
                 viewer.all_loops_end();
             }
         }

@@ -2,7 +2,7 @@
 
 mod messages;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -10,12 +10,13 @@ use super::command::{Command, open_as};
 use super::panels::PanelState;
 use super::status::{Notices, ShaderStatus, title};
 use super::threads::loader::{self, Reading};
-use super::threads::worker::Snapshot;
+use super::threads::worker::{Snapshot, Worker};
 use super::threads::{Outbox, Threads};
 use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
+use crate::recovery::{Geometry, Recorder, Work};
 use crate::render::{
     BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Revisions, Scene, TargetFormat, View, endless_loop,
 };
@@ -64,6 +65,7 @@ pub(super) struct Viewer {
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
+    pub(super) recorder: Recorder,
     allow_outside: bool,
     shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
@@ -95,8 +97,9 @@ impl Viewer {
         let snapshot =
             Snapshot { settings: session.settings.clone(), scene: None, target: target(gpu, &session.settings) };
         let source = options.source;
-        let device = (gpu, layouts);
-        let threads = Threads::start(device, &options.compiler, source.clone(), snapshot, early.watcher, outbox);
+        let recorder = options.recorder;
+        let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, outbox);
+        let threads = Threads::start((gpu, layouts), worker, early.watcher, outbox);
         let mut viewer = Self {
             session,
             panels: PanelState::default(),
@@ -108,6 +111,7 @@ impl Viewer {
             gpu: gpu.clone(),
             resources,
             threads,
+            recorder,
             allow_outside: options.allow_outside,
             shown: None,
             first_frame: None,
@@ -122,6 +126,7 @@ impl Viewer {
         };
         viewer.watch_tree(&source);
         viewer.begin_loading(options.model, early.reading);
+        viewer.report_loss();
         Ok(viewer)
     }
 
@@ -199,6 +204,42 @@ impl Viewer {
         self.threads.baker.read(missing.measured);
         self.threads.baker.trace(missing.traced);
         is_empty
+    }
+
+    /// Records what the next frame shows, for the process that takes this one's place if the device does not survive it. Returns
+    /// the number of the work, unless the frame is that of the last complete picture.
+    pub(super) fn record(&self, window: Geometry) -> Option<u64> {
+        let model = if self.model.loading { &self.model.requested } else { &self.model.path };
+        let tree = self.source.root().map(Path::to_owned);
+        let work = Work { settings: self.session.settings.clone(), model: model.clone(), tree };
+        let attempt = self.recorder.begin(&work, window);
+        let shown = self.shown.as_ref().filter(|_| !self.model.loading)?;
+        (shown.settings == work.settings).then_some(attempt)
+    }
+
+    /// Records that the device has drawn a frame: the work with the number `attempt`, and if all of it was there, the shaders.
+    pub(super) fn drawn(&self, state: &FrameState, attempt: Option<u64>) {
+        attempt.into_iter().for_each(|attempt| self.recorder.drawn(attempt));
+        if self.settled == Some(state.shaders.generation) && state.shaders.pending.is_empty() {
+            self.recorder.drawn_all(&state.shaders);
+        }
+    }
+
+    /// Reports the loss that has ended the process before.
+    fn report_loss(&mut self) {
+        let state = self.recorder.state();
+        let Some(loss) = &state.loss else { return };
+        let refused = state.refused.keys().map(String::as_str).collect();
+        let event = Event::Restarted { cause: &loss.cause, losses: state.losses, refused, reset: &loss.reset };
+        emit(self.events, &event);
+        match loss.reset.as_slice() {
+            [] => self.notices.say(format!("{}. The session goes on.", capitalized(&loss.cause))),
+            reset => {
+                let values = reset.join(", ");
+                let cause = capitalized(&loss.cause);
+                self.keep_saying(format!("{cause}. The session goes on with the last good value of {values}."));
+            }
+        }
     }
 
     /// The state of the picture on screen.
@@ -381,6 +422,12 @@ impl Viewer {
             light.azimuth = (light.azimuth + lights.spin * seconds + 180.0).rem_euclid(360.0) - 180.0;
         }
     }
+}
+
+/// The text with a capital at its start.
+fn capitalized(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().into_iter().flat_map(char::to_uppercase).chain(characters).collect()
 }
 
 /// Half floats with the samples of the settings, or 1 if the device does not support them.

@@ -99,6 +99,7 @@ impl Slot {
                 Err(vk::Result::TIMEOUT) => return Err(GpuError::DeviceLost("waiting a minute for a frame")),
                 other => other.context("waiting for a frame")?,
             }
+            fault::lose("waiting for a frame")?;
             self.pending = false;
             self.watched = None;
         }
