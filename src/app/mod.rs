@@ -219,7 +219,6 @@ impl ApplicationHandler<Message> for App {
                 open.screen.resized();
                 open.window.request_redraw();
             }
-            WindowEvent::Moved(at) => open.screen.at = Some(at.into()),
             WindowEvent::DroppedFile(path) => open.viewer.open_path(path),
             WindowEvent::RedrawRequested => {
                 let drawn = open.screen.draw(&open.window, &mut open.viewer);

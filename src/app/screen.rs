@@ -15,7 +15,6 @@ use crate::gpu::{
     Attachments, Encoder, Frames, Gpu, GpuError, Image, Rect, SetLayouts, Surface, Swapchain, UiRenderer, Use,
 };
 use crate::picture;
-use crate::recovery::Geometry;
 use crate::render::{BoundFrame, FrameState, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 
@@ -64,8 +63,6 @@ pub(super) struct Screen {
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
     pub(super) rect: PictureRect,
-    /// Upper left corner of the window on the desktop, in pixels, once the window system has told it.
-    pub(super) at: Option<(i32, i32)>,
     last_frame: Instant,
 }
 
@@ -105,7 +102,6 @@ impl Screen {
             mouse: Mouse::default(),
             camera: CameraController::default(),
             rect: PictureRect::default(),
-            at: None,
             last_frame: Instant::now(),
         })
     }
@@ -183,7 +179,7 @@ impl Screen {
         }
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
-        self.attempts[slot] = viewer.record(Geometry { size: window.inner_size().into(), at: self.at });
+        self.attempts[slot] = viewer.record(window);
         self.frames.submit(encoder, acquired.submission)?;
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {

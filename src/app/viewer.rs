@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use winit::window::Window;
+
 use super::command::{Command, open_as};
 use super::panels::PanelState;
 use super::status::{Notices, ShaderStatus, title};
@@ -208,11 +210,13 @@ impl Viewer {
 
     /// Records what the next frame shows, for the process that takes this one's place if the device does not survive it. Returns
     /// the number of the work, unless the frame is that of the last complete picture.
-    pub(super) fn record(&self, window: Geometry) -> Option<u64> {
+    pub(super) fn record(&self, window: &Window) -> Option<u64> {
         let model = if self.model.loading { &self.model.requested } else { &self.model.path };
         let tree = self.source.root().map(Path::to_owned);
         let work = Work { settings: self.session.settings.clone(), model: model.clone(), tree };
-        let attempt = self.recorder.begin(&work, window);
+        let geometry =
+            || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };
+        let attempt = self.recorder.begin(&work, geometry);
         let shown = self.shown.as_ref().filter(|_| !self.model.loading)?;
         (shown.settings == work.settings).then_some(attempt)
     }

@@ -204,11 +204,16 @@ impl GoodTexts {
 
 /// Removes the folder of a session, if nothing but the records are in it.
 pub fn remove_folder(folder: &Path) {
-    for name in [STATE, GOOD] {
-        let _ = fs::remove_file(folder.join(name));
-        let _ = fs::remove_file(unfinished(folder, name));
+    // Under another name, since a thread may still be recording.
+    let ended = folder.with_extension("ended");
+    if fs::rename(folder, &ended).is_err() {
+        return;
     }
-    let _ = fs::remove_dir(folder);
+    for name in [STATE, GOOD] {
+        let _ = fs::remove_file(ended.join(name));
+        let _ = fs::remove_file(unfinished(&ended, name));
+    }
+    let _ = fs::remove_dir(ended);
 }
 
 fn unfinished(folder: &Path, name: &str) -> PathBuf {

@@ -9,7 +9,7 @@ use super::{Geometry, GoodTexts, State, Work};
 use crate::message;
 use crate::shader::{ShaderSet, TreePath, text_hash};
 
-/// How often a moving camera is recorded.
+/// How often a moving camera and the place of the window are recorded.
 const CAMERA_INTERVAL: Duration = Duration::from_millis(250);
 /// A process that has lived so long ends a row of losses.
 const LONG_LIFE: Duration = Duration::from_secs(60);
@@ -28,14 +28,15 @@ struct Inner {
     good: GoodTexts,
     generation: u64,
     start: Instant,
-    written: Instant,
+    /// When camera and window were last compared with the record.
+    checked: Instant,
 }
 
 impl Recorder {
     /// A recorder in a session's folder, or one that records nothing. `state` and `good` are what the folder has.
     pub fn new(folder: Option<PathBuf>, state: State, good: GoodTexts) -> Self {
-        let (start, written) = (Instant::now(), Instant::now());
-        Self(Arc::new(Mutex::new(Inner { folder, state, attempt: 0, good, generation: 0, start, written })))
+        let (start, checked) = (Instant::now(), Instant::now());
+        Self(Arc::new(Mutex::new(Inner { folder, state, attempt: 0, good, generation: 0, start, checked })))
     }
 
     /// Whether the process before was lost and no new text has been drawn since. Then nothing is done ahead of time, because no
@@ -67,16 +68,21 @@ impl Recorder {
         inner.write();
     }
 
-    /// Records what the next frame shows, before it is submitted. Returns the number of this work for [`Recorder::drawn`].
-    pub fn begin(&self, work: &Work, window: Geometry) -> u64 {
+    /// Records what the next frame shows, before it is submitted. Returns the number of this work for [`Recorder::drawn`]. A moving
+    /// camera and the `window` are recorded now and then.
+    pub fn begin(&self, work: &Work, window: impl FnOnce() -> Geometry) -> u64 {
         let mut inner = self.lock();
         let is_alike = inner.state.work.as_ref().is_some_and(|old| old.is_alike(work));
-        let moved = inner.state.work.as_ref() != Some(work) || inner.state.window != Some(window);
+        let is_same = inner.state.work.as_ref() == Some(work);
         inner.attempt += u64::from(!is_alike);
         inner.state.work = Some(work.clone());
-        inner.state.window = Some(window);
-        if !is_alike || (moved && inner.written.elapsed() > CAMERA_INTERVAL) {
-            inner.write();
+        if !is_alike || inner.checked.elapsed() > CAMERA_INTERVAL {
+            inner.checked = Instant::now();
+            let window = Some(window());
+            if !is_same || inner.state.window != window {
+                inner.state.window = window;
+                inner.write();
+            }
         }
         inner.attempt
     }
@@ -130,7 +136,6 @@ impl Recorder {
 
 impl Inner {
     fn write(&mut self) {
-        self.written = Instant::now();
         if self.start.elapsed() > LONG_LIFE {
             self.state.losses = 0;
         }
@@ -141,7 +146,10 @@ impl Inner {
 
     /// Stops recording: the window goes on, but nothing of it survives a loss.
     fn fail(&mut self, error: &std::io::Error) {
-        self.folder = None;
+        // The folder is removed when the program ends.
+        if self.folder.take().is_some_and(|folder| !folder.exists()) {
+            return;
+        }
         message::warn(format_args!("the session cannot be recorded ({error}), so a lost device would end it"));
     }
 }

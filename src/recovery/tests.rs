@@ -74,7 +74,7 @@ fn records_are_read_by_the_next_process() {
     let before = recorder.try_texts([(TreePath::from("a.glsl"), hash("new"))].into(), BTreeMap::new());
     assert!(before.is_empty());
     let window = Geometry { size: (640, 480), at: Some((3, -4)) };
-    let attempt = recorder.begin(state.work.as_ref().unwrap(), window);
+    let attempt = recorder.begin(state.work.as_ref().unwrap(), || window);
     let read = State::read(folder.path());
     assert_eq!((read.work, read.good, read.window), (state.work.clone(), None, Some(window)));
     assert_eq!(read.tried.len(), 1);
