@@ -81,10 +81,11 @@ impl Drop for Folder {
     }
 }
 
-/// A new folder that only the user may read, on a file system in memory if there is one for the user.
+/// A new folder that only the user may read. On a file system in memory if there is one, since a disk takes milliseconds to
+/// replace a file.
 fn create_folder() -> io::Result<Folder> {
-    let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from).filter(|path| path.is_dir());
-    let parent = runtime.unwrap_or_else(std::env::temp_dir);
+    let in_memory = [std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from), Some(PathBuf::from("/dev/shm"))];
+    let parent = in_memory.into_iter().flatten().find(|path| path.is_dir()).unwrap_or_else(std::env::temp_dir);
     let mut builder = DirBuilder::new();
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);

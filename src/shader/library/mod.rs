@@ -106,6 +106,8 @@ pub struct Library {
     pairs: Vec<(TreePath, TreePath)>,
     set: Option<Arc<ShaderSet>>,
     failed: bool,
+    /// Whether the next update links, even if no stage has changed: the source may refuse other texts.
+    relink: bool,
 }
 
 impl Library {
@@ -120,7 +122,7 @@ impl Library {
             })
             .collect();
         let slots = paths.iter().cloned().map(Slot::new).collect();
-        Self { source: Arc::new(source), compiler, slots, pairs, set: None, failed: false }
+        Self { source: Arc::new(source), compiler, slots, pairs, set: None, failed: false, relink: false }
     }
 
     /// The tree.
@@ -131,6 +133,7 @@ impl Library {
     /// Reads the tree from another source. Its next update must name the files whose texts this changes.
     pub fn set_source(&mut self, source: Source) {
         self.source = Arc::new(source);
+        self.relink = true;
     }
 
     /// The compiler.
@@ -270,7 +273,8 @@ impl Library {
             Change::Paths(paths) => paths,
         };
         // The version counts even if no stage includes the file.
-        let mut stale = Stale { moved: paths.contains(&TreePath::from(contract::INTERFACE_FILE)), compile: Vec::new() };
+        let moved = std::mem::take(&mut self.relink) || paths.contains(&TreePath::from(contract::INTERFACE_FILE));
+        let mut stale = Stale { moved, compile: Vec::new() };
         for (index, slot) in self.slots.iter_mut().enumerate() {
             let hit = slot.dependencies().any(|dependency| paths.contains(dependency));
             // Always check a failed stage again: its dependencies are known only up to the error.
