@@ -73,8 +73,7 @@ fn a_loss_costs_nothing_but_the_text_that_caused_it() {
         // The repair is another text, or the last good one again.
         let is_undone = function == "crash_the_driver";
         viewer.tree.write(USER, &if is_undone { edited(&original, "good", 0.5) } else { original });
-        let reload = viewer.running.reload(true);
-        viewer.running.settled(&reload);
+        viewer.running.reload(true);
         assert_eq!(viewer.screenshot() == before, is_undone, "{function}: the repaired shader");
         viewer.until_screen("no diagnostic", |screen| errors(screen, size) == 0);
         viewer.quit();
