@@ -143,8 +143,11 @@ impl State {
     #[must_use]
     pub fn after_loss(mut self, cause: &str, good: &GoodTexts) -> Self {
         self.losses += 1;
+        let embedded = Source::embedded();
         let is_new = |(path, hash): &(&String, &u64)| {
-            good.texts.get(*path).is_none_or(|text| text_hash(&Ok(text.clone())) != **hash)
+            let text = good.texts.get(*path).cloned().map(Ok);
+            // No stage of the last good picture has used the file.
+            text_hash(&text.unwrap_or_else(|| embedded.read(&TreePath::from(path.as_str())))) != **hash
         };
         let suspects: BTreeMap<String, u64> =
             self.tried.iter().filter(is_new).map(|(path, hash)| (path.clone(), *hash)).collect();

@@ -94,11 +94,19 @@ fn a_setting_that_loses_the_device_is_set_back() {
     );
     let mut viewer = open(tree);
     let before = viewer.screenshot();
+    // A text that does not compile has nothing to do with it.
+    viewer.tree.write(NDF, &viewer.tree.edited(NDF, "alpha * alpha;", "alpha * alfa;"));
+    viewer.running.reload(false);
     viewer.key("b");
     let event = viewer.restarted();
     assert_eq!((&event["refused"], &event["reset"]), (&serde_json::json!([]), &serde_json::json!(["mode"])), "{event}");
-    viewer.running.event("ready");
+    // The text on disk is an error as before. The picture and the modes are those of the last good texts.
+    let diagnostic = viewer.running.event("diagnostic");
+    assert!(diagnostic["message"].as_str().unwrap().contains("alfa"), "{diagnostic}");
+    viewer.running.reload(false);
     assert!(viewer.screenshot() == before, "the mode before did not come back");
+    viewer.key("n");
+    viewer.until("shading normals", |shot| *shot != before);
     viewer.quit();
 }
 
@@ -142,6 +150,18 @@ fn a_device_that_hangs_from_the_start_ends_the_session() {
     let mut command = display.view(&tree);
     command.args(["--timeout", "1", "--env", "none"]).env("SPECULA_FAULT", "frame-hang-ms:60000");
     finish(&mut command).expect(3, &["within 1 s", "did not answer, the third time in a row"]);
+}
+
+/// The watchdog does not take a window that rests for one whose device hangs.
+#[test]
+fn a_window_that_rests_is_not_taken_for_hung() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--timeout", "6"]);
+    viewer.running.event("ready");
+    let before = viewer.screenshot();
+    // Longer than the device may take.
+    std::thread::sleep(std::time::Duration::from_secs(8));
+    assert!(viewer.screenshot() == before);
+    assert!(!viewer.quit().contains("within 6 s"), "the window was taken for hung");
 }
 
 #[test]

@@ -251,6 +251,10 @@ impl Thread {
     fn work(&mut self, mut edit: Option<Edit>) {
         let mut build: Option<Build> = None;
         loop {
+            if edit.is_none() && self.has_compiled && !self.unfinished && self.holds_back() {
+                // All stages of the last good texts are compiled. The texts on disk that differ follow as an edit.
+                edit = Some(Edit::new(Change::Paths(BTreeSet::new()), Instant::now()));
+            }
             let mut waiting = Vec::new();
             // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is closing.
             if edit.is_none() && (self.is_stale() || (build.is_none() && !(self.unfinished && self.is_shown))) {
@@ -273,15 +277,10 @@ impl Thread {
                     Job::Build(newest) => build = Some(newest),
                 }
             }
-            let reloaded = edit.take().map(|edit| self.reload(edit));
-            if reloaded.is_some() && self.reloader.library().source().released().is_some() {
-                // The last good texts are compiled. Those that differ on disk follow, as an edit.
-                edit = Some(Edit::new(Change::Paths(BTreeSet::new()), Instant::now()));
-            }
-            if let Some(set) = reloaded.flatten() {
+            if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
                 // Drop a request for an older set. The window sends one for the new set.
                 build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
-            } else if edit.is_some() || self.is_stale() {
+            } else if self.is_stale() {
                 // The edit goes first.
             } else if self.unfinished && (self.is_shown || build.is_some()) {
                 self.finish();
@@ -335,6 +334,11 @@ impl Thread {
         set
     }
 
+    /// Whether texts are held back that [`Thread::release`] would release.
+    fn holds_back(&self) -> bool {
+        self.reloader.library().source().released().is_some()
+    }
+
     /// Releases held texts ([`Source::released`]) with a change, unless it is the first, which shows the last good texts.
     fn release(&mut self, change: Change) -> Change {
         if !self.has_compiled {
@@ -350,11 +354,14 @@ impl Thread {
     fn try_texts(&self, change: &Change) -> BTreeMap<String, u64> {
         let library = self.reloader.library();
         let source = library.source();
-        let paths = match change {
-            Change::All => source.list().into_iter().collect(),
-            Change::Paths(paths) => paths.clone(),
-        };
         let known = library.dependencies();
+        let paths = match change {
+            Change::Paths(paths) => paths.clone(),
+            Change::All if library.set().is_some() => known.clone(),
+            // The last good texts come first.
+            Change::All if matches!(source, Source::Held(_)) => BTreeSet::new(),
+            Change::All => source.list().into_iter().collect(),
+        };
         // A new file may be included only now. Editors save other files beside, with names and endings of their own.
         let is_shader = |path: &TreePath| {
             let is_hidden = path.as_str().split('/').any(|name| name.starts_with('.'));
