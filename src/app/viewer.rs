@@ -1,12 +1,11 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod messages;
+mod recording;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-
-use winit::window::Window;
 
 use super::command::{Command, open_as};
 use super::panels::PanelState;
@@ -18,7 +17,7 @@ use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
-use crate::recovery::{Geometry, Recorder, Work};
+use crate::recovery::Recorder;
 use crate::render::{
     BoundFrame, FrameInputs, FrameState, PixelAt, Resources, Revisions, Scene, TargetFormat, View, endless_loop,
 };
@@ -208,44 +207,6 @@ impl Viewer {
         is_empty
     }
 
-    /// Records what the next frame shows, for the process that takes this one's place if the device does not survive it. Returns
-    /// the number of the work, unless the frame is that of the last complete picture.
-    pub(super) fn record(&self, window: &Window) -> Option<u64> {
-        let model = if self.model.loading { &self.model.requested } else { &self.model.path };
-        let tree = self.source.root().map(Path::to_owned);
-        let work = Work { settings: self.session.settings.clone(), model: model.clone(), tree };
-        let geometry =
-            || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };
-        let attempt = self.recorder.begin(&work, geometry);
-        let shown = self.shown.as_ref().filter(|_| !self.model.loading)?;
-        (shown.settings == work.settings).then_some(attempt)
-    }
-
-    /// Records that the device has drawn a frame: the work with the number `attempt`, and if all of it was there, the shaders.
-    pub(super) fn drawn(&self, state: &FrameState, attempt: Option<u64>) {
-        attempt.into_iter().for_each(|attempt| self.recorder.drawn(attempt));
-        if self.settled == Some(state.shaders.generation) && state.shaders.pending.is_empty() {
-            self.recorder.drawn_all(&state.shaders);
-        }
-    }
-
-    /// Reports the loss that has ended the process before.
-    fn report_loss(&mut self) {
-        let state = self.recorder.state();
-        let Some(loss) = &state.loss else { return };
-        let refused = state.refused.keys().map(String::as_str).collect();
-        let event = Event::Restarted { cause: &loss.cause, losses: state.losses, refused, reset: &loss.reset };
-        emit(self.events, &event);
-        match loss.reset.as_slice() {
-            [] => self.notices.say(format!("{}. The session goes on.", capitalized(&loss.cause))),
-            reset => {
-                let values = reset.join(", ");
-                let cause = capitalized(&loss.cause);
-                self.keep_saying(format!("{cause}. The session goes on with the last good value of {values}."));
-            }
-        }
-    }
-
     /// The state of the picture on screen.
     pub(super) fn shown(&self) -> Option<&FrameState> {
         self.shown.as_ref().map(|shown| &*shown.frame.state)
@@ -426,12 +387,6 @@ impl Viewer {
             light.azimuth = (light.azimuth + lights.spin * seconds + 180.0).rem_euclid(360.0) - 180.0;
         }
     }
-}
-
-/// The text with a capital at its start.
-fn capitalized(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().into_iter().flat_map(char::to_uppercase).chain(characters).collect()
 }
 
 /// Half floats with the samples of the settings, or 1 if the device does not support them.
