@@ -52,6 +52,17 @@ pub enum Event<'a> {
         /// The message that the window shows.
         message: &'a str,
     },
+    /// The device was lost or the program crashed, and this window goes on with the session.
+    Restarted {
+        /// What happened, as "the graphics device was lost".
+        cause: &'a str,
+        /// Losses in a row.
+        losses: u32,
+        /// Shader files that are not used until one of them changes, as paths in the tree.
+        refused: Vec<&'a str>,
+        /// Settings that were set back to their last good values.
+        reset: &'a [String],
+    },
     /// A diagnostic of the compiler or of a check.
     Diagnostic(&'a Diagnostic),
 }

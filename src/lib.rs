@@ -14,6 +14,7 @@
 //! - [`render`]: draws frame states on a device: resources, views.
 //! - [`events`]: events as JSON lines.
 //! - [`session`]: what the user works on; it survives the loss of the device.
+//! - [`recovery`]: what a window hands to the process that takes its place after a loss.
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
 //! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
@@ -37,6 +38,7 @@ pub mod measure;
 pub mod message;
 pub mod picture;
 pub mod pipeline;
+pub mod recovery;
 pub mod render;
 pub mod scene;
 pub mod session;

@@ -4,7 +4,7 @@ mod support;
 
 use std::time::{Duration, Instant};
 
-use support::process::{finish, run, specula};
+use support::process::{Running, finish, run, specula};
 use support::window::Viewer;
 use support::{Session, Tree, assert_same, assert_validated, glb, line_of, lines, load, ready, settings};
 
@@ -203,14 +203,58 @@ fn commands_fail_with_the_line() {
 #[test]
 fn a_device_that_hangs_ends_a_command() {
     let tree = Tree::new();
-    for args in [&["render", "sphere-grid"][..], &["probe", "sphere-grid", "--at", "10,10"], &["bench", "frame"]] {
+    for (args, fault) in [
+        (&["render", "sphere-grid"][..], "frame-hang-ms:60000"),
+        (&["probe", "sphere-grid", "--at", "10,10"], "frame-hang-ms:60000"),
+        (&["bench", "frame"], "frame-hang-ms:60000"),
+        (&["check"], "pipeline-hang-ms:60000"),
+    ] {
         let mut command = specula(&tree.beside(""));
         command.args(args).args(["--timeout", "2", "--env", "none", "--size", "64x64"]);
         let start = Instant::now();
-        finish(command.env("SPECULA_FAULT", "frame-hang-ms:60000")).expect(3, &["within 2 s", "--timeout"]);
+        finish(command.env("SPECULA_FAULT", fault)).expect(3, &["within 2 s", "--timeout"]);
         assert!(start.elapsed() < Duration::from_secs(20), "{args:?}: {:?}", start.elapsed());
     }
     run(&tree.beside(""), &["render", "--timeout", "0"]).expect(2, &["--timeout"]);
+}
+
+#[test]
+fn a_lost_device_ends_a_command() {
+    let tree = Tree::new();
+    let text = edited(&tree, "s.roughness = lose_the_device(s.roughness);");
+    tree.write(USER, &text.replacen(HOOK, &format!("float lose_the_device(float x) {{ return x; }}\n{HOOK}"), 1));
+    for args in [
+        &["render", "sphere-grid"][..],
+        &["render", "sphere-grid", "--watch"],
+        &["probe", "sphere-grid", "--at", "32,32", "--mode", "final"],
+        &["bench", "frame", "sphere-grid", "--samples", "1", "--mode", "final"],
+    ] {
+        let mut command = specula(&tree.beside(""));
+        command.args(args).args(["--shaders", "shaders", "--env", "none", "--size", "64x64"]);
+        finish(command.env("SPECULA_FAULT", "by-name:1")).expect(3, &["the graphics device was lost while"]);
+    }
+    assert!(!tree.beside("specula.png").exists(), "a picture of a lost device");
+}
+
+#[test]
+fn watching_goes_on_after_an_endless_loop() {
+    let tree = Tree::new();
+    let original = tree.read(USER);
+    let mut command = specula(&tree.beside(""));
+    command.args(["render", "sphere-grid", "--watch", "--events", "json", "--validate", "--shaders", "shaders"]);
+    let mut running = Running::start(command.args(["--env", "none", "--size", "64x48", "--out", "a.png"]));
+    running.event("ready");
+    let picture = || std::fs::read(tree.beside("a.png")).unwrap();
+    let good = picture();
+    let text = edited(&tree, ENDLESS[0].0);
+    tree.write(USER, &text);
+    let diagnostic = running.event("diagnostic");
+    assert_eq!(diagnostic["line"], line_of(&text, "while (x"), "{diagnostic}");
+    running.event("reload");
+    assert!(picture() == good, "a picture that was cut short");
+    tree.write(USER, &original.replacen(HOOK, &format!("{HOOK}\n    s.roughness *= 0.5;"), 1));
+    running.reload(true);
+    assert!(picture() != good, "the repair does not show");
 }
 
 #[test]

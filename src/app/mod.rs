@@ -15,13 +15,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
+use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
 use crate::gpu::{Gpu, GpuError, GpuOptions, SetLayouts};
+use crate::recovery::Recorder;
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
@@ -43,6 +44,10 @@ pub struct AppOptions {
     pub settings: Settings,
     /// Size of the window in pixels.
     pub size: (u32, u32),
+    /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
+    pub at: Option<(i32, i32)>,
+    /// Records the session for the process that goes on with it after a loss of the device.
+    pub recorder: Recorder,
     /// Part of the name of the device to use.
     pub device: Option<String>,
     /// Whether to enable the validation layers.
@@ -130,10 +135,13 @@ struct Open {
 
 impl App {
     fn open(&mut self, event_loop: &ActiveEventLoop, options: AppOptions, early: Early) -> Result<Open, AppError> {
-        let attributes = Window::default_attributes()
+        let mut attributes = Window::default_attributes()
             .with_title("Specula")
             .with_inner_size(PhysicalSize::new(options.size.0, options.size.1))
             .with_min_inner_size(PhysicalSize::new(320, 240));
+        if let Some((x, y)) = options.at {
+            attributes = attributes.with_position(PhysicalPosition::new(x, y));
+        }
         let window = event_loop.create_window(attributes).map_err(|e| AppError::NoDisplay(e.to_string()))?;
         let window = Arc::new(window);
         let display = event_loop.display_handle().map_err(|e| AppError::NoDisplay(e.to_string()))?;
@@ -151,6 +159,7 @@ impl App {
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
         if let Some(open) = self.open.take() {
             if let Err(AppError::Gpu(GpuError::DeviceLost(_))) = &result {
+                open.viewer.recorder.finish();
                 // Destroying a lost device could wait forever for it to become idle.
                 std::mem::forget(open);
                 self.result = result;

@@ -53,6 +53,8 @@ pub(super) struct Screen {
     shortage: Option<GpuError>,
     /// The picture of each frame slot's last frame, until its loops are known to have ended.
     unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
+    /// The number of the work that each of them shows, see [`Viewer::record`].
+    attempts: [Option<u64>; FRAMES_IN_FLIGHT],
     /// The last picture in which a loop did not end.
     endless: Option<Arc<FrameState>>,
     /// How many more frames are drawn only to learn whether the loops have ended.
@@ -94,6 +96,7 @@ impl Screen {
             last: None,
             shortage: None,
             unchecked: Default::default(),
+            attempts: [None; FRAMES_IN_FLIGHT],
             endless: None,
             checks: 0,
             pixel: None,
@@ -177,6 +180,7 @@ impl Screen {
         }
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
+        self.attempts[slot] = viewer.record(window);
         self.frames.submit(encoder, acquired.submission)?;
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {
@@ -311,7 +315,10 @@ impl Screen {
             if let Some(words) = self.frames.endless_loop(slot) {
                 self.endless = Some(state);
                 viewer.on_endless_loop(words);
-            } else if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
+                continue;
+            }
+            viewer.drawn(&state, self.attempts[slot]);
+            if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
                 viewer.all_loops_end();
             }
         }

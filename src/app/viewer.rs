@@ -1,6 +1,7 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod messages;
+mod recording;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,13 +16,14 @@ use crate::frame::{FrameInputs, FrameState, Revisions, Scene, TargetFormat};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::pipeline::endless_loop;
+use crate::recovery::Recorder;
 use crate::render::{BoundFrame, PixelAt, Resources, View};
 use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::shader::{Change, Compiler, Source};
 use crate::threads::loader::{self, Reading};
-use crate::threads::worker::Snapshot;
+use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{Outbox, Threads};
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
@@ -64,6 +66,7 @@ pub(super) struct Viewer {
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
+    pub(super) recorder: Recorder,
     allow_outside: bool,
     shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
@@ -95,8 +98,9 @@ impl Viewer {
         let snapshot =
             Snapshot { settings: session.settings.clone(), scene: None, target: target(gpu, &session.settings) };
         let source = options.source;
-        let device = (gpu, layouts);
-        let threads = Threads::start(device, &options.compiler, source.clone(), snapshot, early.watcher, outbox);
+        let recorder = options.recorder;
+        let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, outbox);
+        let threads = Threads::start((gpu, layouts), worker, early.watcher, outbox);
         let mut viewer = Self {
             session,
             panels: PanelState::default(),
@@ -108,6 +112,7 @@ impl Viewer {
             gpu: gpu.clone(),
             resources,
             threads,
+            recorder,
             allow_outside: options.allow_outside,
             shown: None,
             first_frame: None,
@@ -122,6 +127,7 @@ impl Viewer {
         };
         viewer.watch_tree(&source);
         viewer.begin_loading(options.model, early.reading);
+        viewer.report_loss();
         Ok(viewer)
     }
 

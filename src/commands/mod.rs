@@ -43,7 +43,7 @@ use specula::shader::Diagnostic;
     2  The command line is wrong: an unknown command, option or name, or a value that is not allowed, also one\n     \
        in a look file, and one that only this model, shader tree or device does not have.\n  \
     3  There is no usable device or display, or none with the name of --device; or the device has not finished\n     \
-       within --timeout."
+       within --timeout, was lost, or was lost three times in a row in a window."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -91,6 +91,8 @@ pub enum Failure {
     Printed,
     /// There is no usable device or display: exit code 3.
     Device(String),
+    /// The window's process has ended with this exit code, and printed the reason already.
+    Window(u8),
 }
 
 impl Failure {
@@ -99,6 +101,7 @@ impl Failure {
             Self::Input(_) | Self::Shaders(_) | Self::Printed => 1,
             Self::Usage(_) => 2,
             Self::Device(_) => 3,
+            Self::Window(code) => *code,
         })
     }
 }
@@ -170,7 +173,7 @@ fn end(failure: &Failure) -> ExitCode {
     match failure {
         Failure::Input(message) | Failure::Usage(message) | Failure::Device(message) => tell(message),
         Failure::Shaders(diagnostics) => print_diagnostics(diagnostics),
-        Failure::Printed => {}
+        Failure::Printed | Failure::Window(_) => {}
     }
     failure.exit_code()
 }

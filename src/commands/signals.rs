@@ -13,6 +13,7 @@ pub fn clean_up_on_end() {
         let signal = Signals::new(signals).ok().and_then(|mut signals| signals.forever().next());
         if let Some(signal) = signal {
             let _halt = specula::picture::remove_unfinished();
+            super::view::supervisor::clean_up();
             // The process is gone after this.
             let _ = emulate_default_handler(signal);
         }

@@ -22,7 +22,7 @@ pub enum GpuError {
     /// The driver gave up on the device, with what Specula was doing.
     #[error(
         "the graphics device was lost while {0}. Usually an endless loop or a very long shader is the cause: the driver \
-         stops it after a few seconds. Undo the last edit and start again"
+         stops it after a few seconds. Undo the last edit"
     )]
     DeviceLost(&'static str),
     /// A loop of a compute shader used up its budget: the two words that name it, see `shader::spirv::loops`.

@@ -8,7 +8,10 @@
 //! - `swapchain:N`, `frame-set:N`, `frame-submit:N`, `ui-textures:N`, `ui-draw:N`: the Nth call of the process that creates a
 //!   swapchain, creates a descriptor set 0, submits a frame of a window, uploads egui's textures or draws the user interface fails
 //!   with [`super::GpuError::OutOfMemory`].
-//! - `frame-hang-ms:N`: every wait for a submission takes so much longer, as if the device hung.
+//! - `frame-hang-ms:N`, `pipeline-hang-ms:N`: every wait for a submission, or every graphics pipeline, takes so much longer, as if
+//!   the device hung.
+//! - `by-name:1`: a shader module with a function called `lose_the_device` loses the device: from then on, every wait for a
+//!   submission fails with [`super::GpuError::DeviceLost`]. One with a function called `crash_the_driver` aborts the process.
 //!
 //! `app` knows these:
 //!
@@ -20,6 +23,7 @@
 //! `render` knows `decode-delay-ms:N`: decoding an environment takes so much longer.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::GpuError;
@@ -61,6 +65,30 @@ pub fn delay(name: &str) {
     if let Some(ms) = value(name) {
         std::thread::sleep(std::time::Duration::from_millis(ms));
     }
+}
+
+/// Whether the fault `by-name` has lost the device.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Carries out the fault `by-name` for a new shader module.
+pub(super) fn take_module(spirv: &[u32]) {
+    if value("by-name").is_none() {
+        return;
+    }
+    // glslang writes the names of functions into the module: four characters a word.
+    let bytes: Vec<u8> = spirv.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let has = |name: &[u8]| bytes.windows(name.len()).any(|part| part == name);
+    if has(b"crash_the_driver") {
+        std::process::abort();
+    }
+    if has(b"lose_the_device") {
+        LOST.store(true, Ordering::SeqCst);
+    }
+}
+
+/// Fails if the fault `by-name` has lost the device. `action` continues "the device was lost while".
+pub(super) fn lose(action: &'static str) -> Result<(), GpuError> {
+    if LOST.load(Ordering::SeqCst) { Err(GpuError::DeviceLost(action)) } else { Ok(()) }
 }
 
 /// Parses the variable's text. The error is the part that is not a fault.

@@ -21,7 +21,7 @@ impl Watch {
     }
 }
 
-/// From now on, calls `end` once the device takes longer than `limit` for a submission or a pipeline. `end` receives what the
+/// From now on, calls `end` once a wait for a submission, or a pipeline, takes longer than `limit`. `end` receives what the
 /// device was doing, as "drawing a frame", and must end the process without waiting for the device. Only the first call counts.
 pub fn end_after(limit: Duration, end: fn(&str, Duration) -> !) {
     if WATCH.set(Watch { limit, tasks: Mutex::default() }).is_err() {

@@ -49,6 +49,20 @@ pub struct Reload {
     pub outcome: Outcome,
 }
 
+impl Reload {
+    /// Whether the device has got or will get anything that the reload has compiled. It does not if nothing has changed, or if the
+    /// shaders do not compile.
+    pub fn reaches_device(&self) -> bool {
+        match &self.outcome {
+            Outcome::Ready(_) => true,
+            // A reload that a newer edit has superseded leaves its pipelines to that edit.
+            Outcome::Unchanged { .. } => !self.report.stages.is_empty(),
+            // The driver has refused a pipeline.
+            Outcome::Failed(_) => self.pipeline_ms > 0.0,
+        }
+    }
+}
+
 impl Reloader {
     /// A reloader for the tree of `source`. Compiles nothing yet.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, compiler: &Arc<Compiler>, source: Source) -> Self {
@@ -64,6 +78,11 @@ impl Reloader {
     /// Reads another tree, or the same one as if for the first time. Compiles nothing yet.
     pub fn open(&mut self, source: Source) {
         *self = Self::new(&self.gpu, &self.layouts, self.library.compiler(), source);
+    }
+
+    /// Reads the tree from another source. The next update must name the files whose texts this changes.
+    pub fn set_source(&mut self, source: Source) {
+        self.library.set_source(source);
     }
 
     /// The shader tree.

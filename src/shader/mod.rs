@@ -21,6 +21,7 @@ pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
 pub use library::{Change, Library, Report, ShaderSet, Stage, Update, check};
 pub use pixel::PixelValue;
+pub use source::held::text_hash;
 pub use source::{Source, SourceError, TreePath, embedded, is_specula_tree};
 pub use spirv::specialize;
 pub use watch::{Batch, Watcher};

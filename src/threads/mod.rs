@@ -17,10 +17,10 @@ use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
 use crate::render::TraceKey;
-use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, TreePath, Watcher};
+use crate::shader::{Batch, Change, Diagnostic, Source, TreePath, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
-use worker::{Snapshot, Worker, WorkerMessage};
+use worker::{Worker, WorkerMessage};
 
 /// Messages of the threads to the window.
 pub(crate) enum Message {
@@ -102,12 +102,10 @@ pub(crate) struct Threads {
 }
 
 impl Threads {
-    /// Starts the worker, which compiles the tree. `file_watcher` watches the files of the model that is being read.
+    /// The threads beside the worker. `file_watcher` watches the files of the model that is being read.
     pub(crate) fn start(
         device: (&Arc<Gpu>, &Arc<SetLayouts>),
-        compiler: &Arc<Compiler>,
-        source: Source,
-        snapshot: Snapshot,
+        worker: Worker,
         file_watcher: Option<Watcher>,
         outbox: &Outbox,
     ) -> Self {
@@ -115,7 +113,7 @@ impl Threads {
             tree_watcher: None,
             file_watcher,
             watched: Vec::new(),
-            worker: Worker::start(device, compiler, source, snapshot, outbox),
+            worker,
             loader: Loader::new(device, outbox),
             baker: Baker::new(device.0, outbox),
             explainers: Vec::new(),

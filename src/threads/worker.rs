@@ -1,7 +1,8 @@
 //! The worker compiles shaders and builds pipelines, so that the window never waits for either.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -10,13 +11,15 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, unbounded};
 
 use super::{Message, Outbox, Role};
+use crate::file_kind::FileKind;
 use crate::frame::{MaterialVariant, PipelineRequest, Scene, TargetFormat};
 use crate::gpu::{Gpu, SetLayouts, fault};
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
 use crate::message::panic_text;
 use crate::pipeline::{Outcome, PipelineSet, Reload, Reloader};
+use crate::recovery::Recorder;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, ShaderSet, Source};
+use crate::shader::{Change, Compiler, ShaderSet, Source, TreePath, text_hash};
 
 /// How often the thread starts again by itself if each attempt panics.
 const RESTARTS: u32 = 3;
@@ -51,8 +54,8 @@ pub(crate) enum WorkerMessage {
         reload: Box<Reload>,
         /// Milliseconds from the first file event to the settled set of changes.
         detect_ms: f64,
-        /// Name of the tree.
-        tree: String,
+        /// The tree that was compiled.
+        source: Source,
     },
     /// The stages of the last reload that the picture did not need have been compiled.
     Completed(Box<Reload>),
@@ -123,6 +126,7 @@ impl Worker {
         compiler: &Arc<Compiler>,
         source: Source,
         snapshot: Snapshot,
+        recorder: &Recorder,
         outbox: &Outbox,
     ) -> Self {
         let (sender, inbox) = unbounded();
@@ -134,9 +138,11 @@ impl Worker {
             inbox,
             edits: edits.clone(),
             edits_taken: 0,
+            has_compiled: false,
             panics: 0,
             unfinished: false,
             is_shown: false,
+            recorder: recorder.clone(),
             outbox: outbox.clone(),
         };
         let thread = std::thread::spawn(move || state.run());
@@ -217,12 +223,15 @@ struct Thread {
     edits: Arc<AtomicU64>,
     /// How many of `edits` were taken out of the inbox.
     edits_taken: u64,
+    /// Whether the first reload has begun.
+    has_compiled: bool,
     /// Panics since the last reload that ended.
     panics: u32,
     /// Whether the last reload has left stages to [`Thread::finish`].
     unfinished: bool,
     /// Whether the first frame of the last reload is on screen. Until then, the driver needs the CPU.
     is_shown: bool,
+    recorder: Recorder,
     outbox: Outbox,
 }
 
@@ -243,6 +252,10 @@ impl Thread {
     fn work(&mut self, mut edit: Option<Edit>) {
         let mut build: Option<Build> = None;
         loop {
+            if edit.is_none() && self.has_compiled && !self.unfinished && self.holds_back() {
+                // All stages of the last good texts are compiled. The texts on disk that differ follow as an edit.
+                edit = Some(Edit::new(Change::Paths(BTreeSet::new()), Instant::now()));
+            }
             let mut waiting = Vec::new();
             // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is closing.
             if edit.is_none() && (self.is_stale() || (build.is_none() && !(self.unfinished && self.is_shown))) {
@@ -299,22 +312,66 @@ impl Thread {
         let request =
             |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
         let superseded = || edits.load(Ordering::SeqCst) > taken;
-        let reload = self.reloader.update_first(edit.change, false, request, superseded);
+        let change = self.release(edit.change);
+        let before = self.try_texts(&change);
+        let reload = self.reloader.update_first(change, false, request, superseded);
         self.panics = 0;
+        if !reload.reaches_device() {
+            self.recorder.take_back(before);
+        }
         let set = match &reload.outcome {
             Outcome::Ready(set) => Some(set.clone()),
             Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
         };
         self.unfinished = set.as_ref().is_some_and(|set| !set.shaders.pending.is_empty());
         self.is_shown = false;
-        let tree = self.reloader.library().source().name();
+        let source = self.reloader.library().source().clone();
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
-        let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, tree };
+        let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, source };
         self.outbox.send(Message::Worker(message));
         if let Some(set) = &set {
             self.build_ahead(set);
         }
         set
+    }
+
+    /// Whether texts are held back that [`Thread::release`] would release.
+    fn holds_back(&self) -> bool {
+        self.reloader.library().source().released().is_some()
+    }
+
+    /// Releases held texts ([`Source::released`]) with a change, unless it is the first, which shows the last good texts.
+    fn release(&mut self, change: Change) -> Change {
+        if !self.has_compiled {
+            self.has_compiled = true;
+            return change;
+        }
+        let Some((source, paths)) = self.reloader.library().source().released() else { return change };
+        self.reloader.set_source(source);
+        change.and(Change::Paths(paths))
+    }
+
+    /// Records the texts of the change before they are used. Returns what [`Recorder::try_texts`] does.
+    fn try_texts(&self, change: &Change) -> BTreeMap<String, u64> {
+        let library = self.reloader.library();
+        let source = library.source();
+        let known = library.dependencies();
+        let paths = match change {
+            Change::Paths(paths) => paths.clone(),
+            Change::All if library.set().is_some() => known.clone(),
+            // The last good texts come first.
+            Change::All if matches!(source, Source::Held(_)) => BTreeSet::new(),
+            Change::All => source.list().into_iter().collect(),
+        };
+        // A new file may be included only now. Editors save other files beside, with names and endings of their own.
+        let is_shader = |path: &TreePath| {
+            let is_hidden = path.as_str().split('/').any(|name| name.starts_with('.'));
+            FileKind::of(Path::new(path.as_str())) == FileKind::Shader && !is_hidden
+        };
+        let is_tried = |path: &TreePath| known.contains(path) || is_shader(path);
+        let paths = paths.into_iter().filter(is_tried);
+        let texts = paths.map(|path| (path.clone(), text_hash(&source.read(&path)))).collect();
+        self.recorder.try_texts(texts, source.refused())
     }
 
     /// Compiles the stages that the last reload has left, unless a newer edit arrives.
@@ -347,7 +404,7 @@ impl Thread {
     fn build_ahead(&self, set: &Arc<PipelineSet>) {
         let (snapshot, modes) = (self.snapshot(), &set.shaders.modes);
         // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
-        if snapshot.scene.is_none() || !set.shaders.pending.is_empty() {
+        if snapshot.scene.is_none() || !set.shaders.pending.is_empty() || self.recorder.is_careful() {
             return;
         }
         let request = snapshot.request(&set.shaders);

@@ -196,9 +196,16 @@ impl Running {
         assert!(status.success(), "kill -s {name}: {status}");
     }
 
+    /// The process that does the work: a window's is the child of the program's (proc(5)).
+    pub fn worker(&self) -> u32 {
+        let id = self.child.id();
+        let children = std::fs::read_to_string(format!("/proc/{id}/task/{id}/children")).unwrap();
+        children.split_whitespace().next().map_or(id, |child| child.parse().unwrap())
+    }
+
     /// Processor time that the program took so far, all threads, in ticks of 10 ms (proc(5)).
     pub fn ticks(&self) -> u64 {
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.worker())).unwrap();
         // The name, in parentheses, may hold anything; user and system time are fields 14 and 15.
         let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
@@ -206,7 +213,7 @@ impl Running {
 
     /// The resources that the program holds now (proc(5)).
     pub fn usage(&self) -> Usage {
-        let process = format!("/proc/{}", self.child.id());
+        let process = format!("/proc/{}", self.worker());
         let status = std::fs::read_to_string(format!("{process}/status")).unwrap();
         let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
         let count = |folder: &str| std::fs::read_dir(format!("{process}/{folder}")).unwrap().count();

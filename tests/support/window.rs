@@ -111,21 +111,56 @@ impl Viewer {
 
     /// [`Self::open`] with a fault in the form of `SPECULA_FAULT`.
     pub fn with_fault(tree: Tree, more: &[&str], fault: &str) -> Self {
+        let mut viewer = Self::launch(tree, more, fault);
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
+    /// [`Self::with_fault`] without waiting for a window.
+    pub fn launch(tree: Tree, more: &[&str], fault: &str) -> Self {
         let display = Display::new();
         let mut command = display.view(&tree);
+        // Records of the session lie here, so a test can see whether they are removed.
+        std::fs::create_dir(tree.beside("runtime")).unwrap();
+        command.env("XDG_RUNTIME_DIR", tree.beside("runtime"));
         command.args(["--shaders", "shaders", "--set", "view.msaa=1"]).env("SPECULA_FAULT", fault);
         for (option, value) in [("--env", "none"), ("--size", "640x480")] {
             if !more.contains(&option) {
                 command.args([option, value]);
             }
         }
-        let mut running = Running::start(command.args(more));
-        running.event("window");
-        let found = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
-        let window = found.stdout.lines().next().unwrap().to_owned();
+        Self { running: Running::start(command.args(more)), tree, window: String::new(), display }
+    }
+
+    /// Waits until the program has started again after a loss, with a new window. Returns the event about the loss.
+    #[track_caller]
+    pub fn restarted(&mut self) -> serde_json::Value {
+        let event = self.running.event("restarted");
+        self.running.event("window");
+        self.find_window();
+        event
+    }
+
+    #[track_caller]
+    fn find_window(&mut self) {
+        let found = self.display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
+        found.stdout.lines().next().unwrap().clone_into(&mut self.window);
         // Without a window manager, nothing else gives the window the keyboard focus.
-        display.xdotool(&["windowfocus", "--sync", &window]);
-        Self { running, tree, window, display }
+        self.display.xdotool(&["windowfocus", "--sync", &self.window]);
+    }
+
+    /// Moves the window.
+    #[track_caller]
+    pub fn move_window(&self, (x, y): (u32, u32)) {
+        self.display.xdotool(&["windowmove", "--sync", &self.window, &x.to_string(), &y.to_string()]);
+    }
+
+    /// Size and place of the window, as xdotool tells them.
+    #[track_caller]
+    pub fn geometry(&self) -> String {
+        let geometry = self.display.xdotool(&["getwindowgeometry", "--shell", &self.window]).stdout;
+        geometry.lines().filter(|line| !line.starts_with("WINDOW=")).collect::<Vec<_>>().join(" ")
     }
 
     /// Waits for the model and for the environment, which appear in either order.

@@ -22,9 +22,10 @@ impl Viewer {
         match message {
             Message::Worker(WorkerMessage::Built(Ok(()))) => self.threads.worker.built(),
             Message::Worker(WorkerMessage::Built(Err(message))) => self.say(message),
-            Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, tree }) => {
+            Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source }) => {
                 self.shader.compiling = false;
-                self.shader.tree = tree;
+                self.shader.tree = source.name();
+                self.source = source;
                 self.on_reload(&reload, detect_ms);
             }
             Message::Worker(WorkerMessage::Completed(reload)) => self.on_completed(&reload),
@@ -77,6 +78,9 @@ impl Viewer {
                 self.session.diagnostics.clone_from(&set.shaders.warnings);
                 for warning in &self.session.diagnostics {
                     eprintln!("{}", warning.full());
+                    if warning.severity == Severity::Error {
+                        emit(self.events, &Event::Diagnostic(warning));
+                    }
                 }
                 let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
                 self.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
@@ -92,8 +96,8 @@ impl Viewer {
         let Some(diagnostic) = diagnostic.filter(|_| self.endless_loop == Some(words)) else { return };
         eprintln!("{}", diagnostic.full());
         emit(self.events, &Event::Diagnostic(&diagnostic));
-        self.session.diagnostics.retain(|old| old.severity == Severity::Warning);
-        self.session.diagnostics.insert(0, diagnostic);
+        let warnings = self.session.shaders.iter().flat_map(|shaders| &shaders.warnings).cloned();
+        self.session.diagnostics = std::iter::once(diagnostic).chain(warnings).collect();
     }
 
     pub(super) fn report(&mut self, event: ReloadEvent) {

@@ -79,9 +79,9 @@ pub struct Common {
     /// Turn the Vulkan validation layers on; each of their messages fails the command
     #[arg(long)]
     pub validate: bool,
-    /// Without a window: end with exit code 3 when the device takes longer than this for a frame, a bake or a pipeline
+    /// Time that the device may take for a frame, a bake or a pipeline. A command then ends with exit code 3; a window starts again without what was new
     #[arg(long, value_name = "SECONDS", default_value_t = TIMEOUT_S, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=86_400))]
-    timeout: u32,
+    pub timeout: u32,
 }
 
 /// How events are printed.

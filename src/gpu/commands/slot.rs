@@ -45,8 +45,6 @@ pub(in crate::gpu) struct Slot {
     kept: Vec<Arc<dyn Any + Send + Sync>>,
     /// The words that the stages of the last submission wrote about loops that did not end, and whether they have such loops.
     loops: (Option<Arc<Buffer>>, bool),
-    /// The watch over the last submission until it is waited for.
-    watched: Option<Watched>,
 }
 
 impl Slot {
@@ -63,7 +61,6 @@ impl Slot {
             passes: None,
             kept: Vec::new(),
             loops: (None, false),
-            watched: None,
         };
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.queue_family);
         // SAFETY: the device is live.
@@ -90,6 +87,8 @@ impl Slot {
     /// SYNC: waits until the device has run this slot's last submission, then releases the resources that it used.
     pub(in crate::gpu) fn wait(&mut self) -> Result<(), GpuError> {
         if self.pending {
+            // Only a wait is watched: nobody waits for the last frame of a window that rests.
+            let _watched = watch(self.passes.as_deref());
             fault::delay("frame-hang-ms");
             // A watchdog ends the process at its limit, before this wait ends.
             let timeout = FENCE_TIMEOUT.max(watchdog::limit().unwrap_or_default().saturating_mul(2));
@@ -99,8 +98,8 @@ impl Slot {
                 Err(vk::Result::TIMEOUT) => return Err(GpuError::DeviceLost("waiting a minute for a frame")),
                 other => other.context("waiting for a frame")?,
             }
+            fault::lose("waiting for a frame")?;
             self.pending = false;
-            self.watched = None;
         }
         self.kept.clear();
         Ok(())
@@ -182,12 +181,8 @@ impl Slot {
         if sync.signal.is_some() {
             fault::refuse("frame-submit", "submitting a frame")?;
         }
-        let watched = Watched::begin(|| match passes.as_deref() {
-            Some([_, ..]) => {
-                format!("drawing a frame (passes: {})", passes.iter().flatten().cloned().collect::<Vec<_>>().join(", "))
-            }
-            _ => "running compute shaders or copies".to_owned(),
-        });
+        // A driver may wait for a hung device here.
+        let _watched = watch(passes.as_deref());
         let queue = self.gpu.lock_queue();
         // SAFETY: no submission is pending on the fence, the queue is locked, and `kept` holds all that the commands use.
         unsafe {
@@ -196,7 +191,6 @@ impl Slot {
         }
         // A failed submission never signals the fence, so only a successful one is waited for.
         self.pending = true;
-        self.watched = watched;
         self.passes = passes;
         Ok(())
     }
@@ -213,6 +207,14 @@ impl Slot {
         let passes = names.iter().zip(ms).map(|(name, ms)| PassTime { name: name.clone(), ms }).collect();
         Some(Times { ms: whole, passes })
     }
+}
+
+/// Watches what the device does with a submission that has these passes.
+fn watch(passes: Option<&[String]>) -> Option<Watched> {
+    Watched::begin(|| match passes {
+        Some(names @ [_, ..]) => format!("drawing a frame (passes: {})", names.join(", ")),
+        _ => "running compute shaders or copies".to_owned(),
+    })
 }
 
 impl Drop for Slot {

@@ -9,7 +9,7 @@ use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, fault};
 
 const MAIN: &CStr = c"main";
 
@@ -28,6 +28,7 @@ impl ShaderModule {
     /// # Errors
     /// The driver rejects the module or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, name: &str, spirv: &[u32], names_loops: bool) -> Result<Arc<Self>, GpuError> {
+        fault::take_module(spirv);
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the words come from shaderc and `shader::specialize`, whose output is valid SPIR-V.
         let raw = unsafe { gpu.device.create_shader_module(&info, None) };
@@ -183,6 +184,7 @@ impl Pipeline {
             .push_next(&mut rendering);
         let name = desc.name();
         let _watched = Watched::begin(|| format!("compiling the pipeline `{name}`"));
+        fault::delay("pipeline-hang-ms");
         // SAFETY: every pointer in `info` lives until the call returns; modules and layout are live. The cache is internally
         // synchronized.
         let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None) };

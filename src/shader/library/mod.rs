@@ -65,8 +65,10 @@ pub struct ShaderSet {
     pub constants: Vec<Constant>,
     /// The author's parameters, ordered by offset.
     pub parameters: Vec<Parameter>,
-    /// The compiler's warnings.
+    /// The compiler's warnings, and an error for each file whose text is refused ([`Source::held`]).
     pub warnings: Vec<Diagnostic>,
+    /// The texts of all files that the stages depend on.
+    pub texts: BTreeMap<TreePath, Arc<str>>,
     /// Whether a shader reads the time, so that the picture changes without input.
     pub animated: bool,
 }
@@ -104,6 +106,8 @@ pub struct Library {
     pairs: Vec<(TreePath, TreePath)>,
     set: Option<Arc<ShaderSet>>,
     failed: bool,
+    /// Whether the next update links, even if no stage has changed: the source may refuse other texts.
+    relink: bool,
 }
 
 impl Library {
@@ -118,12 +122,18 @@ impl Library {
             })
             .collect();
         let slots = paths.iter().cloned().map(Slot::new).collect();
-        Self { source: Arc::new(source), compiler, slots, pairs, set: None, failed: false }
+        Self { source: Arc::new(source), compiler, slots, pairs, set: None, failed: false, relink: false }
     }
 
     /// The tree.
     pub fn source(&self) -> &Source {
         &self.source
+    }
+
+    /// Reads the tree from another source. Its next update must name the files whose texts this changes.
+    pub fn set_source(&mut self, source: Source) {
+        self.source = Arc::new(source);
+        self.relink = true;
     }
 
     /// The compiler.
@@ -263,7 +273,8 @@ impl Library {
             Change::Paths(paths) => paths,
         };
         // The version counts even if no stage includes the file.
-        let mut stale = Stale { moved: paths.contains(&TreePath::from(contract::INTERFACE_FILE)), compile: Vec::new() };
+        let moved = std::mem::take(&mut self.relink) || paths.contains(&TreePath::from(contract::INTERFACE_FILE));
+        let mut stale = Stale { moved, compile: Vec::new() };
         for (index, slot) in self.slots.iter_mut().enumerate() {
             let hit = slot.dependencies().any(|dependency| paths.contains(dependency));
             // Always check a failed stage again: its dependencies are known only up to the error.
@@ -282,7 +293,7 @@ impl Library {
     /// that have not compiled are left out, and their annotations are those in the files of their last good versions.
     fn link(&self, snapshot: &Snapshot<'_>, is_partial: bool) -> Result<Linked, Vec<Diagnostic>> {
         let mut errors = Vec::new();
-        let mut warnings = Vec::new();
+        let mut warnings = snapshot.source().refusals();
         let mut files = BTreeSet::new();
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
         let unseen = self.slots.iter().filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
@@ -333,23 +344,24 @@ impl Library {
             Ok(linked) => self.commit(linked, generation, snapshot, report),
             Err(diagnostics) => {
                 self.failed = true;
-                Update::Failed(unique(diagnostics), report)
+                Update::Failed(unique(diagnostics.into_iter().chain(self.source.refusals()).collect()), report)
             }
         }
     }
 
     /// Whether any file except the contract reads `frame.time_s`.
-    fn reads_time(&self, snapshot: &Snapshot<'_>) -> bool {
+    fn reads_time(texts: &BTreeMap<TreePath, Arc<str>>) -> bool {
         let in_code = |text: &str| lines(text).iter().any(|line| find_word(&line.code, "frame.time_s").is_some());
-        let names_it = |path: &TreePath| snapshot.read(path).is_ok_and(|text| in_code(&text));
-        let contract = TreePath::from(contract::INTERFACE_FILE);
-        self.dependencies().iter().any(|path| *path != contract && names_it(path))
+        texts.iter().any(|(path, text)| path.as_str() != contract::INTERFACE_FILE && in_code(text))
     }
 
     /// Makes a set of the stages that have compiled. The others are pending.
     fn commit(&mut self, linked: Linked, generation: u64, snapshot: &Snapshot<'_>, report: Report) -> Update {
         let cleared = std::mem::replace(&mut self.failed, false);
-        let animated = self.reads_time(snapshot);
+        let dependencies = self.dependencies().into_iter();
+        let texts: BTreeMap<_, _> =
+            dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
+        let animated = Self::reads_time(&texts);
         let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
         for slot in &mut self.slots {
             match &slot.current {
@@ -372,7 +384,7 @@ impl Library {
                 return Update::Unchanged { cleared };
             }
         }
-        let set = ShaderSet { generation, stages, pending, modes, constants, parameters, warnings, animated };
+        let set = ShaderSet { generation, stages, pending, modes, constants, parameters, warnings, texts, animated };
         let set = Arc::new(set);
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)

@@ -2,6 +2,7 @@
 
 pub(super) mod directory;
 pub mod embedded;
+pub mod held;
 pub mod snapshot;
 pub(super) mod text;
 
@@ -10,8 +11,11 @@ use std::ffi::OsStr;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Serialize;
+
+use held::Held;
 
 /// Maximum size of a file in bytes. No shader is longer, and shaderc would hold several copies.
 pub const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -128,6 +132,8 @@ pub enum SourceError {
 pub enum Source {
     /// A directory, read again at every update.
     Disk(PathBuf),
+    /// A directory, some of whose files are held back: see [`Source::held`].
+    Held(Arc<Held>),
     /// The tree inside the binary.
     Embedded,
     /// Text in memory.
@@ -149,6 +155,10 @@ impl Source {
     pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
         match self {
             Self::Disk(root) => read_file(&root.join(path.as_str())),
+            Self::Held(held) => match held.text(path) {
+                Some(text) => Ok(text.clone()),
+                None => read_file(&held.root().join(path.as_str())),
+            },
             Self::Embedded => check_text(embedded::read(path).ok_or(SourceError::Missing)?.to_vec()),
             Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
         }
@@ -156,18 +166,18 @@ impl Source {
 
     /// The path for messages. For a directory, an editor can open it from the working directory.
     pub fn display_path(&self, path: &TreePath) -> String {
-        match self {
-            Self::Disk(root) if root == Path::new(".") => path.to_string(),
-            Self::Disk(root) => root.join(path.as_str()).display().to_string(),
-            Self::Embedded => format!("embedded:{path}"),
-            Self::Memory(_) => path.to_string(),
+        match (self, self.root()) {
+            (_, Some(root)) if root == Path::new(".") => path.to_string(),
+            (_, Some(root)) => root.join(path.as_str()).display().to_string(),
+            (Self::Embedded, None) => format!("embedded:{path}"),
+            (_, None) => path.to_string(),
         }
     }
 
     /// All files, sorted, without hidden files and directories (of editors and git).
     pub fn list(&self) -> Vec<TreePath> {
-        match self {
-            Self::Disk(root) => {
+        match (self, self.root()) {
+            (_, Some(root)) => {
                 let tree_path = |path: &PathBuf| {
                     let names: Option<Vec<&str>> = path.strip_prefix(root).ok()?.iter().map(OsStr::to_str).collect();
                     TreePath::parse(&names?.join("/"))
@@ -177,8 +187,8 @@ impl Source {
                 out.sort();
                 out
             }
-            Self::Embedded => embedded::list(),
-            Self::Memory(files) => files.keys().cloned().collect(),
+            (Self::Memory(files), None) => files.keys().cloned().collect(),
+            (_, None) => embedded::list(),
         }
     }
 
@@ -186,7 +196,8 @@ impl Source {
     pub fn root(&self) -> Option<&Path> {
         match self {
             Self::Disk(root) => Some(root),
-            _ => None,
+            Self::Held(held) => Some(held.root()),
+            Self::Embedded | Self::Memory(_) => None,
         }
     }
 

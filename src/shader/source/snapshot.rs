@@ -38,6 +38,11 @@ impl<'a> Snapshot<'a> {
         self.source.display_path(path)
     }
 
+    /// The tree.
+    pub fn source(&self) -> &Source {
+        self.source
+    }
+
     /// A hash of paths and their contents, including missing files and errors. Equal hashes compile to equal modules.
     pub fn closure_hash<'p>(&self, paths: impl IntoIterator<Item = &'p TreePath>) -> u64 {
         let mut hasher = DefaultHasher::new();

@@ -1,0 +1,56 @@
+//! Records the session for the process that takes this one's place after a loss of the device.
+
+use std::path::Path;
+
+use winit::window::Window;
+
+use super::Viewer;
+use crate::events::{Event, emit};
+use crate::frame::FrameState;
+use crate::recovery::{Geometry, Work};
+
+impl Viewer {
+    /// Records what the next frame shows, for the process that takes this one's place if the device does not survive it. Returns
+    /// the number of the work, unless the frame is that of the last complete picture.
+    pub(in crate::app) fn record(&self, window: &Window) -> Option<u64> {
+        let model = if self.model.loading { &self.model.requested } else { &self.model.path };
+        let tree = self.source.root().map(Path::to_owned);
+        let work = Work { settings: self.session.settings.clone(), model: model.clone(), tree };
+        let geometry =
+            || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };
+        let attempt = self.recorder.begin(&work, geometry);
+        let shown = self.shown.as_ref().filter(|_| !self.model.loading)?;
+        (shown.settings == work.settings).then_some(attempt)
+    }
+
+    /// Records that the device has drawn a frame: the work with the number `attempt`, and if all of it was there, the shaders.
+    pub(in crate::app) fn drawn(&self, state: &FrameState, attempt: Option<u64>) {
+        attempt.into_iter().for_each(|attempt| self.recorder.drawn(attempt));
+        if self.settled == Some(state.shaders.generation) && state.shaders.pending.is_empty() {
+            self.recorder.drawn_all(&state.shaders);
+        }
+    }
+
+    /// Reports the loss that has ended the process before.
+    pub(super) fn report_loss(&mut self) {
+        let state = self.recorder.state();
+        let Some(loss) = &state.loss else { return };
+        let refused = state.refused.keys().map(String::as_str).collect();
+        let event = Event::Restarted { cause: &loss.cause, losses: state.losses, refused, reset: &loss.reset };
+        emit(self.events, &event);
+        match loss.reset.as_slice() {
+            [] => self.notices.say(format!("{}. The session goes on.", capitalized(&loss.cause))),
+            reset => {
+                let values = reset.join(", ");
+                let cause = capitalized(&loss.cause);
+                self.keep_saying(format!("{cause}. The session goes on with the last good value of {values}."));
+            }
+        }
+    }
+}
+
+/// The text with a capital at its start.
+fn capitalized(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().into_iter().flat_map(char::to_uppercase).chain(characters).collect()
+}

@@ -1,0 +1,106 @@
+//! `specula view`: opens the window, in a child process.
+
+pub mod supervisor;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use specula::app::{self, AppError, AppOptions};
+use specula::gpu::{GpuError, watchdog};
+use specula::message;
+use specula::recovery::{GoodTexts, HUNG, LOST, Recorder, State, Work};
+use specula::shader::Source;
+
+use super::Failure;
+use super::common::names::check_model_path;
+use super::common::{Common, compiler};
+
+/// Largest width and height of a window in pixels: larger than any screen, and within the limits of window systems.
+const LARGEST_WINDOW: u32 = 16384;
+
+/// Options of `view`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
+    model: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Args {
+    /// The model as given on the command line.
+    pub fn model(&self) -> Option<&Path> {
+        self.model.as_deref()
+    }
+}
+
+/// Runs the command: the window if this is the child, else the child.
+pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
+    match supervisor::session() {
+        Some(folder) => {
+            supervisor::end_with_parent();
+            window(args, start, Some(folder))
+        }
+        None => supervisor::run(|| window(args, start, None)),
+    }
+}
+
+/// Opens the window. With the `folder` of a session, goes on where the process before was lost.
+fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Failure> {
+    check_model_path(args.model.as_deref())?;
+    let (width, height) = args.common.size;
+    if width.max(height) > LARGEST_WINDOW {
+        let message =
+            format!("--size {width}x{height} is too large for a window; at most {LARGEST_WINDOW} pixels a side");
+        return Err(Failure::Usage(message));
+    }
+    let source = args.common.source()?;
+    let given = Work { settings: args.common.settings()?, model: args.model, tree: source.root().map(Path::to_owned) };
+    let state = folder.as_deref().map(State::read).unwrap_or_default();
+    let work = state.work.clone().unwrap_or(given);
+    let good = folder.as_deref().map(|folder| GoodTexts::read(folder, work.tree.as_deref())).unwrap_or_default();
+    let is_supervised = folder.is_some();
+    if is_supervised {
+        watchdog::end_after(Duration::from_secs(args.common.timeout.into()), end_of_device);
+    }
+    let source = state.source(work.tree.clone().map_or_else(Source::embedded, Source::Disk), good.clone());
+    let options = AppOptions {
+        source,
+        compiler: compiler()?,
+        model: work.model,
+        settings: work.settings,
+        size: state.window.map_or(args.common.size, |window| window.size),
+        at: state.window.and_then(|window| window.at),
+        allow_outside: args.common.allow_outside,
+        validation: args.common.validate,
+        device: args.common.device,
+        events: args.common.events.is_some(),
+        recorder: Recorder::new(folder, state, good),
+        start,
+    };
+    app::run(options).map_err(|error| match error {
+        AppError::Gpu(GpuError::DeviceLost(_)) if is_supervised => {
+            message::tell(error);
+            end_now(LOST)
+        }
+        AppError::Validation(_) => Failure::Input(error.to_string()),
+        AppError::NoDisplay(_) | AppError::Gpu(_) => Failure::Device(error.to_string()),
+    })
+}
+
+/// Ends the child when the device does not answer.
+fn end_of_device(what: &str, limit: Duration) -> ! {
+    message::tell(format_args!(
+        "the graphics device has not finished {what} within {} s (`--timeout SECONDS`)",
+        limit.as_secs()
+    ));
+    end_now(HUNG)
+}
+
+/// Ends the process without destructors, which would wait for the device, and while other threads may be in the driver.
+fn end_now(code: u8) -> ! {
+    #[cfg(unix)]
+    signal_hook::low_level::exit(code.into());
+    #[cfg(not(unix))]
+    std::process::exit(code.into());
+}

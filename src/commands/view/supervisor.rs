@@ -1,0 +1,161 @@
+//! Runs the window as a child process, and starts another one when the device is lost or the driver crashes. A lost device cannot
+//! always be made again in the same process, and a crash leaves no process to do it in.
+//!
+//! The child has the same arguments, terminal and process group. Its standard input is a pipe that nobody writes to: it closes
+//! when this process ends, however it ends, and then the child ends too.
+
+use std::fs::DirBuilder;
+use std::io::{self, Read as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+
+use specula::message;
+use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, State, VARIABLE, remove_folder};
+
+use crate::commands::Failure;
+
+/// Exit code of a process whose main thread has panicked.
+const PANICKED: i32 = 101;
+
+/// The folder of the session, if this process is the child.
+pub fn session() -> Option<PathBuf> {
+    std::env::var_os(VARIABLE).map(PathBuf::from)
+}
+
+/// Runs the window in child processes until one ends by itself. `in_place` runs it in this process, if there can be no child.
+pub fn run(in_place: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    let child = create_folder().and_then(|folder| {
+        let program = std::env::current_exe()?;
+        let result = run_child(&program, &folder.0)?;
+        Ok((folder, program, result))
+    });
+    let (folder, program, mut status) = match child {
+        Ok(child) => child,
+        Err(error) => {
+            message::warn(format_args!(
+                "without a process of its own ({error}), the window ends if the device is lost"
+            ));
+            return in_place();
+        }
+    };
+    while let Some(cause) = cause_of_loss(status) {
+        let state = State::read(&folder.0);
+        let tree = state.work.as_ref().and_then(|work| work.tree.clone());
+        let state = state.after_loss(&cause, &GoodTexts::read(&folder.0, tree.as_deref()));
+        if state.losses >= MOST_LOSSES {
+            return Err(Failure::Device(farewell(&cause, &state)));
+        }
+        message::tell(format_args!("{cause}; the session goes on in a new window"));
+        let next = state.write(&folder.0).and_then(|()| run_child(&program, &folder.0));
+        status = next.map_err(|error| Failure::Device(format!("{cause}, and the session cannot go on: {error}")))?;
+    }
+    drop(folder);
+    end_like(status)
+}
+
+/// Ends the child when its parent ends.
+pub fn end_with_parent() {
+    let wait = || {
+        // The pipe holds nothing, so this returns once it is closed.
+        let _ = io::stdin().read(&mut [0]);
+        clean_up();
+        #[cfg(unix)]
+        let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTERM);
+        std::process::exit(1);
+    };
+    // Without the thread, only a killed parent would leave the child behind.
+    let _ = std::thread::Builder::new().name("specula-parent".to_owned()).spawn(wait);
+}
+
+/// Removes the folder of the session, if this process is the child and about to be ended by a signal.
+pub fn clean_up() {
+    session().iter().for_each(|folder| remove_folder(folder));
+}
+
+/// A folder that is removed with its value.
+struct Folder(PathBuf);
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        remove_folder(&self.0);
+    }
+}
+
+/// A new folder that only the user may read. On a file system in memory if there is one, since a disk takes milliseconds to
+/// replace a file.
+fn create_folder() -> io::Result<Folder> {
+    let in_memory = [std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from), Some(PathBuf::from("/dev/shm"))];
+    let parent = in_memory.into_iter().flatten().find(|path| path.is_dir()).unwrap_or_else(std::env::temp_dir);
+    let mut builder = DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    // An earlier process with the same number may have left its folder behind.
+    let name = |attempt: u32| parent.join(format!("specula-{}-{attempt}", std::process::id()));
+    let mut result = Err(io::ErrorKind::AlreadyExists.into());
+    for path in (0..100).map(name) {
+        result = builder.create(&path).map(|()| Folder(path));
+        if !matches!(&result, Err(error) if error.kind() == io::ErrorKind::AlreadyExists) {
+            break;
+        }
+    }
+    result
+}
+
+/// Runs the program again with the same arguments, to its end.
+fn run_child(program: &Path, folder: &Path) -> io::Result<ExitStatus> {
+    let mut child =
+        Command::new(program).args(std::env::args_os().skip(1)).env(VARIABLE, folder).stdin(Stdio::piped()).spawn()?;
+    let _open_until_then = child.stdin.take();
+    child.wait()
+}
+
+/// Why the device or the program was lost, as the start of a sentence; `None` if the child has ended by itself or was ended by
+/// the user.
+fn cause_of_loss(status: ExitStatus) -> Option<String> {
+    match status.code() {
+        Some(code) if code == i32::from(LOST) => Some("the graphics device was lost".to_owned()),
+        Some(code) if code == i32::from(HUNG) => Some("the graphics device did not answer".to_owned()),
+        Some(PANICKED) => Some("Specula failed".to_owned()),
+        code => crash(status, code),
+    }
+}
+
+/// The signal of a crash, as a driver may cause it.
+#[cfg(unix)]
+fn crash(status: ExitStatus, _: Option<i32>) -> Option<String> {
+    use signal_hook::consts::{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP};
+    use std::os::unix::process::ExitStatusExt as _;
+    let crashes = [SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP];
+    let signal = status.signal().filter(|signal| crashes.contains(signal))?;
+    Some(format!("the program crashed ({})", signal_hook::low_level::signal_name(signal).unwrap_or("a signal")))
+}
+
+/// An exit code of Windows for an exception, as a driver may cause it: an NTSTATUS of severity "error".
+#[cfg(not(unix))]
+fn crash(_: ExitStatus, code: Option<i32>) -> Option<String> {
+    let code = code.filter(|code| code.cast_unsigned() >> 30 == 3)?;
+    Some(format!("the program crashed ({:#x})", code.cast_unsigned()))
+}
+
+/// Why the session ends.
+fn farewell(cause: &str, state: &State) -> String {
+    let refused: Vec<&str> = state.refused.keys().map(String::as_str).collect();
+    let advice = match refused.as_slice() {
+        [] => "Another program may have caused it; try `--device NAME` or `--env none`".to_owned(),
+        refused => format!("Undo the last edits of {} before you start again", refused.join(", ")),
+    };
+    format!("{cause}, the third time in a row, so the session ends. Your files are as you saved them. {advice}")
+}
+
+/// Ends this process as the child has ended.
+fn end_like(status: ExitStatus) -> Result<(), Failure> {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        let _ = signal_hook::low_level::emulate_default_handler(signal);
+    }
+    match status.code() {
+        Some(0) => Ok(()),
+        Some(code) => Err(Failure::Window(u8::try_from(code).unwrap_or(1))),
+        None => Err(Failure::Printed),
+    }
+}

@@ -1,0 +1,238 @@
+//! What a window hands to the process that takes its place when the device is lost or the driver crashes.
+//!
+//! `specula view` runs the window as a child process. The child's [`Recorder`] keeps two files in a folder of the session: the
+//! [`State`], written before anything new reaches the device, and the [`GoodTexts`], written after the device has drawn them.
+//! After a loss, [`State::after_loss`] compares the two and decides what the next process does without: the texts that were being
+//! tried, or else the settings.
+
+mod recorder;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::settings::Settings;
+use crate::shader::{Source, TreePath, text_hash};
+
+pub use recorder::Recorder;
+
+/// The environment variable with the folder of the session, by which a process knows that it is the child.
+pub const VARIABLE: &str = "SPECULA_SESSION";
+/// Exit code of a child whose device was lost. Its parent does not pass it on.
+pub const LOST: u8 = 75;
+/// Exit code of a child whose device does not answer. Its parent does not pass it on.
+pub const HUNG: u8 = 76;
+/// Losses in a row after which the session ends.
+pub const MOST_LOSSES: u32 = 3;
+
+const STATE: &str = "state.json";
+const GOOD: &str = "good.json";
+
+/// What the user works on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Work {
+    /// The settings.
+    pub settings: Settings,
+    /// The model's file; `None` is the built-in one.
+    pub model: Option<PathBuf>,
+    /// The shader tree's folder; `None` is the tree in the program.
+    pub tree: Option<PathBuf>,
+}
+
+impl Work {
+    /// Whether both show the same from two places: all is equal but the camera and the directions of orbiting lights, which change
+    /// in many frames and never make a shader hang by themselves.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        *self == other.placed_as(self)
+    }
+
+    /// The same with the camera and the directions of orbiting lights of `other`.
+    fn placed_as(&self, other: &Self) -> Self {
+        let mut placed = self.clone();
+        placed.settings.camera = other.settings.camera.clone();
+        for (to, from) in placed.settings.lights.orbit.iter_mut().zip(&other.settings.lights.orbit) {
+            to.azimuth = from.azimuth;
+        }
+        placed
+    }
+
+    /// The names of what differs, as `shader.TOON_BANDS`; settings by their path in `--set`.
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let mut out = Vec::new();
+        let value = |settings: &Settings| serde_json::to_value(settings).unwrap_or_default();
+        differences(&value(&self.settings), &value(&other.settings), "", &mut out);
+        out.extend((self.model != other.model).then(|| "the model".to_owned()));
+        out.extend((self.tree != other.tree).then(|| "the shader tree".to_owned()));
+        out
+    }
+}
+
+fn differences(a: &Value, b: &Value, path: &str, out: &mut Vec<String>) {
+    let (Value::Object(a), Value::Object(b)) = (a, b) else {
+        if a != b {
+            out.push(path.to_owned());
+        }
+        return;
+    };
+    let names: std::collections::BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+    for name in names {
+        let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+        differences(a.get(name).unwrap_or(&Value::Null), b.get(name).unwrap_or(&Value::Null), &path, out);
+    }
+}
+
+/// Size and place of the window, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Geometry {
+    /// Size without the frame of the window manager.
+    pub size: (u32, u32),
+    /// Upper left corner on the desktop, where the window system tells it.
+    pub at: Option<(i32, i32)>,
+}
+
+/// The last loss, for messages.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Loss {
+    /// What happened, as "the graphics device was lost".
+    pub cause: String,
+    /// What was set back, since no text was new.
+    pub reset: Vec<String>,
+}
+
+/// What a process works on and what it tries.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct State {
+    /// Losses in a row so far.
+    pub losses: u32,
+    /// The last loss.
+    pub loss: Option<Loss>,
+    /// What the user works on; `None` before the first frame.
+    pub work: Option<Work>,
+    /// What the device has drawn without a fault.
+    pub good: Option<Work>,
+    /// Texts that the process reads and compiles, by path and [`text_hash`], until the device has drawn them.
+    pub tried: BTreeMap<String, u64>,
+    /// Texts that are not used until one of them changes.
+    pub refused: BTreeMap<String, u64>,
+    /// The window.
+    pub window: Option<Geometry>,
+}
+
+impl State {
+    /// The state that was recorded in a session's folder; the default if there is none.
+    pub fn read(folder: &Path) -> Self {
+        read(folder, STATE).unwrap_or_default()
+    }
+
+    /// Records the state.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn write(&self, folder: &Path) -> io::Result<()> {
+        write(folder, STATE, self)
+    }
+
+    /// What the next process starts with, after a loss with this `cause`. Texts are suspected first. If none is new, all that is
+    /// not alike is set back to what was drawn last. `good` are the texts that the device has drawn.
+    #[must_use]
+    pub fn after_loss(mut self, cause: &str, good: &GoodTexts) -> Self {
+        self.losses += 1;
+        let embedded = Source::embedded();
+        let is_new = |(path, hash): &(&String, &u64)| {
+            let text = good.texts.get(*path).cloned().map(Ok);
+            // No stage of the last good picture has used the file.
+            text_hash(&text.unwrap_or_else(|| embedded.read(&TreePath::from(path.as_str())))) != **hash
+        };
+        let suspects: BTreeMap<String, u64> =
+            self.tried.iter().filter(is_new).map(|(path, hash)| (path.clone(), *hash)).collect();
+        let in_good_tree = self.work.as_ref().is_none_or(|work| work.tree == good.tree);
+        let mut reset = Vec::new();
+        if in_good_tree && !suspects.is_empty() {
+            self.refused.extend(suspects);
+        } else if let (Some(work), Some(good)) = (&mut self.work, &self.good)
+            && !work.is_alike(good)
+        {
+            let placed = good.placed_as(work);
+            reset = work.differences(&placed);
+            *work = placed;
+        }
+        self.tried.clear();
+        self.loss = Some(Loss { cause: cause.to_owned(), reset });
+        self
+    }
+
+    /// The tree to read: [`Source::held`] if there has been a loss in it.
+    pub fn source(&self, tree: Source, good: GoodTexts) -> Source {
+        let (Some(loss), Some(root)) = (&self.loss, tree.root()) else { return tree };
+        if good.tree.as_deref() != Some(root) {
+            return tree;
+        }
+        let path = |text: &String| TreePath::parse(text);
+        let texts = good.texts.iter().filter_map(|(name, text)| Some((path(name)?, text.clone()))).collect();
+        let refused = self.refused.iter().filter_map(|(name, hash)| Some((path(name)?, *hash))).collect();
+        Source::held(root.to_owned(), &texts, refused, &format!("{} while this text was in use", loss.cause))
+    }
+}
+
+/// The texts of the shaders that the device has drawn last.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GoodTexts {
+    /// The tree's folder.
+    pub tree: Option<PathBuf>,
+    /// Texts by path.
+    pub texts: BTreeMap<String, String>,
+}
+
+impl GoodTexts {
+    /// The texts that were recorded in a session's folder. Before the first picture, the texts in the program count as good for
+    /// every tree.
+    pub fn read(folder: &Path, tree: Option<&Path>) -> Self {
+        read(folder, GOOD).unwrap_or_else(|| {
+            let embedded = Source::embedded();
+            let text = |path: TreePath| Some((path.to_string(), embedded.read(&path).ok()?));
+            Self { tree: tree.map(Path::to_owned), texts: embedded.list().into_iter().filter_map(text).collect() }
+        })
+    }
+
+    fn write(&self, folder: &Path) -> io::Result<()> {
+        write(folder, GOOD, self)
+    }
+}
+
+/// Removes the folder of a session, if nothing but the records are in it.
+pub fn remove_folder(folder: &Path) {
+    // Under another name, since a thread may still be recording.
+    let ended = folder.with_extension("ended");
+    if fs::rename(folder, &ended).is_err() {
+        return;
+    }
+    for name in [STATE, GOOD] {
+        let _ = fs::remove_file(ended.join(name));
+        let _ = fs::remove_file(unfinished(&ended, name));
+    }
+    let _ = fs::remove_dir(ended);
+}
+
+fn unfinished(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.unfinished"))
+}
+
+fn read<T: DeserializeOwned>(folder: &Path, name: &str) -> Option<T> {
+    serde_json::from_slice(&fs::read(folder.join(name)).ok()?).ok()
+}
+
+/// Writes a file whole or not at all: the process may crash at any moment.
+fn write(folder: &Path, name: &str, value: &impl Serialize) -> io::Result<()> {
+    let unfinished = unfinished(folder, name);
+    fs::write(&unfinished, serde_json::to_vec(value)?)?;
+    fs::rename(unfinished, folder.join(name))
+}
+
+#[cfg(test)]
+mod tests;

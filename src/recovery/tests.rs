@@ -1,0 +1,90 @@
+//! What the next process does without.
+
+use super::*;
+use crate::settings::ShaderValue;
+
+const CAUSE: &str = "the graphics device was lost";
+
+fn hash(text: &str) -> u64 {
+    text_hash(&Ok(text.to_owned()))
+}
+
+/// A session in the folder `tree`, whose last good texts are "old".
+fn session() -> (State, GoodTexts) {
+    let work = Work { tree: Some("tree".into()), ..Work::default() };
+    let texts = ["a.glsl", "b.glsl"].map(|path| (path.to_owned(), "old".to_owned()));
+    let good = GoodTexts { tree: work.tree.clone(), texts: texts.into() };
+    (State { work: Some(work.clone()), good: Some(work), ..State::default() }, good)
+}
+
+#[test]
+fn a_new_text_is_refused_and_the_settings_stay() {
+    let (mut state, good) = session();
+    state.tried = [("a.glsl".to_owned(), hash("new")), ("b.glsl".to_owned(), hash("old"))].into();
+    let work = state.work.as_mut().unwrap();
+    work.settings.mode = "normal".into();
+    let work = work.clone();
+    let next = state.after_loss(CAUSE, &good);
+    assert_eq!(next.refused, [("a.glsl".to_owned(), hash("new"))].into());
+    assert_eq!(next.work, Some(work));
+    assert_eq!(next.losses, 1);
+    assert!(next.tried.is_empty());
+    // The same happens again with a second text: both are refused.
+    let again = State { tried: [("c.glsl".to_owned(), hash("new"))].into(), ..next };
+    let again = again.after_loss(CAUSE, &good);
+    assert_eq!((again.refused.len(), again.losses), (2, 2));
+}
+
+#[test]
+fn without_a_new_text_the_settings_are_set_back_but_not_the_camera() {
+    let (mut state, good) = session();
+    let work = state.work.as_mut().unwrap();
+    work.settings.camera.eye = Some([1.0, 2.0, 3.0]);
+    let moved = work.clone();
+    let next = state.clone().after_loss(CAUSE, &good);
+    assert_eq!(next.work.as_ref(), Some(&moved), "a camera is never suspected");
+    assert_eq!(next.loss.unwrap().reset, [""; 0]);
+
+    let work = state.work.as_mut().unwrap();
+    work.settings.shader.insert("rate".into(), ShaderValue::Float(0.0));
+    work.settings.view.msaa = 1;
+    work.model = Some("huge.glb".into());
+    let next = state.after_loss(CAUSE, &good);
+    assert_eq!(next.loss.unwrap().reset, ["shader.rate", "view.msaa", "the model"]);
+    assert_eq!(next.work, Some(Work { settings: moved.settings, ..session().0.work.unwrap() }));
+    assert!(next.refused.is_empty());
+}
+
+#[test]
+fn texts_of_another_tree_are_left_together_with_it() {
+    let (mut state, good) = session();
+    state.work.as_mut().unwrap().tree = Some("other".into());
+    state.tried = [("a.glsl".to_owned(), hash("new"))].into();
+    let next = state.after_loss(CAUSE, &good);
+    assert_eq!(next.loss.unwrap().reset, ["the shader tree"]);
+    assert!(next.refused.is_empty());
+}
+
+#[test]
+fn records_are_read_by_the_next_process() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(State::read(folder.path()), State::default());
+    let (state, good) = session();
+    let recorder = Recorder::new(Some(folder.path().to_owned()), State::default(), GoodTexts::default());
+    let before = recorder.try_texts([(TreePath::from("a.glsl"), hash("new"))].into(), BTreeMap::new());
+    assert!(before.is_empty());
+    let window = Geometry { size: (640, 480), at: Some((3, -4)) };
+    let attempt = recorder.begin(state.work.as_ref().unwrap(), || window);
+    let read = State::read(folder.path());
+    assert_eq!((read.work, read.good, read.window), (state.work.clone(), None, Some(window)));
+    assert_eq!(read.tried.len(), 1);
+    recorder.drawn(attempt);
+    assert_eq!(State::read(folder.path()).good, state.work);
+    recorder.take_back(before);
+    assert!(State::read(folder.path()).tried.is_empty());
+
+    good.write(folder.path()).unwrap();
+    assert_eq!(GoodTexts::read(folder.path(), None), good);
+    remove_folder(folder.path());
+    assert!(!folder.path().exists());
+}
