@@ -43,7 +43,7 @@ const LARGEST_RANGE: f32 = 4096.0;
 /// Width and height of the image of all specular levels.
 const SPECULAR_SIZE: [u32; 2] = [SPECULAR_WIDTH, SPECULAR_HEIGHT];
 /// Samples per texel of the mirror and of each pair of levels that share their samples. Rougher lobes need more samples and have fewer texels.
-const SPECULAR_SAMPLES: [u32; SPECULAR_LEVELS as usize / 2 + 1] = [1, 20, 48, 80, 104, 136, 192, 288, 400];
+const SPECULAR_SAMPLES: [u32; SPECULAR_LEVELS as usize / 2 + 1] = [1, 20, 56, 104, 136, 168, 208, 288, 400];
 
 /// Why a bake failed.
 #[derive(Debug, thiserror::Error)]
