@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
 
-const uint INTERFACE_VERSION = 5u;
+const uint INTERFACE_VERSION = 6u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
@@ -44,6 +44,8 @@ const int BINDING_LEVEL_ABOVE = 4;
 const int BINDING_RESULTS = 5;
 const int BINDING_LOBE_TARGET = 6;
 const int BINDING_LOBE = 7;
+const int BINDING_SMALL_LIGHTS = 9;
+const int BINDING_PACKED = 10;
 const int BINDING_TASK_LOOPS = 8;
 const int BINDING_BASE_COLOR_TEXTURE = 1;
 const int BINDING_METALLIC_ROUGHNESS_TEXTURE = 2;

@@ -50,6 +50,12 @@ pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
     is_whole.then_some(bytes)
 }
 
+/// Whether [`load`] will find an entry of this size, unless it is damaged.
+pub(crate) fn contains(key: &str, size: u64) -> bool {
+    let metadata = folder().and_then(|folder| std::fs::metadata(file(&folder, key)).ok());
+    metadata.is_some_and(|metadata| metadata.len() == size + CHECKSUM)
+}
+
 /// Stores an entry. A failure costs only time, so it is traced and not reported.
 pub(crate) fn store(key: &str, bytes: &[u8]) {
     let Some(folder) = folder() else { return };

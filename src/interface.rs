@@ -19,7 +19,7 @@ pub use print::glsl;
 pub use textures::*;
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;
@@ -74,6 +74,10 @@ impl BindingKind {
 
 /// Binding in [`SET_TASK`] of the buffer that a task writes numbers to. It is as large as the stages declare.
 pub const BINDING_RESULTS: u32 = 5;
+/// Binding in [`SET_TASK`] of the small lights of an environment, for the tasks that read them.
+pub const BINDING_SMALL_LIGHTS: u32 = 9;
+/// Binding in [`SET_TASK`] of the texels that a task writes with a shared exponent, a word each.
+pub const BINDING_PACKED: u32 = 10;
 /// Binding in [`SET_TASK`] of the samples of a pair of specular levels, for the task that chooses them.
 pub const BINDING_LOBE_TARGET: u32 = 6;
 /// Binding in [`SET_TASK`] of the same samples, for the task that reads them.
@@ -162,6 +166,8 @@ const OTHERS: &[Binding] = &[
     binding(SET_TASK, BINDING_LOBE_TARGET, "BINDING_LOBE_TARGET", BindingKind::StorageBuffer, 0),
     // 16 KiB is the largest uniform block that every device has.
     binding(SET_TASK, BINDING_LOBE, "BINDING_LOBE", BindingKind::UniformBuffer, 16384),
+    binding(SET_TASK, BINDING_SMALL_LIGHTS, "BINDING_SMALL_LIGHTS", BindingKind::UniformBuffer, 16384),
+    binding(SET_TASK, BINDING_PACKED, "BINDING_PACKED", BindingKind::StorageBuffer, 0),
     binding(LOOPS[1].0, LOOPS[1].1, "BINDING_TASK_LOOPS", BindingKind::StorageBuffer, 0),
 ];
 

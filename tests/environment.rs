@@ -11,8 +11,8 @@ use specula::headless::Headless;
 use specula::render::Capture;
 use support::process::{Finished, Running, run, specula};
 use support::{
-    Session, Tree, assert_differ, assert_same, failed, glb, hdr, load, model, open_image, ready, render, renderer,
-    settings,
+    Session, Tree, assert_differ, assert_same, assert_validated, failed, glb, hdr, load, model, open_image, ready,
+    render, renderer, settings,
 };
 use tempfile::TempDir;
 
@@ -295,6 +295,36 @@ fn random_paths_find_the_sun() {
     let mut headless = renderer(load(&glb::model(&glb::sphere(24, 48), &glb::gray())), chosen, (48, 32));
     let (bias, off) = split_sum_error(&mut headless, 16);
     assert!(bias.abs() < 0.02 && off < 0.3, "off by {off}, all in all by {bias}");
+}
+
+/// Baked radiance is packed on the device, three mantissas of 9 bits with one exponent (ibl/shared_exponent.glsl).
+#[test]
+fn packed_radiance_is_within_a_511th_of_its_largest_channel() {
+    let chosen = settings(&["environment.name=furnace", "lights.source=none", "view.msaa=1"]);
+    let mut session = Session::new(load(&glb::model(&glb::sphere(12, 24), &glb::gray())), chosen);
+    let mut stored = "store_texel(texel, IRRADIANCE_SIDE, radiance)".to_owned();
+    for (radiance, expected) in [
+        ("vec3(1.0)", [1.0; 3]),
+        ("vec3(0.999, 0.5, 0.1)", [0.999, 0.5, 0.1]),
+        ("vec3(2e4, 2.0, 1e3)", [2e4, 2.0, 1e3]),
+        ("vec3(1e-3, 3e-5, 0.0)", [1e-3, 3e-5, 0.0]),
+        // What is no radiance is black. A GPU keeps the sign of zero, which a software device drops.
+        ("vec3(-0.0)", [0.0; 3]),
+        ("vec3(-1.0, sqrt(-1.0 - n.x * n.x), -0.0)", [0.0; 3]),
+    ] {
+        let next = format!("store_texel(texel, IRRADIANCE_SIDE, {radiance})");
+        ready(&session.edit("ibl/irradiance.comp", &stored, &next));
+        stored = next;
+        let capture = session.mode("irradiance");
+        let found = capture.raw.iter().find(|pixel| pixel[3] == 1.0).expect("a pixel of the sphere");
+        let largest = expected.into_iter().fold(0.0, f32::max);
+        for (found, expected) in found.iter().zip(expected) {
+            // The mode shows pi times the texel, as half floats.
+            let error = (found / std::f32::consts::PI - expected).abs();
+            assert!(error <= largest * (1.0 / 511.0 + 1.0 / 1024.0), "{radiance}: {found}");
+        }
+    }
+    assert_validated();
 }
 
 #[test]

@@ -43,8 +43,6 @@ const ROUNDING: &[&str] = &[
     "ibl/dfg.comp",
     "ibl/diffuse_albedo.comp",
     "ibl/downsample.comp",
-    "ibl/irradiance.comp",
-    "ibl/prefilter.comp",
     "ibl/prefilter_sheen.comp",
     "ibl/sheen_albedo.comp",
 ];

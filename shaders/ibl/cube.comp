@@ -2,8 +2,8 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "ibl/cube_map.glsl"
+#include "ibl/find_small_lights.glsl"
 #include "ibl/half.glsl"
-#include "ibl/small_lights.glsl"
 
 // Converts an equirectangular image to level 0 of a cube map. One invocation per texel; z is the face.
 //
@@ -50,5 +50,5 @@ void main() {
     }
     barrier();
     uint count = group_count[gl_LocalInvocationIndex];
-    if (count > 0u) atomicAdd(brightness_count[gl_LocalInvocationIndex], count);
+    if (count > 0u) atomicAdd(found.brightness_count[gl_LocalInvocationIndex], count);
 }

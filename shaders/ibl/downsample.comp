@@ -2,8 +2,8 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "ibl/cube_map.glsl"
+#include "ibl/find_small_lights.glsl"
 #include "ibl/half.glsl"
-#include "ibl/small_lights.glsl"
 
 // Computes one level of the cube map from the level above. Its four texels are weighted by solid angle, so a level
 // keeps the light of the one above, and a texel is the mean radiance of the area it covers. (A corner texel covers a
@@ -43,8 +43,8 @@ void main() {
     imageStore(target, ivec3(texel), vec4(rounded_to_half(kept.rgb / kept.w), 1.0));
 
     if (max_component(cut) > 0.0) {
-        uint place = atomicAdd(small_light_count, 1u);
+        uint place = atomicAdd(found.count, 1u);
         // Variance of four points, each half a texel of level 0 from the center along both axes: 1/16 of the area.
-        if (place < LARGEST_COUNT) small_lights[place] = SmallLight(normalize(center), cut, kept.w / 16.0);
+        if (place < LARGEST_COUNT) found.lights[place] = SmallLight(normalize(center), cut, kept.w / 16.0);
     }
 }

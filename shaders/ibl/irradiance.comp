@@ -2,9 +2,9 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "ibl/cube_map.glsl"
-#include "ibl/half.glsl"
+#include "ibl/listed_lights.glsl"
 #include "ibl/octahedral.glsl"
-#include "ibl/small_lights.glsl"
+#include "ibl/shared_exponent.glsl"
 
 // Diffuse light from the environment: the radiance that a white Lambertian surface with the normal n reflects,
 //
@@ -15,7 +15,6 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray source;
-layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
@@ -36,7 +35,7 @@ void main() {
 
     // Adds the small lights, which the levels below 0 do not have.
     for (uint i = 0u; i < listed_lights(); ++i) {
-        radiance += small_lights[i].intensity * (max(dot(n, small_lights[i].direction), 0.0) / PI);
+        radiance += listed.lights[i].intensity * (max(dot(n, listed.lights[i].direction), 0.0) / PI);
     }
-    imageStore(target, ivec3(texel, 0), vec4(rounded_to_half(radiance), 1.0));
+    store_texel(texel, IRRADIANCE_SIDE, radiance);
 }

@@ -3,11 +3,11 @@
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "ibl/filter.glsl"
-#include "ibl/half.glsl"
 #include "ibl/levels.glsl"
+#include "ibl/listed_lights.glsl"
 #include "ibl/lobe.glsl"
 #include "ibl/octahedral.glsl"
-#include "ibl/small_lights.glsl"
+#include "ibl/shared_exponent.glsl"
 
 // Prefilters a pair of levels for the specular lobe, an odd one and the even one after it, which have the same size: the
 // mean of radiance weighted by K = D V NoL with n = v (Karis 2013). Both read the same samples, with weights of their own;
@@ -16,7 +16,6 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 // A uniform block: a software device reads a storage buffer separately for each invocation of a group.
 layout(set = SET_TASK, binding = BINDING_LOBE, scalar) uniform Source { Lobe lobe; };
-layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
 
 struct Radiances {
     vec3 even;
@@ -42,7 +41,7 @@ void add_small_lights(vec3 n, inout Radiances to) {
     vec2 alpha = alpha_of_lobes(task.level);
     vec2 scale = 1.0 / max(lobe.integral, vec2(1e-30));
     for (uint i = 0u; i < listed_lights(); ++i) {
-        SmallLight light = small_lights[i];
+        SmallLight light = listed.lights[i];
         vec3 chord = light.direction - n;
         float x = 0.25 * dot(chord, chord);   // not 1 - NoL, which loses its digits where a narrow lobe needs them
         float even = lobe_weight(x, sqrt(alpha.x * alpha.x + light.spread));
@@ -53,7 +52,7 @@ void add_small_lights(vec3 n, inout Radiances to) {
 }
 
 void store(Tile tile, ivec2 within, vec3 radiance) {
-    imageStore(target, ivec3(ivec2(floor(tile.corner)) + within, 0), vec4(rounded_to_half(radiance), 1.0));
+    store_texel(ivec2(floor(tile.corner)) + within, SPECULAR_WIDTH, radiance);
 }
 
 // The mirror: the mean of 2 x 2 points of the texel, which may be larger than one of the source.

@@ -7,7 +7,7 @@
 #include "ibl/filter.glsl"
 #include "ibl/half.glsl"
 #include "ibl/levels.glsl"
-#include "ibl/small_lights.glsl"
+#include "ibl/listed_lights.glsl"
 
 // Prefilters one level for sheen: the mean of radiance weighted by K = f NoL of the selected sheen, with N = V = R
 // (Karis 2013, as ibl/prefilter.comp does for GGX). K is brdf/sheen.glsl's, so it follows an edit there.
@@ -43,8 +43,8 @@ vec4 filtered_mean(vec3 n, float roughness) {
 vec3 small_light_sum(vec3 n, float roughness) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < listed_lights(); ++i) {
-        float n_dot_l = dot(small_lights[i].direction, n);
-        if (n_dot_l > 0.0) sum += small_lights[i].intensity * lobe_weight(n_dot_l, roughness);
+        float n_dot_l = dot(listed.lights[i].direction, n);
+        if (n_dot_l > 0.0) sum += listed.lights[i].intensity * lobe_weight(n_dot_l, roughness);
     }
     return sum;
 }

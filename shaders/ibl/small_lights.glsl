@@ -19,28 +19,15 @@ struct SmallLight {
 };
 
 // One buffer for the whole bake, zeroed at its start.
-layout(set = SET_TASK, binding = BINDING_RESULTS, scalar) buffer Results {
+struct SmallLightList {
     uint brightness_count[BRIGHTNESS_STEPS];   // histogram of level 0 by brightness_step
-    uint small_light_count;
-    SmallLight small_lights[LARGEST_COUNT];
+    uint count;                                // can exceed the list, see brightness_limit
+    SmallLight lights[LARGEST_COUNT];
 };
 
 // Half octaves: step 32 starts at 1, step 63 ends at the largest half float. 1e-9 falls into step 0.
 uint brightness_step(float brightness) {
     return uint(clamp(int(floor(2.0 * log2(max(brightness, 1e-9)))) + 32, 0, int(BRIGHTNESS_STEPS) - 1));
 }
-
-// The lowest limit with at most LARGEST_COUNT texels above it.
-float brightness_limit() {
-    uint lowest = BRIGHTNESS_STEPS;
-    for (uint above = 0u; lowest > 0u; --lowest) {
-        above += brightness_count[lowest - 1u];
-        if (above > LARGEST_COUNT) break;
-    }
-    return exp2(0.5 * (float(lowest) - 32.0));
-}
-
-// The counter can exceed the list, since the rounding of the logarithm may let more texels pass.
-uint listed_lights() { return min(small_light_count, LARGEST_COUNT); }
 
 #endif

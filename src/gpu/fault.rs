@@ -71,7 +71,7 @@ pub fn delay(name: &str) {
 static LOST: AtomicBool = AtomicBool::new(false);
 
 /// Carries out the fault `by-name` for a new shader module.
-pub(super) fn take_module(spirv: &[u32]) {
+pub(crate) fn take_module(spirv: &[u32]) {
     if value("by-name").is_none() {
         return;
     }

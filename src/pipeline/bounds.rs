@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Gpu, GpuError, ShaderModule};
+use crate::gpu::{Gpu, GpuError, ShaderModule, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
@@ -63,6 +63,7 @@ pub(super) fn shader_module(
     };
     let is_bounded = loops::bound(&mut words, spirv, &bounds);
     let specialized = words.len();
+    fault::take_module(&words);
     let words = optimize(words);
     tracing::debug!(
         "{path}: {specialized} words, optimized {}, {}",

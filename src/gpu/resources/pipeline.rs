@@ -28,9 +28,8 @@ impl ShaderModule {
     /// # Errors
     /// The driver rejects the module or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, name: &str, spirv: &[u32], names_loops: bool) -> Result<Arc<Self>, GpuError> {
-        fault::take_module(spirv);
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
-        // SAFETY: the words come from shaderc and `shader::specialize`, whose output is valid SPIR-V.
+        // SAFETY: the words come from shaderc and `shader::spirv`, whose output is valid SPIR-V.
         let raw = unsafe { gpu.device.create_shader_module(&info, None) };
         let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
         gpu.name(raw, name);

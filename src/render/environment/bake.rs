@@ -4,19 +4,21 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::cancel::wait_unless;
+use rayon::prelude::*;
+
+use crate::cancel::Running;
 use crate::disk_cache;
 use crate::frame::stages::{CUBE, PREFILTER, PREFILTER_SHEEN};
 use crate::frame::{BakeStage, EnvironmentKey, LARGEST_HALF};
-use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, fault, vk};
+use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, fault, vk};
 use crate::interface::{IRRADIANCE_SIDE, SPECULAR_HEIGHT, SPECULAR_LEVELS, SPECULAR_WIDTH};
 use crate::pipeline::PipelineSet;
 use crate::scene::{EnvironmentError, EnvironmentFile};
 
 use crate::render::compute;
-use crate::render::environment::maps::{BakeReport, GpuEnvironment, HALF, Prefiltered, Radiance};
+use crate::render::environment::maps::{BakeReport, GpuEnvironment, HALF, Prefiltered, Radiance, SHARED_EXPONENT};
 use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, small_lights, small_lights_size};
-use crate::render::environment::{shared_exponent, transfer};
+use crate::render::environment::transfer;
 
 const CUBE_SIDE: u32 = 512;
 const CUBE_LEVELS: u32 = 10;
@@ -29,7 +31,7 @@ const LARGEST_RANGE: f32 = 4096.0;
 /// Width and height of the image of all specular levels.
 const SPECULAR_SIZE: [u32; 2] = [SPECULAR_WIDTH, SPECULAR_HEIGHT];
 /// Samples per texel of the mirror and of each pair of levels that share their samples. Rougher lobes need more samples and have fewer texels.
-const SPECULAR_SAMPLES: [u32; SPECULAR_LEVELS as usize / 2 + 1] = [1, 20, 48, 80, 104, 136, 192, 288, 400];
+const SPECULAR_SAMPLES: [u32; SPECULAR_LEVELS as usize / 2 + 1] = [1, 20, 56, 104, 136, 168, 208, 288, 400];
 
 /// Why a bake failed.
 #[derive(Debug, thiserror::Error)]
@@ -120,12 +122,11 @@ impl Bake<'_> {
         Passes { gpu: self.gpu, layouts: &self.set.layouts, set: self.set, small_lights }
     }
 
-    /// Creates the pipelines of a part, which counts as a time of its own.
+    /// Creates the pipelines of these stages, which counts as a time of its own.
     fn pipelines(&mut self, stages: &[BakeStage]) -> Result<(), BakeError> {
         let time = Instant::now();
-        for stage in stages {
-            self.set.compute(stage.stage.path.as_str(), &stage.constants)?;
-        }
+        let create = |stage: &BakeStage| self.set.compute(stage.stage.path.as_str(), &stage.constants).map(drop);
+        stages.par_iter().try_for_each(create)?;
         self.report.pipeline_ms += ms(time);
         self.report.cached = false;
         Ok(())
@@ -148,28 +149,55 @@ impl Bake<'_> {
         Image::new(self.gpu, name, ImageDesc::cube(side, levels, HALF, written()))
     }
 
-    /// An image of octahedral maps that a pass writes.
-    fn octahedral(&self, name: &str, [width, height]: [u32; 2]) -> Result<Arc<Image>, GpuError> {
-        Image::new(self.gpu, name, ImageDesc::new(width, height, HALF, written()))
+    /// An image of octahedral maps.
+    fn octahedral(&self, name: &str, size: [u32; 2]) -> Result<Arc<Image>, GpuError> {
+        Image::new(self.gpu, name, octahedral(size))
     }
 
-    /// The image of the same maps that lighting reads.
-    fn packed(&self, name: &str, [width, height]: [u32; 2]) -> Result<Arc<Image>, GpuError> {
-        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
-        Image::new(self.gpu, name, ImageDesc::new(width, height, shared_exponent::FORMAT, usage))
+    /// The buffer to which a pass writes the texels of such an image, since shaders cannot write its format.
+    fn texels(&self, image: &Image) -> Result<Arc<Buffer>, GpuError> {
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+        Buffer::new(self.gpu, "texels", image.desc().bytes(), usage, Memory::Device)
+    }
+
+    /// The cache's key of the specular levels of a map.
+    fn prefiltered_key(&self, map: u128) -> String {
+        let stages = [&*self.key.radiance, &*self.key.prefilter].concat();
+        let mut sizes = vec![CUBE_SIDE, SPECULAR_WIDTH, SPECULAR_HEIGHT];
+        sizes.extend(SPECULAR_SAMPLES);
+        key(&[map], &stages, &sizes)
+    }
+
+    /// The cache's key of the sheen levels of a map.
+    fn sheen_key(&self, map: u128) -> String {
+        let stages = [&*self.key.radiance, &*self.key.sheen].concat();
+        key(&[map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES])
+    }
+
+    /// The stages of all parts that have to be computed for a map whose radiance is not in the cache.
+    fn stages_to_run(&self, map: u128) -> Vec<BakeStage> {
+        let is_cached = |key: &str, desc: ImageDesc| self.control.from_disk && disk_cache::contains(key, desc.bytes());
+        let mut stages = self.key.radiance.clone();
+        if !is_cached(&self.prefiltered_key(map), octahedral(SPECULAR_SIZE)) {
+            stages.extend_from_slice(&self.key.prefilter);
+        }
+        if !is_cached(&self.sheen_key(map), ImageDesc::cube(SHEEN_SIDE, SHEEN_LEVELS, HALF, written())) {
+            stages.extend_from_slice(&self.key.sheen);
+        }
+        stages
     }
 
     /// The cube map, the irradiance and the small lights of the map.
     fn radiance(&mut self) -> Result<Arc<Radiance>, BakeError> {
         let time = self.begin(0.0, "reading")?;
         let name = self.key.name.clone();
-        let file = wait_unless(self.control.superseded, move || EnvironmentFile::open(&name));
+        let file = Running::start(move || EnvironmentFile::open(&name)).wait_unless(self.control.superseded);
         let file = Arc::new(file.ok_or(BakeError::Superseded)??);
         self.report.environment.clone_from(&file.name);
         let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits()];
         let disk_key = key(&[file.fingerprint], &self.key.radiance, &sizes);
         let cube = self.cube("environment", CUBE_SIDE, CUBE_LEVELS)?;
-        let irradiance = self.packed("irradiance", [IRRADIANCE_SIDE; 2])?;
+        let irradiance = self.octahedral("irradiance", [IRRADIANCE_SIDE; 2])?;
         let images = [&cube, &irradiance];
         let lights = small_lights_size(self.set);
         let bytes: u64 = images.iter().map(|image| image.desc().bytes()).sum();
@@ -183,19 +211,24 @@ impl Bake<'_> {
             let scale = bytemuck::pod_read_unaligned(scale);
             return Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights, map: file.fingerprint }));
         }
-        let decoded = file.clone();
-        let map = wait_unless(self.control.superseded, move || {
-            fault::delay("decode-delay-ms");
-            decoded.decode()
-        });
-        let map = map.ok_or(BakeError::Superseded)??;
         self.report.decode_ms = ms(time);
+        // The pipelines are created while another thread decodes.
+        let decoded = file.clone();
+        let decoding = Running::start(move || {
+            let time = Instant::now();
+            fault::delay("decode-delay-ms");
+            (decoded.decode(), ms(time))
+        });
+        self.begin(0.05, "pipelines")?;
+        self.pipelines(&self.stages_to_run(file.fingerprint))?;
+        self.begin(0.05, "decoding")?;
+        let (map, decode_ms) = decoding.wait_unless(self.control.superseded).ok_or(BakeError::Superseded)?;
+        let map = map?;
+        self.report.decode_ms += decode_ms;
         let most = self.gpu.max_image_size();
         if map.width.max(map.height) > most {
             return Err(BakeError::TooLarge(map.width, map.height, most));
         }
-        self.begin(0.05, "pipelines")?;
-        self.pipelines(&self.key.radiance.clone())?;
 
         let time = self.begin(0.1, "upload")?;
         let scale = (LARGEST_HALF / map.peak.max(LARGEST_HALF)).max(1.0 / LARGEST_RANGE);
@@ -212,16 +245,13 @@ impl Bake<'_> {
         self.report.cube_ms = ms(time);
 
         let time = self.begin(0.25, "irradiance")?;
-        let baked = self.octahedral("baked irradiance", [IRRADIANCE_SIDE; 2])?;
-        self.passes(&lights).irradiance(&cube, &baked)?;
-        let texels = shared_exponent::from_halves(&transfer::read(self.gpu, &[&baked], &[])?);
-        compute::upload(self.gpu, &[(&irradiance, &texels)])?;
+        let texels = self.texels(&irradiance)?;
+        self.passes(&lights).irradiance(&cube, &texels, &irradiance)?;
         self.report.irradiance_ms = ms(time);
 
         let time = Instant::now();
-        let mut entry = transfer::read(self.gpu, &[&cube], &[])?;
-        entry.extend(texels);
-        entry.extend(transfer::read(self.gpu, &[], std::slice::from_ref(&lights))?);
+        let buffers = [(&texels, texels.size()), (&lights, lights.size())];
+        let mut entry = transfer::read(self.gpu, &[&cube], &buffers)?;
         entry.extend(f32::to_ne_bytes(scale));
         disk_cache::store(&disk_key, &entry);
         self.storing_ms += ms(time);
@@ -230,11 +260,8 @@ impl Bake<'_> {
 
     /// The levels of the specular lobe.
     fn prefiltered(&mut self, radiance: &Radiance) -> Result<Arc<Prefiltered>, BakeError> {
-        let stages = [&*self.key.radiance, &*self.key.prefilter].concat();
-        let mut sizes = vec![CUBE_SIDE, SPECULAR_WIDTH, SPECULAR_HEIGHT];
-        sizes.extend(SPECULAR_SAMPLES);
-        let disk_key = key(&[radiance.map], &stages, &sizes);
-        let levels = self.packed("specular levels", SPECULAR_SIZE)?;
+        let disk_key = self.prefiltered_key(radiance.map);
+        let levels = self.octahedral("specular levels", SPECULAR_SIZE)?;
         if let Some(entry) = self.cached(&disk_key, levels.desc().bytes()) {
             self.fill(&[&levels], &entry)?;
             return Ok(Arc::new(Prefiltered { levels, wrong: false }));
@@ -245,7 +272,7 @@ impl Bake<'_> {
         let time = self.begin(0.3, "reflections")?;
         let [lobe, prefilter] = &*self.key.prefilter else { return Err(GpuError::NoStage(PREFILTER.into()).into()) };
         let lobes = Lobes::new(self.set, lobe, &SPECULAR_SAMPLES)?;
-        let baked = self.octahedral("baked levels", SPECULAR_SIZE)?;
+        let texels = self.texels(&levels)?;
         self.passes(lights).lobes(lobe, &lobes, &radiance.cube)?;
         // A software device prefilters one pair per submission, so that frames run in between. A GPU is fast enough for all.
         let count = SPECULAR_SAMPLES.len();
@@ -253,17 +280,13 @@ impl Bake<'_> {
         for first in (0..count).step_by(at_once) {
             self.begin(0.3 + 0.6 * first as f32 / count as f32, "reflections")?;
             let part = first as u32..(first + at_once).min(count) as u32;
-            self.passes(lights).specular(prefilter, &radiance.cube, &lobes, &baked, part)?;
+            self.passes(lights).specular(prefilter, &radiance.cube, &lobes, &texels, part)?;
         }
-        let read = transfer::read(self.gpu, &[&baked], &lobes.buffers)?;
-        let (texels, lobe_bytes) = read.split_at(baked.desc().bytes() as usize);
-        let texels = shared_exponent::from_halves(texels);
-        compute::upload(self.gpu, &[(&levels, &texels)])?;
+        let wrong = self.passes(lights).finish_specular(&lobes, &texels, &levels)?;
         self.report.prefilter_ms = ms(time);
         let time = Instant::now();
-        let wrong = lobes.wrong(lobe_bytes);
         if !wrong {
-            disk_cache::store(&disk_key, &texels);
+            disk_cache::store(&disk_key, &transfer::read(self.gpu, &[], &[(&texels, texels.size())])?);
         }
         self.storing_ms += ms(time);
         Ok(Arc::new(Prefiltered { levels, wrong }))
@@ -271,8 +294,7 @@ impl Bake<'_> {
 
     /// The levels of the sheen lobe.
     fn sheen(&mut self, radiance: &Radiance) -> Result<Arc<Image>, BakeError> {
-        let stages = [&*self.key.radiance, &*self.key.sheen].concat();
-        let disk_key = key(&[radiance.map], &stages, &[CUBE_SIDE, SHEEN_SIDE, SHEEN_SAMPLES]);
+        let disk_key = self.sheen_key(radiance.map);
         let image = self.cube("prefiltered sheen", SHEEN_SIDE, SHEEN_LEVELS)?;
         if let Some(entry) = self.cached(&disk_key, image.desc().bytes()) {
             self.fill(&[&image], &entry)?;
@@ -295,6 +317,12 @@ impl Bake<'_> {
 fn written() -> vk::ImageUsageFlags {
     use vk::ImageUsageFlags as Usage;
     Usage::STORAGE | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST
+}
+
+/// Octahedral maps that lighting samples.
+fn octahedral([width, height]: [u32; 2]) -> ImageDesc {
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+    ImageDesc::new(width, height, SHARED_EXPONENT, usage)
 }
 
 /// The cache key of a part: a hash of the map, of the modules of its stages, and of sizes and sample counts.

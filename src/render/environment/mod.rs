@@ -3,5 +3,4 @@
 pub(super) mod bake;
 pub(super) mod maps;
 mod passes;
-mod shared_exponent;
 mod transfer;

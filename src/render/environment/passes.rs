@@ -5,14 +5,15 @@ use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, SetLayouts, SetWriter, Use, one_shot, vk};
 use crate::interface::{
-    BINDING_LEVEL_ABOVE, BINDING_LOBE, BINDING_LOBE_TARGET, BINDING_RESULTS, BINDING_SOURCE, BINDING_SOURCE_CUBE,
-    BINDING_TARGET, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
+    BINDING_LEVEL_ABOVE, BINDING_LOBE, BINDING_LOBE_TARGET, BINDING_PACKED, BINDING_RESULTS, BINDING_SMALL_LIGHTS,
+    BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
 };
 
 use crate::frame::BakeStage;
 use crate::frame::stages::{CUBE, DOWNSAMPLE, IRRADIANCE};
 use crate::pipeline::PipelineSet;
 use crate::render::compute;
+use crate::render::environment::transfer;
 
 /// Level of the cube that irradiance is summed over: 16 x 16 texels.
 pub(crate) const IRRADIANCE_LEVEL: u32 = 5;
@@ -33,7 +34,8 @@ pub(crate) fn small_lights_size(set: &PipelineSet) -> u64 {
 /// The buffer of ibl/small_lights.glsl with these bytes; zeros for a new bake.
 pub(crate) fn small_lights(gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<Arc<Buffer>, GpuError> {
     use vk::BufferUsageFlags as Usage;
-    let (size, usage) = (bytes.len() as u64, Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST);
+    let size = bytes.len() as u64;
+    let usage = Usage::STORAGE_BUFFER | Usage::UNIFORM_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
     let results = Buffer::new(gpu, "small lights", size, usage, Memory::Device)?;
     let staging = Buffer::new(gpu, "staging", size, Usage::TRANSFER_SRC, Memory::Upload)?;
     staging.write(0, bytes);
@@ -73,12 +75,6 @@ impl<'a> Lobes<'a> {
         let buffers = samples.iter().map(|_| Buffer::new(&set.gpu, "lobe", size, usage, Memory::Device));
         Ok(Self { buffers: buffers.collect::<Result<_, _>>()?, samples })
     }
-
-    /// Whether D or V returned wrong values in one of the pairs: the first word of a buffer. `bytes`: content of all buffers.
-    pub(crate) fn wrong(&self, bytes: &[u8]) -> bool {
-        let lobes = bytes.chunks_exact((bytes.len() / self.samples.len()).max(4)).skip(1);
-        lobes.filter_map(|lobe| lobe.get(..4)).any(|word| word.iter().any(|byte| *byte != 0))
-    }
 }
 
 /// The arguments of all passes.
@@ -86,14 +82,14 @@ pub(crate) struct Passes<'a> {
     pub(crate) gpu: &'a Arc<Gpu>,
     pub(crate) layouts: &'a Arc<SetLayouts>,
     pub(crate) set: &'a PipelineSet,
-    /// `BINDING_RESULTS`: one pass stores here what the following ones read, see ibl/small_lights.glsl.
+    /// `cube` lists them, all other passes read the list: ibl/small_lights.glsl.
     pub(crate) small_lights: &'a Arc<Buffer>,
 }
 
 impl Passes<'_> {
-    /// Binds the level that a pass writes, and the small lights.
-    fn to(&self, writer: SetWriter, image: &Arc<Image>, level: u32) -> SetWriter {
-        writer.storage_level(BINDING_TARGET, image, level).buffer(BINDING_RESULTS, self.small_lights)
+    /// Binds the list of small lights for a pass that reads it.
+    fn lit(&self, writer: SetWriter) -> SetWriter {
+        writer.buffer(BINDING_SMALL_LIGHTS, self.small_lights)
     }
 
     /// Resamples the map to level 0, then each level from the level above. Leaves the cube in [`Use::Sampled`].
@@ -111,8 +107,10 @@ impl Passes<'_> {
             ..Task::default()
         };
         let bind = |task: &Task, more: &dyn Fn(SetWriter) -> SetWriter| {
-            let writer = |writer| more(self.to(writer, cube, task.level));
-            compute::bindings(self.gpu, self.layouts, task, writer)
+            compute::bindings(self.gpu, self.layouts, task, |writer| {
+                let writer = writer.storage_level(BINDING_TARGET, cube, task.level);
+                more(writer.buffer(BINDING_RESULTS, self.small_lights))
+            })
         };
         let mut dispatches = vec![(
             self.set.compute(CUBE, &Vec::new())?,
@@ -138,19 +136,20 @@ impl Passes<'_> {
     }
 
     /// Integrates the radiance of the cube over the hemisphere of each normal. Leaves both images in [`Use::Sampled`].
-    pub(crate) fn irradiance(&self, cube: &Arc<Image>, to: &Arc<Image>) -> Result<(), GpuError> {
+    pub(crate) fn irradiance(&self, cube: &Arc<Image>, texels: &Arc<Buffer>, to: &Arc<Image>) -> Result<(), GpuError> {
         let side = to.desc().width;
         let task = Task { size: [side; 2], levels: 1, ..Task::default() };
         let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-            self.to(writer, to, 0).storage_level(BINDING_LEVEL_ABOVE, cube, IRRADIANCE_LEVEL)
+            let writer = writer.storage_level(BINDING_LEVEL_ABOVE, cube, IRRADIANCE_LEVEL);
+            self.lit(writer.buffer(BINDING_PACKED, texels))
         })?;
         let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
         one_shot(self.gpu, |encoder| {
-            encoder.transition(to, Use::Undefined, Use::Storage);
             encoder.transition(cube, Use::Sampled, Use::Storage);
             encoder.dispatch(self.layouts, &pipeline, &[&bindings], compute::groups(side, to.desc().layers));
             encoder.transition(cube, Use::Storage, Use::Sampled);
-            encoder.transition(to, Use::Storage, Use::Sampled);
+            encoder.computed();
+            transfer::fill_from(encoder, texels, to);
             Ok(())
         })
     }
@@ -175,13 +174,13 @@ impl Passes<'_> {
         })
     }
 
-    /// Prefilters `pairs` of levels of the specular lobe. The last pair leaves the image in [`Use::Sampled`].
+    /// Prefilters `pairs` of levels of the specular lobe.
     pub(crate) fn specular(
         &self,
         stage: &BakeStage,
         cube: &Arc<Image>,
         lobes: &Lobes<'_>,
-        to: &Arc<Image>,
+        texels: &Arc<Buffer>,
         pairs: Range<u32>,
     ) -> Result<(), GpuError> {
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
@@ -193,22 +192,34 @@ impl Passes<'_> {
             let task = Task { size: [side; 2], level, samples: *samples, ..Task::default() };
             let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
                 let writer = writer.texture(BINDING_SOURCE_CUBE, cube, &sampler).buffer(BINDING_LOBE, buffer);
-                self.to(writer, to, 0)
+                self.lit(writer.buffer(BINDING_PACKED, texels))
             })?;
             dispatches.push((bindings, compute::groups(side, 1)));
         }
         one_shot(self.gpu, |encoder| {
-            if pairs.start == 0 {
-                encoder.transition(to, Use::Undefined, Use::Storage);
-            }
             for (bindings, groups) in &dispatches {
                 encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
             }
-            if pairs.end as usize == lobes.samples.len() {
-                encoder.transition(to, Use::Storage, Use::Sampled);
-            }
+            encoder.computed();
             Ok(())
         })
+    }
+
+    /// Copies the texels of all levels to their image, and leaves it in [`Use::Sampled`]. Returns whether D or V returned wrong
+    /// values for one of the pairs.
+    pub(crate) fn finish_specular(
+        &self,
+        lobes: &Lobes<'_>,
+        texels: &Arc<Buffer>,
+        to: &Arc<Image>,
+    ) -> Result<bool, GpuError> {
+        one_shot(self.gpu, |encoder| {
+            transfer::fill_from(encoder, texels, to);
+            Ok(())
+        })?;
+        // The first word of a buffer, `wrong` in ibl/lobe.glsl. The mirror has no lobe.
+        let flags: Vec<_> = lobes.buffers.iter().skip(1).map(|buffer| (buffer, 4)).collect();
+        Ok(transfer::read(self.gpu, &[], &flags)?.iter().any(|byte| *byte != 0))
     }
 
     /// Prefilters all levels for sheen. Leaves the image in [`Use::Sampled`].
@@ -227,7 +238,8 @@ impl Passes<'_> {
             let side = (desc.width >> level).max(1);
             let task = Task { size: [side; 2], level, levels: desc.mips, samples, ..Task::default() };
             let bindings = compute::bindings(self.gpu, self.layouts, &task, |writer| {
-                self.to(writer.texture(BINDING_SOURCE_CUBE, cube, &sampler), to, level)
+                let writer = writer.texture(BINDING_SOURCE_CUBE, cube, &sampler);
+                self.lit(writer.storage_level(BINDING_TARGET, to, level))
             })?;
             dispatches.push((bindings, compute::groups(side, desc.layers)));
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory, Use, one_shot, vk};
+use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, one_shot, vk};
 
 use crate::render::compute;
 
@@ -18,10 +18,22 @@ pub(super) fn fill(gpu: &Arc<Gpu>, images: &[&Arc<Image>], bytes: &[u8]) -> Resu
     compute::upload(gpu, &parts)
 }
 
-/// Reads back the images, which are in [`Use::Sampled`], one after the other, then the buffers.
-pub(super) fn read(gpu: &Arc<Gpu>, images: &[&Arc<Image>], buffers: &[Arc<Buffer>]) -> Result<Vec<u8>, GpuError> {
+/// Copies texels that shaders wrote to a buffer into an image, and leaves it in [`Use::Sampled`]. The caller has recorded
+/// [`Encoder::computed`].
+pub(super) fn fill_from(encoder: &mut Encoder, texels: &Arc<Buffer>, to: &Arc<Image>) {
+    encoder.transition(to, Use::Undefined, Use::CopyTo);
+    encoder.copy_to_image(texels, 0, to);
+    encoder.transition(to, Use::CopyTo, Use::Sampled);
+}
+
+/// Reads back the images, which are in [`Use::Sampled`], one after the other, then the first bytes of each buffer.
+pub(super) fn read(
+    gpu: &Arc<Gpu>,
+    images: &[&Arc<Image>],
+    buffers: &[(&Arc<Buffer>, u64)],
+) -> Result<Vec<u8>, GpuError> {
     let size = |image: &&Arc<Image>| image.desc().bytes();
-    let bytes = images.iter().map(size).sum::<u64>() + buffers.iter().map(|buffer| buffer.size()).sum::<u64>();
+    let bytes = images.iter().map(size).sum::<u64>() + buffers.iter().map(|(_, bytes)| bytes).sum::<u64>();
     let out = Buffer::new(gpu, "baked", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;
     one_shot(gpu, |encoder| {
         let mut at = 0;
@@ -31,9 +43,9 @@ pub(super) fn read(gpu: &Arc<Gpu>, images: &[&Arc<Image>], buffers: &[Arc<Buffer
             encoder.transition(image, Use::CopyFrom, Use::Sampled);
             at += size(image);
         }
-        for buffer in buffers {
-            encoder.copy_buffer(buffer, 0, &out, at, buffer.size());
-            at += buffer.size();
+        for (buffer, bytes) in buffers {
+            encoder.copy_buffer(buffer, 0, &out, at, *bytes);
+            at += bytes;
         }
         encoder.copies_done();
         Ok(())

@@ -1,8 +1,10 @@
-//! Reads Radiance HDR (RGBE) with the `image` crate: flat pixels, old and new run lengths; rows from top to bottom.
+//! Reads Radiance HDR (RGBE): flat pixels, old and new run lengths; rows from top to bottom. The `image` crate reads the header
+//! and all that is unusual. Rows with new run lengths, which nearly all files have, are decoded here, in parallel.
 
 use image::ImageDecoder;
 use image::codecs::hdr::{HdrDecoder, HdrMetadata};
 use image::error::{ImageError, UnsupportedErrorKind};
+use rayon::prelude::*;
 
 use super::error::EnvironmentProblem as Problem;
 use super::float_image::{Decoded, check_size};
@@ -10,34 +12,104 @@ use super::float_image::{Decoded, check_size};
 /// Decodes a whole file.
 pub fn decode(bytes: &[u8]) -> Result<Decoded, Problem> {
     // Non-strict: the strict decoder refuses files that begin with `#?RGBE`, which are common.
-    let decoder = HdrDecoder::new_nonstrict(bytes).map_err(problem)?;
-    let metadata = decoder.metadata();
+    let mut after_header = bytes;
+    let metadata = HdrDecoder::new_nonstrict(&mut after_header).map_err(problem)?.metadata();
     let (columns, rows) = (u64::from(metadata.width), u64::from(metadata.height));
     let (width, height) = check_size(columns, rows, least_bytes(columns, rows), bytes.len())?;
 
-    // The decoder writes three floats a pixel. They go to the front of the final buffer and are spread out in place
-    // from the back: a second buffer for the largest image would take 1.5 GiB.
-    let count = width as usize * height as usize;
-    let mut pixels = vec![[0.0_f32; 4]; count];
-    let floats: &mut [f32] = pixels.as_flattened_mut();
-    decoder.read_image(bytemuck::cast_slice_mut(&mut floats[..3 * count])).map_err(problem)?;
-    for pixel in (0..count).rev() {
-        let [r, g, b] = [floats[3 * pixel], floats[3 * pixel + 1], floats[3 * pixel + 2]];
-        floats[4 * pixel..4 * pixel + 4].copy_from_slice(&[r, g, b, 1.0]);
+    let (width_usize, height_usize) = (width as usize, height as usize);
+    let mut pixels = vec![[0.0_f32; 4]; width_usize * height_usize];
+    let factors = recorded_factors(&metadata)?;
+    match run_length_rows(after_header, width_usize, height_usize) {
+        Some(rows) => pixels.par_chunks_exact_mut(width_usize).zip(rows).for_each(|(to, row)| decode_row(row, to)),
+        None => decode_unusual(bytes, &mut pixels)?,
     }
     let mut warnings = Vec::new();
-    if let Some(factors) = recorded_factors(&metadata)? {
-        for pixel in &mut pixels {
-            for (value, factor) in pixel.iter_mut().zip(factors) {
-                *value /= factor;
-            }
-        }
-        let [r, g, b] = factors;
+    if let Some([r, g, b]) = factors {
+        pixels.par_iter_mut().for_each(|pixel| *pixel = [pixel[0] / r, pixel[1] / g, pixel[2] / b, pixel[3]]);
         warnings.push(format!(
             "the header says that the pixels were multiplied by {r} {g} {b} (EXPOSURE, COLORCORR); Specula divides by it"
         ));
     }
     Ok(Decoded { width, height, pixels, warnings })
+}
+
+/// Decodes flat pixels, old run lengths, and what is damaged, for which the decoder has the error.
+fn decode_unusual(bytes: &[u8], pixels: &mut [[f32; 4]]) -> Result<(), Problem> {
+    // The decoder writes three floats a pixel. They go to the front of the final buffer and are spread out in place
+    // from the back: a second buffer for the largest image would take 1.5 GiB.
+    let count = pixels.len();
+    let floats: &mut [f32] = pixels.as_flattened_mut();
+    let decoder = HdrDecoder::new_nonstrict(bytes).map_err(problem)?;
+    decoder.read_image(bytemuck::cast_slice_mut(&mut floats[..3 * count])).map_err(problem)?;
+    for pixel in (0..count).rev() {
+        let [r, g, b] = [floats[3 * pixel], floats[3 * pixel + 1], floats[3 * pixel + 2]];
+        floats[4 * pixel..4 * pixel + 4].copy_from_slice(&[r, g, b, 1.0]);
+    }
+    Ok(())
+}
+
+/// A run of one component: a count above this repeats the byte that follows, count - 128 times; others copy count bytes.
+const LONGEST_COPY: u8 = 128;
+
+/// The runs of each row, without its four bytes 2, 2 and the width (G. Ward, "Real Pixels", Graphics Gems II, 1991, and its
+/// revision in Radiance 2). `None` if a row is not in this form, or is damaged.
+fn run_length_rows(mut rest: &[u8], width: usize, height: usize) -> Option<Vec<&[u8]>> {
+    let mut rows = Vec::with_capacity(height);
+    for _ in 0..height {
+        let ([2, 2, high, _], runs) = rest.split_first_chunk()? else { return None };
+        if *high > 127 {
+            return None;
+        }
+        let mut at = 0;
+        for _ in 0..4 {
+            let mut columns = 0;
+            while columns < width {
+                let count = *runs.get(at)?;
+                let is_copy = count <= LONGEST_COPY;
+                columns += usize::from(if is_copy { count } else { count - LONGEST_COPY });
+                at += if is_copy { 1 + usize::from(count) } else { 2 };
+            }
+            if columns != width {
+                return None;
+            }
+        }
+        rows.push(runs.get(..at)?);
+        rest = &runs[at..];
+    }
+    Some(rows)
+}
+
+/// Decodes a row of [`run_length_rows`], which has as many columns as `to`.
+fn decode_row(mut runs: &[u8], to: &mut [[f32; 4]]) {
+    let mut rgbe = vec![[0_u8; 4]; to.len()];
+    for component in 0..4 {
+        let mut column = 0;
+        while column < to.len() {
+            let (count, after) = (runs[0], &runs[1..]);
+            let is_copy = count <= LONGEST_COPY;
+            let columns = usize::from(if is_copy { count } else { count - LONGEST_COPY });
+            let pixels = &mut rgbe[column..column + columns];
+            if is_copy {
+                pixels.iter_mut().zip(after).for_each(|(pixel, byte)| pixel[component] = *byte);
+            } else {
+                pixels.iter_mut().for_each(|pixel| pixel[component] = after[0]);
+            }
+            runs = &after[if is_copy { columns } else { 1 }..];
+            column += columns;
+        }
+    }
+    for (pixel, [r, g, b, e]) in to.iter_mut().zip(rgbe) {
+        let scale = scale_of_exponent(e);
+        *pixel = [f32::from(r) * scale, f32::from(g) * scale, f32::from(b) * scale, 1.0];
+    }
+}
+
+/// 2^(e - 128 - 8); 0 stands for black.
+fn scale_of_exponent(e: u8) -> f32 {
+    // 2^(e - 128) in a float's exponent bits; that of e = 1 is below the smallest normal float.
+    let bits = if e > 1 { (u32::from(e) - 1) << 23 } else { u32::from(e) << 22 };
+    f32::from_bits(bits) / 256.0
 }
 
 /// The smallest possible size. A row with new run lengths takes 4 bytes, and 2 for each run of 127 in each of 4
