@@ -169,3 +169,67 @@ fn composites_are_read_and_written_in_parts() {
         },
     );
 }
+
+/// Code that folding cuts off: back edges of loops, dead ends behind returns.
+#[test]
+fn what_is_decided_early_leaves_the_rest() {
+    let mut session = session();
+    assert_computes(
+        &mut session,
+        "float sum(float x, int k, bool once) {
+            float s = 0.0;
+            for (int i = 0; i < k; ++i) { s += x + float(i); if (once) break; }
+            return s;
+         }
+         float program(int k, float x) { return sum(x, k, true) * 0.25 + sum(x, k, false); }",
+        |k, x| (0..k.min(1)).map(|_| x).sum::<f32>() * 0.25 + (0..k).map(|i| x + i as f32).sum::<f32>(),
+    );
+    assert_computes(
+        &mut session,
+        "float sum(float x, int k, int mode) {
+            float s = 0.0;
+            for (int i = 0; i < 8; i += (x > 2.0 && k > 1) ? 1 : 2) {
+                s += x;
+                if (mode == 3) { s += 1.0; break; } else if (mode == 4) continue;
+                s += 2.0;
+            }
+            return s;
+         }
+         float program(int k, float x) { return sum(x, k, 3) + sum(x, k, 4) + sum(x, k, 5); }",
+        |k, x| {
+            let rounds = if x > 2.0 && k > 1 { 8.0 } else { 4.0 };
+            (x + 1.0) + rounds * x + rounds * (x + 2.0)
+        },
+    );
+    // Both ways return, so that what follows is unreachable, behind a loop that counts its rounds
+    assert_computes(
+        &mut session,
+        "float f(inout vec2 c, int k, float x) {
+            for (int i = 0; i < k; ++i) c.x += x;
+            if (k > 3) { c.y = 1.0; return 2.0; } else { c.y = 3.0; return 4.0; }
+         }
+         float program(int k, float x) { vec2 c = vec2(x); float r = f(c, k, x); return r * 8.0 + c.x + c.y; }",
+        |k, x| if k > 3 { 17.0 } else { 35.0 } + (k + 1) as f32 * x,
+    );
+    // Indices and lengths that only constants know, and values without an initial value
+    assert_computes(
+        &mut session,
+        "#extension GL_EXT_null_initializer : enable
+         layout(constant_id = USER_CONSTANTS + 16) const int HALF = 4;   //@ui \"Half\" 0..8
+         struct Pair { float a; vec2 b[2]; };
+         Pair pair = {};
+         float program(int k, float x) {
+            float a[HALF / 2];
+            a[0] = x;
+            a[1] = float(k);
+            if (k > 2) { a[1] += 1.0; pair.a += x; }
+            Pair other = {};
+            other.b[1].y += x;
+            return a[0] + a[HALF / 4] * 8.0 + pair.a * 0.25 + pair.b[0].x + other.b[1].y * 0.5 + other.a;
+         }",
+        |k, x| {
+            let more = if k > 2 { (1.0, x) } else { (0.0, 0.0) };
+            x + (k as f32 + more.0) * 8.0 + more.1 * 0.25 + x * 0.5
+        },
+    );
+}

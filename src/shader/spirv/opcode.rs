@@ -50,6 +50,7 @@ pub const COMPOSITE_CONSTRUCT: u32 = 80;
 pub const COMPOSITE_EXTRACT: u32 = 81;
 pub const COMPOSITE_INSERT: u32 = 82;
 pub const COPY_OBJECT: u32 = 83;
+pub const SAMPLED_IMAGE: u32 = 86;
 pub const IADD: u32 = 128;
 pub const ISUB: u32 = 130;
 pub const LOGICAL_AND: u32 = 167;

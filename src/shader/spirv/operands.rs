@@ -5,7 +5,7 @@ use super::opcode as op;
 /// Whether word `at` of an instruction is an id (SPIR-V specification, section 3.52); `None` if the instruction is unknown.
 pub(super) fn is_id(i: &[u32], at: usize) -> Option<bool> {
     let all = usize::MAX;
-    // How many words are ids before the first literal. After it come more literals, unless said otherwise.
+    // How many words are ids. The words behind them are literals.
     let leading = match i[0] & 0xffff {
         // The model, then the function.
         op::ENTRY_POINT => return Some(at == 2),

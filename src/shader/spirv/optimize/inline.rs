@@ -86,7 +86,7 @@ fn returns(function: &Function) -> Returns {
 
 struct Inliner<'a> {
     module: &'a mut Module,
-    /// Functions without calls that could be inlined.
+    /// Functions in which calls have been inlined.
     callees: HashMap<Id, Rc<Callee>>,
     /// The ids of the current callee in its caller; 0 for those of the module. Those of other callees may be left.
     ids: Vec<Id>,

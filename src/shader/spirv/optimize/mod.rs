@@ -3,8 +3,7 @@
 //!
 //! A driver does the same, but the time it takes follows the words and the memory traffic that it is given: on NVIDIA, half of
 //! the time of a pipeline goes into what glslang leaves undone. SPIRV-Tools' optimizer needs as much time as it saves. This one
-//! does only what pays: it keeps the structure of control flow, moves no code, and does no arithmetic on floats, so that
-//! results are the same bits.
+//! does only what pays: it keeps the structure of control flow, moves no code, and does no arithmetic on floats.
 
 mod dead;
 mod graph;
@@ -14,6 +13,7 @@ mod promote;
 mod simplify;
 mod tidy;
 
+use foldhash::{HashSet, HashSetExt};
 use module::Module;
 
 use super::specialize::control_flow::Function;
@@ -30,6 +30,8 @@ pub fn optimize(words: Vec<u32>) -> Vec<u32> {
 fn optimized(words: &[u32]) -> Option<Vec<u32>> {
     let mut module = Module::parse(words)?;
     for function in &mut module.functions {
+        // Unreachable blocks still lead to others, whose phis would lack them.
+        function.drop_unreached(&mut HashSet::new());
         // A switch that a constant decided would keep a function from being inlined.
         tidy::tidy(function);
     }
@@ -50,6 +52,7 @@ fn reduce(module: &mut Module, function: &mut Function, with_private: bool) {
     simplify::simplify(module, function);
     // Values of parameters decide branches.
     tidy::fold(module, function);
+    tidy::drop_single_phis(module, function);
     dead::drop_unused(module, function);
     tidy::tidy(function);
 }

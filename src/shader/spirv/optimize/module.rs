@@ -11,14 +11,26 @@ use crate::shader::spirv::specialize::{
 
 /// Place of the bound on ids in a module's header.
 const BOUND: usize = 3;
-/// The word after an entry point's name that ends it has a zero byte.
-const INTERFACE: usize = 3;
+/// Place of an entry point's name, before its interface.
+const NAME: usize = 3;
+
+/// Bits of a memory access.
+const MAKE_AVAILABLE: u32 = 8;
+const MAKE_VISIBLE: u32 = 16;
+/// Decorations.
+const BUILT_IN: u32 = 11;
+const VOLATILE: u32 = 21;
+const COHERENT: u32 = 23;
+/// A constant that counts even if nothing uses it.
+const WORKGROUP_SIZE: u32 = 25;
+/// The name of the only set of extended instructions that is known here.
+const EXTENDED: &[u8] = b"GLSL.std.450\0";
 
 /// A type, as far as values are concerned.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Type {
     Struct(Vec<Id>),
-    /// Element and length.
+    /// Element and length; 0 if the length is not known.
     Array(Id, u32),
     /// Component, or column, and their number.
     Vector(Id, u32),
@@ -46,6 +58,8 @@ pub(super) struct Module {
     /// Decorations of ids that functions define.
     decorations: HashMap<Id, Vec<Instruction>>,
     undefined: HashMap<Id, Id>,
+    /// Whether a buffer is volatile or coherent: others may write it meanwhile.
+    pub(super) has_shared_memory: bool,
 }
 
 impl Module {
@@ -70,13 +84,32 @@ impl Module {
             replaced: vec![0; bound],
             decorations: HashMap::new(),
             undefined: HashMap::new(),
+            has_shared_memory: false,
         };
+        let is_sound = |i: &&[u32]| {
+            let is_target = matches!(opcode(i), op::DECORATE | op::MEMBER_DECORATE | op::TYPE_FORWARD_POINTER);
+            let mut ids = (1..i.len()).filter(|at| is_id(i, *at).unwrap_or(is_target && *at == 1)).map(|at| i[at]);
+            i.len() >= least_length(opcode(i)) && ids.all(|id| id != 0 && (id as usize) < bound)
+        };
+        if !all.iter().all(is_sound) {
+            return None;
+        }
         for i in globals {
             this.global(i)?;
         }
         let code: Vec<&[u32]> = code.iter().copied().filter(|i| !matches!(opcode(i), op::LINE | op::NO_LINE)).collect();
         for i in &code {
             is_id(i, 1)?;
+            // An OpSampledImage must stay in the block that uses it. The scopes of a memory access are ids.
+            let access = match opcode(i) {
+                op::SAMPLED_IMAGE => return None,
+                op::LOAD => i.get(4),
+                op::STORE => i.get(3),
+                _ => None,
+            };
+            if access.is_some_and(|access| access & (MAKE_AVAILABLE | MAKE_VISIBLE) != 0) {
+                return None;
+            }
             if let Some((kind, id)) = typed_result(i) {
                 *this.result_types.get_mut(id as usize)? = kind;
             }
@@ -97,8 +130,18 @@ impl Module {
         match (code, i) {
             // Source, strings and names
             (2..=8 | 317 | 330, _) => return Some(()),
-            // Ids that are given to decorations are not looked for.
-            (op::DECORATE | op::MEMBER_DECORATE | op::CAPABILITY | 10 | 14, _) => {}
+            (op::DECORATE, [_, _, kind, ..]) | (op::MEMBER_DECORATE, [_, _, _, kind, ..]) => {
+                self.has_shared_memory |= matches!(*kind, VOLATILE | COHERENT);
+            }
+            (op::EXT_INST_IMPORT, [_, _, name @ ..]) => {
+                let name: Vec<u8> = name.iter().flat_map(|word| word.to_le_bytes()).collect();
+                if !name.starts_with(EXTENDED) {
+                    return None;
+                }
+            }
+            // OpExtension, OpMemoryModel
+            (op::CAPABILITY | 10 | 14, _) => {}
+            // OpDecorateId, OpDecorateString, OpMemberDecorateString
             (332 | 5632 | 5633, _) => return None,
             // Two entry points have two interfaces.
             (op::ENTRY_POINT, [_, _, id, ..]) if self.entry == 0 => self.entry = *id,
@@ -108,9 +151,8 @@ impl Module {
                 self.types.insert(*id, Type::Vector(*of, *count));
             }
             (op::TYPE_ARRAY, [_, id, of, length]) => {
-                if let Some(length) = self.known.values.get(length) {
-                    self.types.insert(*id, Type::Array(*of, *length));
-                }
+                let length = self.known.values.get(length).copied().unwrap_or(0);
+                self.types.insert(*id, Type::Array(*of, length));
             }
             (op::TYPE_POINTER, [_, id, storage, of]) => _ = self.types.insert(*id, Type::Pointer(*storage, *of)),
             (op::CONSTANT_TRUE, [_, _, id]) => _ = self.known.values.insert(*id, 1),
@@ -264,6 +306,8 @@ impl Module {
         let all: Vec<Instruction> = std::mem::take(&mut self.globals).into_iter().chain(self.more).collect();
         let forward: Vec<Id> = all.iter().filter(|i| opcode(i) == op::TYPE_FORWARD_POINTER).map(|i| i[1]).collect();
         forward.iter().for_each(|id| used[*id as usize] = true);
+        let sizes = all.iter().filter(|i| opcode(i) == op::DECORATE && i[2..] == [BUILT_IN, WORKGROUP_SIZE]);
+        sizes.for_each(|i| used[i[1] as usize] = true);
         for i in all.iter().rev() {
             let is_kept = match (opcode(i), defined(i)) {
                 (op::VARIABLE, Some(id)) => i[3] != PRIVATE || used[id as usize],
@@ -304,9 +348,26 @@ impl Module {
 /// The entry point with the variables of its interface that are left.
 fn entry_point(i: &[u32], used: &[bool]) -> Instruction {
     let ends = |word: &u32| word.to_le_bytes().contains(&0);
-    let name = i[INTERFACE..].iter().position(ends).map_or(i.len(), |end| INTERFACE + end + 1);
+    let name = i[NAME..].iter().position(ends).map_or(i.len(), |end| NAME + end + 1);
     let kept = i[name..].iter().filter(|id| used[**id as usize]);
     instruction(op::ENTRY_POINT, &i[1..name].iter().chain(kept).copied().collect::<Vec<_>>())
+}
+
+/// The words that an instruction has at least, where they are read by their place.
+fn least_length(code: u32) -> usize {
+    match code {
+        op::FUNCTION | op::EXT_INST | op::VECTOR_SHUFFLE => 5,
+        op::COMPOSITE_INSERT => 6,
+        op::COMPOSITE_EXTRACT => 5,
+        op::VARIABLE | op::LOAD | op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN | op::COPY_OBJECT => 4,
+        op::FUNCTION_CALL | op::BRANCH_CONDITIONAL | op::LOOP_MERGE => 4,
+        op::STORE | op::SELECTION_MERGE | op::SWITCH | op::DECORATE | op::TYPE_INT => 3,
+        op::LABEL | op::BRANCH | op::RETURN_VALUE => 2,
+        op::TYPE_FORWARD_POINTER | op::ENTRY_POINT => 3,
+        code if op::WITHOUT_RESULT.contains(&code) || code == op::FUNCTION_END => 1,
+        109..=124 | 126..=152 | 154..=191 | 194..=205 | op::PHI => 3,
+        _ => 1,
+    }
 }
 
 /// Type and id of an instruction's result.

@@ -14,12 +14,15 @@ use crate::shader::spirv::specialize::{Id, Instruction, instruction, opcode};
 const MOST_LEAVES: usize = 128;
 /// Leaves times blocks, for the table of values: 64 MiB.
 const MOST_VALUES: usize = 1 << 24;
+/// Looking for a value goes from block to block on the stack, which threads have little of.
+const MOST_BLOCKS: usize = 2000;
 
 /// Makes values of the variables of a function whose pointers only serve loads and stores, with `with_private` also of the private
 /// variables of the module.
 pub(super) fn promote(module: &mut Module, function: &mut Function, with_private: bool) {
     let variables = Variables::find(module, function, with_private);
-    if variables.leaves.is_empty() || variables.leaves.len() * function.blocks.len() > MOST_VALUES {
+    let blocks = function.blocks.len();
+    if variables.leaves.is_empty() || blocks > MOST_BLOCKS || variables.leaves.len() * blocks > MOST_VALUES {
         return;
     }
     let graph = Graph::new(&function.blocks);
@@ -107,8 +110,9 @@ impl Variables {
             }
             if is_chain && let Some(&variable) = owner.get(&i[3]) {
                 let indices: Option<Vec<u32>> = i[4..].iter().map(|id| module.known.values.get(id).copied()).collect();
-                stays[variable] |= indices.is_none();
-                let path = [paths.get(&i[3]).cloned().unwrap_or_default(), indices.unwrap_or_default()].concat();
+                let path =
+                    [paths.get(&i[3]).cloned().unwrap_or_default(), indices.clone().unwrap_or_default()].concat();
+                stays[variable] |= indices.is_none() || !exists(module, candidates[variable].1, &path);
                 owner.insert(i[2], variable);
                 paths.insert(i[2], path);
             }
@@ -116,7 +120,8 @@ impl Variables {
         let mut this = Self { leaves: Vec::new(), pointers: HashMap::new(), counts: HashMap::new() };
         let mut firsts = vec![None; candidates.len()];
         for (index, (_, kind, initial)) in candidates.iter().enumerate() {
-            if !stays[index] && this.count(module, *kind).is_some_and(|count| count <= MOST_LEAVES) {
+            let is_known = initial.is_none_or(|id| is_split(module, *kind, id));
+            if !stays[index] && is_known && this.count(module, *kind).is_some_and(|count| count <= MOST_LEAVES) {
                 firsts[index] = Some(this.leaves.len());
                 this.add_leaves(module, *kind, *initial);
             }
@@ -138,6 +143,7 @@ impl Variables {
             Some(Type::Struct(members)) => {
                 members.clone().into_iter().map(|member| self.count(module, member)).sum::<Option<usize>>()?
             }
+            Some(Type::Array(_, 0)) => return None,
             Some(Type::Array(of, length)) => {
                 let length = (*length as usize).min(MOST_LEAVES + 1);
                 self.count(module, *of)? * length
@@ -173,6 +179,25 @@ impl Variables {
     }
 }
 
+/// Whether a type has a member at a path.
+fn exists(module: &Module, kind: Id, path: &[u32]) -> bool {
+    let Some((index, rest)) = path.split_first() else { return true };
+    let count = match module.get_type(kind) {
+        Some(Type::Struct(members)) => members.len(),
+        Some(Type::Array(_, count) | Type::Vector(_, count)) => *count as usize,
+        _ => 0,
+    };
+    let member = module.member_type(kind, *index).filter(|_| (*index as usize) < count);
+    member.is_some_and(|member| exists(module, member, rest))
+}
+
+/// Whether the values of all leaves of an initial value are known: not of `OpConstantNull`.
+fn is_split(module: &mut Module, kind: Id, value: Id) -> bool {
+    let Some(parts) = parts(module, kind) else { return true };
+    let is_split = |(index, part)| module.extracted(value, &[index]).is_some_and(|value| is_split(module, part, value));
+    (0..).zip(parts).all(is_split)
+}
+
 /// The types of the members of a struct or an array; `None` for a leaf.
 fn parts(module: &Module, kind: Id) -> Option<Vec<Id>> {
     match module.get_type(kind) {
@@ -182,6 +207,9 @@ fn parts(module: &Module, kind: Id) -> Option<Vec<Id>> {
     }
 }
 
+/// The operands of a phi: values, and the blocks that they come from.
+type Operands = Vec<(Id, usize)>;
+
 struct Promotion<'a> {
     module: &'a mut Module,
     graph: &'a Graph,
@@ -189,8 +217,8 @@ struct Promotion<'a> {
     /// The value of each leaf at the end of what is done of each block; 0 if it is not known yet.
     values: Vec<Id>,
     is_done: Vec<bool>,
-    /// Phis by block, with their operands as pairs of value and block.
-    phis: Vec<Vec<(Id, Vec<(Id, usize)>)>>,
+    /// Phis by block.
+    phis: Vec<Vec<(Id, Operands)>>,
     /// Phis of loops whose end was not done: block, leaf, id.
     open: Vec<(usize, usize, Id)>,
 }
@@ -232,8 +260,7 @@ impl Promotion<'_> {
     /// Reads the operands of a phi. If they are all the same, they stand for the phi.
     fn fill(&mut self, block: usize, leaf: usize, phi: Id) {
         let graph = self.graph;
-        let operands: Vec<(Id, usize)> =
-            graph.before[block].iter().map(|from| (self.read(*from, leaf), *from)).collect();
+        let operands: Operands = graph.before[block].iter().map(|from| (self.read(*from, leaf), *from)).collect();
         let mut others = operands.iter().map(|(value, _)| *value).filter(|value| *value != phi);
         let first = others.next();
         match first {
@@ -344,12 +371,11 @@ impl Promotion<'_> {
             }
         }
         let module = self.module;
-        let write = |(phi, operands): (Id, Vec<(Id, usize)>)| {
+        let mut write = |(phi, operands): (Id, Operands)| {
             let pairs = operands.into_iter().flat_map(|(value, from)| [module.resolve(value), labels[from]]);
             let pairs: Vec<u32> = pairs.collect();
             instruction(op::PHI, &[&[module.type_of(phi), phi], &*pairs].concat())
         };
-        let mut write = write;
         self.phis.into_iter().map(|phis| phis.into_iter().map(&mut write).collect()).collect()
     }
 }

@@ -8,6 +8,8 @@ use crate::shader::spirv::opcode as op;
 use crate::shader::spirv::specialize::control_flow::Function;
 use crate::shader::spirv::specialize::{Id, Instruction, instruction, opcode};
 
+/// How many earlier instructions are looked at for one whose value is known.
+const CANDIDATES: usize = 32;
 /// Storage classes that nothing writes while a stage runs: UniformConstant, Input, Uniform, PushConstant.
 const READ_ONLY: [u32; 4] = [0, 1, 2, 9];
 
@@ -23,12 +25,17 @@ impl Module {
     fn follow(&mut self, id: Id, path: &[u32]) -> (Id, Vec<u32>) {
         let (mut id, mut path) = (self.resolve(id), path.to_vec());
         while let (Some(&index), Some(i)) = (path.first(), self.composites.get(&id)) {
+            let member = |from: usize| i.get(from + index as usize).copied();
             let (next, depth) = match opcode(i) {
-                op::CONSTANT_COMPOSITE => (i[3 + index as usize], 1),
+                op::CONSTANT_COMPOSITE => match member(3) {
+                    Some(member) => (member, 1),
+                    None => return (id, path),
+                },
                 // A vector may also be made of vectors.
-                op::COMPOSITE_CONSTRUCT => match self.get_type(i[1]) {
-                    Some(Type::Vector(_, count)) if i.len() - 3 != *count as usize => return (id, path),
-                    _ => (i[3 + index as usize], 1),
+                op::COMPOSITE_CONSTRUCT => match (self.get_type(i[1]), member(3)) {
+                    (Some(Type::Vector(_, count)), _) if i.len() - 3 != *count as usize => return (id, path),
+                    (_, Some(member)) => (member, 1),
+                    (_, None) => return (id, path),
                 },
                 op::COMPOSITE_INSERT => {
                     let inserted = &i[5..];
@@ -41,8 +48,10 @@ impl Module {
                     }
                 }
                 op::VECTOR_SHUFFLE => {
-                    let component = i[5 + index as usize];
-                    let Some(Type::Vector(_, count)) = self.get_type(self.type_of(i[3])) else { return (id, path) };
+                    let vector = self.get_type(self.type_of(i[3]));
+                    let (Some(Type::Vector(_, count)), Some(component)) = (vector, member(5)) else {
+                        return (id, path);
+                    };
                     if component == u32::MAX {
                         return (id, path);
                     }
@@ -89,8 +98,10 @@ impl Module {
                 _ => false,
             },
             op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN | op::ARRAY_LENGTH | 77..=82 | 84 | 400 => true,
-            // Sampling and fetching, but no reading of storage images; queries
-            87..=97 | 100 | 103..=107 => true,
+            // Sampling and fetching, but no reading of storage images
+            87..=97 => is_memory_constant,
+            // Queries
+            100 | 103..=107 => true,
             // Conversions, arithmetic, logic, bits, derivatives
             109..=124 | 126..=152 | 154..=191 | 194..=205 | 207..=215 => true,
             _ => false,
@@ -103,16 +114,18 @@ fn is_buffer(storage: u32) -> bool {
     matches!(storage, 12 | 5349)
 }
 
-/// Whether a function, with all that it calls, writes no buffer.
+/// Whether nothing that a function reads can change while it runs: it writes no buffer and no image, calls nothing, and waits for
+/// no one.
 fn is_memory_constant(module: &Module, function: &Function) -> bool {
     let mut all = function.blocks.iter().flat_map(|block| &block.body);
-    !all.any(|i| match opcode(i) {
-        op::STORE => {
-            matches!(module.get_type(module.type_of(i[1])), Some(Type::Pointer(storage, _)) if is_buffer(*storage))
-        }
-        op::FUNCTION_CALL | 63 | 224 | 225 | 227..=242 => true,
-        _ => false,
-    })
+    !module.has_shared_memory
+        && !all.any(|i| match opcode(i) {
+            op::STORE => {
+                matches!(module.get_type(module.type_of(i[1])), Some(Type::Pointer(storage, _)) if is_buffer(*storage))
+            }
+            op::FUNCTION_CALL | 63 | 99 | 224 | 225 | 227..=242 => true,
+            _ => false,
+        })
 }
 
 /// Replaces values that are known, in all blocks.
@@ -157,7 +170,8 @@ pub(super) fn simplify(module: &mut Module, function: &mut Function) {
                 let mut key = i.clone();
                 key[2] = 0;
                 let same = computed.entry(key).or_default();
-                let before = same.iter().find(|(place, _)| *place == block || graph.dominates(*place, block));
+                let mut newest = same.iter().rev().take(CANDIDATES);
+                let before = newest.find(|(place, _)| *place == block || graph.dominates(*place, block));
                 if let Some((_, value)) = before {
                     module.replace(id, *value);
                     continue;

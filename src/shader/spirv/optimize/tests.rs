@@ -78,6 +78,46 @@ fn what_is_computed_twice_or_not_used_goes() {
     assert_eq!((count(&words, op::EXT_INST), count(&words, op::BRANCH_CONDITIONAL)), (1, 0));
 }
 
+/// An index that a constant sets beyond the end means nothing, but must not end the program.
+#[test]
+fn an_index_beyond_the_end_stays_in_memory() {
+    for body in [
+        "void main() { vec4 v = vec4(x.x, x.y, x.z, 1.0); v[K] += 1.0; color = vec4(v[K]); }",
+        "void main() { mat2 m = mat2(x.x); m[K].y = 2.0; color = m[K].xyxy; }",
+        "void main() { const vec4 v = vec4(1.0, 2.0, 3.0, 4.0); color = vec4(v[K]); }",
+        "void main() { vec2 v = x.zy; color = vec4(v[K]); }",
+    ] {
+        let words = optimized_stage(&format!("layout(constant_id = 0) const int K = 7;\n{body}"));
+        let all = instructions(&words).expect("whole instructions");
+        assert!(
+            all.iter().all(|i| opcode(i) != op::COMPOSITE_EXTRACT || i[4..].iter().all(|index| *index < 4)),
+            "{body}"
+        );
+    }
+}
+
+#[test]
+fn modules_with_what_is_not_known_come_back() {
+    let stage = |text: &str| {
+        let source = Source::memory([("m.frag", text)]);
+        Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap()
+    };
+    for text in [
+        "#extension GL_EXT_debug_printf : enable\nvoid main() { debugPrintfEXT(\"seen\"); }",
+        "layout(set = 0, binding = 0) uniform texture2D t; layout(set = 0, binding = 1) uniform sampler s;
+         layout(location = 0) out vec4 color; void main() { color = texture(sampler2D(t, s), vec2(0.5)); }",
+    ] {
+        let words = stage(&format!("#version 460\n{text}"));
+        assert_eq!(optimize(words.clone()), words, "{text}");
+    }
+    // A flag that others write is read each time.
+    let volatile =
+        "layout(set = 0, binding = 0) volatile buffer Flags { uint flag; }; layout(location = 0) out vec4 color;
+        void main() { uint before = flag; uint after = flag; color = vec4(before, after, 0.0, 1.0); }";
+    let words = optimize(stage(&format!("#version 460\n{volatile}")));
+    assert_eq!(count(&words, op::LOAD), 2);
+}
+
 #[test]
 fn words_that_are_no_module_come_back() {
     for words in [vec![], vec![1, 2, 3], vec![0x0723_0203, 0, 0, 9, 0, 0], vec![0x0723_0203, 0, 0, 9, 0, 0xffff_0036]] {

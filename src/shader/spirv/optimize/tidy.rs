@@ -13,6 +13,27 @@ pub(super) fn fold(module: &Module, function: &mut Function) {
     function.fold(&module.known, &mut HashSet::new());
 }
 
+/// Replaces phis of blocks that only one reachable block leads to. The way that folding has cut off may be the back edge of a loop,
+/// whose block the structure of the loop still requires.
+pub(super) fn drop_single_phis(module: &mut Module, function: &mut Function) {
+    let graph = Graph::new(&function.blocks);
+    for block in 0..function.blocks.len() {
+        let [before] = *graph.before[block] else { continue };
+        let label = function.blocks[before].label;
+        function.blocks[block].body.retain(|i| {
+            let pairs = i.get(3..).unwrap_or_default().chunks_exact(2);
+            let value = pairs.filter(|pair| pair[1] == label).map(|pair| pair[0]).next();
+            match value {
+                Some(value) if opcode(i) == op::PHI => {
+                    module.replace(i[2], value);
+                    false
+                }
+                _ => true,
+            }
+        });
+    }
+}
+
 /// Removes selections that select nothing, and joins blocks that follow each other.
 pub(super) fn tidy(function: &mut Function) {
     loop {
