@@ -21,7 +21,7 @@ use crate::render::{BoundFrame, PixelAt, Resources, View};
 use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, Source};
+use crate::shader::{Change, Compiler, Diagnostic, Source};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{Outbox, Threads};
@@ -32,6 +32,13 @@ struct LastComplete {
     scene: Option<Scene>,
     revisions: Revisions,
     frame: BoundFrame,
+}
+
+/// A loop that did not end.
+struct EndlessLoop {
+    words: [u32; 2],
+    /// `None` while its line is looked for.
+    diagnostic: Option<Diagnostic>,
 }
 
 /// A reload whose first frame has not finished.
@@ -72,8 +79,8 @@ pub(super) struct Viewer {
     first_frame: Option<FirstFrame>,
     /// The shader generation that was last shown with all of its stages and light.
     settled: Option<u64>,
-    /// The words of a loop that did not end. Its diagnostic is on screen, or on its way.
-    endless_loop: Option<[u32; 2]>,
+    /// The loop that did not end in the last picture.
+    endless_loop: Option<EndlessLoop>,
     compiler: Arc<Compiler>,
     /// The shader tree.
     source: Source,
@@ -269,18 +276,29 @@ impl Viewer {
 
     /// Looks for the line of a loop that did not end, on another thread. The diagnostic comes as a message.
     pub(super) fn on_endless_loop(&mut self, words: [u32; 2]) {
-        let Some(shaders) = self.session.shaders.clone().filter(|_| self.endless_loop != Some(words)) else { return };
-        self.endless_loop = Some(words);
+        let is_known = self.endless_loop.as_ref().is_some_and(|known| known.words == words);
+        let Some(shaders) = self.session.shaders.clone().filter(|_| !is_known) else { return };
+        self.endless_loop = Some(EndlessLoop { words, diagnostic: None });
         let (gpu, compiler, source) = (self.gpu.clone(), self.compiler.clone(), self.source.clone());
         self.threads.explain(words, move || endless_loop(&gpu, words, &shaders, &compiler, &source));
     }
 
     /// Removes the diagnostic of a loop that did not end: in the current picture, all loops end.
     pub(super) fn all_loops_end(&mut self) {
-        if self.endless_loop.take().is_some() {
-            let warnings = self.session.shaders.as_ref().map(|shaders| shaders.warnings.clone());
-            self.session.diagnostics = warnings.unwrap_or_default();
+        if let Some(EndlessLoop { diagnostic: Some(ended), .. }) = self.endless_loop.take() {
+            self.session.diagnostics.retain(|diagnostic| *diagnostic != ended);
         }
+    }
+
+    /// Whether the diagnostics tell of a loop that cut the picture short, so that it is not the last good one.
+    pub(super) fn is_cut_short(&self) -> bool {
+        self.endless_loop.as_ref().is_some_and(|endless| endless.diagnostic.is_some())
+    }
+
+    /// Shows the diagnostics of a reload behind that of a loop that did not end.
+    fn set_diagnostics(&mut self, of_reload: Vec<Diagnostic>) {
+        let of_loop = self.endless_loop.iter().filter_map(|endless| endless.diagnostic.clone());
+        self.session.diagnostics = of_loop.chain(of_reload).collect();
     }
 
     /// Shows a message for a few seconds.

@@ -287,6 +287,11 @@ impl Thread {
                 self.finish();
             } else if let Some((set, request)) = build.take() {
                 let pending = request.needs_pending(&set.shaders);
+                let newest = self.reloader.library().set();
+                if pending && !newest.is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {
+                    // The window does not know yet that these stages have been compiled. It will ask again.
+                    continue;
+                }
                 let built = set.build(&request).map(|_| ()).map_err(|error| error.to_string());
                 let built = if pending { Err(PENDING.to_owned()) } else { built };
                 self.outbox.send(Message::Worker(WorkerMessage::Built(built)));

@@ -63,6 +63,36 @@ fn an_error_moves_nothing_and_goes_with_its_repair() {
     viewer.quit();
 }
 
+/// The stages that compile behind the picture do not take the message away.
+#[test]
+fn a_loop_that_does_not_end_stays_on_screen() {
+    let tree = Tree::new();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let mut viewer = Viewer::open(tree, &["model.glb"]);
+    viewer.running.event("ready");
+    let left = viewer.screenshot().width();
+    let errors = |screen: &RgbaImage, x: std::ops::Range<u32>| count(screen, x, 0..SIZE.1, ERROR);
+    let hook = "void user_surface(inout Surface s) {";
+    let text = viewer.tree.edited("user.glsl", hook, &format!("{hook}\n    while (s.roughness < 2.0) {{}}"));
+    let original = viewer.tree.read("user.glsl");
+    viewer.tree.write("user.glsl", &text);
+    let reload = viewer.running.reload(true);
+    let (mut is_named, mut is_settled) = (false, false);
+    viewer.running.until("the loop's name and all stages", |event| {
+        is_named |= event["event"] == "diagnostic";
+        is_settled |= event["event"] == "settled" && event["generation"] == reload["generation"];
+        is_named && is_settled
+    });
+    viewer.move_mouse((left / 2, 100));
+    viewer.until_screen("the loop's name over the picture and in the panel", |screen| {
+        errors(screen, 0..left) > 100 && errors(screen, left..SIZE.0) > 10
+    });
+    viewer.tree.write("user.glsl", &original);
+    viewer.running.reload(true);
+    viewer.until_screen("the repair", |screen| errors(screen, 0..SIZE.0) == 0);
+    viewer.quit();
+}
+
 #[test]
 fn the_end_of_a_bake_moves_nothing() {
     let tree = Tree::new();

@@ -106,9 +106,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
 fn settings(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) {
     let shaders = viewer.session.shaders.clone().unwrap_or_default();
     let model = viewer.session.model().cloned().unwrap_or_default();
+    let cut_short = viewer.is_cut_short();
     let (session, info) = (&mut viewer.session, viewer.gpu.info());
     let device = format!("{} · Vulkan {}", info.name, info.api);
-    shaders::show(ui, &viewer.shader, shaders.generation, &session.diagnostics, commands);
+    shaders::show(ui, &viewer.shader, shaders.generation, &session.diagnostics, cut_short, commands);
     timing::show(ui, &mut viewer.panels.timing, readings, &device);
     let settings = &mut session.settings;
     parameters::show(ui, &shaders, &mut settings.shader);

@@ -10,7 +10,8 @@ use crate::shader::{Diagnostic, Severity};
 const MODEL_WARNINGS: usize = 4;
 
 pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: egui::Rect) {
-    if !viewer.session.diagnostics.is_empty() && diagnostics(egui, &viewer.session.diagnostics, picture) {
+    let cut_short = viewer.is_cut_short();
+    if !viewer.session.diagnostics.is_empty() && diagnostics(egui, &viewer.session.diagnostics, cut_short, picture) {
         viewer.session.diagnostics.clear();
     }
     warnings(egui, viewer, picture);
@@ -80,8 +81,9 @@ fn label(egui: &egui::Context, readings: &Readings, picture: egui::Rect) {
     });
 }
 
-/// Shows diagnostics. Returns whether the user hides them, which is possible only without errors.
-fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::Rect) -> bool {
+/// Shows diagnostics. `cut_short`: one is of a loop that did not end. Returns whether the user hides them, which is possible only
+/// without errors.
+fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], cut_short: bool, picture: egui::Rect) -> bool {
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let mut hide = false;
     // An area keeps its first size, so other messages or another picture are another area.
@@ -100,8 +102,12 @@ fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], picture: egui::
                 for diagnostic in diagnostics {
                     one(ui, diagnostic);
                 }
+                let picture = match cut_short {
+                    true => "Where the picture is magenta, it was cut short.",
+                    false => "The picture is the last good one.",
+                };
                 if failed {
-                    ui.label(RichText::new("The picture is the last good one.").small().color(QUIET));
+                    ui.label(RichText::new(picture).small().color(QUIET));
                 }
             });
         });
@@ -130,11 +136,16 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
     // A monospace character is 7.6 points wide; the number of the line and its bar take up to 8.
     let columns = (ui.available_width() / 7.6) as usize;
     let full = diagnostic.clone().within(columns.saturating_sub(8)).full();
-    // Skip the first two lines, message and position, which are shown above.
-    let rest = full.lines().skip(2).collect::<Vec<_>>().join("\n");
+    // Skip the first two lines, message and position, which are shown above. Source lines fit, and notes behind a `=` wrap.
+    let (notes, source): (Vec<&str>, Vec<&str>) =
+        full.lines().skip(2).partition(|line| line.trim_start().starts_with("= "));
     ui.label(RichText::new(&diagnostic.message).monospace().color(Color32::WHITE));
-    if !rest.is_empty() {
-        ui.add(egui::Label::new(RichText::new(rest).monospace().color(Color32::from_gray(215))).extend());
+    let text = |lines: Vec<&str>| RichText::new(lines.join("\n")).monospace().color(Color32::from_gray(215));
+    if !source.is_empty() {
+        ui.add(egui::Label::new(text(source)).extend());
+    }
+    if !notes.is_empty() {
+        ui.add(egui::Label::new(text(notes)).wrap());
     }
     ui.add_space(6.0);
 }

@@ -9,12 +9,13 @@ use crate::app::status::ShaderStatus;
 use crate::events::ReloadEvent;
 use crate::shader::{Diagnostic, Severity};
 
-/// Shows the panel. `generation` is 0 before the first shaders.
+/// Shows the panel. `generation` is 0 before the first shaders. `cut_short`: a loop of the picture did not end.
 pub(super) fn show(
     ui: &mut Ui,
     status: &ShaderStatus,
     generation: u64,
     diagnostics: &[Diagnostic],
+    cut_short: bool,
     commands: &mut Vec<Command>,
 ) {
     section(ui, "Shaders", true, |ui| {
@@ -25,6 +26,7 @@ pub(super) fn show(
                 (true, _) => ui.label("Compiling…"),
                 (_, 0) if generation == 0 => ui.label("No shaders yet"),
                 (_, 0) => ui.label(format!("Generation {generation}")),
+                (_, errors) if cut_short => ui.colored_label(ERROR, plural(errors, "error")),
                 (_, errors) => ui.colored_label(ERROR, format!("{}; showing the last good", plural(errors, "error"))),
             };
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -44,7 +44,7 @@ impl Viewer {
             Outcome::Unchanged { .. } => return,
             Outcome::Failed(diagnostics) => self.show_errors(diagnostics),
             Outcome::Ready(set) => {
-                self.session.diagnostics.clone_from(&set.shaders.warnings);
+                self.set_diagnostics(set.shaders.warnings.clone());
                 self.session.shaders = Some(set.shaders.clone());
                 self.resources.set_pipelines(set);
             }
@@ -57,7 +57,7 @@ impl Viewer {
             eprintln!("{}", diagnostic.full());
             emit(self.events, &Event::Diagnostic(diagnostic));
         }
-        self.session.diagnostics = diagnostics.to_vec();
+        self.set_diagnostics(diagnostics.to_vec());
     }
 
     fn on_reload(&mut self, reload: &Reload, detect_ms: f64) {
@@ -93,11 +93,13 @@ impl Viewer {
 
     /// Shows the diagnostic of a loop that did not end, unless a newer picture has taken its place.
     fn show_endless_loop(&mut self, words: [u32; 2], diagnostic: Option<Diagnostic>) {
-        let Some(diagnostic) = diagnostic.filter(|_| self.endless_loop == Some(words)) else { return };
+        let Some(endless) = self.endless_loop.as_mut().filter(|endless| endless.words == words) else { return };
+        let Some(diagnostic) = diagnostic else { return };
         eprintln!("{}", diagnostic.full());
         emit(self.events, &Event::Diagnostic(&diagnostic));
-        let warnings = self.session.shaders.iter().flat_map(|shaders| &shaders.warnings).cloned();
-        self.session.diagnostics = std::iter::once(diagnostic).chain(warnings).collect();
+        endless.diagnostic = Some(diagnostic);
+        let others = std::mem::take(&mut self.session.diagnostics);
+        self.set_diagnostics(others);
     }
 
     pub(super) fn report(&mut self, event: ReloadEvent) {
@@ -253,7 +255,7 @@ impl Viewer {
                 "reader"
             }
             Role::Explainer(words) => {
-                if self.endless_loop == Some(words) {
+                if self.endless_loop.as_ref().is_some_and(|endless| endless.words == words) {
                     self.endless_loop = None;
                 }
                 "explainer"
