@@ -54,7 +54,7 @@ pub enum Event<'a> {
     },
     /// The device was lost or the program crashed, and this window goes on with the session.
     Restarted {
-        /// What happened, as "the graphics device was lost".
+        /// The reason, as "the graphics device was lost".
         cause: &'a str,
         /// Losses in a row.
         losses: u32,

@@ -1,4 +1,4 @@
-//! What a window hands to the process that takes its place when the device is lost or the driver crashes.
+//! Records of a window's session, for the process that takes its place when the device is lost or the driver crashes.
 //!
 //! `specula view` runs the window as a child process. The child's [`Recorder`] keeps two files in a folder of the session: the
 //! [`State`], written before anything new reaches the device, and the [`GoodTexts`], written after the device has drawn them.
@@ -33,7 +33,7 @@ pub const MOST_LOSSES: u32 = 3;
 const STATE: &str = "state.json";
 const GOOD: &str = "good.json";
 
-/// What the user works on.
+/// The user's settings, model and shader tree.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Work {
     /// The settings.
@@ -98,13 +98,13 @@ pub struct Geometry {
 /// The last loss, for messages.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Loss {
-    /// What happened, as "the graphics device was lost".
+    /// The reason, as "the graphics device was lost".
     pub cause: String,
-    /// What was set back, since no text was new.
+    /// Names of the settings that were set back, since no text was new.
     pub reset: Vec<String>,
 }
 
-/// What a process works on and what it tries.
+/// The record of a process: its work, and the texts that it tries.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct State {
@@ -112,9 +112,9 @@ pub struct State {
     pub losses: u32,
     /// The last loss.
     pub loss: Option<Loss>,
-    /// What the user works on; `None` before the first frame.
+    /// The user's work; `None` before the first frame.
     pub work: Option<Work>,
-    /// What the device has drawn without a fault.
+    /// The work that the device has drawn without a fault.
     pub good: Option<Work>,
     /// Texts that the process reads and compiles, by path and [`text_hash`], until the device has drawn them.
     pub tried: BTreeMap<String, u64>,
@@ -138,7 +138,7 @@ impl State {
         write(folder, STATE, self)
     }
 
-    /// What the next process starts with, after a loss with this `cause`. Texts are suspected first. If none is new, all that is
+    /// The record that the next process starts with, after a loss with this `cause`. Texts are suspected first. If none is new, all that is
     /// not alike is set back to what was drawn last. `good` are the texts that the device has drawn.
     #[must_use]
     pub fn after_loss(mut self, cause: &str, good: &GoodTexts) -> Self {

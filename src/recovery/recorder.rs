@@ -45,7 +45,7 @@ impl Recorder {
         self.lock().state.losses > 0
     }
 
-    /// What the process before has left.
+    /// The record of the process before.
     pub fn state(&self) -> State {
         self.lock().state.clone()
     }

@@ -1,4 +1,4 @@
-//! What the next process does without.
+//! Records of a session, and the next process's start from them.
 
 use super::*;
 use crate::settings::ShaderValue;

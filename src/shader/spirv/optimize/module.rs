@@ -10,19 +10,19 @@ use crate::shader::spirv::specialize::{
 };
 
 /// Place of the bound on ids in a module's header.
-const BOUND: usize = 3;
-/// Place of an entry point's name, before its interface.
-const NAME: usize = 3;
+pub(super) const BOUND: usize = 3;
+/// The storage class of private variables.
+pub(super) const PRIVATE: u32 = 6;
 
 /// Bits of a memory access.
 const MAKE_AVAILABLE: u32 = 8;
 const MAKE_VISIBLE: u32 = 16;
 /// Decorations.
-const BUILT_IN: u32 = 11;
+pub(super) const BUILT_IN: u32 = 11;
 const VOLATILE: u32 = 21;
 const COHERENT: u32 = 23;
 /// A constant that counts even if nothing uses it.
-const WORKGROUP_SIZE: u32 = 25;
+pub(super) const WORKGROUP_SIZE: u32 = 25;
 /// The name of the only set of extended instructions that is known here.
 const EXTENDED: &[u8] = b"GLSL.std.450\0";
 
@@ -40,10 +40,10 @@ pub(super) enum Type {
 
 /// A module whose instructions are all known.
 pub(super) struct Module {
-    header: Vec<u32>,
-    globals: Vec<Instruction>,
+    pub(super) header: Vec<u32>,
+    pub(super) globals: Vec<Instruction>,
     /// New constants.
-    more: Vec<Instruction>,
+    pub(super) more: Vec<Instruction>,
     pub(super) functions: Vec<Function>,
     pub(super) entry: Id,
     types: HashMap<Id, Type>,
@@ -52,11 +52,11 @@ pub(super) struct Module {
     /// Instructions that make composites of other values.
     pub(super) composites: HashMap<Id, Instruction>,
     /// The type of each id.
-    result_types: Vec<Id>,
+    pub(super) result_types: Vec<Id>,
     /// The value that stands for an id; 0 for itself.
     replaced: Vec<Id>,
     /// Decorations of ids that functions define.
-    decorations: HashMap<Id, Vec<Instruction>>,
+    pub(super) decorations: HashMap<Id, Vec<Instruction>>,
     undefined: HashMap<Id, Id>,
     /// Whether a buffer is volatile or coherent: others may write it meanwhile.
     pub(super) has_shared_memory: bool,
@@ -239,7 +239,6 @@ impl Module {
 
     /// Private variables: id, type of the value, initial value.
     pub(super) fn private_variables(&self) -> Vec<(Id, Id, Option<Id>)> {
-        const PRIVATE: u32 = 6;
         let variables = self.globals.iter().filter(|i| opcode(i) == op::VARIABLE && i[3] == PRIVATE);
         let pointee = |kind: Id| match self.types.get(&kind) {
             Some(Type::Pointer(_, of)) => Some(*of),
@@ -276,81 +275,6 @@ impl Module {
             }
         }
     }
-
-    /// The module with the globals that its functions use.
-    pub(super) fn write(mut self) -> Vec<u32> {
-        let mut functions = std::mem::take(&mut self.functions);
-        for i in functions.iter_mut().flat_map(|f| &mut f.blocks).flat_map(|b| &mut b.body) {
-            self.resolve_operands(i);
-        }
-        let mut used = vec![false; self.result_types.len()];
-        let mark = |used: &mut [bool], i: &[u32]| {
-            for at in (1..i.len()).filter(|at| is_id(i, *at) == Some(true)) {
-                used[i[at] as usize] = true;
-            }
-        };
-        let mut locals = Vec::new();
-        for i in functions.iter().flat_map(|f| f.head.iter().chain(f.blocks.iter().flat_map(|b| &b.body))) {
-            mark(&mut used, i);
-            if let Some((_, id)) = typed_result(i) {
-                locals.extend(self.decorations.remove(&id).into_iter().flatten());
-            }
-        }
-        // Variables of the interface stay: the contract and the pipeline's stages know them. Definitions come before uses.
-        const PRIVATE: u32 = 6;
-        let defined = |i: &Instruction| match opcode(i) {
-            op::EXT_INST_IMPORT | op::TYPE_VOID..=op::TYPE_FUNCTION => Some(i[1]),
-            op::UNDEF | op::CONSTANT_TRUE..=op::SPEC_CONSTANT_OP | op::VARIABLE => Some(i[2]),
-            _ => None,
-        };
-        let all: Vec<Instruction> = std::mem::take(&mut self.globals).into_iter().chain(self.more).collect();
-        let forward: Vec<Id> = all.iter().filter(|i| opcode(i) == op::TYPE_FORWARD_POINTER).map(|i| i[1]).collect();
-        forward.iter().for_each(|id| used[*id as usize] = true);
-        let sizes = all.iter().filter(|i| opcode(i) == op::DECORATE && i[2..] == [BUILT_IN, WORKGROUP_SIZE]);
-        sizes.for_each(|i| used[i[1] as usize] = true);
-        for i in all.iter().rev() {
-            let is_kept = match (opcode(i), defined(i)) {
-                (op::VARIABLE, Some(id)) => i[3] != PRIVATE || used[id as usize],
-                (_, Some(id)) => used[id as usize],
-                (op::EXECUTION_MODE, _) => true,
-                _ => false,
-            };
-            if is_kept {
-                mark(&mut used, i);
-                if let Some(id) = defined(i) {
-                    used[id as usize] = true;
-                }
-            }
-        }
-        // A forward pointer's struct is defined after it, and may use types before it.
-        let mut out = self.header;
-        out[BOUND] = self.result_types.len() as u32;
-        let is_annotation = |i: &Instruction| defined(i).is_none() && opcode(i) != op::TYPE_FORWARD_POINTER;
-        for i in all.iter().filter(|i| is_annotation(i) || opcode(i) == op::EXT_INST_IMPORT) {
-            match opcode(i) {
-                op::ENTRY_POINT => out.extend(entry_point(i, &used)),
-                op::DECORATE | op::MEMBER_DECORATE if !used[i[1] as usize] => {}
-                _ => out.extend(i),
-            }
-        }
-        out.extend(locals.iter().flatten());
-        let is_definition = |i: &&Instruction| !is_annotation(i) && opcode(i) != op::EXT_INST_IMPORT;
-        for i in all.iter().filter(is_definition) {
-            if defined(i).is_none_or(|id| used[id as usize]) {
-                out.extend(i);
-            }
-        }
-        functions.iter().for_each(|function| function.write(&mut out));
-        out
-    }
-}
-
-/// The entry point with the variables of its interface that are left.
-fn entry_point(i: &[u32], used: &[bool]) -> Instruction {
-    let ends = |word: &u32| word.to_le_bytes().contains(&0);
-    let name = i[NAME..].iter().position(ends).map_or(i.len(), |end| NAME + end + 1);
-    let kept = i[name..].iter().filter(|id| used[**id as usize]);
-    instruction(op::ENTRY_POINT, &i[1..name].iter().chain(kept).copied().collect::<Vec<_>>())
 }
 
 /// The words that an instruction has at least, where they are read by their place.

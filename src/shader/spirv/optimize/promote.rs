@@ -57,7 +57,7 @@ struct Leaf {
     initial: Option<Id>,
 }
 
-/// What a pointer points to.
+/// The place that a pointer points to.
 #[derive(Clone)]
 struct Place {
     /// The first leaf of its variable.

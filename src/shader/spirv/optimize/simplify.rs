@@ -132,7 +132,7 @@ fn is_memory_constant(module: &Module, function: &Function) -> bool {
 pub(super) fn simplify(module: &mut Module, function: &mut Function) {
     let graph = Graph::new(&function.blocks);
     let is_memory_constant = is_memory_constant(module, function);
-    // What was computed, by instruction: in which block, as which id.
+    // Blocks and ids of earlier results, by instruction.
     let mut computed: HashMap<Instruction, Vec<(usize, Id)>> = HashMap::new();
     for &block in &graph.order {
         let body = std::mem::take(&mut function.blocks[block].body);
