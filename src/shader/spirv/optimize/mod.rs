@@ -12,6 +12,7 @@ mod module;
 mod promote;
 mod simplify;
 mod tidy;
+mod variables;
 mod write;
 
 use foldhash::{HashSet, HashSetExt};
