@@ -68,8 +68,12 @@ fn lock() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 mod tests {
     use super::*;
 
+    /// Held by each test: removing unfinished files removes those of all threads.
+    static ALONE: Mutex<()> = Mutex::new(());
+
     #[test]
     fn unfinished_files_are_removed() {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let directory = tempfile::tempdir().unwrap();
         let target = directory.path().join("picture.png");
         replace(&target, b"old").unwrap();
@@ -86,6 +90,7 @@ mod tests {
 
     #[test]
     fn the_file_of_a_killed_process_is_replaced() {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let directory = tempfile::tempdir().unwrap();
         let target = directory.path().join("picture.png");
         let left = directory.path().join(format!(".picture.png.{}.part", std::process::id()));
