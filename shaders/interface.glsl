@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
 
-const uint INTERFACE_VERSION = 6u;
+const uint INTERFACE_VERSION = 7u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
@@ -153,7 +153,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     vec3 eye_ws;                       // Camera position, world space.
     float exposure;                    // Factor from luminance (cd/m^2) to the display's 0..1: 1 / (1.2 * 2^EV100).
     vec3 ambient;                      // Light from everywhere, linear RGB times cd/m^2.
-    float time_s;                      // Seconds since the start; 0 in headless renderings.
+    float time_s;                      // Seconds since the start, or `--time`.
     vec4 background;                   // Linear RGB behind the model, and its alpha.
     vec3 scene_center_ws;              // Center of the model's bounds, world space.
     float scene_radius;                // Radius of the model's bounds, meters.
@@ -171,6 +171,9 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint sample_index;                 // Accumulating modes: frames since the picture changed.
     uint sample_count;                 // Accumulating modes: random paths a pixel in each frame.
     uint path_bounces;                 // Modes that trace the model: number of times that a path goes on from the surface that it has hit.
+    float delta_s;                     // Seconds since the frame before; 0 in the first.
+    uint frame_index;                  // Frames drawn before this one. Stays while nothing moves.
+    vec4 mouse_px;                     // Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
 } frame;
 
 struct Light {

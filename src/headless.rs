@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::frame::{FrameInputs, FrameState, PipelineRequest, TargetFormat};
+use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, TargetFormat};
 use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::pipeline::{Outcome, PipelineSet, Reload, Reloader, endless_loop};
 use crate::render::{
@@ -54,6 +54,30 @@ impl From<ProvideError> for HeadlessError {
     }
 }
 
+/// Frames at even distances in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sequence {
+    /// Number of frames, at least 1.
+    pub frames: u32,
+    /// Time of the first, seconds.
+    pub start_s: f32,
+    /// Frames a second.
+    pub fps: f32,
+}
+
+impl Default for Sequence {
+    fn default() -> Self {
+        Self { frames: 1, start_s: 0.0, fps: 60.0 }
+    }
+}
+
+impl Sequence {
+    fn clock(&self, frame_index: u32) -> Clock {
+        let delta_s = if frame_index == 0 { 0.0 } else { 1.0 / self.fps };
+        Clock { time_s: self.start_s + frame_index as f32 / self.fps, delta_s, frame_index, ..Clock::default() }
+    }
+}
+
 /// A session, a device and one view.
 pub struct Headless {
     gpu: Arc<Gpu>,
@@ -66,6 +90,8 @@ pub struct Headless {
     /// The image that [`Headless::render`] draws to and reads back.
     output: Option<Arc<Image>>,
     size: (u32, u32),
+    clock: Clock,
+    sequence: Sequence,
     upload_ms: f64,
 }
 
@@ -156,6 +182,8 @@ impl Headless {
             output: None,
             layouts,
             size,
+            clock: Clock::default(),
+            sequence: Sequence::default(),
             upload_ms: 0.0,
         };
         this.target()?;
@@ -234,6 +262,12 @@ impl Headless {
         &mut self.session.settings
     }
 
+    /// Sets the times of the frames that [`Headless::render`] draws.
+    pub fn set_sequence(&mut self, sequence: Sequence) {
+        self.sequence = sequence;
+        self.clock = sequence.clock(sequence.frames.saturating_sub(1));
+    }
+
     /// Duration of the last model upload, milliseconds.
     pub fn upload_ms(&self) -> f64 {
         self.upload_ms
@@ -308,11 +342,20 @@ impl Headless {
         Ok(request.accumulates.then_some(paths))
     }
 
-    /// Renders a frame and reads it back. An accumulating mode averages `view.frames` frames.
+    /// Renders the frames of the sequence from the beginning, and reads the last one back. In an accumulating mode that is the mean
+    /// of `view.frames` frames.
     ///
     /// # Errors
     /// Settings that do not fit, a bad file, a device error.
     pub fn render(&mut self) -> Result<Capture, HeadlessError> {
+        self.view.restart_passes();
+        let last = self.sequence.frames.saturating_sub(1);
+        for index in 0..last {
+            self.clock = self.sequence.clock(index);
+            let frame = self.bind()?;
+            self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
+        }
+        self.clock = self.sequence.clock(last);
         let frame = self.bind()?;
         if frame.state.pipelines.accumulates {
             for _ in 1..self.session.settings.view.frames {
@@ -356,7 +399,7 @@ impl Headless {
                 shaders,
                 scene,
                 revisions,
-                time_s: 0.0,
+                clock: self.clock,
                 size: self.size,
                 target,
             })
@@ -389,7 +432,7 @@ impl Headless {
     /// Settings that do not fit, or no shaders yet.
     pub fn frame_state(&self) -> Result<FrameState, HeadlessError> {
         let target = self.target()?;
-        let state = self.session.frame_state(0.0, self.size, target);
+        let state = self.session.frame_state(self.clock, self.size, target);
         state.ok_or_else(|| HeadlessError::Shaders(self.session.diagnostics.clone()))
     }
 

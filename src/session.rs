@@ -5,7 +5,8 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::frame::{FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
+use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
+use crate::message::did_you_mean;
 use crate::scene::{Model, environment};
 use crate::settings::Settings;
 use crate::shader::values::{misfits, unknown_names};
@@ -63,13 +64,13 @@ impl Session {
     }
 
     /// The picture that the settings describe; `None` without shaders.
-    pub fn frame_state(&self, time_s: f32, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
+    pub fn frame_state(&self, clock: Clock, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
         Some(FrameState::new(&FrameInputs {
             settings: &self.settings,
             shaders: self.shaders.as_ref()?,
             scene: self.scene().as_ref(),
             revisions: self.revisions,
-            time_s,
+            clock,
             size,
             target,
         }))
@@ -95,9 +96,19 @@ impl Session {
         let mut problems = misfits(&self.settings.shader, shaders);
         if names {
             problems.extend(unknown_names(&self.settings.shader, shaders));
+            problems.extend(unknown_pass(&self.settings, shaders));
         }
         let variant = self.model.as_ref().and_then(|model| model.variant(&self.settings.variant).err());
         problems.extend(variant);
         problems
     }
+}
+
+/// A message about the first switch of a pass that the tree does not declare.
+fn unknown_pass(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
+    let known: Vec<&str> = shaders.graph.passes.iter().map(|pass| pass.name()).collect();
+    let unknown = settings.passes.keys().find(|name| !known.contains(&name.as_str()))?;
+    let hint = did_you_mean(unknown, known.iter().copied());
+    let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    Some(format!("passes.{unknown}: no pass is named `{unknown}`.{hint} Passes: {list}"))
 }

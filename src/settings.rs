@@ -42,6 +42,8 @@ pub struct Settings {
     pub measured: String,
     /// Exposure, tone mapping, background, multisampling.
     pub view: ViewSettings,
+    /// Declared passes that are switched on or off, by name. The others are as their `//@pass` says.
+    pub passes: BTreeMap<String, bool>,
     /// Values of the constants and parameters that `//@ui` annotations declare, by name.
     pub shader: BTreeMap<String, ShaderValue>,
 }
@@ -57,6 +59,7 @@ impl Default for Settings {
             environment: EnvironmentSettings::default(),
             measured: String::new(),
             view: ViewSettings::default(),
+            passes: BTreeMap::new(),
             shader: BTreeMap::new(),
         }
     }

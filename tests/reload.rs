@@ -107,7 +107,7 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
             &["pbr.vert"],
         ),
         ("user/display.glsl", "return light;", "return light * 0.5;", &["tonemap.frag"]),
-        ("tonemap.vert", "void main() {", "void main() {\n    float unused = 1.0;", &["tonemap.vert"]),
+        ("fullscreen.vert", "void main() {", "void main() {\n    float unused = 1.0;", &["fullscreen.vert"]),
     ] {
         let reload = session.edit(file, from, to);
         ready(&reload);

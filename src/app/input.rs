@@ -44,7 +44,14 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
         WindowEvent::MouseInput { state, button, .. } => {
             let pressed = *state == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
             match button {
-                MouseButton::Left => screen.mouse.left = pressed,
+                MouseButton::Left => {
+                    let was = std::mem::replace(&mut screen.mouse.left, pressed);
+                    match pressed {
+                        true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
+                        false if was => viewer.playback.release(),
+                        false => {}
+                    }
+                }
                 MouseButton::Middle => screen.mouse.middle = pressed,
                 MouseButton::Right => {
                     screen.mouse.right = pressed;
@@ -60,6 +67,9 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             let is_over = inside(screen, at);
             let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
             screen.mouse.at = at;
+            if screen.mouse.left {
+                viewer.playback.drag(in_picture(screen, at));
+            }
             drag(viewer, screen, delta) || was_over || screen.mouse.over
         }
         WindowEvent::CursorLeft { .. } => std::mem::take(&mut screen.mouse.over),
@@ -74,6 +84,11 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
         }
         _ => false,
     }
+}
+
+/// A place of the window in pixels of the picture.
+fn in_picture(screen: &Screen, at: Vec2) -> [f32; 2] {
+    [at.x - screen.rect.at.0 as f32, at.y - screen.rect.at.1 as f32]
 }
 
 fn inside(screen: &Screen, at: Vec2) -> bool {

@@ -6,6 +6,7 @@
 mod command;
 mod input;
 mod panels;
+mod playback;
 mod screen;
 mod status;
 mod viewer;

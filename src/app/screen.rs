@@ -149,6 +149,9 @@ impl Screen {
         // The picture.
         let moving = self.advance(viewer);
         viewer.watch_files();
+        if viewer.playback.take_restart() {
+            self.view.restart_passes();
+        }
         let frame = self.next_frame(viewer)?;
         self.view.probe = self.mouse.over.then(|| self.mouse_pixel()).flatten();
         // A screenshot that was asked for before the first picture waits for it.
@@ -243,7 +246,7 @@ impl Screen {
         let (width, height) = (image.desc().width, image.desc().height);
         encoder.transition(image, Use::Color, Use::Color);
         let area = Rect { x: 0, y: 0, width, height };
-        let over = Attachments { color: image, clear: None, resolve: None, depth: None, goes_on: false, area };
+        let over = Attachments { area, ..Attachments::of(image) };
         encoder.begin_rendering(&over);
         self.ui.draw(encoder, (width, height), pixels_per_point, primitives)?;
         encoder.end_rendering();

@@ -9,10 +9,11 @@ use std::time::Instant;
 
 use super::command::{Command, open_as};
 use super::panels::PanelState;
+use super::playback::Playback;
 use super::status::{Notices, ShaderStatus, title};
 use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
-use crate::frame::{FrameInputs, FrameState, Revisions, Scene, TargetFormat};
+use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene, TargetFormat};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::pipeline::endless_loop;
@@ -69,6 +70,8 @@ pub(super) struct Viewer {
     pub(super) notices: Notices,
     pub(super) events: bool,
     pub(super) start: Instant,
+    /// The time of animated shaders.
+    pub(super) playback: Playback,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
@@ -116,6 +119,7 @@ impl Viewer {
             notices: Notices::default(),
             events: options.events,
             start: options.start,
+            playback: Playback::default(),
             gpu: gpu.clone(),
             resources,
             threads,
@@ -149,9 +153,10 @@ impl Viewer {
         size: (u32, u32),
         mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
     ) -> Result<Option<BoundFrame>, GpuError> {
-        let time_s = self.time_s();
+        let is_animated = self.is_animated();
+        let clock = self.playback.next(is_animated);
         let target = target(&self.gpu, &self.session.settings);
-        let Some(state) = self.session.frame_state(time_s, size, target) else { return Ok(None) };
+        let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
         let state = Arc::new(state);
         let is_complete = self.request_missing(&state) && state.shaders.pending.is_empty();
         // The first picture of a model does not wait for its environment.
@@ -166,14 +171,14 @@ impl Viewer {
             self.shown = Some(LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
             return Ok(Some(frame));
         }
-        let interim = self.shown.as_ref().map(|shown| self.interim(shown, time_s, size));
+        let interim = self.shown.as_ref().map(|shown| self.interim(shown, clock, size));
         interim.iter().try_for_each(prepare)?;
         Ok(interim)
     }
 
     /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow the
     /// current settings, since they need no new resources. All else is unchanged.
-    fn interim(&self, shown: &LastComplete, time_s: f32, size: (u32, u32)) -> BoundFrame {
+    fn interim(&self, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
         let mut settings = shown.settings.clone();
         let same_model = match (&shown.scene, self.session.model()) {
             (Some(scene), Some(model)) => Arc::ptr_eq(scene.model(), model),
@@ -191,7 +196,7 @@ impl Viewer {
             shaders: &state.shaders,
             scene: shown.scene.as_ref(),
             revisions: shown.revisions,
-            time_s,
+            clock,
             size,
             target: state.pipelines.target,
         }))
@@ -235,15 +240,15 @@ impl Viewer {
         Some(format!("{}   at {x}, {y}", value.text(mode)))
     }
 
-    /// Whether the picture is animated: the lights orbit, or a shader reads the time.
+    /// Whether the picture is animated: the lights orbit, or a shader or a pass moves while the time runs.
     pub(super) fn moves(&self) -> bool {
-        let animated = self.session.shaders.as_ref().is_some_and(|shaders| shaders.animated);
-        self.session.settings.lights.spin != 0.0 || animated
+        self.session.settings.lights.spin != 0.0 || (self.is_animated() && self.playback.runs())
     }
 
-    /// Seconds since the start, or 0 for a still picture, so that it need not be redrawn.
-    fn time_s(&self) -> f32 {
-        if self.moves() { self.start.elapsed().as_secs_f32() } else { 0.0 }
+    /// Whether a shader of the picture, or a pass that is drawn, reads the time or what it drew before.
+    pub(super) fn is_animated(&self) -> bool {
+        let shaders = self.session.shaders.as_ref().is_some_and(|shaders| shaders.animated);
+        shaders || self.shown().is_some_and(|shown| shown.pipelines.passes.iter().any(|pass| pass.moves))
     }
 
     /// Whether the device is faster than the display, so that vertical sync saves work.

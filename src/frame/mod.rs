@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(crate) use baked::BakeStage;
 pub use baked::{EnvironmentKey, TablesKey};
 pub use pipelines::{MaterialVariant, PipelineRequest, TargetFormat};
-pub(crate) use pipelines::{Pass, PipelineKey};
+pub(crate) use pipelines::{Pass, PipelineKey, pass_format};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 
@@ -22,7 +22,8 @@ use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHTS};
 use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
-use crate::shader::{Mode, ShaderSet, values};
+use crate::shader::graph::Input;
+use crate::shader::{GraphPass, Mode, ShaderSet, values};
 
 /// Largest half float.
 pub(crate) const LARGEST_HALF: f32 = 65504.0;
@@ -39,12 +40,25 @@ pub struct FrameInputs<'a> {
     pub scene: Option<&'a Scene>,
     /// How often the files of `settings.environment.name` and `settings.measured` have changed.
     pub revisions: Revisions,
-    /// Seconds since the start, for animated shaders.
-    pub time_s: f32,
+    /// The time, for animated shaders.
+    pub clock: Clock,
     /// Width and height of the picture, pixels.
     pub size: (u32, u32),
     /// Format of the HDR target.
     pub target: TargetFormat,
+}
+
+/// The time of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Clock {
+    /// Seconds since the start.
+    pub time_s: f32,
+    /// Seconds since the frame before.
+    pub delta_s: f32,
+    /// Frames before this one.
+    pub frame_index: u32,
+    /// The mouse over the picture: `interface::Frame::mouse_px`.
+    pub mouse_px: [f32; 4],
 }
 
 /// Counts the changes of watched files on disk, so that the same name is loaded again after a change.
@@ -86,13 +100,14 @@ pub struct FrameState {
     /// Width and height, pixels, at least 1.
     pub size: (u32, u32),
     params: Vec<u8>,
+    pass_blocks: Vec<Vec<u8>>,
     constants: Frame,
 }
 
 impl FrameState {
     /// The state of a picture. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
-        let FrameInputs { settings, shaders, scene, revisions, time_s, size, target } = *inputs;
+        let FrameInputs { settings, shaders, scene, revisions, clock, size, target } = *inputs;
         let size = (size.0.max(1), size.1.max(1));
         let nothing = Model::default();
         let model = scene.map_or(&nothing, |scene| scene.model());
@@ -111,7 +126,10 @@ impl FrameState {
             eye_ws: camera.eye.to_array(),
             exposure: 1.0 / (1.2 * settings.view.ev.exp2()),
             ambient: settings.lights.ambient_color.map(|c| c * settings.lights.ambient_strength),
-            time_s,
+            time_s: clock.time_s,
+            delta_s: clock.delta_s,
+            frame_index: clock.frame_index,
+            mouse_px: clock.mouse_px,
             background: settings.view.background_linear().unwrap_or_default(),
             scene_center_ws: bounds.center().to_array(),
             scene_radius: bounds.radius(),
@@ -131,6 +149,7 @@ impl FrameState {
         };
         Self {
             params: values::params(&settings.shader, &shaders.parameters),
+            pass_blocks: pass_blocks(settings, shaders, &pipelines, size),
             tables: TablesKey::new(shaders, &pipelines.constants),
             environment: lit.then(|| {
                 let (name, revision) = (&settings.environment.name, revisions.environment);
@@ -159,6 +178,7 @@ impl FrameState {
             && bytemuck::bytes_of(&self.constants) == bytemuck::bytes_of(&other.constants)
             && bytemuck::cast_slice::<Light, u8>(&self.lights) == bytemuck::cast_slice::<Light, u8>(&other.lights)
             && self.params == other.params
+            && self.pass_blocks == other.pass_blocks
             && self.pipelines == other.pipelines
             && self.scene == other.scene
             && self.tables == other.tables
@@ -171,6 +191,11 @@ impl FrameState {
         &self.params
     }
 
+    /// The content of the own uniform block of each pass in [`PipelineRequest::passes`]; empty for a pass without one.
+    pub(crate) fn pass_blocks(&self) -> &[Vec<u8>] {
+        &self.pass_blocks
+    }
+
     /// The frame constants for a picture at `rect` of the output. The environment's images hold radiance times `scale`.
     /// `sample_index` counts the frames of an accumulated picture from 0.
     pub(crate) fn constants(&self, rect: Rect, scale: f32, sample_index: u32) -> Frame {
@@ -181,4 +206,32 @@ impl FrameState {
             ..self.constants
         }
     }
+}
+
+/// The name of the block with a pass's size, in pass.glsl.
+const SIZE_BLOCK_MEMBER: &str = "size_px";
+
+fn pass_blocks(
+    settings: &Settings,
+    shaders: &ShaderSet,
+    pipelines: &PipelineRequest,
+    size: (u32, u32),
+) -> Vec<Vec<u8>> {
+    let own = |pass: &Arc<GraphPass>| {
+        let mut blocks = Vec::new();
+        for input in &pass.inputs {
+            let Input::Parameters(bytes, members) = input else { continue };
+            let mut block = values::block(&settings.shader, &shaders.parameters, members, *bytes);
+            if let [(offset, name)] = members.as_slice()
+                && name == SIZE_BLOCK_MEMBER
+            {
+                let (width, height) = pass.note.size.pixels(size);
+                let at = *offset as usize;
+                block[at..at + 8].copy_from_slice(bytemuck::bytes_of(&[width as f32, height as f32]));
+            }
+            blocks.extend(block);
+        }
+        blocks
+    };
+    pipelines.passes.iter().map(own).collect()
 }

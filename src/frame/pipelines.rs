@@ -1,6 +1,7 @@
 //! Selects the pipelines of a picture by debug mode, the author's constants, and the kinds of material in the scene.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::Scene;
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
@@ -10,7 +11,8 @@ use crate::interface::{
 };
 use crate::scene::light_count;
 use crate::settings::{LightSource, Settings, Tonemap};
-use crate::shader::{DrawAs, Encode, Mode, ModeStage, ShaderSet, values};
+use crate::shader::annotation::pass::PassFormat;
+use crate::shader::{DrawAs, Encode, GraphPass, Mode, ModeStage, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -80,6 +82,10 @@ pub struct PipelineRequest {
     pub traces: bool,
     /// Whether transmissive surfaces look up the final picture behind them instead of this mode's.
     pub through: bool,
+    /// The declared passes to draw, in order.
+    pub passes: Vec<Arc<GraphPass>>,
+    /// The pass whose image is shown instead of the picture.
+    pub shown_pass: Option<String>,
 }
 
 /// One pipeline of a [`PipelineRequest`].
@@ -92,26 +98,32 @@ pub(crate) struct PipelineKey {
 }
 
 /// The pass that a pipeline belongs to. It determines the stages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Pass {
     /// The model: `pbr.vert`, and the fragment stage of the mode.
     Model { raster: Raster, class: PrimitiveClass, fragment: ModeStage },
     /// The environment behind it: `sky.vert`, `sky.frag`.
     Sky,
-    /// Adds a frame to the mean: `tonemap.vert`, `average.frag`.
+    /// Adds a frame to the mean: `fullscreen.vert`, `average.frag`.
     Average,
-    /// HDR to picture: `tonemap.vert`, `tonemap.frag`.
+    /// HDR to picture: `fullscreen.vert`, `tonemap.frag`.
     Tonemap,
+    /// A declared pass over a whole image: `fullscreen.vert`, and its own stage.
+    FullScreen(Arc<GraphPass>),
 }
+
+/// The vertex stage of declared passes.
+pub(crate) const FULL_SCREEN: &str = "fullscreen.vert";
 
 impl Pass {
     /// Paths of the vertex and fragment stages.
-    pub(crate) fn stages(self) -> [&'static str; 2] {
+    pub(crate) fn stages(&self) -> [&str; 2] {
         match self {
+            Self::FullScreen(pass) => [FULL_SCREEN, &pass.note.stage],
             Self::Model { fragment, .. } => ["pbr.vert", fragment.path()],
             Self::Sky => ["sky.vert", "sky.frag"],
-            Self::Average => ["tonemap.vert", "average.frag"],
-            Self::Tonemap => ["tonemap.vert", "tonemap.frag"],
+            Self::Average => [FULL_SCREEN, "average.frag"],
+            Self::Tonemap => [FULL_SCREEN, "tonemap.frag"],
         }
     }
 }
@@ -120,6 +132,10 @@ impl PipelineRequest {
     /// The pipelines that `settings` select. A mode that the tree lacks falls back to the tree's first mode.
     pub fn new(settings: &Settings, shaders: &ShaderSet, scene: Option<&Scene>, target: TargetFormat) -> Self {
         let mode = find_mode(shaders, &settings.mode);
+        let shown_pass = mode.and_then(|mode| mode.pass.clone());
+        let shows_light = mode.is_some_and(|m| m.tonemap) || shown_pass.is_some();
+        let is_on = |pass: &GraphPass| settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on);
+        let passes = if shows_light { shaders.graph.active(is_on, shown_pass.as_deref()) } else { Vec::new() };
         let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
         Self {
             mode: mode.map_or(0, |m| m.id),
@@ -131,11 +147,13 @@ impl PipelineRequest {
             materials: scene.map(|scene| scene.materials().clone()).unwrap_or_default(),
             shared_features: shared_features(settings),
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
-            sky: settings.environment.is_shown(&settings.view) && mode.is_some_and(|m| m.tonemap),
+            sky: settings.environment.is_shown(&settings.view) && shows_light,
             accumulates: mode.is_some_and(|m| m.accumulate),
             stage: mode.map(|m| m.stage).unwrap_or_default(),
             traces: mode.is_some_and(|m| m.traces),
             through: mode.is_some_and(|m| m.through),
+            passes,
+            shown_pass,
         }
     }
 
@@ -151,13 +169,15 @@ impl PipelineRequest {
             stage: mode.stage,
             traces: mode.traces,
             through: mode.through,
+            passes: if mode.tonemap { self.passes.clone() } else { Vec::new() },
+            shown_pass: None,
             ..self.clone()
         }
     }
 
     pub(crate) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
         let mut specialization = vec![
-            (SPEC_MODE, self.mode),
+            (SPEC_MODE, if self.shown_pass.is_some() { interface::MODE_FINAL } else { self.mode }),
             (SPEC_ALPHA_MODE, material.alpha),
             (SPEC_FEATURES, material.features | self.shared_features),
             (SPEC_LIGHT_COUNT, self.light_count),
@@ -230,22 +250,42 @@ impl PipelineRequest {
     pub(crate) fn average_key(&self) -> Option<PipelineKey> {
         self.accumulates.then(|| PipelineKey {
             pass: Pass::Average,
-            format: vk::Format::R32G32B32A32_SFLOAT,
+            format: MEAN_FORMAT,
             samples: 1,
             specialization: Vec::new(),
         })
     }
 
+    /// The pipeline of a declared pass; `None` for a compute pass.
+    pub(crate) fn pass_key(&self, pass: &Arc<GraphPass>) -> Option<PipelineKey> {
+        (!pass.is_compute).then(|| PipelineKey {
+            pass: Pass::FullScreen(pass.clone()),
+            format: match pass.note.to_picture {
+                true if pass.after_tonemap => Swapchain::FORMAT,
+                true => self.picture_format(),
+                false => pass_format(pass.note.format),
+            },
+            samples: 1,
+            specialization: self.constants.clone(),
+        })
+    }
+
+    /// Format of the HDR picture before the tone map.
+    pub(crate) fn picture_format(&self) -> vk::Format {
+        if self.accumulates { MEAN_FORMAT } else { self.target.color }
+    }
+
     /// The stages of the pipelines.
-    pub(crate) fn stages(&self) -> BTreeSet<&'static str> {
+    pub(crate) fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading.
-        let model = ["pbr.vert", self.stage.path()];
-        self.keys().flat_map(|key| key.pass.stages()).chain(model).collect()
+        let model = ["pbr.vert", self.stage.path()].map(str::to_owned);
+        let computes = self.passes.iter().filter(|pass| pass.is_compute).map(|pass| pass.note.stage.clone());
+        self.keys().flat_map(|key| key.pass.stages().map(str::to_owned)).chain(model).chain(computes).collect()
     }
 
     /// Whether a picture needs stages that are still to be compiled.
     pub fn needs_pending(&self, shaders: &ShaderSet) -> bool {
-        !shaders.pending.is_empty() && self.stages().iter().any(|path| shaders.pending.contains(*path))
+        !shaders.pending.is_empty() && self.stages().iter().any(|path| shaders.pending.contains(path))
     }
 
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
@@ -255,6 +295,23 @@ impl PipelineRequest {
             .chain([self.tonemap_key()])
             .chain(self.sky_key())
             .chain(self.average_key())
+            .chain(self.passes.iter().filter_map(|pass| self.pass_key(pass)))
+    }
+}
+
+/// Format of the mean of an accumulating mode.
+pub(crate) const MEAN_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// Vulkan's name of a format.
+pub(crate) fn pass_format(format: PassFormat) -> vk::Format {
+    match format {
+        PassFormat::Rgba16f => vk::Format::R16G16B16A16_SFLOAT,
+        PassFormat::Rgba32f => vk::Format::R32G32B32A32_SFLOAT,
+        PassFormat::Rgba8 => vk::Format::R8G8B8A8_UNORM,
+        PassFormat::Rg16f => vk::Format::R16G16_SFLOAT,
+        PassFormat::Rg32f => vk::Format::R32G32_SFLOAT,
+        PassFormat::R16f => vk::Format::R16_SFLOAT,
+        PassFormat::R32f => vk::Format::R32_SFLOAT,
     }
 }
 

@@ -8,7 +8,7 @@ const GRAPHICS: [&str; 9] = [
     "paths.frag",
     "sky.vert",
     "sky.frag",
-    "tonemap.vert",
+    "fullscreen.vert",
     "tonemap.frag",
     "average.frag",
 ];

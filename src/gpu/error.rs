@@ -53,6 +53,9 @@ pub enum GpuError {
     /// A pipeline needs a stage that the shader tree does not have.
     #[error("the shader tree has no {0}")]
     NoStage(String),
+    /// An image file of the shader tree is no image, or too large.
+    #[error("{0}")]
+    Texture(String),
     /// The user interface renderer failed.
     #[error("drawing the user interface failed: {0}")]
     Ui(String),

@@ -17,6 +17,7 @@ pub use commands::encoder::{Attachments, Encoder, Rect, Use};
 pub use commands::frames::{Frames, one_shot};
 pub use commands::pass::PassTime;
 pub use commands::slot::Submission;
+pub use commands::upload::upload_images;
 pub use device::adapter::{AdapterInfo, adapters};
 pub use device::gpu::{Gpu, GpuOptions};
 pub use error::GpuError;
@@ -24,6 +25,7 @@ pub use heap::{return_freed_memory, return_large_blocks};
 pub use resources::buffer::{Buffer, Memory};
 pub use resources::descriptor::{DescriptorSet, SetLayouts, SetWriter};
 pub use resources::image::{Image, ImageDesc};
+pub use resources::pass_layout::{PassBinding, PassLayout, PassResource};
 pub use resources::pipeline::{
     ComputePipeline, Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization,
 };

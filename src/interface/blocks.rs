@@ -102,7 +102,7 @@ blocks! {
         exposure: float,
         /// Light from everywhere, linear RGB times cd/m^2.
         ambient: vec3,
-        /// Seconds since the start; 0 in headless renderings.
+        /// Seconds since the start, or `--time`.
         time_s: float,
         /// Linear RGB behind the model, and its alpha.
         background: vec4,
@@ -138,6 +138,12 @@ blocks! {
         sample_count: uint,
         /// Modes that trace the model: number of times that a path goes on from the surface that it has hit.
         path_bounces: uint,
+        /// Seconds since the frame before; 0 in the first.
+        delta_s: float,
+        /// Frames drawn before this one. Stays while nothing moves.
+        frame_index: uint,
+        /// Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
+        mouse_px: vec4,
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.

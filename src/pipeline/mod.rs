@@ -3,6 +3,7 @@
 mod bounds;
 mod reload;
 mod set;
+mod textures;
 
 pub use bounds::endless_loop;
 pub use reload::{Outcome, Reload, Reloader};

@@ -122,7 +122,7 @@ impl Reloader {
 
     /// Compiles what a first picture needs, while the model may still be loading. [`Reloader::build`] takes the result.
     pub fn compile_first_picture(&mut self) -> Update {
-        self.library.update_first(&Change::All, |path| !LATER_STAGES.contains(&path.as_str()))
+        self.library.first_picture(&LATER_STAGES)
     }
 
     /// Compiles the stages that [`Reloader::update_first`] has left. The set that it returns has the pipelines of the one before.

@@ -8,20 +8,25 @@ use rayon::prelude::*;
 
 use crate::frame::{Pass, PipelineKey, PipelineRequest};
 use crate::gpu::{
-    ComputePipeline, Gpu, GpuError, Pipeline, PipelineDesc, PrimitiveClass, Raster, SetLayouts, ShaderModule,
-    Specialization,
+    ComputePipeline, Gpu, GpuError, PassBinding, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster,
+    SetLayouts, ShaderModule, Specialization,
 };
 use crate::pipeline::bounds::shader_module;
-use crate::shader::ShaderSet;
+use crate::pipeline::textures::PassTextures;
+use crate::shader::graph::Input;
+use crate::shader::{GraphPass, ShaderSet};
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The pipelines of one [`PipelineRequest`].
+/// The pipelines of one [`PipelineRequest`], and the textures of its passes.
 #[derive(Clone)]
 pub(crate) struct BoundPipelines {
     pipelines: HashMap<PipelineKey, Arc<Pipeline>>,
+    /// Of compute passes, by stage.
+    computes: HashMap<String, Arc<ComputePipeline>>,
+    textures: Arc<PassTextures>,
 }
 
 impl BoundPipelines {
@@ -29,8 +34,25 @@ impl BoundPipelines {
         self.pipelines.get(key)
     }
 
+    /// The pipeline of a compute pass.
+    pub(crate) fn compute(&self, stage: &str) -> Option<&Arc<ComputePipeline>> {
+        self.computes.get(stage)
+    }
+
+    /// The textures that the tree declares.
+    pub(crate) fn textures(&self) -> &PassTextures {
+        &self.textures
+    }
+
     /// Whether both hold the same objects.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let same_compute = |(stage, pipeline): (&String, &Arc<ComputePipeline>)| {
+            other.computes.get(stage).is_some_and(|o| Arc::ptr_eq(o, pipeline))
+        };
+        let same_computes = self.computes.len() == other.computes.len() && self.computes.iter().all(same_compute);
+        if !same_computes || !Arc::ptr_eq(&self.textures, &other.textures) {
+            return false;
+        }
         let same = |(key, pipeline): (&PipelineKey, &Arc<Pipeline>)| {
             other.pipelines.get(key).is_some_and(|o| Arc::ptr_eq(o, pipeline))
         };
@@ -75,6 +97,7 @@ pub struct PipelineSet {
     pub(crate) layouts: Arc<SetLayouts>,
     /// The shaders of this generation, with their modes and parameters.
     pub shaders: Arc<ShaderSet>,
+    textures: Arc<PassTextures>,
     graphics: Mutex<Recent<PipelineKey, Pipeline>>,
     computes: Mutex<Recent<(String, Specialization), ComputePipeline>>,
     requests: AtomicU64,
@@ -88,7 +111,7 @@ impl PipelineSet {
     /// taken over.
     ///
     /// # Errors
-    /// The driver rejects a stage or a pipeline.
+    /// The driver rejects a stage or a pipeline, or a texture is no image.
     pub fn new(
         gpu: &Arc<Gpu>,
         layouts: &Arc<SetLayouts>,
@@ -96,10 +119,12 @@ impl PipelineSet {
         request: &PipelineRequest,
         before: Option<&Self>,
     ) -> Result<(Arc<Self>, usize), GpuError> {
+        let textures = PassTextures::of(gpu, &shaders.graph, before.map(|set| &set.textures))?;
         let set = Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             shaders,
+            textures,
             graphics: Mutex::default(),
             computes: Mutex::default(),
             requests: AtomicU64::default(),
@@ -168,6 +193,9 @@ impl PipelineSet {
             lock(&self.graphics).insert(key.clone(), pipeline, number);
             Ok::<_, GpuError>(())
         })?;
+        for pass in request.passes.iter().filter(|pass| pass.is_compute && !self.is_pending_stage(&pass.note.stage)) {
+            self.compute_pass(pass, &request.constants)?;
+        }
         lock(&self.graphics).trim(number);
         lock(&self.computes).trim(number);
         Ok(missing.len())
@@ -175,7 +203,11 @@ impl PipelineSet {
 
     /// Whether a stage of the pipeline is still to be compiled.
     fn is_pending(&self, key: &PipelineKey) -> bool {
-        key.pass.stages().iter().any(|path| self.shaders.pending.contains(*path))
+        key.pass.stages().iter().any(|path| self.is_pending_stage(path))
+    }
+
+    fn is_pending_stage(&self, path: &str) -> bool {
+        self.shaders.pending.contains(path)
     }
 
     /// The pipelines of `request`, or `None` if one is missing.
@@ -186,7 +218,14 @@ impl PipelineSet {
         let graphics = lock(&self.graphics);
         let pipelines = request.keys().map(|key| graphics.get(&key).cloned().map(|pipeline| (key, pipeline)));
         let pipelines = pipelines.collect::<Option<_>>()?;
-        Some(BoundPipelines { pipelines })
+        let stages = request.passes.iter().filter(|pass| pass.is_compute).map(|pass| &pass.note.stage);
+        let known = lock(&self.computes);
+        let compute = |stage: &String| {
+            let pipeline = known.get(&(stage.clone(), request.constants.clone()))?;
+            Some((stage.clone(), pipeline.clone()))
+        };
+        let computes = stages.map(compute).collect::<Option<_>>()?;
+        Some(BoundPipelines { pipelines, computes, textures: self.textures.clone() })
     }
 
     /// The SPIR-V of a stage.
@@ -201,6 +240,32 @@ impl PipelineSet {
 
     /// A compute pipeline, created at its first use.
     pub(crate) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
+        self.compute_with(path, constants, || Ok(None))
+    }
+
+    /// The pipeline of a compute pass, created at its first use.
+    fn compute_pass(&self, pass: &GraphPass, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
+        self.compute_with(&pass.note.stage, constants, || self.pass_layout(pass).map(Some))
+    }
+
+    fn pass_layout(&self, pass: &GraphPass) -> Result<Arc<PassLayout>, GpuError> {
+        let bindings = pass.inputs.iter().map(|input| match input {
+            Input::Picture | Input::Depth | Input::Image(_) | Input::Before(_) | Input::Texture(_) => {
+                PassBinding::Texture
+            }
+            Input::Output => PassBinding::Storage,
+            Input::Buffer(..) => PassBinding::Buffer,
+            Input::Parameters(..) => PassBinding::Uniform,
+        });
+        PassLayout::new(&self.gpu, &self.layouts, bindings.collect())
+    }
+
+    fn compute_with(
+        &self,
+        path: &str,
+        constants: &Specialization,
+        layout: impl FnOnce() -> Result<Option<Arc<PassLayout>>, GpuError>,
+    ) -> Result<Arc<ComputePipeline>, GpuError> {
         let key = (path.to_owned(), constants.clone());
         let number = self.requests.load(Ordering::SeqCst);
         lock(&self.computes).touch(&key, number);
@@ -208,7 +273,7 @@ impl PipelineSet {
             return Ok(pipeline.clone());
         }
         let module = self.module(path, constants)?;
-        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module)?;
+        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module, layout()?)?;
         lock(&self.computes).insert(key, pipeline.clone(), number);
         Ok(pipeline)
     }
@@ -216,11 +281,15 @@ impl PipelineSet {
     fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
         let module = |path: &str| self.module(path, &key.specialization);
         let [vertex, fragment] = key.pass.stages();
-        let (depth, raster, class) = match key.pass {
-            Pass::Model { raster, class, .. } => (true, raster, class),
+        let (depth, raster, class) = match &key.pass {
+            Pass::Model { raster, class, .. } => (true, *raster, *class),
             Pass::Sky => (true, Raster::Solid, PrimitiveClass::Triangles),
             Pass::Average => (false, Raster::Averaged, PrimitiveClass::Triangles),
-            Pass::Tonemap => (false, Raster::Solid, PrimitiveClass::Triangles),
+            Pass::Tonemap | Pass::FullScreen(_) => (false, Raster::Solid, PrimitiveClass::Triangles),
+        };
+        let layout = match &key.pass {
+            Pass::FullScreen(pass) => Some(self.pass_layout(pass)?),
+            _ => None,
         };
         let desc = PipelineDesc {
             vertex: &*module(vertex)?,
@@ -230,6 +299,7 @@ impl PipelineSet {
             raster,
             samples: key.samples,
             class,
+            layout,
         };
         Pipeline::new(&self.gpu, &self.layouts, &desc)
     }

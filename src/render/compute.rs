@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+pub(crate) use crate::gpu::upload_images as upload;
 use crate::gpu::{
-    Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, Use, one_shot, vk,
+    Buffer, DescriptorSet, Gpu, GpuError, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, one_shot, vk,
 };
 use crate::interface::{BINDING_TASK, SET_TASK, Task};
 
@@ -32,29 +33,6 @@ pub(crate) fn bindings(
 /// A trilinear sampler, clamped vertically. `wrap_u` is REPEAT for an equirectangular map, whose left and right edges meet.
 pub(crate) fn linear(gpu: &Arc<Gpu>, wrap_u: vk::SamplerAddressMode) -> Result<Arc<Sampler>, GpuError> {
     Sampler::new(gpu, &SamplerDesc { wrap_u, ..SamplerDesc::LINEAR })
-}
-
-/// Uploads all levels and layers of the images, and leaves them in [`Use::Sampled`].
-pub(crate) fn upload(gpu: &Arc<Gpu>, images: &[(&Arc<Image>, &[u8])]) -> Result<(), GpuError> {
-    let place = |size: usize| (size as u64).next_multiple_of(16);
-    let size = images.iter().map(|(_, bytes)| place(bytes.len())).sum();
-    let staging = Buffer::new(gpu, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, Memory::Upload)?;
-    let mut at = 0;
-    for (_, bytes) in images {
-        staging.write(at, bytes);
-        at += place(bytes.len());
-    }
-    one_shot(gpu, |encoder| {
-        let mut at = 0;
-        for (image, bytes) in images {
-            encoder.transition(image, Use::Undefined, Use::CopyTo);
-            encoder.copy_to_image(&staging, at, image);
-            encoder.transition(image, Use::CopyTo, Use::Sampled);
-            at += place(bytes.len());
-        }
-        encoder.copies_done();
-        Ok(())
-    })
 }
 
 /// Bytes of the largest staging buffer of [`upload_buffer`].

@@ -93,7 +93,7 @@ fn find<'a>(root: &'a toml::Value, path: &str) -> Result<Option<&'a toml::Value>
                 let last = array.len().saturating_sub(1);
                 return Err(format!("unknown setting `{path}`. After `{above}` comes a number from 0 to {last} {SEE}"));
             }
-            (None, _) if above == "shader" && full == path => return Ok(None),
+            (None, _) if matches!(above.as_str(), "shader" | "passes") && full == path => return Ok(None),
             (None, _) => {
                 let hint = catalog::nearest(path, &[]).map(|name| format!(" Did you mean `{name}`?"));
                 let hint = hint.unwrap_or_default();
@@ -131,6 +131,7 @@ fn takes(path: &str, text: &str, old: Option<&toml::Value>, cause: &str) -> Stri
     }
     let within = limits(path).map(|limits| format!(", {}", told(&limits))).unwrap_or_default();
     match old {
+        _ if path.starts_with("passes.") => "it takes true or false".into(),
         _ if path.starts_with("shader.") => "it takes a number, numbers as 1,0.8,0.6, true, false or a name".into(),
         Some(toml::Value::Float(_)) => format!("it takes a number{within}"),
         Some(toml::Value::Integer(_)) => "it takes a whole number, 0 or more".into(),

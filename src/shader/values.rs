@@ -45,22 +45,40 @@ fn constant_bits(constant: &Constant, value: &ShaderValue) -> Result<u32, String
 pub(crate) fn params(values: &Values, parameters: &[Parameter]) -> Vec<u8> {
     let mut block = vec![0; PARAMS_SIZE as usize];
     for parameter in parameters {
-        let numbers = parameter_numbers(parameter, values.get(&parameter.name));
-        let numbers = numbers.unwrap_or_else(|_| parameter.default.clone());
-        for (i, number) in numbers.into_iter().enumerate() {
-            let bits = match parameter.kind {
-                ParameterType::Int => (number as i32).cast_unsigned(),
-                ParameterType::Uint => number as u32,
-                ParameterType::Bool => u32::from(number != 0.0),
-                _ => (number as f32).to_bits(),
-            };
-            let at = parameter.offset as usize + i * 4;
-            if let Some(place) = block.get_mut(at..at + 4) {
-                place.copy_from_slice(&bits.to_ne_bytes());
-            }
+        if let Some(offset) = parameter.offset {
+            write(&mut block, offset, parameter, values);
         }
     }
     block
+}
+
+/// The bytes of a pass's own uniform block: `size` bytes with the members at these offsets. A member without `//@ui` is 0.
+pub(crate) fn block(values: &Values, parameters: &[Parameter], members: &[(u32, String)], size: u32) -> Vec<u8> {
+    let mut block = vec![0; size as usize];
+    for (offset, name) in members {
+        if let Some(parameter) = parameters.iter().find(|parameter| parameter.name == *name) {
+            write(&mut block, *offset, parameter, values);
+        }
+    }
+    block
+}
+
+/// Writes a parameter's value to a block. A value that does not fit counts as the default.
+fn write(block: &mut [u8], offset: u32, parameter: &Parameter, values: &Values) {
+    let numbers = parameter_numbers(parameter, values.get(&parameter.name));
+    let numbers = numbers.unwrap_or_else(|_| parameter.default.clone());
+    for (i, number) in numbers.into_iter().enumerate() {
+        let bits = match parameter.kind {
+            ParameterType::Int => (number as i32).cast_unsigned(),
+            ParameterType::Uint => number as u32,
+            ParameterType::Bool => u32::from(number != 0.0),
+            _ => (number as f32).to_bits(),
+        };
+        let at = offset as usize + i * 4;
+        if let Some(place) = block.get_mut(at..at + 4) {
+            place.copy_from_slice(&bits.to_ne_bytes());
+        }
+    }
 }
 
 fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Result<Vec<f64>, String> {

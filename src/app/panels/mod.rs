@@ -9,6 +9,7 @@ mod modes;
 mod output;
 mod overlay;
 mod parameters;
+mod passes;
 mod shaders;
 mod timing;
 
@@ -106,13 +107,14 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
 fn settings(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) {
     let shaders = viewer.session.shaders.clone().unwrap_or_default();
     let model = viewer.session.model().cloned().unwrap_or_default();
-    let cut_short = viewer.is_cut_short();
+    let (cut_short, is_animated) = (viewer.is_cut_short(), viewer.is_animated());
     let (session, info) = (&mut viewer.session, viewer.gpu.info());
     let device = format!("{} · Vulkan {}", info.name, info.api);
     shaders::show(ui, &viewer.shader, shaders.generation, &session.diagnostics, cut_short, commands);
     timing::show(ui, &mut viewer.panels.timing, readings, &device);
     let settings = &mut session.settings;
     parameters::show(ui, &shaders, &mut settings.shader);
+    passes::show(ui, &shaders, settings, &mut viewer.playback, is_animated);
     environment::show(ui, settings, viewer.threads.baker.progress(), &viewer.resources.environment().report);
     lights::show(ui, &mut settings.lights, model.lights.len());
     output::show(ui, settings, commands);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use specula::events::{CompletedEvent, Event, ReloadEvent, emit};
-use specula::headless::Headless;
+use specula::headless::{Headless, Sequence};
 use specula::message;
 use specula::picture;
 use specula::pipeline::{Outcome, Reload};
@@ -28,6 +28,15 @@ pub struct Args {
     /// Stay, and render again whenever a shader or the model is saved
     #[arg(long)]
     watch: bool,
+    /// Draw this many frames, and write the last: for passes that read the frame before
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: u32,
+    /// Time of the first frame for animated shaders, seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    time: f32,
+    /// Frames a second, for animated shaders
+    #[arg(long, value_name = "N", default_value_t = 60.0)]
+    fps: f32,
     #[command(flatten)]
     common: Common,
 }
@@ -40,12 +49,18 @@ pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
         "final".clone_into(&mut settings.mode);
     }
     check_out(&args.out)?;
+    if !args.time.is_finite() || !(0.001..=100_000.0).contains(&args.fps) {
+        return Err(Failure::Usage(
+            "--time takes a number of seconds, and --fps 0.001 to 100000 frames a second".into(),
+        ));
+    }
     let source = args.common.source()?;
     // Start watching before reading any file, so that no save is missed in between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
     let gpu = args.common.gpu()?;
     let read = || args.common.model(args.model.as_deref());
     let (mut headless, reload) = Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
+    headless.set_sequence(Sequence { frames: args.frames, start_s: args.time, fps: args.fps });
     if let Some(watch) = &mut watch {
         watch.follow(&headless);
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::encoder::{Encoder, Use};
-use crate::gpu::Image;
+use crate::gpu::{Buffer, Image};
 
 impl Encoder {
     /// Fills every level of `to`: copies `from`, an image of the same size, to level 0, and halves each level into the next.
@@ -26,6 +26,66 @@ impl Encoder {
         self.keep(from);
         self.keep(to);
         self.blit((from, level), (to, 0), layer);
+    }
+
+    /// Halves each level of an image in [`Use::CopyTo`], whose level 0 is filled, into the next. Leaves it in [`Use::CopyFrom`].
+    pub fn fill_lower_levels(&mut self, image: &Arc<Image>) {
+        self.keep(image);
+        for level in 1..image.desc().mips {
+            self.transition_level(image, level - 1, Use::CopyTo, Use::CopyFrom);
+            self.blit((image, level - 1), (image, level), 0);
+        }
+        self.transition_level(image, image.desc().mips - 1, Use::CopyTo, Use::CopyFrom);
+    }
+
+    /// Scales an image in [`Use::CopyFrom`] to one in [`Use::CopyTo`], with a linear filter.
+    pub fn scale(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
+        self.keep(from);
+        self.keep(to);
+        self.blit((from, 0), (to, 0), 0);
+    }
+
+    /// Sets all texels of an image in [`Use::CopyTo`] to 0.
+    pub fn clear_image(&mut self, image: &Arc<Image>) {
+        self.keep(image);
+        let range = vk::ImageSubresourceRange {
+            aspect_mask: image.aspect(),
+            base_mip_level: 0,
+            level_count: image.desc().mips,
+            base_array_layer: 0,
+            layer_count: image.desc().layers,
+        };
+        let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        let zero = vk::ClearColorValue { float32: [0.0; 4] };
+        // SAFETY: this encoder records the command buffer; the image is kept and in this layout.
+        unsafe { self.gpu.device.cmd_clear_color_image(self.raw, image.raw, layout, &zero, &[range]) };
+    }
+
+    /// Sets all bytes of a buffer to 0. Its usage must include `TRANSFER_DST`.
+    pub fn clear_buffer(&mut self, buffer: &Arc<Buffer>) {
+        self.keep(buffer);
+        // SAFETY: this encoder records the command buffer; the buffer is kept.
+        unsafe { self.gpu.device.cmd_fill_buffer(self.raw, buffer.raw, 0, vk::WHOLE_SIZE, 0) };
+    }
+
+    /// Copies an image in [`Use::CopyFrom`] to the place `at` of one in [`Use::CopyTo`] of the same format, as far as it fits.
+    pub fn copy_image_to(&mut self, from: &Arc<Image>, to: &Arc<Image>, at: (u32, u32)) {
+        self.keep(from);
+        self.keep(to);
+        let width = from.desc().width.min(to.desc().width.saturating_sub(at.0));
+        let height = from.desc().height.min(to.desc().height.saturating_sub(at.1));
+        if width == 0 || height == 0 {
+            return;
+        }
+        let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
+        let region = [vk::ImageCopy::default()
+            .src_subresource(layers)
+            .dst_subresource(layers)
+            .dst_offset(vk::Offset3D { x: at.0 as i32, y: at.1 as i32, z: 0 })
+            .extent(vk::Extent3D { width, height, depth: 1 })];
+        let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        // SAFETY: this encoder records the command buffer; both images are kept, and the region lies within them.
+        unsafe { self.gpu.device.cmd_copy_image(self.raw, from.raw, source, to.raw, target, &region) };
     }
 
     fn blit(&mut self, (from, from_level): (&Image, u32), (to, to_level): (&Image, u32), to_layer: u32) {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::pass::PassTimer;
-use crate::gpu::{Buffer, DescriptorSet, Gpu, Image, Pipeline, SetLayouts};
+use crate::gpu::{Buffer, DescriptorSet, Gpu, Image, PassLayout, Pipeline, SetLayouts};
 
 /// A rectangle in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,12 +88,25 @@ pub struct Attachments<'a> {
     pub clear: Option<[f32; 4]>,
     /// Image in [`Use::Color`] that receives the average of the color samples.
     pub resolve: Option<&'a Arc<Image>>,
+    /// Image in [`Use::Depth`] that receives the depth of each pixel's first sample.
+    pub resolve_depth: Option<&'a Arc<Image>>,
     /// Depth target, in [`Use::Depth`]. If color is cleared, depth is cleared to 0, which is far.
     pub depth: Option<&'a Arc<Image>>,
+    /// Whether later commands read the depth target.
+    pub keeps_depth: bool,
     /// Whether later commands continue to draw to these targets. If so, depth and multisampled color are stored too.
     pub goes_on: bool,
     /// The part of the targets that is drawn.
     pub area: Rect,
+}
+
+impl<'a> Attachments<'a> {
+    /// A color target alone, whose contents do not matter, drawn as a whole.
+    pub fn of(color: &'a Arc<Image>) -> Self {
+        let area = Rect { x: 0, y: 0, width: color.desc().width, height: color.desc().height };
+        let (clear, resolve, resolve_depth, depth) = (None, None, None, None);
+        Self { color, clear, resolve, resolve_depth, depth, keeps_depth: false, goes_on: false, area }
+    }
 }
 
 /// Records into one command buffer.
@@ -176,11 +189,20 @@ impl Encoder {
         let colors = [color];
         let depth = to.depth.map(|depth| {
             self.keep(depth);
-            vk::RenderingAttachmentInfo::default()
+            let info = vk::RenderingAttachmentInfo::default()
                 .image_view(depth.view)
                 .image_layout(vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL)
                 .load_op(load)
-                .store_op(store)
+                .store_op(if to.keeps_depth { vk::AttachmentStoreOp::STORE } else { store });
+            match to.resolve_depth {
+                Some(resolve) => {
+                    self.keep(resolve);
+                    info.resolve_mode(vk::ResolveModeFlags::SAMPLE_ZERO)
+                        .resolve_image_view(resolve.view)
+                        .resolve_image_layout(vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL)
+                }
+                None => info,
+            }
         });
         let mut info =
             vk::RenderingInfo::default().render_area(to.area.vulkan()).layer_count(1).color_attachments(&colors);
@@ -263,6 +285,16 @@ impl Encoder {
         }
     }
 
+    /// Binds the own set of a declared pass for drawing.
+    pub fn bind_pass_set(&mut self, layout: &Arc<PassLayout>, set: &Arc<DescriptorSet>) {
+        self.keep(set);
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: this encoder records the command buffer; the set is kept, and was allocated with this layout.
+        unsafe {
+            self.gpu.device.cmd_bind_descriptor_sets(self.raw, point, layout.pipeline, set.index, &[set.raw], &[]);
+        }
+    }
+
     /// Sets the push constants.
     pub fn push<T: bytemuck::Pod>(&mut self, layouts: &SetLayouts, value: &T) {
         let (stages, bytes) = (layouts.push_stages(), bytemuck::bytes_of(value));
@@ -292,6 +324,13 @@ impl Encoder {
     /// SYNC: makes the writes of earlier copies visible to all later commands, and to the CPU after the fence.
     pub fn copies_done(&mut self) {
         self.writes_done(vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
+    }
+
+    /// SYNC: orders what earlier passes did with storage buffers before what later passes do with them.
+    pub fn buffers_done(&mut self) {
+        use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
+        let scope = (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE);
+        self.order(scope, scope);
     }
 
     /// SYNC: makes earlier writes of a stage visible to all later commands, and to the CPU after the fence.

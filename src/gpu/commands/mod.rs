@@ -7,3 +7,4 @@ pub(in crate::gpu) mod encoder;
 pub(in crate::gpu) mod frames;
 pub(in crate::gpu) mod pass;
 pub(in crate::gpu) mod slot;
+pub(in crate::gpu) mod upload;

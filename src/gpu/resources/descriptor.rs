@@ -13,7 +13,7 @@ use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError, fault};
 use crate::interface::{self, BindingKind};
 
-const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw()
         | vk::ShaderStageFlags::FRAGMENT.as_raw()
         | vk::ShaderStageFlags::COMPUTE.as_raw(),
@@ -33,7 +33,7 @@ fn stages_of(set: u32) -> vk::ShaderStageFlags {
 /// replaces pipelines and nothing else.
 pub struct SetLayouts {
     gpu: Arc<Gpu>,
-    sets: Vec<vk::DescriptorSetLayout>,
+    pub(super) sets: Vec<vk::DescriptorSetLayout>,
     pub(in crate::gpu) pipeline: vk::PipelineLayout,
     pub(in crate::gpu) blank: Blank,
 }
@@ -199,25 +199,14 @@ impl DescriptorSet {
         if set == interface::SET_FRAME {
             fault::refuse("frame-set", "creating a descriptor pool")?;
         }
-        let device = &layouts.gpu.device;
         let writer = writer.completed(set, &layouts.blank);
         let sizes: Vec<_> = interface::BINDINGS
             .iter()
             .filter(|b| b.set == set)
             .map(|b| vk::DescriptorPoolSize { ty: descriptor_type(b.kind), descriptor_count: 1 })
             .collect();
-        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-        // SAFETY: the device is live.
-        let pool = unsafe { device.create_descriptor_pool(&info, None) }.context("creating a descriptor pool")?;
         let name = writer.name.as_deref().unwrap_or(set_name(set));
-        layouts.gpu.name(pool, name);
-        let mut this =
-            Self { layouts: layouts.clone(), pool, raw: vk::DescriptorSet::null(), index: set, _kept: writer.kept };
-        let layout = [layouts.sets[set as usize]];
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layout);
-        // SAFETY: the pool is new, unshared and large enough.
-        this.raw = unsafe { device.allocate_descriptor_sets(&info) }.context("allocating a descriptor set")?[0];
-        layouts.gpu.name(this.raw, name);
+        let this = Self::allocate(layouts, layouts.sets[set as usize], set, &sizes, name, writer.kept)?;
         let kind = |binding: u32| {
             let found = interface::BINDINGS.iter().find(|b| b.set == set && b.binding == binding);
             found.map_or(vk::DescriptorType::UNIFORM_BUFFER, |b| descriptor_type(b.kind))
@@ -234,8 +223,34 @@ impl DescriptorSet {
             writes.push(write(*binding).image_info(std::slice::from_ref(info)));
         }
         // SAFETY: the set is new, so no command uses it; `_kept` keeps alive what it points to.
-        unsafe { device.update_descriptor_sets(&writes, &[]) };
+        unsafe { layouts.gpu.device.update_descriptor_sets(&writes, &[]) };
         Ok(Arc::new(this))
+    }
+
+    /// Allocates a set with a pool of this size. Nothing is written to it.
+    pub(super) fn allocate(
+        layouts: &Arc<SetLayouts>,
+        layout: vk::DescriptorSetLayout,
+        index: u32,
+        sizes: &[vk::DescriptorPoolSize],
+        name: &str,
+        kept: Vec<Arc<dyn Any + Send + Sync>>,
+    ) -> Result<Self, GpuError> {
+        let device = &layouts.gpu.device;
+        // A pool without descriptors is not allowed before Vulkan 1.4.
+        let least = [vk::DescriptorPoolSize { ty: vk::DescriptorType::UNIFORM_BUFFER, descriptor_count: 1 }];
+        let sizes = if sizes.is_empty() { &least } else { sizes };
+        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(sizes);
+        // SAFETY: the device is live.
+        let pool = unsafe { device.create_descriptor_pool(&info, None) }.context("creating a descriptor pool")?;
+        layouts.gpu.name(pool, name);
+        let mut this = Self { layouts: layouts.clone(), pool, raw: vk::DescriptorSet::null(), index, _kept: kept };
+        let layout = [layout];
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layout);
+        // SAFETY: the pool is new, unshared and large enough.
+        this.raw = unsafe { device.allocate_descriptor_sets(&info) }.context("allocating a descriptor set")?[0];
+        layouts.gpu.name(this.raw, name);
+        Ok(this)
     }
 }
 

@@ -5,5 +5,6 @@ pub(in crate::gpu) mod buffer;
 pub(in crate::gpu) mod descriptor;
 pub(in crate::gpu) mod image;
 pub(in crate::gpu) mod memory;
+pub(in crate::gpu) mod pass_layout;
 pub(in crate::gpu) mod pipeline;
 pub(in crate::gpu) mod sampler;

@@ -7,6 +7,7 @@ use ash::vk;
 
 use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
+use super::pass_layout::PassLayout;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError, fault};
@@ -94,6 +95,8 @@ pub struct PipelineDesc<'a> {
     pub samples: u32,
     /// Class of primitives.
     pub class: PrimitiveClass,
+    /// The layout of a pass that the shader tree declares; `None` for the layout of the contract.
+    pub layout: Option<Arc<PassLayout>>,
 }
 
 impl PipelineDesc<'_> {
@@ -108,6 +111,8 @@ impl PipelineDesc<'_> {
 pub struct Pipeline {
     gpu: Arc<Gpu>,
     _layouts: Arc<SetLayouts>,
+    /// The layout of a declared pass.
+    pub layout: Option<Arc<PassLayout>>,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
@@ -179,7 +184,7 @@ impl Pipeline {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(layouts.pipeline)
+            .layout(desc.layout.as_ref().map_or(layouts.pipeline, |layout| layout.pipeline))
             .push_next(&mut rendering);
         let name = desc.name();
         let _watched = Watched::begin(|| format!("compiling the pipeline `{name}`"));
@@ -191,7 +196,7 @@ impl Pipeline {
         gpu.name(raw, &name);
         let names_loops = desc.vertex.names_loops || desc.fragment.names_loops;
         let loops = names_loops.then(|| layouts.blank.loops.clone());
-        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), loops, raw }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), layout: desc.layout.clone(), loops, raw }))
     }
 }
 
@@ -199,22 +204,30 @@ impl Pipeline {
 pub struct ComputePipeline {
     gpu: Arc<Gpu>,
     _layouts: Arc<SetLayouts>,
+    /// The layout of a declared pass.
+    pub layout: Option<Arc<PassLayout>>,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
 }
 
 impl ComputePipeline {
-    /// Creates a pipeline of one stage, named after its module.
+    /// Creates a pipeline of one stage, named after its module. `layout`: that of a declared pass.
     ///
     /// # Errors
     /// The driver rejects the pipeline or is out of memory.
-    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, module: &ShaderModule) -> Result<Arc<Self>, GpuError> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        module: &ShaderModule,
+        layout: Option<Arc<PassLayout>>,
+    ) -> Result<Arc<Self>, GpuError> {
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(module.raw)
             .name(MAIN);
-        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.pipeline);
+        let raw_layout = layout.as_ref().map_or(layouts.pipeline, |layout| layout.pipeline);
+        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(raw_layout);
         // SAFETY: every pointer in `info` lives until the call returns; module and layout are live. The cache is internally
         // synchronized.
         let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipeline_cache, &[info], None) };
@@ -222,7 +235,7 @@ impl ComputePipeline {
         let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
         gpu.name(raw, &module.name);
         let loops = module.names_loops.then(|| layouts.blank.loops.clone());
-        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), loops, raw }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), layout, loops, raw }))
     }
 }
 

@@ -79,7 +79,7 @@ impl Swapchain {
             .image_color_space(vk::ColorSpaceKHR::SRGB_NONLINEAR)
             .image_extent(window.extent)
             .image_array_layers(1)
-            .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT)
+            .image_usage(window.usage)
             .pre_transform(window.transform)
             .composite_alpha(vk::CompositeAlphaFlagsKHR::OPAQUE)
             .present_mode(window.mode)
@@ -103,7 +103,7 @@ impl Swapchain {
         // SAFETY: the swapchain is live.
         let images = unsafe { swapchains.get_swapchain_images(raw) }.context("querying the swapchain's images")?;
         let vk::Extent2D { width, height } = window.extent;
-        let desc = ImageDesc::new(width, height, Self::FORMAT, vk::ImageUsageFlags::COLOR_ATTACHMENT);
+        let desc = ImageDesc::new(width, height, Self::FORMAT, window.usage);
         for (index, image) in images.into_iter().enumerate() {
             this.images.push(Image::from_swapchain(gpu, &format!("swapchain image {index}"), image, desc)?);
             this.rendered.push(semaphore(gpu, &format!("swapchain image {index} rendered"))?);
@@ -178,6 +178,7 @@ struct Window {
     image_count: u32,
     transform: vk::SurfaceTransformFlagsKHR,
     mode: vk::PresentModeKHR,
+    usage: vk::ImageUsageFlags,
 }
 
 impl Window {
@@ -221,6 +222,9 @@ impl Window {
             image_count: (capabilities.min_image_count + 1).min(most),
             transform: capabilities.current_transform,
             mode,
+            // What passes after the tone map draw is copied to the window.
+            usage: vk::ImageUsageFlags::COLOR_ATTACHMENT
+                | (vk::ImageUsageFlags::TRANSFER_DST & capabilities.supported_usage_flags),
         }))
     }
 }

@@ -2,6 +2,7 @@
 //! so that views share nothing but the resources of their frames.
 
 mod capture;
+mod declared;
 mod passes;
 mod targets;
 mod uniforms;
@@ -13,12 +14,15 @@ use capture::{PixelReadback, Readback};
 use targets::{TargetDesc, Targets};
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
+use declared::{Blocks, DeclaredPasses, Drawn};
+
 use super::resources::BoundFrame;
 use crate::frame::TargetFormat;
 use crate::gpu::{
     Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };
 use crate::shader::PixelValue;
+use crate::shader::graph::Input;
 
 /// Where a view puts its picture.
 pub struct Output<'a> {
@@ -55,6 +59,7 @@ pub struct PixelAt {
 /// The resources of one frame in flight.
 struct InFlight {
     uniforms: Uniforms,
+    blocks: Blocks,
     pixel: PixelReadback,
 }
 
@@ -66,6 +71,7 @@ pub struct View {
     shared: SharedImages,
     in_flight: Vec<InFlight>,
     targets: Option<Targets>,
+    declared: DeclaredPasses,
     /// The frame that the HDR target holds, and the part of it.
     drawn: Option<(BoundFrame, Option<Rect>)>,
     /// How often the model was drawn.
@@ -85,13 +91,16 @@ impl View {
     /// Out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, frames_in_flight: usize) -> Result<Self, GpuError> {
         let in_flight = || -> Result<_, GpuError> {
-            Ok(InFlight { uniforms: Uniforms::new(gpu)?, pixel: PixelReadback::new(gpu)? })
+            let (uniforms, pixel) = (Uniforms::new(gpu)?, PixelReadback::new(gpu)?);
+            Ok(InFlight { uniforms, blocks: Blocks::default(), pixel })
         };
+        let (nearest, shared) = (Sampler::new(gpu, &SamplerDesc::NEAREST)?, SharedImages::new(gpu)?);
         Ok(Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
-            nearest: Sampler::new(gpu, &SamplerDesc::NEAREST)?,
-            shared: SharedImages::new(gpu)?,
+            declared: DeclaredPasses::new(gpu, layouts, &shared.linear, &nearest)?,
+            nearest,
+            shared,
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,
@@ -112,10 +121,14 @@ impl View {
             format: request.target,
             transmission: frame.state.scene.as_ref().is_some_and(|scene| scene.is_transmissive()),
             accumulates: request.accumulates,
+            reads_depth: request.passes.iter().any(|pass| pass.inputs.contains(&Input::Depth)),
         };
         if self.targets.as_ref().is_none_or(|targets| targets.desc != desc) {
             let samplers = (&self.nearest, &self.shared.linear);
             self.targets = Some(Targets::new(&self.gpu, &self.layouts, desc, samplers)?);
+            self.drawn = None;
+        }
+        if self.declared.prepare(frame)? {
             self.drawn = None;
         }
         Ok(())
@@ -144,9 +157,14 @@ impl View {
         let in_flight = &mut self.in_flight[slot];
         // This can fail, so it comes before the view changes.
         let set = in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?;
+        in_flight.blocks.write(&self.gpu, frame.state.pass_blocks())?;
         let (width, height) = frame.state.size;
-        let rect = Rect { x: output.at.0, y: output.at.1, width, height };
+        let at_output = Rect { x: output.at.0, y: output.at.1, width, height };
+        let has_display_passes = DeclaredPasses::has_display_passes(frame);
+        let rect = if has_display_passes { Rect { x: 0, y: 0, ..at_output } } else { at_output };
         let only = match redraw {
+            // A declared pass may read any pixel.
+            Redraw::Pixel(..) if !frame.state.pipelines.passes.is_empty() => None,
             Redraw::Pixel(x, y) => Some(Rect { x, y, width: 1, height: 1 }),
             Redraw::IfChanged | Redraw::Always => None,
         };
@@ -173,20 +191,53 @@ impl View {
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
             passes.accumulate(encoder, self.sample_index);
         }
+
+        // What the tree declares, before the tone map.
+        let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
+        let drawn = Drawn { frame, frame_set: &set, blocks, depth };
+        if redrawn {
+            self.declared.before_tonemap(encoder, &drawn, targets.picture())?;
+        }
         self.drawn = Some((frame.clone(), only));
 
         // The probed pixel, which `pixel` reads once the frame has finished.
-        in_flight.pixel.record(encoder, targets.picture(), self.probe, self.picture);
+        let picture = self.declared.picture().unwrap_or(targets.picture()).clone();
+        in_flight.pixel.record(encoder, &picture, self.probe, self.picture);
 
-        // The HDR target to the picture: exposure, tone map, sRGB.
+        // The HDR picture to the display: exposure, tone map, sRGB.
+        let picture_set = self.declared.tonemap_set(&picture)?;
+        let display = self.declared.display().cloned().filter(|_| has_display_passes);
+        let Some(display) = display else {
+            encoder.transition(output.image, output.before, Use::Color);
+            encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, output.image, rect));
+            return Ok(());
+        };
+        encoder.transition(&display, Use::Undefined, Use::Color);
+        encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, &display, rect));
+        encoder.transition(&display, Use::Color, Use::Sampled);
+
+        // What the tree declares, after the tone map.
+        let last = self.declared.after_tonemap(encoder, &drawn)?;
         encoder.transition(output.image, output.before, Use::Color);
-        encoder.pass("tone map", |encoder| passes.tone_map(encoder, output.image, rect));
+        passes::clear(encoder, output.image);
+        if let Some(last) = last {
+            encoder.transition(&last, Use::Sampled, Use::CopyFrom);
+            encoder.transition(output.image, Use::Color, Use::CopyTo);
+            encoder.copy_image_to(&last, output.image, output.at);
+            encoder.transition(output.image, Use::CopyTo, Use::Color);
+            encoder.transition(&last, Use::CopyFrom, Use::Sampled);
+        }
         Ok(())
     }
 
     /// Draws everything in the next frame, since the commands of a frame were not submitted and the targets may hold nothing.
     pub fn forget(&mut self) {
         self.drawn = None;
+    }
+
+    /// Lets the declared passes begin again: images of the frame before and buffers become 0.
+    pub fn restart_passes(&mut self) {
+        self.declared.restart();
     }
 
     /// Fills an output with black while there is no frame to draw.
@@ -218,9 +269,10 @@ impl View {
     pub fn read_back(&self, encoder: &mut Encoder, output: &Arc<Image>) -> Result<Option<Readback>, GpuError> {
         let Some(targets) = &self.targets else { return Ok(None) };
         encoder.transition(output, Use::Color, Use::CopyFrom);
-        encoder.transition(targets.picture(), Use::Sampled, Use::CopyFrom);
-        let readback = Readback::record(&self.gpu, encoder, output, targets.picture())?;
-        encoder.transition(targets.picture(), Use::CopyFrom, Use::Sampled);
+        let picture = self.declared.picture().unwrap_or(targets.picture());
+        encoder.transition(picture, Use::Sampled, Use::CopyFrom);
+        let readback = Readback::record(&self.gpu, encoder, output, picture)?;
+        encoder.transition(picture, Use::CopyFrom, Use::Sampled);
         Ok(Some(readback))
     }
 
@@ -229,7 +281,8 @@ impl View {
     /// # Errors
     /// Out of memory.
     pub fn output_image(&self, (width, height): (u32, u32)) -> Result<Arc<Image>, GpuError> {
-        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
+        use vk::ImageUsageFlags as Usage;
+        let usage = Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         Image::new(&self.gpu, "picture", ImageDesc::new(width, height, Swapchain::FORMAT, usage))
     }
 

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::targets::Targets;
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
-use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
+use crate::gpu::{Attachments, DescriptorSet, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
 use crate::render::resources::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
@@ -55,7 +55,11 @@ impl Passes<'_> {
         // and this mode differs.
         let has_opaque = targets.behind.is_some() && !self.request().draws_opaque_twice();
         let clear = (!has_opaque).then_some([0.0; 4]);
-        encoder.begin_rendering(&Attachments { clear, ..self.hdr() });
+        let (resolve_depth, keeps_depth) = (targets.resolved_depth.as_ref(), targets.desc.reads_depth);
+        if let Some(resolved) = resolve_depth {
+            encoder.transition(resolved, Use::Undefined, Use::Depth);
+        }
+        encoder.begin_rendering(&Attachments { clear, resolve_depth, keeps_depth, ..self.hdr() });
         if let Some(only) = self.only {
             encoder.set_scissor(only);
         }
@@ -67,6 +71,9 @@ impl Passes<'_> {
         self.sky(encoder);
         self.draw(encoder, &sorted.blended, PipelineRequest::model_key);
         encoder.end_rendering();
+        if let Some(depth) = targets.read_depth() {
+            encoder.transition(depth, Use::Depth, Use::Sampled);
+        }
     }
 
     /// Draws the opaque surfaces and copies them with mip levels, for transmissive surfaces to look up.
@@ -107,14 +114,8 @@ impl Passes<'_> {
 
     fn add_to_mean(&self, encoder: &mut Encoder, mean: &Arc<Image>, pipeline: &Arc<Pipeline>, index: u32) {
         encoder.transition(mean, if index == 0 { Use::Undefined } else { Use::Sampled }, Use::Color);
-        encoder.begin_rendering(&Attachments {
-            color: mean,
-            clear: (index == 0).then_some([0.0; 4]),
-            resolve: None,
-            depth: None,
-            goes_on: false,
-            area: whole(mean),
-        });
+        let clear = (index == 0).then_some([0.0; 4]);
+        encoder.begin_rendering(&Attachments { clear, ..Attachments::of(mean) });
         if let Some(only) = self.only {
             encoder.set_scissor(only);
         }
@@ -126,15 +127,15 @@ impl Passes<'_> {
         encoder.transition(mean, Use::Color, Use::Sampled);
     }
 
-    /// Tone maps the HDR target to `rect` of `output`. The rest of `output` becomes black.
-    pub(super) fn tone_map(&self, encoder: &mut Encoder, output: &Arc<Image>, rect: Rect) {
+    /// Tone maps the picture in `set` to `rect` of `output`. The rest of `output` becomes black.
+    pub(super) fn tone_map(&self, encoder: &mut Encoder, set: &Arc<DescriptorSet>, output: &Arc<Image>, rect: Rect) {
         encoder.begin_rendering(&cleared(output));
         if let Some(pipeline) = self.pipeline(&self.request().tonemap_key()) {
             encoder.set_viewport(rect);
             // After a resize, the previous picture may be larger than its output.
             encoder.set_scissor(self.only.unwrap_or(within(rect, whole(output))));
             encoder.bind_pipeline(pipeline);
-            encoder.bind_set(self.layouts, &self.targets.picture_set);
+            encoder.bind_set(self.layouts, set);
             encoder.draw(3);
         }
         encoder.end_rendering();
@@ -155,8 +156,7 @@ impl Passes<'_> {
             Some(multisampled) => (multisampled, Some(&targets.color)),
             None => (&targets.color, None),
         };
-        let area = whole(&targets.color);
-        Attachments { color, clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), goes_on: false, area }
+        Attachments { clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), ..Attachments::of(color) }
     }
 
     fn draw(
@@ -199,8 +199,7 @@ pub(super) fn clear(encoder: &mut Encoder, output: &Arc<Image>) {
 }
 
 fn cleared(output: &Arc<Image>) -> Attachments<'_> {
-    let clear = Some([0.0, 0.0, 0.0, 1.0]);
-    Attachments { color: output, clear, resolve: None, depth: None, goes_on: false, area: whole(output) }
+    Attachments { clear: Some([0.0, 0.0, 0.0, 1.0]), ..Attachments::of(output) }
 }
 
 fn whole(image: &Image) -> Rect {

@@ -18,6 +18,8 @@ pub(super) struct TargetDesc {
     pub(super) transmission: bool,
     /// Whether the mode accumulates.
     pub(super) accumulates: bool,
+    /// Whether a declared pass reads the model's depth.
+    pub(super) reads_depth: bool,
 }
 
 /// The images of one [`TargetDesc`], replaced as a whole. Frames in flight keep the old ones alive.
@@ -29,6 +31,8 @@ pub(super) struct Targets {
     pub(super) multisampled: Option<Arc<Image>>,
     /// Depth.
     pub(super) depth: Arc<Image>,
+    /// Depth of the first sample of each pixel, if a pass reads it and there is more than one.
+    pub(super) resolved_depth: Option<Arc<Image>>,
     /// The opaque surfaces with mip levels, for transmissive surfaces to look up.
     pub(super) behind: Option<Arc<Image>>,
     /// Mean of the frames so far.
@@ -37,8 +41,6 @@ pub(super) struct Targets {
     pub(super) model_set: Arc<DescriptorSet>,
     /// Set of the accumulation pass: the newest frame.
     pub(super) color_set: Arc<DescriptorSet>,
-    /// Set of the tone map: [`Self::picture`].
-    pub(super) picture_set: Arc<DescriptorSet>,
 }
 
 impl Targets {
@@ -58,7 +60,14 @@ impl Targets {
             1 => None,
             _ => Some(image("multisampled color", multi(format, Usage::COLOR_ATTACHMENT))?),
         };
-        let depth = image("depth", multi(vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT))?;
+        let (depth_format, attached) = (vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT);
+        let read = attached | Usage::SAMPLED;
+        let depth =
+            image("depth", multi(depth_format, if desc.reads_depth && samples == 1 { read } else { attached }))?;
+        let resolved_depth = match desc.reads_depth && samples > 1 {
+            true => Some(image("resolved depth", ImageDesc::new(width, height, depth_format, read))?),
+            false => None,
+        };
         let copied = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let levels = mips::count(width, height);
         let behind = match desc.transmission {
@@ -76,13 +85,18 @@ impl Targets {
             desc,
             model_set: DescriptorSet::new(layouts, SET_PASS, seen)?,
             color_set: scene(&color)?,
-            picture_set: scene(mean.as_ref().unwrap_or(&color))?,
             color,
             multisampled,
             depth,
+            resolved_depth,
             behind,
             mean,
         })
+    }
+
+    /// The depth that passes read.
+    pub(super) fn read_depth(&self) -> Option<&Arc<Image>> {
+        self.desc.reads_depth.then(|| self.resolved_depth.as_ref().unwrap_or(&self.depth))
     }
 
     /// The image that the tone map reads: the mean of an accumulating mode, otherwise the newest frame.

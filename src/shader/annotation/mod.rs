@@ -8,12 +8,15 @@
 //!     float rim;         //@ui "Rim" 0..1 = 0.2
 //!     vec3  rim_color;   //@ui color = 1 0.8 0.6
 //! };
+//! //@pass glow "Glow" size=1/4 mips
+//! //@texture noise "noise.png" linear repeat
 //! ```
 //!
-//! An annotation follows its declaration on the same line, or is on the line before it.
+//! `//@pass` and `//@texture` stand anywhere in their file ([`pass`]). Another annotation follows its declaration on the same line, or is on the line before it.
 
 mod cursor;
 mod parse;
+pub mod pass;
 mod value;
 
 use std::collections::BTreeMap;
@@ -23,11 +26,13 @@ use serde::Serialize;
 use crate::interface;
 
 use self::cursor::Place;
+use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::{Reflection, Scalar};
 use parse::{Declared, Found, Ui, outside_of_choices, parse_file};
+use pass::{PassNote, TextureNote};
 
 /// How the tone map stores a mode's values as 8-bit pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -123,6 +128,9 @@ pub struct Mode {
     pub through: bool,
     /// How the model is drawn.
     pub draw: DrawAs,
+    /// The pass whose image the mode shows; such modes need no annotation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pass: Option<String>,
     /// Key in the window.
     pub key: Option<char>,
     /// A description of the mode.
@@ -209,15 +217,15 @@ impl ParameterType {
     }
 }
 
-/// A member of the author's `Params` block. A change only updates a uniform buffer.
+/// A member of the author's `Params` block, or of a pass's own uniform block. A change only updates a uniform buffer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
     /// Name in GLSL; the key in `settings.shader`.
     pub name: String,
     /// Name for people.
     pub label: String,
-    /// Bytes from the start of the block.
-    pub offset: u32,
+    /// Bytes from the start of `Params`; `None` for a member of a pass's own block.
+    pub offset: Option<u32>,
     /// Type.
     #[serde(rename = "type")]
     pub kind: ParameterType,
@@ -244,8 +252,12 @@ pub struct Annotations {
     pub modes: Vec<Mode>,
     /// Ordered by id.
     pub constants: Vec<Constant>,
-    /// Ordered by offset.
+    /// Ordered by offset in `Params`, then those of passes by file and line.
     pub parameters: Vec<Parameter>,
+    /// Ordered by name.
+    pub passes: Vec<PassNote>,
+    /// Ordered by name.
+    pub textures: Vec<TextureNote>,
 }
 
 /// Reads the annotations of `files`. Ids, defaults and offsets come from the compiled modules.
@@ -269,19 +281,45 @@ pub fn read<'p>(
             let added = match found {
                 Found::Mode(mode, place) => seen.mode(&mode, &place).map(|()| out.modes.push(mode)),
                 Found::Ui(ui) => seen.ui(&ui).and_then(|()| resolve(ui, modules, &mut out)),
+                Found::Pass(note) => {
+                    let note = PassNote { stage: path.to_string(), ..note };
+                    match StageKind::of(path) {
+                        Some(StageKind::Fragment | StageKind::Compute) => {
+                            seen.pass(&note).map(|()| out.passes.push(note))
+                        }
+                        _ => {
+                            let message = "a pass is a file with main() that ends in .frag or .comp";
+                            Err(Box::new(note.place.error(message)))
+                        }
+                    }
+                }
+                Found::Texture(note) => seen.texture(&note).map(|()| {
+                    out.textures.push(TextureNote { declared_in: path.to_string(), ..note });
+                }),
             };
             errors.extend(added.err().map(|error| *error));
         }
     }
     out.modes.sort_by_key(|mode| mode.id);
     out.constants.sort_by_key(|constant| constant.id);
-    out.parameters.sort_by_key(|parameter| parameter.offset);
+    out.parameters.sort_by(|a, b| {
+        let key = |p: &Parameter| (p.offset.is_none(), p.offset, p.file.clone(), p.line);
+        key(a).cmp(&key(b))
+    });
+    out.passes.sort_by(|a, b| a.name.cmp(&b.name));
+    out.textures.sort_by(|a, b| a.name.cmp(&b.name));
     if let Some(pair) = out.constants.windows(2).find(|pair| pair[0].id == pair[1].id) {
         let message = format!("constant_id {} is given twice: `{}` and `{}`", pair[0].id, pair[0].name, pair[1].name);
         let note = format!("the other is at {}:{}", pair[0].file, pair[0].line);
         errors.push(Diagnostic::error(&pair[1].file, message).on_line(pair[1].line, None).with_note(note));
     }
     if errors.is_empty() { Ok(out) } else { Err(errors) }
+}
+
+/// Whether a stage declares a pass that is off unless the user switches it on.
+pub fn is_off(snapshot: &Snapshot<'_>, stage: &TreePath) -> bool {
+    let Ok(text) = snapshot.read(stage) else { return false };
+    parse_file("", &text).0.iter().any(|found| matches!(found, Found::Pass(note) if !note.on))
 }
 
 /// The first occurrence of each name.
@@ -304,12 +342,32 @@ impl Seen {
         self.first("//@ui name", &ui.name, &ui.place)
     }
 
+    fn pass(&mut self, note: &PassNote) -> Result<(), Box<Diagnostic>> {
+        let error = |message| Box::new(note.place.error(message));
+        self.only("//@pass of", &note.stage, (&note.place.file, note.place.line), error)?;
+        self.only("pass or texture", &note.name, (&note.place.file, note.place.line), error)
+    }
+
+    fn texture(&mut self, note: &TextureNote) -> Result<(), Box<Diagnostic>> {
+        let place = (note.place.file.as_str(), note.place.line);
+        self.only("pass or texture", &note.name, place, |message| Box::new(note.place.error(message)))
+    }
+
     fn first(&mut self, what: &'static str, value: &str, place: &Place) -> Result<(), Box<Diagnostic>> {
-        let here = (place.file.clone(), place.line);
-        match self.0.insert((what, value.to_owned()), here) {
+        self.only(what, value, (&place.file, place.line), |message| place.error(None, message))
+    }
+
+    fn only(
+        &mut self,
+        what: &'static str,
+        value: &str,
+        (file, line): (&str, u32),
+        error: impl Fn(String) -> Box<Diagnostic>,
+    ) -> Result<(), Box<Diagnostic>> {
+        match self.0.insert((what, value.to_owned()), (file.to_owned(), line)) {
             None => Ok(()),
             Some((file, line)) => {
-                let error = place.error(None, format!("{what} `{value}` is given twice"));
+                let error = error(format!("{what} `{value}` is given twice"));
                 Err(Box::new(error.with_note(format!("the other is at {file}:{line}"))))
             }
         }
@@ -349,7 +407,10 @@ fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(),
             });
         }
         Declared::Member(kind) => {
-            let offset = offset_in_params(&name, modules, &place)?;
+            let offset = match in_a_pass(&name, modules) {
+                true => None,
+                false => Some(offset_in_params(&name, modules, &place)?),
+            };
             let default = default.unwrap_or_else(|| match choices.first() {
                 // Without a default it is 0, or the first choice if 0 is not a choice.
                 Some((_, first)) if outside_of_choices(&choices, 0.0).is_some() => vec![*first as f64],
@@ -359,6 +420,12 @@ fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(),
         }
     }
     Ok(())
+}
+
+/// Whether `name` is a member of a pass's own uniform block.
+fn in_a_pass(name: &str, modules: &[&Reflection]) -> bool {
+    let own = modules.iter().flat_map(|module| &module.descriptors).filter(|found| found.set == interface::SET_PASS);
+    own.filter_map(|found| found.block.as_ref()).any(|block| block.members.iter().any(|member| member.name == name))
 }
 
 /// The offset of a member of `Params`. It must be the same in every module, since all share one buffer.

@@ -1,6 +1,7 @@
 //! Parses `//@` comments. An error has a column and says what was expected.
 
 use super::cursor::{Cursor, Place};
+use super::pass::{self, PassNote, TextureNote};
 use super::value::{choices, claim, claimed, default, range};
 use super::{DrawAs, Encode, Mode, ModeStage, ParameterType};
 use crate::shader::diagnostic::Diagnostic;
@@ -17,6 +18,10 @@ pub enum Found {
     Mode(Mode, Place),
     /// `//@ui`
     Ui(Ui),
+    /// `//@pass`
+    Pass(PassNote),
+    /// `//@texture`
+    Texture(TextureNote),
 }
 
 /// The declaration that a `//@ui` belongs to.
@@ -84,7 +89,12 @@ fn parse(place: Place, start: usize, declaration: Option<&Line<'_>>) -> Result<F
             let ui = ui(&mut cursor, declaration)?;
             Ok(Found::Ui(Ui { place, ..ui }))
         }
-        _ => Err(cursor.error(start..bytes.end, format!("expected `//@mode` or `//@ui`, found `//@{kind}`"))),
+        "pass" => pass::pass(&mut cursor).map(Found::Pass),
+        "texture" => pass::texture(&mut cursor).map(Found::Texture),
+        _ => {
+            let message = format!("expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@{kind}`");
+            Err(cursor.error(start..bytes.end, message))
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
+use super::unbound::unbound;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::text::lines;
 use crate::shader::source::{SourceError, TreePath};
@@ -59,6 +60,12 @@ impl<'a> Includes<'a> {
         }
         let looked: Vec<String> = candidates.iter().map(|path| self.snapshot.display_path(path)).collect();
         Err(format!("\"{name}\" not found; looked for {}", looked.join(" and ")))
+    }
+
+    /// The uniforms and buffers that the files read so far declare without a binding.
+    pub fn unbound(&self) -> BTreeSet<String> {
+        let files = self.dependencies.borrow();
+        files.iter().filter_map(|path| self.snapshot.read(path).ok()).flat_map(|text| unbound(&text)).collect()
     }
 
     /// All files that were read, and all paths where no file was found.

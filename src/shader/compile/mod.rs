@@ -3,6 +3,7 @@
 mod balance;
 pub mod include;
 pub mod log;
+mod unbound;
 
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -10,9 +11,12 @@ use std::time::Instant;
 use serde::Serialize;
 use shaderc::{CompileOptions, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv};
 
+use crate::interface::SET_PASS;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::lines;
+use crate::shader::spirv::bindings::assign_set;
 use include::Includes;
 
 /// Kind of a stage, given by the file's extension.
@@ -83,7 +87,7 @@ impl Compiler {
     pub fn warm(&self) {
         let trivial = "#version 460\nvoid main() {}\n";
         for kind in [ShaderKind::Fragment, ShaderKind::Vertex] {
-            if let Ok(options) = options() {
+            if let Ok(options) = options(trivial) {
                 let _ = self.shaderc.compile_into_spirv(trivial, kind, "warm", "main", Some(&options));
             }
         }
@@ -110,7 +114,7 @@ impl Compiler {
     pub fn compile_with_lines(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Option<Vec<u32>> {
         let text = snapshot.read(stage).ok()?;
         let includes = Includes::new(snapshot, stage.clone());
-        let mut options = options().ok()?;
+        let mut options = options(&text).ok()?;
         options.set_generate_debug_info();
         self.run(options, &includes, stage, &text, StageKind::of(stage)?).ok().map(|(spirv, _)| spirv)
     }
@@ -119,7 +123,8 @@ impl Compiler {
     pub fn compile_library(&self, snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> Compiled {
         // The wrapper has no text of the user. `rename` below keeps its name out of messages.
         let wrapper = TreePath::from("(library)");
-        let text = format!("#version 460\n#include \"{library}\"\nvoid main() {{}}\n");
+        // A library may be for passes, which declare uniforms by name.
+        let text = format!("#version 460 //@pass\n#include \"{library}\"\nvoid main() {{}}\n");
         let mut compiled = self.compile_text(snapshot, &wrapper, &text, kind);
         compiled.dependencies.remove(&wrapper);
         // An error of the whole library is reported under the library's name.
@@ -140,7 +145,7 @@ impl Compiler {
     fn compile_text(&self, snapshot: &Snapshot<'_>, path: &TreePath, text: &str, kind: StageKind) -> Compiled {
         let start = Instant::now();
         let includes = Includes::new(snapshot, path.clone());
-        let outcome = options().and_then(|options| self.run(options, &includes, path, text, kind));
+        let outcome = options(text).and_then(|options| self.run(options, &includes, path, text, kind));
         let ms = start.elapsed().as_secs_f64() * 1e3;
         let dependencies = includes.into_dependencies();
         let (result, text) = match outcome {
@@ -173,7 +178,13 @@ impl Compiler {
             Ok(ResolvedInclude { resolved_name: path.to_string(), content })
         });
         match self.shaderc.compile_into_spirv(text, kind.shaderc(), path.as_str(), "main", Some(&options)) {
-            Ok(artifact) => Ok((artifact.as_binary().to_vec(), artifact.get_warning_messages())),
+            Ok(artifact) => {
+                let mut words = artifact.as_binary().to_vec();
+                if declares_pass(text) {
+                    assign_set(&mut words, SET_PASS, &includes.unbound());
+                }
+                Ok((words, artifact.get_warning_messages()))
+            }
             Err(shaderc::Error::CompilationError(_, log)) => Err(log),
             Err(error) => Err(error.to_string()),
         }
@@ -190,11 +201,20 @@ fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>, quick: bool) 
     files.iter().filter_map(check).collect()
 }
 
-/// Compile options: unoptimized, which is five times faster and keeps the names that reflection needs.
-fn options<'a>() -> Result<CompileOptions<'a>, String> {
+/// Whether the text of a stage declares a pass. Such a stage declares images and buffers by name alone.
+pub fn declares_pass(text: &str) -> bool {
+    text.contains("//@pass")
+        && lines(text).iter().any(|line| line.annotation.is_some_and(|at| line.raw[at..].starts_with("//@pass")))
+}
+
+/// Compile options for a stage: unoptimized, which is five times faster and keeps the names that reflection needs.
+fn options<'a>(stage: &str) -> Result<CompileOptions<'a>, String> {
     let mut options = CompileOptions::new().map_err(|error| error.to_string())?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
     options.set_target_spirv(SpirvVersion::V1_5);
     options.set_optimization_level(OptimizationLevel::Zero);
+    if declares_pass(stage) {
+        options.set_auto_bind_uniforms(true);
+    }
     Ok(options)
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::interface::{self, BindingKind, block};
 
-use crate::shader::compile::StageKind;
+use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -32,7 +32,7 @@ pub struct Texts<'a> {
 impl Texts<'_> {
     /// An error at the first line of code that contains all `words`, with the caret under the first word. If there is
     /// no such line (a macro made the declaration), the error is about the stage's file.
-    fn error(&self, words: &[&str], message: String) -> Diagnostic {
+    pub fn error(&self, words: &[&str], message: String) -> Diagnostic {
         let all = |code: &str| {
             let found: Option<Vec<_>> = words.iter().map(|word| find_word(code, word)).collect();
             found?.into_iter().next()
@@ -67,7 +67,10 @@ impl Texts<'_> {
 /// Checks one stage against the contract.
 pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
-    for descriptor in &reflection.descriptors {
+    // What a pass declares by name is for `graph` to find, also in the libraries that passes include.
+    let is_library = StageKind::of(texts.stage).is_none();
+    let is_pass = is_library || texts.snapshot.read(texts.stage).is_ok_and(|text| declares_pass(&text));
+    for descriptor in reflection.descriptors.iter().filter(|found| !is_pass || found.set != interface::SET_PASS) {
         out.extend(check_descriptor(descriptor, texts));
     }
     if let Some(block) = &reflection.push_constants {

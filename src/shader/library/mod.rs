@@ -12,13 +12,14 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::shader::annotation::{self, Annotations, Constant, Mode, Parameter};
+use crate::shader::annotation::pass::is_image_extension;
+use crate::shader::annotation::{self, Annotations, Constant, Mode, ModeStage, Parameter};
 use crate::shader::compile::include::files_of;
-use crate::shader::compile::{Compiler, StageKind};
+use crate::shader::compile::{Compiler, StageKind, declares_pass};
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
+use crate::shader::graph::{Graph, PassStage, text_reads_clock};
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{find_word, lines};
 use crate::shader::source::{Source, TreePath};
 use crate::shader::spirv::reflect::Reflection;
 use slot::{Outcome, Slot, build};
@@ -65,11 +66,13 @@ pub struct ShaderSet {
     pub constants: Vec<Constant>,
     /// The author's parameters, ordered by offset.
     pub parameters: Vec<Parameter>,
+    /// The passes that the tree adds, in order.
+    pub graph: Graph,
     /// The compiler's warnings, and an error for each file whose text is refused ([`Source::held`]).
     pub warnings: Vec<Diagnostic>,
     /// The texts of all files that the stages depend on.
     pub texts: BTreeMap<TreePath, Arc<str>>,
-    /// Whether a shader reads the time, so that the picture changes without input.
+    /// Whether a shader of the model or the tone map reads the time, so that the picture changes without input.
     pub animated: bool,
 }
 
@@ -102,7 +105,10 @@ pub enum Update {
 pub struct Library {
     source: Arc<Source>,
     compiler: Arc<Compiler>,
+    /// The entry points that every tree has, then the stages that declare a pass.
     slots: Vec<Slot>,
+    /// Number of entry points that every tree has.
+    fixed: usize,
     pairs: Vec<(TreePath, TreePath)>,
     set: Option<Arc<ShaderSet>>,
     failed: bool,
@@ -111,7 +117,7 @@ pub struct Library {
 }
 
 impl Library {
-    /// A library with the entry points `stages`. The outputs of `NAME.vert` are the inputs of `NAME.frag`.
+    /// A library with the entry points `stages`, and every other stage of the tree that declares a pass. The outputs of `NAME.vert` are the inputs of `NAME.frag`.
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
         let paths: Vec<TreePath> = stages.iter().map(|path| TreePath::from(*path)).collect();
         let of = |kind| paths.iter().filter(move |path| StageKind::of(path) == Some(kind));
@@ -121,8 +127,9 @@ impl Library {
                 fragments.map(|fragment| (vertex.clone(), fragment.clone()))
             })
             .collect();
-        let slots = paths.iter().cloned().map(Slot::new).collect();
-        Self { source: Arc::new(source), compiler, slots, pairs, set: None, failed: false, relink: false }
+        let fixed = paths.len();
+        let slots = paths.into_iter().map(Slot::new).collect();
+        Self { source: Arc::new(source), compiler, slots, fixed, pairs, set: None, failed: false, relink: false }
     }
 
     /// The tree.
@@ -179,6 +186,7 @@ impl Library {
         let start = Instant::now();
         let source = Arc::clone(&self.source);
         let snapshot = Snapshot::new(&source);
+        self.find_passes(change, &snapshot);
         let mut report = Report { changed: self.changed(change), ..Report::default() };
 
         let stale = self.stale(change, &snapshot);
@@ -205,6 +213,16 @@ impl Library {
         self.conclude(linked, self.next_generation(), &snapshot, report)
     }
 
+    /// The first update, in two steps: all but the stages of `later` and the passes that are off compile first.
+    pub fn first_picture(&mut self, later: &[&str]) -> Update {
+        let source = Arc::clone(&self.source);
+        let snapshot = Snapshot::new(&source);
+        self.find_passes(&Change::All, &snapshot);
+        let passes = self.slots.iter().skip(self.fixed).map(|slot| slot.path.clone());
+        let off: BTreeSet<TreePath> = passes.filter(|path| annotation::is_off(&snapshot, path)).collect();
+        self.update_first(&Change::All, |path| !later.contains(&path.as_str()) && !off.contains(path))
+    }
+
     /// Compiles the stages that [`Library::update_first`] has left. The new set has the same generation. On an error the set
     /// stays, without the stages that are still pending. Ends early if `superseded` returns that a newer edit waits, or if the
     /// files have changed since.
@@ -227,6 +245,30 @@ impl Library {
         let linked = self.link(&snapshot, false);
         report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
         self.conclude(linked, generation, &snapshot, report)
+    }
+
+    /// Adds the stages that declare a pass since `change`, and removes those that no longer do.
+    fn find_passes(&mut self, change: &Change, snapshot: &Snapshot<'_>) {
+        let listed;
+        let paths: Box<dyn Iterator<Item = &TreePath>> = match change {
+            Change::All => {
+                listed = self.source.list();
+                Box::new(listed.iter())
+            }
+            Change::Paths(paths) => Box::new(paths.iter()),
+        };
+        let is_pass = |path: &TreePath| snapshot.read(path).is_ok_and(|text| declares_pass(&text));
+        for path in paths.filter(|path| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute))) {
+            let place = self.slots.iter().position(|slot| slot.path == *path);
+            match place {
+                Some(place) if place >= self.fixed && !is_pass(path) => {
+                    self.slots.remove(place);
+                    self.relink = true;
+                }
+                None if is_pass(path) => self.slots.push(Slot::new(path.clone())),
+                _ => {}
+            }
+        }
     }
 
     fn next_generation(&self) -> u64 {
@@ -274,7 +316,8 @@ impl Library {
         };
         // The version counts even if no stage includes the file.
         let moved = std::mem::take(&mut self.relink) || paths.contains(&TreePath::from(contract::INTERFACE_FILE));
-        let mut stale = Stale { moved, compile: Vec::new() };
+        let is_image = |path: &TreePath| path.extension().is_some_and(is_image_extension);
+        let mut stale = Stale { moved: moved || paths.iter().any(is_image), compile: Vec::new() };
         for (index, slot) in self.slots.iter_mut().enumerate() {
             let hit = slot.dependencies().any(|dependency| paths.contains(dependency));
             // Always check a failed stage again: its dependencies are known only up to the error.
@@ -328,9 +371,20 @@ impl Library {
         if !errors.is_empty() {
             return Err(errors);
         }
-        let reflections: Vec<&Reflection> = modules.values().map(|stage| &stage.reflection).collect();
-        let annotations = annotation::read(snapshot, files, &reflections)?;
-        Ok(Linked { annotations, warnings: unique(warnings) })
+        // The parameters of passes and what they read stay known while the passes are pending.
+        let passes = self.slots.iter().skip(self.fixed);
+        let goods = passes.filter_map(|slot| slot.good.as_ref().filter(|_| is_partial));
+        let goods = goods.map(|built| (&built.stage.path, &*built.stage));
+        let known: BTreeMap<&TreePath, &Stage> = goods.chain(modules.clone()).collect();
+        let reflections: Vec<&Reflection> = known.values().map(|stage| &stage.reflection).collect();
+        let mut annotations = annotation::read(snapshot, files, &reflections)?;
+        let declared = known.into_iter().map(|(path, stage)| {
+            let texts = stage.texts(snapshot);
+            (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts })
+        });
+        let graph = Graph::new(&annotations, &declared.collect(), snapshot)?;
+        annotations.modes.extend(modes_of(&graph));
+        Ok(Linked { annotations, graph, warnings: unique(warnings) })
     }
 
     fn conclude(
@@ -349,19 +403,16 @@ impl Library {
         }
     }
 
-    /// Whether any file except the contract reads `frame.time_s`.
-    fn reads_time(texts: &BTreeMap<TreePath, Arc<str>>) -> bool {
-        let in_code = |text: &str| lines(text).iter().any(|line| find_word(&line.code, "frame.time_s").is_some());
-        texts.iter().any(|(path, text)| path.as_str() != contract::INTERFACE_FILE && in_code(text))
-    }
-
     /// Makes a set of the stages that have compiled. The others are pending.
     fn commit(&mut self, linked: Linked, generation: u64, snapshot: &Snapshot<'_>, report: Report) -> Update {
         let cleared = std::mem::replace(&mut self.failed, false);
         let dependencies = self.dependencies().into_iter();
         let texts: BTreeMap<_, _> =
             dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
-        let animated = Self::reads_time(&texts);
+        // Passes say themselves whether they move.
+        let fixed = self.slots.iter().take(self.fixed).flat_map(Slot::dependencies);
+        let fixed: BTreeSet<&TreePath> = fixed.filter(|path| path.as_str() != contract::INTERFACE_FILE).collect();
+        let animated = texts.iter().any(|(path, text)| fixed.contains(path) && text_reads_clock(text));
         let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
         for slot in &mut self.slots {
             match &slot.current {
@@ -374,26 +425,47 @@ impl Library {
                 stages.insert(slot.path.to_string(), Arc::clone(&good.stage));
             }
         }
-        let Linked { annotations: Annotations { modes, constants, parameters }, warnings } = linked;
+        let Linked { annotations: Annotations { modes, constants, parameters, .. }, graph, warnings } = linked;
         if let Some(set) = &self.set {
             let same_stages = stages.len() == set.stages.len()
                 && stages.values().zip(set.stages.values()).all(|(new, old)| Arc::ptr_eq(new, old));
-            let same_texts = (&modes, &constants, &parameters, &warnings)
-                == (&set.modes, &set.constants, &set.parameters, &set.warnings);
+            let same_texts = (&modes, &constants, &parameters, &graph, &warnings)
+                == (&set.modes, &set.constants, &set.parameters, &set.graph, &set.warnings);
             if same_stages && same_texts && pending == set.pending {
                 return Update::Unchanged { cleared };
             }
         }
-        let set = ShaderSet { generation, stages, pending, modes, constants, parameters, warnings, texts, animated };
+        let set =
+            ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, animated };
         let set = Arc::new(set);
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }
 }
 
+/// A debug mode for the image of each pass.
+fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
+    /// Beyond the ids of annotated modes.
+    const FIRST: u32 = 1 << 30;
+    (FIRST..).zip(&graph.passes).map(|(id, pass)| Mode {
+        id,
+        slug: pass.slug(),
+        name: pass.note.label.clone(),
+        group: "Passes".to_owned(),
+        components: 3,
+        stage: ModeStage::Picture,
+        pass: Some(pass.name().to_owned()),
+        doc: pass.note.doc.clone(),
+        file: pass.note.place.file.clone(),
+        line: pass.note.place.line,
+        ..Mode::default()
+    })
+}
+
 /// The parts of a set that all stages share.
 struct Linked {
     annotations: Annotations,
+    graph: Graph,
     warnings: Vec<Diagnostic>,
 }
 

@@ -19,6 +19,8 @@ use held::Held;
 
 /// Maximum size of a file in bytes. No shader is longer, and shaderc would hold several copies.
 pub const MAX_FILE_BYTES: u64 = 4 << 20;
+/// Largest size of an image file.
+pub const MAX_IMAGE_BYTES: u64 = 256 << 20;
 
 /// The path of a file in a shader tree: relative to the root, normalized, with forward slashes.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -116,11 +118,13 @@ pub enum SourceError {
         /// 1-based.
         line: u32,
     },
-    /// Larger than [`MAX_FILE_BYTES`].
-    #[error("has {bytes} bytes, more than the {MAX_FILE_BYTES} a shader may have")]
+    /// Larger than [`MAX_FILE_BYTES`], or [`MAX_IMAGE_BYTES`] for an image.
+    #[error("has {bytes} bytes, more than the {most} that such a file may have")]
     TooBig {
         /// Size found.
         bytes: u64,
+        /// Largest size.
+        most: u64,
     },
     /// Any other error of the system.
     #[error("cannot be read: {0}")]
@@ -161,6 +165,15 @@ impl Source {
             },
             Self::Embedded => check_text(embedded::read(path).ok_or(SourceError::Missing)?.to_vec()),
             Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
+        }
+    }
+
+    /// The bytes of a file, of an image for example.
+    pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
+        match (self, self.root()) {
+            (_, Some(root)) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
+            (Self::Memory(files), None) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
+            (_, None) => Ok(embedded::read(path).ok_or(SourceError::Missing)?.to_vec()),
         }
     }
 
@@ -213,6 +226,10 @@ pub fn is_specula_tree(directory: &Path) -> bool {
 }
 
 fn read_file(path: &Path) -> Result<String, SourceError> {
+    check_text(read_bytes(path, MAX_FILE_BYTES)?)
+}
+
+fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, SourceError> {
     let metadata = std::fs::metadata(path).map_err(io_error)?;
     if metadata.is_dir() {
         return Err(SourceError::Directory);
@@ -220,10 +237,10 @@ fn read_file(path: &Path) -> Result<String, SourceError> {
     if !metadata.is_file() {
         return Err(SourceError::Io("not a regular file".to_owned()));
     }
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(SourceError::TooBig { bytes: metadata.len() });
+    if metadata.len() > most {
+        return Err(SourceError::TooBig { bytes: metadata.len(), most });
     }
-    check_text(std::fs::read(path).map_err(io_error)?)
+    std::fs::read(path).map_err(io_error)
 }
 
 fn io_error(error: io::Error) -> SourceError {

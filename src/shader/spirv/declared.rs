@@ -32,6 +32,9 @@ mod storage {
     pub const STORAGE_BUFFER: u32 = 12;
 }
 
+/// SPIR-V's execution mode LocalSize.
+const LOCAL_SIZE: u32 = 17;
+
 /// SPIR-V's value of the image format Rgba16f.
 const RGBA16F: u32 = 2;
 
@@ -64,6 +67,7 @@ pub struct Module {
     variables: Vec<(Id, Id, u32)>,
     interface: Vec<Id>,
     capabilities: Vec<u32>,
+    local_size: [u32; 3],
     with_value: HashSet<Id>,
     without_value: Vec<Id>,
 }
@@ -121,6 +125,7 @@ impl Module {
                 let (_, words) = string(operands.get(2..)?);
                 self.interface = operands.get(2 + words..)?.to_vec();
             }
+            op::EXECUTION_MODE if at(1) == Some(LOCAL_SIZE) => self.local_size = [at(2)?, at(3)?, at(4)?],
             op::CAPABILITY => self.capabilities.push(at(0)?),
             op::DECORATE => {
                 self.decorations.insert((at(0)?, at(1)?), at(2).unwrap_or(0));
@@ -152,7 +157,11 @@ impl Module {
 
     /// Collects all declarations.
     pub fn reflect(&self) -> Reflection {
-        let mut out = Reflection { capabilities: self.capabilities.clone(), ..Reflection::default() };
+        let mut out = Reflection {
+            capabilities: self.capabilities.clone(),
+            local_size: self.local_size,
+            ..Reflection::default()
+        };
         for (pointer, variable, class) in &self.variables {
             let Some(Type::Pointer { to, .. }) = self.types.get(pointer) else { continue };
             match *class {
@@ -206,6 +215,7 @@ impl Module {
             glsl,
             name: self.name(if is_block { to } else { variable }),
             block: if is_block { self.block(to) } else { None },
+            image_format: if let Type::Image { format, .. } = declared { *format } else { 0 },
         })
     }
 

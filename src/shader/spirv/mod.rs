@@ -1,6 +1,7 @@
 //! Reads and rewrites SPIR-V modules: reflection for the contract check; specialization and bounded loops before the driver
 //! sees a module.
 
+pub mod bindings;
 mod conditions;
 mod declared;
 mod hash;

@@ -48,6 +48,8 @@ pub struct Descriptor {
     pub name: String,
     /// The layout, if it is a block.
     pub block: Option<Block>,
+    /// The SPIR-V image format of a storage image; 0 is none.
+    pub image_format: u32,
 }
 
 /// Type of a specialization constant.
@@ -106,6 +108,8 @@ pub struct Reflection {
     pub without_value: Vec<String>,
     /// The SPIR-V capabilities that the module declares.
     pub capabilities: Vec<u32>,
+    /// Invocations of a workgroup along x, y and z; 0 in stages without workgroups.
+    pub local_size: [u32; 3],
 }
 
 impl Reflection {

@@ -1,0 +1,29 @@
+//@pass outline "Outline" to=picture after=tonemap off doc="A line where the depth of the model jumps"
+#version 460
+#include "pass.glsl"
+#include "common/color.glsl"
+
+// Lines where depth has a step. Depth is reversed and infinite, near / distance, so it is linear over a plane on screen: the
+// second difference of a plane is 0, however steep it is, and what is left is an edge.
+
+uniform sampler2D picture;
+uniform sampler2D depth;
+
+uniform Outline {
+    float outline_width;       //@ui "Outline width, pixels" 1..6 = 1.5
+    float outline_threshold;   //@ui "Outline threshold" 0.001..0.2 = 0.02
+    vec3 outline_color;        //@ui "Outline color" color = 0 0 0
+};
+
+void main() {
+    vec2 far = outline_width / pass.size_px;
+    float here = texture(depth, uv).r;
+    vec2 x = vec2(texture(depth, uv - vec2(far.x, 0.0)).r, texture(depth, uv + vec2(far.x, 0.0)).r);
+    vec2 y = vec2(texture(depth, uv - vec2(0.0, far.y)).r, texture(depth, uv + vec2(0.0, far.y)).r);
+    float bend = max(abs(x.x + x.y - 2.0 * here), abs(y.x + y.y - 2.0 * here));
+    // Relative to the nearest of them, so that a line does not depend on the distance. 1e-9: all may be 0, at infinity.
+    float nearest = max(max(max(x.x, x.y), max(y.x, y.y)), max(here, 1e-9));
+    float line = smoothstep(outline_threshold, 2.0 * outline_threshold, bend / nearest);
+    vec4 scene = texture(picture, uv);
+    color = vec4(mix(scene.rgb, srgb_from_linear(outline_color), line), max(scene.a, line));
+}

@@ -1,0 +1,175 @@
+//! The layout of a pass that a shader tree declares. Its set `interface::SET_PASS` has what the pass's stage declares.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::buffer::Buffer;
+use super::descriptor::{DescriptorSet, STAGES, SetLayouts};
+use super::image::Image;
+use super::sampler::Sampler;
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
+use crate::interface;
+
+/// Kind of a descriptor of a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PassBinding {
+    /// `sampler2D`
+    Texture,
+    /// `image2D`
+    Storage,
+    /// A uniform block.
+    Uniform,
+    /// A buffer block.
+    Buffer,
+}
+
+impl PassBinding {
+    fn vulkan(self) -> vk::DescriptorType {
+        match self {
+            Self::Texture => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+            Self::Storage => vk::DescriptorType::STORAGE_IMAGE,
+            Self::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+            Self::Buffer => vk::DescriptorType::STORAGE_BUFFER,
+        }
+    }
+}
+
+/// What a descriptor of a pass points to.
+pub enum PassResource<'a> {
+    /// An image in [`crate::gpu::Use::Sampled`], and how it is sampled.
+    Texture(&'a Arc<Image>, &'a Arc<Sampler>),
+    /// An image with one level in [`crate::gpu::Use::Storage`].
+    Storage(&'a Arc<Image>),
+    /// A uniform or storage buffer.
+    Buffer(&'a Arc<Buffer>),
+}
+
+impl PassResource<'_> {
+    /// A number that no other living resource has.
+    pub fn id(&self) -> usize {
+        match self {
+            Self::Texture(image, _) | Self::Storage(image) => Arc::as_ptr(image) as usize,
+            Self::Buffer(buffer) => Arc::as_ptr(buffer) as usize,
+        }
+    }
+}
+
+/// A pipeline layout with the frame's set and the pass's own. Sets of the contract that a pass does not have are empty.
+pub struct PassLayout {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    bindings: Vec<PassBinding>,
+    empty: vk::DescriptorSetLayout,
+    own: vk::DescriptorSetLayout,
+    pub(in crate::gpu) pipeline: vk::PipelineLayout,
+}
+
+impl PassLayout {
+    /// Creates the layout of a pass with these bindings, from 0 on.
+    ///
+    /// # Errors
+    /// The device is out of memory.
+    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, bindings: Vec<PassBinding>) -> Result<Arc<Self>, GpuError> {
+        let null = vk::DescriptorSetLayout::null();
+        let pipeline = vk::PipelineLayout::null();
+        let mut this = Self { gpu: gpu.clone(), layouts: layouts.clone(), bindings, empty: null, own: null, pipeline };
+        let own: Vec<_> = (0..)
+            .zip(&this.bindings)
+            .map(|(binding, kind)| {
+                let layout = vk::DescriptorSetLayoutBinding::default().binding(binding);
+                layout.descriptor_type(kind.vulkan()).descriptor_count(1).stage_flags(STAGES)
+            })
+            .collect();
+        let set_layout = |bindings: &[vk::DescriptorSetLayoutBinding<'_>]| {
+            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(bindings);
+            // SAFETY: the device is live.
+            unsafe { gpu.device.create_descriptor_set_layout(&info, None) }.context("creating a descriptor set layout")
+        };
+        this.own = set_layout(&own)?;
+        gpu.name(this.own, "set of a pass");
+        this.empty = set_layout(&[])?;
+        let mut sets = [this.empty; 4];
+        sets[interface::SET_FRAME as usize] = layouts.sets[interface::SET_FRAME as usize];
+        sets[interface::SET_PASS as usize] = this.own;
+        // A compute stage reports its endless loops there.
+        sets[interface::SET_TASK as usize] = layouts.sets[interface::SET_TASK as usize];
+        let ranges = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
+        let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&ranges);
+        // SAFETY: the set layouts are live.
+        this.pipeline =
+            unsafe { gpu.device.create_pipeline_layout(&info, None) }.context("creating a pass's pipeline layout")?;
+        gpu.name(this.pipeline, "pipeline layout of a pass");
+        Ok(Arc::new(this))
+    }
+
+    /// Creates the pass's own set, with a resource for each binding.
+    ///
+    /// # Errors
+    /// The device is out of memory.
+    pub fn set(self: &Arc<Self>, name: &str, resources: &[PassResource<'_>]) -> Result<Arc<DescriptorSet>, GpuError> {
+        let sizes: Vec<_> = self
+            .bindings
+            .iter()
+            .map(|kind| vk::DescriptorPoolSize { ty: kind.vulkan(), descriptor_count: 1 })
+            .collect();
+        let kept: Vec<Arc<dyn std::any::Any + Send + Sync>> = resources
+            .iter()
+            .flat_map(|resource| -> Vec<Arc<dyn std::any::Any + Send + Sync>> {
+                match resource {
+                    PassResource::Texture(image, sampler) => vec![(*image).clone(), (*sampler).clone()],
+                    PassResource::Storage(image) => vec![(*image).clone()],
+                    PassResource::Buffer(buffer) => vec![(*buffer).clone()],
+                }
+            })
+            .chain([self.clone() as Arc<dyn std::any::Any + Send + Sync>])
+            .collect();
+        let set = DescriptorSet::allocate(&self.layouts, self.own, interface::SET_PASS, &sizes, name, kept)?;
+        let mut images = Vec::new();
+        let mut buffers = Vec::new();
+        for resource in resources {
+            match resource {
+                PassResource::Texture(image, sampler) => images.push([vk::DescriptorImageInfo {
+                    sampler: sampler.raw,
+                    image_view: image.view,
+                    image_layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+                }]),
+                PassResource::Storage(image) => images.push([vk::DescriptorImageInfo {
+                    sampler: vk::Sampler::null(),
+                    image_view: image.view,
+                    image_layout: vk::ImageLayout::GENERAL,
+                }]),
+                PassResource::Buffer(buffer) => {
+                    buffers.push([vk::DescriptorBufferInfo { buffer: buffer.raw, offset: 0, range: vk::WHOLE_SIZE }]);
+                }
+            }
+        }
+        let (mut images, mut buffers) = (images.iter(), buffers.iter());
+        let writes: Vec<_> = (0..)
+            .zip(self.bindings.iter().zip(resources))
+            .filter_map(|(binding, (kind, resource))| {
+                let write = vk::WriteDescriptorSet::default().dst_set(set.raw).dst_binding(binding);
+                let write = write.descriptor_type(kind.vulkan()).descriptor_count(1);
+                Some(match resource {
+                    PassResource::Texture(..) | PassResource::Storage(_) => write.image_info(images.next()?),
+                    PassResource::Buffer(_) => write.buffer_info(buffers.next()?),
+                })
+            })
+            .collect();
+        // SAFETY: the set is new, so no command uses it; it keeps alive what it points to.
+        unsafe { self.gpu.device.update_descriptor_sets(&writes, &[]) };
+        Ok(Arc::new(set))
+    }
+}
+
+impl Drop for PassLayout {
+    fn drop(&mut self) {
+        // SAFETY: pipelines and descriptor sets hold an `Arc` of this, so none is left. Vulkan ignores a null layout.
+        unsafe {
+            self.gpu.device.destroy_pipeline_layout(self.pipeline, None);
+            self.gpu.device.destroy_descriptor_set_layout(self.own, None);
+            self.gpu.device.destroy_descriptor_set_layout(self.empty, None);
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! The passes that the shader tree declares: their images and buffers, and how a view draws them.
+
+mod images;
+
+use std::sync::Arc;
+
+use crate::frame::PipelineKey;
+use crate::gpu::{
+    Attachments, Buffer, DescriptorSet, Encoder, Gpu, GpuError, Image, Memory, PassResource, Rect, Sampler, SetLayouts,
+    SetWriter, Use, vk,
+};
+use crate::interface::{SET_PASS, SET_TASK};
+use crate::render::resources::BoundFrame;
+use crate::shader::GraphPass;
+use crate::shader::annotation::pass::Dispatch;
+use crate::shader::graph::Input;
+use images::Images;
+
+/// The uniform blocks of a frame's declared passes. Each frame slot has its own, so that the CPU never writes what a frame in
+/// flight reads.
+#[derive(Default)]
+pub(super) struct Blocks(Vec<Option<Arc<Buffer>>>);
+
+impl Blocks {
+    /// Writes the blocks of a frame. SYNC: after the slot's fence.
+    pub(super) fn write(&mut self, gpu: &Arc<Gpu>, blocks: &[Vec<u8>]) -> Result<(), GpuError> {
+        self.0.resize(blocks.len(), None);
+        for (buffer, bytes) in self.0.iter_mut().zip(blocks).filter(|(_, bytes)| !bytes.is_empty()) {
+            let kept = buffer.take().filter(|buffer| buffer.size() >= bytes.len() as u64);
+            let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+            let kept = match kept {
+                Some(kept) => kept,
+                None => Buffer::new(gpu, "pass parameters", bytes.len() as u64, usage, Memory::Upload)?,
+            };
+            kept.write(0, bytes);
+            *buffer = Some(kept);
+        }
+        Ok(())
+    }
+}
+
+/// The declared passes of a view: what they drew last, and what they need to draw again.
+pub(super) struct DeclaredPasses {
+    gpu: Arc<Gpu>,
+    layouts: Arc<SetLayouts>,
+    /// Blends texels and levels.
+    linear: Arc<Sampler>,
+    nearest: Arc<Sampler>,
+    /// What a pass that is off has drawn: nothing.
+    blank: Arc<Image>,
+    /// The set of tasks that compute stages report endless loops to.
+    task_set: Arc<DescriptorSet>,
+    images: Images,
+    sets: Vec<(Vec<usize>, Arc<DescriptorSet>)>,
+    /// The HDR picture after the passes, or the image of the shown pass.
+    picture: Option<Arc<Image>>,
+}
+
+/// What the passes of a frame are drawn with.
+pub(super) struct Drawn<'a> {
+    pub(super) frame: &'a BoundFrame,
+    pub(super) frame_set: &'a Arc<DescriptorSet>,
+    pub(super) blocks: &'a Blocks,
+    /// Depth of the model, one sample a pixel.
+    pub(super) depth: Option<&'a Arc<Image>>,
+}
+
+/// Sets that are kept before the cache begins again.
+const SETS_KEPT: usize = 512;
+
+impl DeclaredPasses {
+    pub(super) fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        linear: &Arc<Sampler>,
+        nearest: &Arc<Sampler>,
+    ) -> Result<Self, GpuError> {
+        Ok(Self {
+            gpu: gpu.clone(),
+            layouts: layouts.clone(),
+            linear: linear.clone(),
+            nearest: nearest.clone(),
+            blank: images::blank(gpu)?,
+            task_set: DescriptorSet::new(layouts, SET_TASK, SetWriter::default())?,
+            images: Images::default(),
+            sets: Vec::new(),
+            picture: None,
+        })
+    }
+
+    /// Creates the images and buffers that `frame` needs. Those that it needs as they were stay, with their content. Returns
+    /// whether anything is new.
+    pub(super) fn prepare(&mut self, frame: &BoundFrame) -> Result<bool, GpuError> {
+        let next = self.images.next(&self.gpu, frame)?;
+        let is_new = next.is_some();
+        if let Some(next) = next {
+            self.images = next;
+            self.sets.clear();
+            self.picture = None;
+        }
+        Ok(is_new)
+    }
+
+    /// Sets all images and buffers back to 0 in the next frame.
+    pub(super) fn restart(&mut self) {
+        self.images.restart();
+    }
+
+    /// The HDR picture that the tone map reads, if a pass has changed it or a pass's image is shown.
+    pub(super) fn picture(&self) -> Option<&Arc<Image>> {
+        self.picture.as_ref()
+    }
+
+    /// Draws the passes before the tone map. `picture` is in [`Use::Sampled`].
+    pub(super) fn before_tonemap(
+        &mut self,
+        encoder: &mut Encoder,
+        drawn: &Drawn<'_>,
+        picture: &Arc<Image>,
+    ) -> Result<(), GpuError> {
+        self.images.begin_frame(encoder);
+        let last = self.run(encoder, drawn, picture, false)?;
+        self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
+        let shown = drawn.frame.state.pipelines.shown_pass.as_deref();
+        let is_before =
+            |name: &str| drawn.frame.state.pipelines.passes.iter().any(|p| p.name() == name && !p.after_tonemap);
+        if let Some(name) = shown.filter(|name| is_before(name)) {
+            self.show(encoder, name);
+        }
+        Ok(())
+    }
+
+    /// Scales the image of a pass to the picture's size, for the tone map to show.
+    fn show(&mut self, encoder: &mut Encoder, name: &str) {
+        let (Some(from), Some(to)) = (self.images.current(name).cloned(), self.images.shown().cloned()) else { return };
+        encoder.transition(&from, Use::Sampled, Use::CopyFrom);
+        encoder.transition(&to, Use::Undefined, Use::CopyTo);
+        encoder.scale(&from, &to);
+        encoder.transition(&from, Use::CopyFrom, Use::Sampled);
+        encoder.transition(&to, Use::CopyTo, Use::Sampled);
+        self.picture = Some(to);
+    }
+
+    /// Whether passes come after the tone map. If so, it draws to [`DeclaredPasses::display`], not to the output.
+    pub(super) fn has_display_passes(frame: &BoundFrame) -> bool {
+        frame.state.pipelines.passes.iter().any(|pass| pass.after_tonemap)
+    }
+
+    /// The image that the tone map draws to if passes come after it.
+    pub(super) fn display(&self) -> Option<&Arc<Image>> {
+        self.images.displays.first()
+    }
+
+    /// Draws the passes after the tone map, which has left [`DeclaredPasses::display`] in [`Use::Sampled`]. Returns the last
+    /// image, in [`Use::Sampled`].
+    pub(super) fn after_tonemap(
+        &mut self,
+        encoder: &mut Encoder,
+        drawn: &Drawn<'_>,
+    ) -> Result<Option<Arc<Image>>, GpuError> {
+        let Some(first) = self.images.displays.first().cloned() else { return Ok(None) };
+        self.run(encoder, drawn, &first, true).map(Some)
+    }
+
+    /// The set of the tone map that reads `picture`.
+    pub(super) fn tonemap_set(&mut self, picture: &Arc<Image>) -> Result<Arc<DescriptorSet>, GpuError> {
+        let key = vec![Arc::as_ptr(picture) as usize];
+        self.cached(key, |this| {
+            let writer = SetWriter::default().texture(0, picture, &this.nearest);
+            DescriptorSet::new(&this.layouts, SET_PASS, writer)
+        })
+    }
+
+    /// Draws the passes of one side of the tone map, from this picture. Returns the last picture.
+    fn run(
+        &mut self,
+        encoder: &mut Encoder,
+        drawn: &Drawn<'_>,
+        picture: &Arc<Image>,
+        after_tonemap: bool,
+    ) -> Result<Arc<Image>, GpuError> {
+        let mut picture = picture.clone();
+        let request = &drawn.frame.state.pipelines;
+        for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.after_tonemap == after_tonemap) {
+            let target = match pass.note.to_picture {
+                true => self.images.other_picture(after_tonemap, &picture).cloned(),
+                false => self.images.target(pass.name()).cloned(),
+            };
+            let Some(target) = target else { continue };
+            let key = request.pass_key(pass);
+            encoder.pass(&pass.note.name, |encoder| match key {
+                Some(key) => self.draw(encoder, drawn, (index, pass, &key), &picture, &target),
+                None => self.dispatch(encoder, drawn, (index, pass), &picture, &target),
+            })?;
+            match pass.note.to_picture {
+                true => picture = target,
+                false => self.images.finished(pass.name()),
+            }
+        }
+        Ok(picture)
+    }
+
+    fn draw(
+        &mut self,
+        encoder: &mut Encoder,
+        drawn: &Drawn<'_>,
+        (index, pass, key): (usize, &Arc<GraphPass>, &PipelineKey),
+        picture: &Arc<Image>,
+        target: &Arc<Image>,
+    ) -> Result<(), GpuError> {
+        let Some(pipeline) = drawn.frame.pipelines.get(key) else { return Ok(()) };
+        let Some(layout) = &pipeline.layout else { return Ok(()) };
+        let set = self.set(layout, drawn, (index, pass), picture, target)?;
+        if uses_buffers(pass) {
+            encoder.buffers_done();
+        }
+        let level = self.images.first_level(pass.name()).cloned();
+        let color = level.as_ref().unwrap_or(target);
+        encoder.transition(color, Use::Undefined, Use::Color);
+        let area = Rect { x: 0, y: 0, width: color.desc().width, height: color.desc().height };
+        encoder.begin_rendering(&Attachments { area, ..Attachments::of(color) });
+        encoder.bind_pipeline(pipeline);
+        encoder.bind_set(&self.layouts, drawn.frame_set);
+        encoder.bind_pass_set(layout, &set);
+        encoder.draw(3);
+        encoder.end_rendering();
+        match &level {
+            // An attachment has one level, so the pass draws to an image of its own, from which the levels are made.
+            Some(level) => {
+                encoder.transition(level, Use::Color, Use::CopyFrom);
+                encoder.transition(target, Use::Undefined, Use::CopyTo);
+                encoder.fill_levels(level, target);
+                encoder.transition(target, Use::CopyFrom, Use::Sampled);
+            }
+            None => encoder.transition(target, Use::Color, Use::Sampled),
+        }
+        Ok(())
+    }
+
+    fn dispatch(
+        &mut self,
+        encoder: &mut Encoder,
+        drawn: &Drawn<'_>,
+        (index, pass): (usize, &Arc<GraphPass>),
+        picture: &Arc<Image>,
+        target: &Arc<Image>,
+    ) -> Result<(), GpuError> {
+        let Some(pipeline) = drawn.frame.pipelines.compute(&pass.note.stage) else { return Ok(()) };
+        let Some(layout) = &pipeline.layout else { return Ok(()) };
+        let set = self.set(layout, drawn, (index, pass), picture, target)?;
+        if uses_buffers(pass) {
+            encoder.buffers_done();
+        }
+        let groups = match pass.note.dispatch {
+            Dispatch::Groups(groups) => groups,
+            Dispatch::Size => {
+                let [x, y, _] = pass.local_size.map(|size| size.max(1));
+                [target.desc().width.div_ceil(x), target.desc().height.div_ceil(y), 1]
+            }
+        };
+        encoder.transition(target, Use::Sampled, Use::Storage);
+        encoder.dispatch_pass(layout, pipeline, &[drawn.frame_set, &set, &self.task_set.clone()], groups);
+        encoder.transition(target, Use::Storage, Use::Sampled);
+        Ok(())
+    }
+
+    /// The own set of a pass, for what its inputs are now.
+    fn set(
+        &mut self,
+        layout: &Arc<crate::gpu::PassLayout>,
+        drawn: &Drawn<'_>,
+        (index, pass): (usize, &Arc<GraphPass>),
+        picture: &Arc<Image>,
+        target: &Arc<Image>,
+    ) -> Result<Arc<DescriptorSet>, GpuError> {
+        let blank = self.blank.clone();
+        let textures = drawn.frame.pipelines.textures();
+        let mut resources = Vec::new();
+        for input in &pass.inputs {
+            resources.push(match input {
+                Input::Picture => PassResource::Texture(picture, &self.linear),
+                Input::Depth => PassResource::Texture(drawn.depth.unwrap_or(&blank), &self.nearest),
+                Input::Image(name) => PassResource::Texture(self.images.current(name).unwrap_or(&blank), &self.linear),
+                Input::Before(name) => PassResource::Texture(self.images.before(name).unwrap_or(&blank), &self.linear),
+                Input::Texture(name) => match textures.get(name) {
+                    Some((image, sampler)) => PassResource::Texture(image, sampler),
+                    None => PassResource::Texture(&blank, &self.linear),
+                },
+                Input::Output => PassResource::Storage(target),
+                Input::Buffer(name, _) => match self.images.buffer(name) {
+                    Some(buffer) => PassResource::Buffer(buffer),
+                    None => return Err(GpuError::NoStage(pass.note.stage.clone())),
+                },
+                Input::Parameters(..) => match drawn.blocks.0.get(index).and_then(Option::as_ref) {
+                    Some(buffer) => PassResource::Buffer(buffer),
+                    None => return Err(GpuError::NoStage(pass.note.stage.clone())),
+                },
+            });
+        }
+        let key = std::iter::once(Arc::as_ptr(layout) as usize).chain(resources.iter().map(PassResource::id)).collect();
+        if let Some((_, set)) = self.sets.iter().find(|(known, _)| *known == key) {
+            return Ok(set.clone());
+        }
+        let set = layout.set(&pass.note.name, &resources)?;
+        if self.sets.len() >= SETS_KEPT {
+            self.sets.clear();
+        }
+        self.sets.push((key, set.clone()));
+        Ok(set)
+    }
+
+    fn cached(
+        &mut self,
+        key: Vec<usize>,
+        make: impl FnOnce(&Self) -> Result<Arc<DescriptorSet>, GpuError>,
+    ) -> Result<Arc<DescriptorSet>, GpuError> {
+        if let Some((_, set)) = self.sets.iter().find(|(known, _)| *known == key) {
+            return Ok(set.clone());
+        }
+        let set = make(self)?;
+        self.sets.push((key, set.clone()));
+        Ok(set)
+    }
+}
+
+fn uses_buffers(pass: &GraphPass) -> bool {
+    pass.inputs.iter().any(|input| matches!(input, Input::Buffer(..)))
+}

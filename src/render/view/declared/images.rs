@@ -1,0 +1,250 @@
+//! The images and storage buffers of declared passes.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::frame::pass_format;
+use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
+use crate::render::resources::BoundFrame;
+use crate::scene::mips;
+use crate::shader::GraphPass;
+use crate::shader::graph::Input;
+
+/// What determines the images of a pass.
+#[derive(Clone, Copy, PartialEq)]
+struct PassDesc {
+    size: (u32, u32),
+    format: vk::Format,
+    mips: u32,
+    is_written: bool,
+    keeps: bool,
+}
+
+/// The images of a pass.
+#[derive(Clone)]
+struct PassImages {
+    desc: PassDesc,
+    /// One, or two if the frame before is kept.
+    images: Vec<Arc<Image>>,
+    /// What is drawn to before mip levels are made of it.
+    first_level: Option<Arc<Image>>,
+    /// Which of two images the last frame drew.
+    newest: usize,
+    /// Whether this frame has drawn it.
+    is_drawn: bool,
+}
+
+/// What decides whether all images can stay.
+#[derive(Clone, Default, PartialEq)]
+struct Key {
+    size: (u32, u32),
+    picture: vk::Format,
+    passes: Vec<Arc<GraphPass>>,
+    shown: Option<String>,
+}
+
+/// The images and buffers of all declared passes of a frame.
+#[derive(Default)]
+pub(super) struct Images {
+    key: Key,
+    passes: BTreeMap<String, PassImages>,
+    buffers: BTreeMap<String, Arc<Buffer>>,
+    /// Two images for the HDR picture between passes.
+    pictures: Vec<Arc<Image>>,
+    /// Two images for what the display shows, between passes after the tone map.
+    pub(super) displays: Vec<Arc<Image>>,
+    /// The image of a pass that is shown, scaled to the picture.
+    shown: Option<Arc<Image>>,
+    /// Images and buffers that were never drawn to.
+    fresh: (Vec<Arc<Image>>, Vec<Arc<Buffer>>),
+}
+
+/// An image that reads as 0.
+pub(super) fn blank(gpu: &Arc<Gpu>) -> Result<Arc<Image>, GpuError> {
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+    let image = Image::new(gpu, "blank pass", ImageDesc::new(1, 1, vk::Format::R16G16B16A16_SFLOAT, usage))?;
+    one_shot(gpu, |encoder| {
+        encoder.transition(&image, Use::Undefined, Use::CopyTo);
+        encoder.clear_image(&image);
+        encoder.transition(&image, Use::CopyTo, Use::Sampled);
+        Ok(())
+    })?;
+    Ok(image)
+}
+
+impl Images {
+    /// The images for `frame`, which share those that fit; `None` if all of them fit.
+    pub(super) fn next(&self, gpu: &Arc<Gpu>, frame: &BoundFrame) -> Result<Option<Self>, GpuError> {
+        let request = &frame.state.pipelines;
+        let key = Key {
+            size: frame.state.size,
+            picture: request.picture_format(),
+            passes: request.passes.clone(),
+            shown: request.shown_pass.clone(),
+        };
+        if key == self.key {
+            return Ok(None);
+        }
+        let mut next = Self { key, fresh: self.fresh.clone(), ..Self::default() };
+        for pass in request.passes.iter().filter(|pass| !pass.note.to_picture) {
+            let images = next.images_of(gpu, pass, self.passes.get(pass.name()))?;
+            next.passes.insert(pass.name().to_owned(), images);
+        }
+        for (name, bytes) in request.passes.iter().flat_map(|pass| &pass.inputs).filter_map(buffer_of) {
+            let known = self.buffers.get(name).filter(|buffer| buffer.size() == u64::from(bytes).max(1));
+            let buffer = match known {
+                Some(known) => known.clone(),
+                None => next.new_buffer(gpu, name, bytes)?,
+            };
+            next.buffers.insert(name.to_owned(), buffer);
+        }
+        let makers = |after: bool| {
+            request.passes.iter().filter(|pass| pass.note.to_picture && pass.after_tonemap == after).count()
+        };
+        use vk::ImageUsageFlags as Usage;
+        let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
+        let (width, height) = frame.state.size;
+        let image = |name: &str, format| Image::new(gpu, name, ImageDesc::new(width, height, format, usage));
+        let fits = |image: &&Arc<Image>, format| {
+            (image.desc().width, image.desc().height, image.desc().format) == (width, height, format)
+        };
+        let take = |name: &str, format, count: usize, known: &[Arc<Image>]| -> Result<Vec<Arc<Image>>, GpuError> {
+            let known = known.iter().filter(|image| fits(image, format)).cloned();
+            let mut images: Vec<_> = known.take(count).collect();
+            while images.len() < count {
+                images.push(image(name, format)?);
+            }
+            Ok(images)
+        };
+        next.pictures = take("picture of a pass", next.key.picture, makers(false).min(2), &self.pictures)?;
+        // The tone map draws to the first.
+        let displays = if request.passes.iter().any(|pass| pass.after_tonemap) { 2 } else { 0 };
+        next.displays = take("display of a pass", Swapchain::FORMAT, displays, &self.displays)?;
+        if request.shown_pass.is_some() {
+            let known: Vec<_> = self.shown.iter().cloned().collect();
+            next.shown = take("shown pass", next.key.picture, 1, &known)?.pop();
+        }
+        Ok(Some(next))
+    }
+
+    fn images_of(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        pass: &GraphPass,
+        known: Option<&PassImages>,
+    ) -> Result<PassImages, GpuError> {
+        use vk::ImageUsageFlags as Usage;
+        let size = pass.note.size.pixels(self.key.size);
+        let desc = PassDesc {
+            size,
+            format: pass_format(pass.note.format),
+            mips: if pass.note.mips { mips::count(size.0, size.1) } else { 1 },
+            is_written: pass.is_compute,
+            keeps: pass.note.keep,
+        };
+        if let Some(known) = known.filter(|known| known.desc == desc) {
+            return Ok(known.clone());
+        }
+        let most = gpu.max_image_size();
+        if size.0 > most || size.1 > most {
+            let message = format!(
+                "the image of the pass {} has {} x {} pixels; this device draws at most {most} a side",
+                pass.name(),
+                size.0,
+                size.1
+            );
+            return Err(GpuError::Texture(message));
+        }
+        let target = if desc.is_written { Usage::STORAGE } else { Usage::COLOR_ATTACHMENT };
+        let usage = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST | target;
+        let base = ImageDesc::new(size.0, size.1, desc.format, usage);
+        let image = |mips| Image::new(gpu, pass.name(), ImageDesc { mips, ..base });
+        let images = (0..if desc.keeps { 2 } else { 1 }).map(|_| image(desc.mips)).collect::<Result<Vec<_>, _>>()?;
+        let first_level = if desc.mips > 1 { Some(image(1)?) } else { None };
+        self.fresh.0.extend(images.iter().cloned());
+        Ok(PassImages { desc, images, first_level, newest: 0, is_drawn: false })
+    }
+
+    fn new_buffer(&mut self, gpu: &Arc<Gpu>, name: &str, bytes: u32) -> Result<Arc<Buffer>, GpuError> {
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        let buffer = Buffer::new(gpu, name, u64::from(bytes), usage, Memory::Device)?;
+        self.fresh.1.push(buffer.clone());
+        Ok(buffer)
+    }
+
+    /// Lets everything become 0 in the next frame.
+    pub(super) fn restart(&mut self) {
+        let images = self.passes.values().flat_map(|pass| &pass.images).cloned();
+        self.fresh = (images.collect(), self.buffers.values().cloned().collect());
+    }
+
+    /// Begins a frame: what was never drawn to becomes 0.
+    pub(super) fn begin_frame(&mut self, encoder: &mut Encoder) {
+        let (images, buffers) = std::mem::take(&mut self.fresh);
+        for image in &images {
+            encoder.transition(image, Use::Undefined, Use::CopyTo);
+            encoder.clear_image(image);
+            encoder.transition(image, Use::CopyTo, Use::Sampled);
+        }
+        buffers.iter().for_each(|buffer| encoder.clear_buffer(buffer));
+        if !buffers.is_empty() {
+            encoder.copies_done();
+        }
+        self.passes.values_mut().for_each(|pass| pass.is_drawn = false);
+    }
+
+    /// The image that the pass draws to in this frame.
+    pub(super) fn target(&self, name: &str) -> Option<&Arc<Image>> {
+        let pass = self.passes.get(name)?;
+        pass.images.get((pass.newest + 1) % pass.images.len())
+    }
+
+    /// What the pass draws to before mip levels are made of it.
+    pub(super) fn first_level(&self, name: &str) -> Option<&Arc<Image>> {
+        self.passes.get(name)?.first_level.as_ref()
+    }
+
+    /// Notes that the pass has drawn its image.
+    pub(super) fn finished(&mut self, name: &str) {
+        if let Some(pass) = self.passes.get_mut(name) {
+            pass.newest = (pass.newest + 1) % pass.images.len();
+            pass.is_drawn = true;
+        }
+    }
+
+    /// The newest image of a pass.
+    pub(super) fn current(&self, name: &str) -> Option<&Arc<Image>> {
+        let pass = self.passes.get(name)?;
+        pass.images.get(pass.newest)
+    }
+
+    /// The image of a pass one frame ago.
+    pub(super) fn before(&self, name: &str) -> Option<&Arc<Image>> {
+        let pass = self.passes.get(name)?;
+        let frames = if pass.is_drawn { pass.images.len() - 1 } else { 0 };
+        pass.images.get((pass.newest + frames) % pass.images.len())
+    }
+
+    /// A storage buffer.
+    pub(super) fn buffer(&self, name: &str) -> Option<&Arc<Buffer>> {
+        self.buffers.get(name)
+    }
+
+    /// The image that a pass gives a new picture in, which is not the one that it reads.
+    pub(super) fn other_picture(&self, after_tonemap: bool, read: &Arc<Image>) -> Option<&Arc<Image>> {
+        let images = if after_tonemap { &self.displays } else { &self.pictures };
+        images.iter().find(|image| !Arc::ptr_eq(image, read))
+    }
+
+    /// The image that holds a shown pass, scaled to the picture.
+    pub(super) fn shown(&self) -> Option<&Arc<Image>> {
+        self.shown.as_ref()
+    }
+}
+
+fn buffer_of(input: &Input) -> Option<(&str, u32)> {
+    match input {
+        Input::Buffer(name, bytes) => Some((name, *bytes)),
+        _ => None,
+    }
+}

@@ -1,0 +1,324 @@
+//! Parses `//@pass`, `//@texture` and `//@buffer`: what a tree adds to the making of a picture.
+
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::cursor::{Cursor, Place};
+use crate::shader::diagnostic::Diagnostic;
+
+/// Largest side of a pass's image in pixels, if it is given in pixels. The device may offer less.
+const LARGEST_SIDE: u32 = 16384;
+
+/// The image of the pass that turns the HDR picture into what the display shows. It comes with Specula.
+pub const TONEMAP: &str = "tonemap";
+
+/// Names that no pass, texture or buffer can have: they name what Specula draws.
+pub const RESERVED: [&str; 4] = ["picture", "depth", TONEMAP, "model"];
+
+/// Where an annotation stands. All places are equal, so that moving a line is no change.
+#[derive(Clone, Debug, Default)]
+pub struct NotePlace {
+    /// File as printed.
+    pub file: String,
+    /// 1-based line.
+    pub line: u32,
+    raw: String,
+    bytes: Range<usize>,
+}
+
+impl PartialEq for NotePlace {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for NotePlace {}
+
+impl std::hash::Hash for NotePlace {
+    fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
+}
+
+impl NotePlace {
+    fn of(place: &Place) -> Self {
+        let Place { file, line, raw, bytes } = place.clone();
+        Self { file, line, raw, bytes }
+    }
+
+    /// An error about the annotation.
+    pub fn error(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::error(&self.file, message).on_line(self.line, Some(&self.raw)).under(self.bytes.clone())
+    }
+}
+
+/// The size of a pass's image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+pub enum PassSize {
+    /// The picture's size divided by a whole number, rounded up.
+    Divided(u32),
+    /// Width and height, pixels.
+    Pixels(u32, u32),
+}
+
+impl PassSize {
+    /// Width and height in pixels, for a picture of this size. At least 1.
+    pub fn pixels(self, (width, height): (u32, u32)) -> (u32, u32) {
+        match self {
+            Self::Divided(by) => (width.div_ceil(by).max(1), height.div_ceil(by).max(1)),
+            Self::Pixels(width, height) => (width, height),
+        }
+    }
+}
+
+/// The format of a pass's image: what a texel holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PassFormat {
+    /// Four half floats.
+    #[default]
+    Rgba16f,
+    /// Four floats.
+    Rgba32f,
+    /// Four numbers 0..1 of 8 bits.
+    Rgba8,
+    /// Two half floats.
+    Rg16f,
+    /// Two floats.
+    Rg32f,
+    /// A half float.
+    R16f,
+    /// A float.
+    R32f,
+}
+
+impl PassFormat {
+    /// All formats, with their names in GLSL.
+    pub const ALL: [(&'static str, Self); 7] = [
+        ("rgba16f", Self::Rgba16f),
+        ("rgba32f", Self::Rgba32f),
+        ("rgba8", Self::Rgba8),
+        ("rg16f", Self::Rg16f),
+        ("rg32f", Self::Rg32f),
+        ("r16f", Self::R16f),
+        ("r32f", Self::R32f),
+    ];
+
+    /// The name in GLSL.
+    pub fn glsl(self) -> &'static str {
+        Self::ALL.iter().find(|(_, format)| *format == self).map_or("?", |(name, _)| name)
+    }
+}
+
+/// The workgroups of a compute pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+pub enum Dispatch {
+    /// As many as cover the pass's image with one invocation a pixel.
+    Size,
+    /// So many along x, y and z.
+    Groups([u32; 3]),
+}
+
+/// A declared pass.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+pub struct PassNote {
+    /// Name of the pass and of its image.
+    pub name: String,
+    /// Name for people.
+    pub label: String,
+    /// Size of its image.
+    pub size: PassSize,
+    /// Format of its image.
+    pub format: PassFormat,
+    /// Whether its image has mip levels, made after the pass.
+    pub mips: bool,
+    /// Whether `before_NAME` is the image of the frame before.
+    pub keep: bool,
+    /// Whether it is drawn unless the user switches it off.
+    pub on: bool,
+    /// Whether its output takes the place of the picture.
+    pub to_picture: bool,
+    /// The pass after which it comes, if the images that it reads do not decide that.
+    pub after: Option<String>,
+    /// Workgroups, of a compute pass.
+    pub dispatch: Dispatch,
+    /// A description of the pass.
+    pub doc: String,
+    /// Path of its stage in the tree.
+    pub stage: String,
+    /// Location of the annotation.
+    #[serde(skip)]
+    pub place: NotePlace,
+}
+
+/// How a texture repeats.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Wrap {
+    /// It repeats.
+    #[default]
+    Repeat,
+    /// Its edge goes on.
+    Clamp,
+}
+
+/// A declared texture: an image file of the tree.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+pub struct TextureNote {
+    /// Name in GLSL.
+    pub name: String,
+    /// The image's file, relative to the file with the annotation or to the tree.
+    pub image: String,
+    /// The file with the annotation, from the tree's root.
+    pub declared_in: String,
+    /// Whether its colors are sRGB-encoded, so that a shader reads linear light.
+    pub srgb: bool,
+    /// Beyond its edges.
+    pub wrap: Wrap,
+    /// Whether it has mip levels.
+    pub mips: bool,
+    /// Location of the annotation.
+    #[serde(skip)]
+    pub place: NotePlace,
+}
+
+/// Whether a file with this extension may be the image of a `//@texture`.
+pub fn is_image_extension(extension: &str) -> bool {
+    ["png", "jpg", "jpeg", "hdr", "exr"].iter().any(|known| known.eq_ignore_ascii_case(extension))
+}
+
+/// Parses what follows `//@pass`.
+pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
+    let name = name(cursor, "pass")?;
+    let label = cursor.string()?.unwrap_or_else(|| name.clone());
+    let mut note = PassNote {
+        name,
+        label,
+        size: PassSize::Divided(1),
+        format: PassFormat::default(),
+        mips: false,
+        keep: false,
+        on: true,
+        to_picture: false,
+        after: None,
+        dispatch: Dispatch::Size,
+        doc: String::new(),
+        stage: String::new(),
+        place: NotePlace::of(cursor.place()),
+    };
+    while !cursor.at_end() {
+        let (bytes, key) = cursor.key();
+        match key {
+            "mips" => note.mips = true,
+            "keep" => note.keep = true,
+            "off" => note.on = false,
+            "size" => note.size = size(cursor)?,
+            "format" => note.format = format(cursor)?,
+            "after" => note.after = Some(cursor.value(key)?.1),
+            "dispatch" => note.dispatch = dispatch(cursor)?,
+            "doc" => note.doc = cursor.value(key)?.1,
+            "to" => match cursor.value(key)? {
+                (_, to) if to == "picture" => note.to_picture = true,
+                (bytes, other) => return Err(cursor.error(bytes, format!("expected to=picture, found `{other}`"))),
+            },
+            other => {
+                let known = "to=picture, after=, size=, format=, dispatch=, mips, keep, off or doc=";
+                return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
+            }
+        }
+    }
+    Ok(note)
+}
+
+/// Parses what follows `//@texture`.
+pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> {
+    let name = name(cursor, "texture")?;
+    let Some(image) = cursor.string()? else {
+        return Err(cursor.expected("the image's file in quotes"));
+    };
+    let place = NotePlace::of(cursor.place());
+    let mut note =
+        TextureNote { name, image, declared_in: String::new(), srgb: true, wrap: Wrap::Repeat, mips: false, place };
+    while !cursor.at_end() {
+        let (bytes, word) = cursor.word();
+        match word {
+            "srgb" => note.srgb = true,
+            "linear" => note.srgb = false,
+            "repeat" => note.wrap = Wrap::Repeat,
+            "clamp" => note.wrap = Wrap::Clamp,
+            "mips" => note.mips = true,
+            other => {
+                let message = format!("expected srgb, linear, repeat, clamp or mips, found `{other}`");
+                return Err(cursor.error(bytes, message));
+            }
+        }
+    }
+    Ok(note)
+}
+
+/// The name after `//@pass` or `//@texture`: an identifier of GLSL.
+fn name(cursor: &mut Cursor<'_>, what: &str) -> Result<String, Box<Diagnostic>> {
+    let (bytes, name) = cursor.word();
+    let is_first = |c: char| c.is_ascii_lowercase();
+    let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if !name.starts_with(is_first) || !name.chars().all(is_part) || name.starts_with("gl_") {
+        let message = format!("expected the {what}'s name in a-z, 0-9 and _, found `{name}`");
+        return Err(cursor.error(bytes, message));
+    }
+    if RESERVED.contains(&name) || name.starts_with("before_") {
+        let message = format!("`{name}` names what Specula draws; choose another name for the {what}");
+        return Err(cursor.error(bytes, message));
+    }
+    Ok(name.to_owned())
+}
+
+fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("size")?;
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=LARGEST_SIDE).contains(side));
+    let size = match value.split_once(['/', 'x']) {
+        None if value == "1" => Some(PassSize::Divided(1)),
+        Some(("1", by)) if value.contains('/') => {
+            by.parse().ok().filter(|by| (1..=64).contains(by)).map(PassSize::Divided)
+        }
+        Some((width, height)) if value.contains('x') => {
+            side(width).zip(side(height)).map(|(width, height)| PassSize::Pixels(width, height))
+        }
+        _ => None,
+    };
+    size.ok_or_else(|| {
+        let message = format!(
+            "expected size=1, size=1/2 to size=1/64, or size=512x256 (1 to {LARGEST_SIDE} pixels a side), found `{value}`"
+        );
+        cursor.error(bytes, message)
+    })
+}
+
+fn format(cursor: &mut Cursor<'_>) -> Result<PassFormat, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("format")?;
+    let found = PassFormat::ALL.iter().find(|(name, _)| *name == value);
+    found.map(|(_, format)| *format).ok_or_else(|| {
+        let names: Vec<&str> = PassFormat::ALL.iter().map(|(name, _)| *name).collect();
+        cursor.error(bytes, format!("expected one of the formats {}, found `{value}`", names.join(", ")))
+    })
+}
+
+fn dispatch(cursor: &mut Cursor<'_>) -> Result<Dispatch, Box<Diagnostic>> {
+    /// What every device can dispatch along an axis.
+    const MOST: u32 = 65535;
+    let (bytes, value) = cursor.value("dispatch")?;
+    if value == "size" {
+        return Ok(Dispatch::Size);
+    }
+    let counts: Option<Vec<u32>> = value.split('x').map(|count| count.parse().ok()).collect();
+    let groups = counts.filter(|counts| counts.len() <= 3 && counts.iter().all(|count| (1..=MOST).contains(count)));
+    match groups.as_deref() {
+        Some([x]) => Ok(Dispatch::Groups([*x, 1, 1])),
+        Some([x, y]) => Ok(Dispatch::Groups([*x, *y, 1])),
+        Some([x, y, z]) => Ok(Dispatch::Groups([*x, *y, *z])),
+        _ => {
+            let message = format!(
+                "expected dispatch=size or a number of workgroups, as dispatch=64 or dispatch=8x8x1 (1 to {MOST}), found `{value}`"
+            );
+            Err(cursor.error(bytes, message))
+        }
+    }
+}

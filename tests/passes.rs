@@ -1,0 +1,412 @@
+//! Passes that the tree declares: one new file is a working effect, errors have their line, and what is off costs nothing.
+
+mod support;
+
+use specula::headless::Sequence;
+use specula::render::Capture;
+use specula::shader::{Diagnostic, Library, Source, check};
+use support::{
+    SIZE, Session, assert_differ, assert_same, assert_validated, compiler, failed, glb, lines, load, ready, settings,
+    stages,
+};
+
+/// A gray sphere, one sample a pixel, on nothing.
+fn sphere(more: &[&str]) -> Session {
+    let plain = ["view.msaa=1", "view.background=none", "environment.name=none"];
+    let model = load(&glb::model(&glb::sphere(16, 32), &glb::gray()));
+    Session::new(model, settings(&[&plain[..], more].concat()))
+}
+
+/// A pass over the whole image: its annotation, its uniforms, and the body of its `main`.
+fn pass(annotation: &str, uniforms: &str, body: &str) -> String {
+    format!("//@pass {annotation}\n#version 460\n#include \"pass.glsl\"\n{uniforms}\nvoid main() {{\n{body}\n}}\n")
+}
+
+fn center(capture: &Capture) -> [f32; 4] {
+    capture.raw_at(SIZE.0 / 2, SIZE.1 / 2).unwrap()
+}
+
+fn remove(session: &mut Session, file: &str) {
+    std::fs::remove_file(session.tree.path(file)).unwrap();
+    ready(&session.changed(&[file]));
+}
+
+/// Fails unless `specula check` would pass.
+fn passes_check(session: &Session) {
+    let stages = specula::frame::stages::stages();
+    let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &stages);
+    let found = check::check(&mut library);
+    assert!(found.is_empty(), "{}", lines(&found).join("\n"));
+}
+
+fn sequence(session: &mut Session, frames: u32) -> Capture {
+    session.headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0 });
+    session.render()
+}
+
+#[test]
+fn one_file_of_ten_lines_is_an_effect() {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let (_, rest) = readme.split_once("```glsl\n//@pass vignette").expect("README shows the pass vignette");
+    let text = format!("//@pass vignette{}", rest.split_once("```").unwrap().0);
+    assert!(text.lines().count() <= 10, "{text}");
+    let mut session = sphere(&["view.background=#808080"]);
+    let before = session.render();
+    let reload = session.save("passes/vignette.frag", &text);
+    ready(&reload);
+    assert_eq!(stages(&reload), ["passes/vignette.frag"], "saving a pass compiles that pass alone");
+    let with = session.render();
+    let pixel = |capture: &Capture, x: u32, y: u32| capture.rgba8[((y * SIZE.0 + x) * 4) as usize];
+    assert_eq!(pixel(&with, SIZE.0 / 2, SIZE.1 / 2), pixel(&before, SIZE.0 / 2, SIZE.1 / 2), "the center stays");
+    let (corner, plain) = (f32::from(pixel(&with, 0, 0)), f32::from(pixel(&before, 0, 0)));
+    assert!((corner / plain - 0.5).abs() < 0.02, "the corner has half of {plain}, not {corner}");
+    passes_check(&session);
+    session.set("passes.vignette=false");
+    assert_same(&before, &session.render(), "switched off");
+    session.set("passes.vignette=true");
+    assert_same(&with, &session.render(), "switched on");
+    remove(&mut session, "passes/vignette.frag");
+    session.headless.settings_mut().passes.clear();
+    assert_same(&before, &session.render(), "without the file");
+}
+
+#[test]
+fn the_order_follows_from_who_reads_what() {
+    let mut session = sphere(&[]);
+    let before = center(&session.render());
+    let reads = "uniform sampler2D picture;";
+    let uniforms = format!("{reads}\nuniform sampler2D z;");
+    let adds = |annotation| pass(annotation, &uniforms, "color = texture(picture, uv) + vec4(texture(z, uv).rgb, 0.0);");
+    // In the order of names a would come before z, which it reads. A pass may be anywhere in the tree.
+    failed(&session.save("a.frag", &adds("a to=picture")));
+    let text = pass("z format=rgba32f", reads, "color = 2.0 * texture(picture, uv) + 1.0;");
+    ready(&session.save("passes/z.frag", &text));
+    let sum = center(&session.render());
+    for c in 0..3 {
+        let expected = before[c] + 2.0 * before[c] + 1.0;
+        assert!((sum[c] / expected - 1.0).abs() < 2e-3, "channel {c}: {sum:?}, before {before:?}");
+    }
+    // Of two that change the picture, names decide, and `after=` decides before names.
+    ready(&session.save("b.frag", &pass("b to=picture", reads, "color = 2.0 * texture(picture, uv);")));
+    let doubled = center(&session.render());
+    assert!((doubled[0] / (2.0 * sum[0]) - 1.0).abs() < 1e-3);
+    ready(&session.save("a.frag", &adds("a to=picture after=b")));
+    let after = center(&session.render());
+    let expected = 2.0 * before[0] + (2.0 * 2.0 * before[0] + 1.0);
+    assert!((after[0] / expected - 1.0).abs() < 2e-3, "{after:?} is not {expected}");
+}
+
+#[test]
+fn an_image_has_the_size_and_format_of_its_pass() {
+    let mut session = sphere(&[]);
+    for (annotation, size) in [("size=1/4", [SIZE.0.div_ceil(4), SIZE.1.div_ceil(4)]), ("size=7x5", [7, 5])] {
+        let text = pass(&format!("small {annotation} format=rg32f"), "", "color = vec4(pass.size_px, 3.0, 4.0);");
+        ready(&session.save("passes/small.frag", &text));
+        let read = "color = vec4(texture(small, uv).rgb, 1.0) + 0.0 * float(textureSize(small, 0).x);";
+        ready(&session.save("passes/show.frag", &pass("show to=picture", "uniform sampler2D small;", read)));
+        let [width, height] = size.map(|side| side as f32);
+        assert_eq!(center(&session.render())[..3], [width, height, 0.0], "{annotation}");
+        assert_eq!(center(&session.mode("pass:small"))[..2], [width, height], "its own mode, {annotation}");
+        session.mode("final");
+        remove(&mut session, "passes/show.frag");
+    }
+    // The last of the mip levels is the mean.
+    let ramp = pass("small size=8x8 format=r32f mips", "", "color = vec4(floor(uv.x * 8.0));");
+    ready(&session.save("passes/small.frag", &ramp));
+    let read = "color = vec4(vec3(textureLod(small, uv, 3.0).r), 1.0);";
+    ready(&session.save("passes/show.frag", &pass("show to=picture", "uniform sampler2D small;", read)));
+    assert_eq!(center(&session.render())[0], 3.5);
+}
+
+#[test]
+fn an_image_of_the_frame_before_makes_feedback() {
+    let mut session = sphere(&[]);
+    let body = "color = texture(before_count, uv) + vec4(1.0, frame.frame_index, frame.time_s, 0.0);";
+    let text = pass("count size=2x2 format=rgba32f keep", "uniform sampler2D before_count;", body);
+    ready(&session.save("passes/count.frag", &text));
+    let show = pass("show to=picture", "uniform sampler2D count;", "color = vec4(texture(count, uv).rgb, 1.0);");
+    ready(&session.save("passes/show.frag", &show));
+    let of = |capture: &Capture| center(capture);
+    assert_eq!(of(&sequence(&mut session, 1))[..3], [1.0, 0.0, 1.0]);
+    let five = sequence(&mut session, 5);
+    let [frames, indices, times, _] = of(&five);
+    assert_eq!([frames, indices], [5.0, 10.0]);
+    assert!((times - (1.0 + 1.1 + 1.2 + 1.3 + 1.4)).abs() < 1e-5, "{times}");
+    assert_same(&five, &sequence(&mut session, 5), "each picture begins again");
+}
+
+#[test]
+fn compute_passes_write_images_and_buffers() {
+    let mut session = sphere(&[]);
+    let compute = "//@pass cells size=9x7 format=r32f keep\n#version 460\n#include \"interface.glsl\"\n\
+        layout(local_size_x = 8, local_size_y = 8) in;\n\
+        layout(r32f) uniform writeonly image2D cells;\nuniform sampler2D before_cells;\n\
+        buffer Counter { uint groups; } counter;\n\
+        void main() {\n    ivec2 at = ivec2(gl_GlobalInvocationID.xy);\n\
+        if (gl_LocalInvocationIndex == 0u) atomicAdd(counter.groups, 1u);\n\
+        if (at.x < 9 && at.y < 7) imageStore(cells, at, texelFetch(before_cells, at, 0) + float(at.x));\n}\n";
+    ready(&session.save("passes/cells.comp", compute));
+    let uniforms = "uniform sampler2D cells;\nreadonly buffer Counter { uint groups; } counter;";
+    let body = "color = vec4(texelFetch(cells, ivec2(8, 6), 0).r, counter.groups, 0.0, 1.0);";
+    ready(&session.save("passes/show.frag", &pass("show to=picture", uniforms, body)));
+    // 9 x 7 texels take 2 x 1 groups a frame.
+    assert_eq!(center(&sequence(&mut session, 3))[..2], [24.0, 6.0]);
+    passes_check(&session);
+}
+
+#[test]
+fn a_pass_reads_the_depth_of_the_model() {
+    for msaa in ["view.msaa=1", "view.msaa=4"] {
+        let mut session = sphere(&[]);
+        session.set(msaa);
+        let body = "color = vec4(vec3(texture(depth, uv).r), 1.0);";
+        ready(&session.save("passes/show.frag", &pass("show to=picture", "uniform sampler2D depth;", body)));
+        let capture = session.render();
+        let state = session.headless.frame_state().unwrap();
+        // Reversed and infinite: near / distance along the view.
+        let distance = (state.camera.eye.length() - 1.0).max(0.1);
+        let expected = state.camera.near / distance;
+        let found = center(&capture)[0];
+        assert!((found / expected - 1.0).abs() < 0.2, "{msaa}: {found} is not about {expected}");
+        assert_eq!(capture.raw_at(0, 0).unwrap()[0], 0.0, "nothing is at infinity, {msaa}");
+    }
+}
+
+#[test]
+fn own_parameters_are_sliders_that_compile_nothing() {
+    let mut session = sphere(&[]);
+    let uniforms = "uniform sampler2D picture;\nuniform Tint { float amount; vec3 tint; };   //@ui \"Amount\" 0..1 = 0.5";
+    let body = "color = vec4(vec3(amount), 1.0) + 0.0 * tint.x + 0.0 * texture(picture, uv);";
+    ready(&session.save("passes/tint.frag", &pass("tint to=picture", uniforms, body)));
+    assert_eq!(center(&session.render())[0], 0.5);
+    session.set("amount=0.25");
+    assert_eq!(center(&session.render())[0], 0.25);
+    let wrong = session.headless.settings_mut().assign("amount=7");
+    assert!(wrong.is_ok() && session.headless.render().is_err(), "0.25 is in 0..1, 7 is not");
+}
+
+#[test]
+fn textures_of_the_tree_are_read_by_name_and_reloaded() {
+    let mut session = sphere(&[]);
+    let paint = |session: &Session, value: u8| {
+        let image = image::RgbaImage::from_pixel(4, 4, image::Rgba([value, 128, 0, 255]));
+        image.save(session.tree.path("passes/paint.png")).unwrap();
+    };
+    std::fs::create_dir_all(session.tree.path("passes")).unwrap();
+    let uniforms = "//@texture paint \"paint.png\" linear clamp\nuniform sampler2D paint;";
+    let text = pass("show to=picture", uniforms, "color = vec4(texture(paint, uv).rgb, 1.0);");
+    let reload = session.save("passes/show.frag", &text);
+    let missing = lines(failed(&reload));
+    assert!(missing[0].contains("show.frag:4:1: error: \"paint.png\" not found; looked for"), "{missing:#?}");
+    paint(&session, 51);
+    ready(&session.changed(&["passes/paint.png"]));
+    let shown = center(&session.render());
+    assert!((shown[0] - 0.2).abs() < 1e-6 && (shown[1] - 128.0 / 255.0).abs() < 1e-6, "{shown:?}");
+    paint(&session, 255);
+    let reload = session.changed(&["passes/paint.png"]);
+    ready(&reload);
+    assert!(stages(&reload).is_empty(), "a texture compiles nothing");
+    assert_eq!(center(&session.render())[0], 1.0);
+    // A broken file costs nothing.
+    let before = session.render();
+    std::fs::write(session.tree.path("passes/paint.png"), "no image").unwrap();
+    let broken = session.changed(&["passes/paint.png"]);
+    let told = lines(failed(&broken));
+    assert!(told[0].contains("paint.png"), "{told:#?}");
+    assert_same(&before, &session.render(), "the last good texture stays");
+}
+
+#[test]
+fn errors_have_their_line_and_the_picture_stays() {
+    let mut session = sphere(&[]);
+    let good = pass("glow size=1/2", "uniform sampler2D picture;", "color = texture(picture, uv);");
+    ready(&session.save("passes/glow.frag", &good));
+    let before = session.render();
+    let show = |uniforms: &str| pass("show to=picture", uniforms, "color = vec4(1.0);");
+    let use_it = |name: &str| {
+        let uniforms = format!("uniform sampler2D {name};");
+        pass("show to=picture", &uniforms, &format!("color = texture({name}, uv);"))
+    };
+    for (text, expected) in [
+        (use_it("glwo"), "show.frag:4:19: error: no pass or texture is named `glwo`. Did you mean `glow`?"),
+        (use_it("before_glow"), "show.frag:4:19: error: the image of `glow` one frame ago is not kept"),
+        (use_it("film"), "show.frag:4:19: error: `film` gives what it draws to the picture"),
+        (use_it("show"), "show.frag:4:19: error: a pass cannot read the image that it draws, `show`"),
+        (show("").replace("to=picture", "size=0"), "show.frag:1:18: error: expected size=1, size=1/2 to size=1/64"),
+        (show("").replace("to=picture", "format=rgb8"), "show.frag:1:20: error: expected one of the formats rgba16f"),
+        (show("").replace("to=picture", "to=glow"), "show.frag:1:16: error: expected to=picture, found `glow`"),
+        (show("").replace("to=picture", "after=nobody"), "show.frag:1:1: error: no pass is named `nobody`."),
+        (show("").replace("show to", "picture to"), "show.frag:1:9: error: `picture` names what Specula draws"),
+        (show("").replace("show to", "glow to"), "error: pass or texture `glow` is given twice"),
+        (show("").replace("to=picture", "to=picture size=1/2"), "show.frag:1:1: error: the picture has its own size"),
+        (show("").replace("to=picture", "dispatch=8"), "show.frag:1:1: error: only a compute pass (.comp) has dispatch="),
+        (show("//@texture t \"../../x.png\"").replace("vec4(1.0)", "texture(t, uv)").replace("//@texture", "uniform sampler2D t; //@texture"), "leaves the shader tree"),
+        (show("buffer B { float x[]; };").replace("vec4(1.0)", "vec4(x[0])"), "show.frag:4:8: error: `x` in the buffer `B` has no length"),
+        (use_it("cube").replace("sampler2D", "samplerCube").replace("uv)", "vec3(uv, 1))"), "a pass cannot have samplerCube `cube`"),
+    ] {
+        let told = lines(failed(&session.save("passes/show.frag", &text)));
+        assert!(told.iter().any(|line| line.contains(expected)), "{text}\nsays\n{}\nnot\n{expected}", told.join("\n"));
+        assert_same(&before, &session.render(), expected);
+    }
+    // A cycle names its passes.
+    let reads = |name: &str, other: &str| {
+        pass(name, &format!("uniform sampler2D {other};"), &format!("color = texture({other}, uv);"))
+    };
+    session.tree.write("passes/show.frag", &reads("show", "glow"));
+    session.tree.write("passes/glow.frag", &reads("glow", "show"));
+    let told: Vec<Diagnostic> = failed(&session.changed(&["passes/show.frag", "passes/glow.frag"])).to_vec();
+    let text = lines(&told).join("\n");
+    assert!(text.contains("each of these passes waits for the next: glow -> show -> glow"), "{text}");
+    assert_same(&before, &session.render(), "a cycle");
+}
+
+#[test]
+fn a_pass_that_is_off_or_unread_costs_nothing() {
+    let mut session = sphere(&[]);
+    let plain = session.render();
+    let names = |session: &Session| -> Vec<String> {
+        session.headless.pass_times().iter().map(|pass| pass.name.clone()).collect()
+    };
+    let before = names(&session);
+    let text = pass("unread size=1/2", "uniform sampler2D picture;", "color = texture(picture, uv);");
+    ready(&session.save("passes/unread.frag", &text));
+    let uniforms = "uniform sampler2D picture;\nuniform sampler2D unread;";
+    let off = pass("reader to=picture off", uniforms, "color = texture(picture, uv) + texture(unread, uv);");
+    ready(&session.save("passes/reader.frag", &off));
+    assert_same(&plain, &session.render(), "off");
+    assert_eq!(names(&session), before);
+    session.set("passes.reader=true");
+    assert_differ(&plain, &session.render(), "on");
+    if !before.is_empty() {
+        let now = names(&session);
+        assert!(now.contains(&"unread".to_owned()) && now.contains(&"reader".to_owned()), "{now:?}");
+    }
+}
+
+#[test]
+fn what_ships_is_off_and_changes_what_it_says() {
+    let mut session = Session::new(support::model("shader-ball"), settings(&[]));
+    let plain = session.render();
+    let shipped: Vec<_> = session.headless.shaders().graph.passes.clone();
+    for pass in shipped.iter().filter(|pass| pass.note.to_picture) {
+        assert!(!pass.note.on, "{} is on", pass.name());
+        session.set(&format!("passes.{}=true", pass.name()));
+        assert_differ(&plain, &session.render(), pass.name());
+        session.headless.settings_mut().passes.clear();
+    }
+    assert!(shipped.len() >= 4);
+    assert_same(&plain, &session.render(), "all off again");
+    passes_check(&session);
+}
+
+/// A small generator of pseudo-random numbers: xorshift32 (Marsaglia 2003, "Xorshift RNGs").
+struct Random(u32);
+
+impl Random {
+    fn below(&mut self, end: u32) -> u32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        self.0 % end
+    }
+}
+
+/// The passes of a random graph: each reads up to three of those before it, of any of them one frame ago, the picture and depth.
+fn random_graph(random: &mut Random) -> Vec<(String, String)> {
+    let count = 1 + random.below(6);
+    let (mut kept, mut with_image) = (Vec::new(), Vec::new());
+    let mut files = Vec::new();
+    for index in 0..count {
+        let name = format!("p{index}");
+        let to_picture = random.below(3) == 0;
+        let is_compute = !to_picture && random.below(4) == 0;
+        let mut annotation = name.clone();
+        // What every device can write from a compute shader comes first.
+        let formats = ["rgba16f", "rgba32f", "rgba8", "r32f", "rg16f", "r16f", "rg32f"];
+        let format = formats[random.below(if is_compute { 4 } else { 7 }) as usize];
+        if to_picture {
+            annotation += " to=picture";
+            annotation += ["", " after=tonemap"][random.below(2) as usize];
+        } else {
+            let sizes = ["1", "1/2", "1/7", "16x16", "1x1", "33x9"];
+            annotation += &format!(" size={} format={format}", sizes[random.below(6) as usize]);
+            if random.below(2) == 0 {
+                annotation += " keep";
+                kept.push(name.clone());
+            } else if !is_compute && random.below(2) == 0 {
+                annotation += " mips";
+            }
+        }
+        annotation += ["", "", " off"][random.below(3) as usize];
+        let mut reads: Vec<String> = Vec::new();
+        for _ in 0..random.below(4) {
+            let other = random.below(index + 1);
+            reads.push(match random.below(4) {
+                0 => "picture".into(),
+                1 => "depth".into(),
+                2 if !kept.is_empty() => format!("before_{}", kept[random.below(kept.len() as u32) as usize]),
+                _ if !with_image.is_empty() => with_image[other as usize % with_image.len()].clone(),
+                _ => continue,
+            });
+        }
+        reads.sort();
+        reads.dedup();
+        let uniforms: String = reads.iter().map(|name| format!("uniform sampler2D {name};\n")).collect();
+        let sum: String = reads.iter().map(|name| format!(" + 0.3 * textureLod({name}, at, 0.0)")).collect();
+        if !to_picture {
+            with_image.push(name.clone());
+        }
+        if is_compute {
+            let head = "#version 460\n#include \"interface.glsl\"\nlayout(local_size_x = 8, local_size_y = 4) in;";
+            let text = format!(
+                "//@pass {annotation}\n{head}\nlayout({format}) uniform writeonly image2D {name};\n{uniforms}\
+                 void main() {{\n    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);\n    \
+                 if (any(greaterThanEqual(texel, imageSize({name})))) return;\n    \
+                 vec2 at = (vec2(texel) + 0.5) / vec2(imageSize({name}));\n    \
+                 imageStore({name}, texel, vec4(0.1){sum});\n}}\n"
+            );
+            files.push((format!("passes/{name}.comp"), text));
+        } else {
+            let body = format!("    vec2 at = uv;\n    color = vec4(0.1){sum};");
+            files.push((format!("passes/{name}.frag"), pass(&annotation, &uniforms, &body)));
+        }
+    }
+    files
+}
+
+/// Random graphs with switches and edits between frames: no good graph is refused, and the validation layers stay silent.
+#[test]
+fn random_graphs_are_drawn_without_a_message() {
+    let graphs = if std::env::var_os("SPECULA_LONG").is_some() { 300 } else { 25 };
+    let mut random = Random(0x9e37_79b9);
+    let mut session = sphere(&[]);
+    let mut drawn = 0;
+    for graph in 0..graphs {
+        session.set(["view.msaa=1", "view.msaa=4"][random.below(2) as usize]);
+        let files = random_graph(&mut random);
+        for (file, text) in &files {
+            session.tree.write(file, text);
+        }
+        let names: Vec<&str> = files.iter().map(|(file, _)| file.as_str()).collect();
+        let reload = session.changed(&names);
+        if let specula::pipeline::Outcome::Failed(diagnostics) = &reload.outcome {
+            panic!("graph {graph}: {}\n{files:#?}", lines(diagnostics).join("\n"));
+        }
+        for _ in 0..2 {
+            for (file, _) in &files {
+                let name = file.trim_start_matches("passes/").split('.').next().unwrap();
+                session.set(&format!("passes.{name}={}", random.below(3) != 0));
+            }
+            let first = sequence(&mut session, 3);
+            assert_same(&first, &sequence(&mut session, 3), &format!("graph {graph}: {files:#?}"));
+            drawn += 1;
+        }
+        session.headless.settings_mut().passes.clear();
+        for name in &names {
+            std::fs::remove_file(session.tree.path(name)).unwrap();
+        }
+        ready(&session.changed(&names));
+    }
+    assert_eq!(drawn, 2 * graphs);
+    assert_validated();
+}
