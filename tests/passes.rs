@@ -76,7 +76,8 @@ fn the_order_follows_from_who_reads_what() {
     let before = center(&session.render());
     let reads = "uniform sampler2D picture;";
     let uniforms = format!("{reads}\nuniform sampler2D z;");
-    let adds = |annotation| pass(annotation, &uniforms, "color = texture(picture, uv) + vec4(texture(z, uv).rgb, 0.0);");
+    let adds =
+        |annotation| pass(annotation, &uniforms, "color = texture(picture, uv) + vec4(texture(z, uv).rgb, 0.0);");
     // In the order of names a would come before z, which it reads. A pass may be anywhere in the tree.
     failed(&session.save("a.frag", &adds("a to=picture")));
     let text = pass("z format=rgba32f", reads, "color = 2.0 * texture(picture, uv) + 1.0;");
@@ -175,10 +176,12 @@ fn a_pass_reads_the_depth_of_the_model() {
 #[test]
 fn own_parameters_are_sliders_that_compile_nothing() {
     let mut session = sphere(&[]);
-    let uniforms = "uniform sampler2D picture;\nuniform Tint { float amount; vec3 tint; };   //@ui \"Amount\" 0..1 = 0.5";
-    let body = "color = vec4(vec3(amount), 1.0) + 0.0 * tint.x + 0.0 * texture(picture, uv);";
+    let uniforms =
+        "uniform sampler2D picture;\nuniform Tint { float amount; vec3 tint; };   //@ui \"Amount\" 0..1 = 0.5";
+    // Two blocks: the pass's own, and that of pass.glsl.
+    let body = "color = vec4(amount, pass.size_px, 1.0) + 0.0 * tint.x + 0.0 * texture(picture, uv);";
     ready(&session.save("passes/tint.frag", &pass("tint to=picture", uniforms, body)));
-    assert_eq!(center(&session.render())[0], 0.5);
+    assert_eq!(center(&session.render())[..3], [0.5, SIZE.0 as f32, SIZE.1 as f32]);
     session.set("amount=0.25");
     assert_eq!(center(&session.render())[0], 0.25);
     let wrong = session.headless.settings_mut().assign("amount=7");
@@ -232,17 +235,31 @@ fn errors_have_their_line_and_the_picture_stays() {
         (use_it("before_glow"), "show.frag:4:19: error: the image of `glow` one frame ago is not kept"),
         (use_it("film"), "show.frag:4:19: error: `film` gives what it draws to the picture"),
         (use_it("show"), "show.frag:4:19: error: a pass cannot read the image that it draws, `show`"),
-        (show("").replace("to=picture", "size=0"), "show.frag:1:18: error: expected size=1, size=1/2 to size=1/64"),
-        (show("").replace("to=picture", "format=rgb8"), "show.frag:1:20: error: expected one of the formats rgba16f"),
-        (show("").replace("to=picture", "to=glow"), "show.frag:1:16: error: expected to=picture, found `glow`"),
+        (show("").replace("to=picture", "size=0"), "show.frag:1:19: error: expected size=1, size=1/2 to size=1/64"),
+        (show("").replace("to=picture", "format=rgb8"), "show.frag:1:21: error: expected one of the formats rgba16f"),
+        (show("").replace("to=picture", "to=glow"), "show.frag:1:17: error: expected to=picture, found `glow`"),
         (show("").replace("to=picture", "after=nobody"), "show.frag:1:1: error: no pass is named `nobody`."),
         (show("").replace("show to", "picture to"), "show.frag:1:9: error: `picture` names what Specula draws"),
         (show("").replace("show to", "glow to"), "error: pass or texture `glow` is given twice"),
         (show("").replace("to=picture", "to=picture size=1/2"), "show.frag:1:1: error: the picture has its own size"),
-        (show("").replace("to=picture", "dispatch=8"), "show.frag:1:1: error: only a compute pass (.comp) has dispatch="),
-        (show("//@texture t \"../../x.png\"").replace("vec4(1.0)", "texture(t, uv)").replace("//@texture", "uniform sampler2D t; //@texture"), "leaves the shader tree"),
-        (show("buffer B { float x[]; };").replace("vec4(1.0)", "vec4(x[0])"), "show.frag:4:8: error: `x` in the buffer `B` has no length"),
-        (use_it("cube").replace("sampler2D", "samplerCube").replace("uv)", "vec3(uv, 1))"), "a pass cannot have samplerCube `cube`"),
+        (
+            show("").replace("to=picture", "dispatch=8"),
+            "show.frag:1:1: error: only a compute pass (.comp) has dispatch=",
+        ),
+        (
+            show("//@texture t \"../../x.png\"")
+                .replace("vec4(1.0)", "texture(t, uv)")
+                .replace("//@texture", "uniform sampler2D t; //@texture"),
+            "leaves the shader tree",
+        ),
+        (
+            show("buffer B { float x[]; };").replace("vec4(1.0)", "vec4(x[0])"),
+            "show.frag:4:8: error: `x` in the buffer `B` has no length",
+        ),
+        (
+            use_it("cube").replace("sampler2D", "samplerCube").replace("uv)", "vec3(uv, 1))"),
+            "a pass cannot have samplerCube `cube`",
+        ),
     ] {
         let told = lines(failed(&session.save("passes/show.frag", &text)));
         assert!(told.iter().any(|line| line.contains(expected)), "{text}\nsays\n{}\nnot\n{expected}", told.join("\n"));
@@ -314,7 +331,7 @@ impl Random {
 /// The passes of a random graph: each reads up to three of those before it, of any of them one frame ago, the picture and depth.
 fn random_graph(random: &mut Random) -> Vec<(String, String)> {
     let count = 1 + random.below(6);
-    let (mut kept, mut with_image) = (Vec::new(), Vec::new());
+    let (mut kept, mut with_image): (Vec<String>, Vec<String>) = Default::default();
     let mut files = Vec::new();
     for index in 0..count {
         let name = format!("p{index}");

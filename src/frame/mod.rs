@@ -8,6 +8,7 @@ mod pipelines;
 mod scene;
 pub mod stages;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -100,7 +101,7 @@ pub struct FrameState {
     /// Width and height, pixels, at least 1.
     pub size: (u32, u32),
     params: Vec<u8>,
-    pass_blocks: Vec<Vec<u8>>,
+    pass_blocks: PassBlocks,
     constants: Frame,
 }
 
@@ -191,8 +192,8 @@ impl FrameState {
         &self.params
     }
 
-    /// The content of the own uniform block of each pass in [`PipelineRequest::passes`]; empty for a pass without one.
-    pub(crate) fn pass_blocks(&self) -> &[Vec<u8>] {
+    /// The content of the uniform blocks of declared passes.
+    pub(crate) fn pass_blocks(&self) -> &PassBlocks {
         &self.pass_blocks
     }
 
@@ -208,30 +209,27 @@ impl FrameState {
     }
 }
 
-/// The name of the block with a pass's size, in pass.glsl.
-const SIZE_BLOCK_MEMBER: &str = "size_px";
+/// The member of the block `Pass` in pass.glsl.
+const SIZE_MEMBER: &str = "size_px";
 
-fn pass_blocks(
-    settings: &Settings,
-    shaders: &ShaderSet,
-    pipelines: &PipelineRequest,
-    size: (u32, u32),
-) -> Vec<Vec<u8>> {
-    let own = |pass: &Arc<GraphPass>| {
-        let mut blocks = Vec::new();
-        for input in &pass.inputs {
+/// The uniform blocks of declared passes, by the place of the pass in [`PipelineRequest::passes`] and the binding.
+pub(crate) type PassBlocks = BTreeMap<(usize, usize), Vec<u8>>;
+
+fn pass_blocks(settings: &Settings, shaders: &ShaderSet, pipelines: &PipelineRequest, size: (u32, u32)) -> PassBlocks {
+    let mut blocks = PassBlocks::new();
+    for (index, pass) in pipelines.passes.iter().enumerate() {
+        for (binding, input) in pass.inputs.iter().enumerate() {
             let Input::Parameters(bytes, members) = input else { continue };
             let mut block = values::block(&settings.shader, &shaders.parameters, members, *bytes);
             if let [(offset, name)] = members.as_slice()
-                && name == SIZE_BLOCK_MEMBER
+                && name == SIZE_MEMBER
             {
                 let (width, height) = pass.note.size.pixels(size);
                 let at = *offset as usize;
                 block[at..at + 8].copy_from_slice(bytemuck::bytes_of(&[width as f32, height as f32]));
             }
-            blocks.extend(block);
+            blocks.insert((index, binding), block);
         }
-        blocks
-    };
-    pipelines.passes.iter().map(own).collect()
+    }
+    blocks
 }

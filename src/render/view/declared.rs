@@ -2,9 +2,10 @@
 
 mod images;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::frame::PipelineKey;
+use crate::frame::{PassBlocks, PipelineKey};
 use crate::gpu::{
     Attachments, Buffer, DescriptorSet, Encoder, Gpu, GpuError, Image, Memory, PassResource, Rect, Sampler, SetLayouts,
     SetWriter, Use, vk,
@@ -19,21 +20,20 @@ use images::Images;
 /// The uniform blocks of a frame's declared passes. Each frame slot has its own, so that the CPU never writes what a frame in
 /// flight reads.
 #[derive(Default)]
-pub(super) struct Blocks(Vec<Option<Arc<Buffer>>>);
+pub(super) struct Blocks(BTreeMap<(usize, usize), Arc<Buffer>>);
 
 impl Blocks {
     /// Writes the blocks of a frame. SYNC: after the slot's fence.
-    pub(super) fn write(&mut self, gpu: &Arc<Gpu>, blocks: &[Vec<u8>]) -> Result<(), GpuError> {
-        self.0.resize(blocks.len(), None);
-        for (buffer, bytes) in self.0.iter_mut().zip(blocks).filter(|(_, bytes)| !bytes.is_empty()) {
-            let kept = buffer.take().filter(|buffer| buffer.size() >= bytes.len() as u64);
+    pub(super) fn write(&mut self, gpu: &Arc<Gpu>, blocks: &PassBlocks) -> Result<(), GpuError> {
+        self.0.retain(|place, buffer| blocks.get(place).is_some_and(|bytes| buffer.size() == bytes.len() as u64));
+        for (place, bytes) in blocks {
             let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
-            let kept = match kept {
-                Some(kept) => kept,
+            let buffer = match self.0.get(place) {
+                Some(buffer) => buffer.clone(),
                 None => Buffer::new(gpu, "pass parameters", bytes.len() as u64, usage, Memory::Upload)?,
             };
-            kept.write(0, bytes);
-            *buffer = Some(kept);
+            buffer.write(0, bytes);
+            self.0.insert(*place, buffer);
         }
         Ok(())
     }
@@ -276,7 +276,7 @@ impl DeclaredPasses {
         let blank = self.blank.clone();
         let textures = drawn.frame.pipelines.textures();
         let mut resources = Vec::new();
-        for input in &pass.inputs {
+        for (binding, input) in pass.inputs.iter().enumerate() {
             resources.push(match input {
                 Input::Picture => PassResource::Texture(picture, &self.linear),
                 Input::Depth => PassResource::Texture(drawn.depth.unwrap_or(&blank), &self.nearest),
@@ -291,7 +291,7 @@ impl DeclaredPasses {
                     Some(buffer) => PassResource::Buffer(buffer),
                     None => return Err(GpuError::NoStage(pass.note.stage.clone())),
                 },
-                Input::Parameters(..) => match drawn.blocks.0.get(index).and_then(Option::as_ref) {
+                Input::Parameters(..) => match drawn.blocks.0.get(&(index, binding)) {
                     Some(buffer) => PassResource::Buffer(buffer),
                     None => return Err(GpuError::NoStage(pass.note.stage.clone())),
                 },

@@ -73,8 +73,11 @@ fn constants_and_parameters() {
     let constants: Vec<_> = found.constants.iter().map(|c| (c.id, c.label.as_str(), c.default)).collect();
     assert_eq!(constants, [(32, "Wrap diffuse", 1), (33, "NDF", 1)]);
     assert_eq!(found.constants[1].choices, [("GGX".to_owned(), 0), ("Beckmann".to_owned(), 1)]);
-    let rows: Vec<_> =
-        found.parameters.iter().map(|p| (p.name.as_str(), p.label.as_str(), p.offset.unwrap(), p.default.clone())).collect();
+    let rows: Vec<_> = found
+        .parameters
+        .iter()
+        .map(|p| (p.name.as_str(), p.label.as_str(), p.offset.unwrap(), p.default.clone()))
+        .collect();
     let expected = [
         ("rim", "Rim", 0, vec![0.2]),
         ("rim_color", "Rim color", 4, vec![1.0, 0.8, 0.6]),
@@ -109,7 +112,10 @@ fn claims_name_choices() {
 
 #[test]
 fn what_does_not_parse_says_what_was_expected() {
-    refused("//@mod d \"D\"\nint a;", "m.frag:3:1: error: expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@mod`");
+    refused(
+        "//@mod d \"D\"\nint a;",
+        "m.frag:3:1: error: expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@mod`",
+    );
     refused(
         "//@mode D \"D\"\nconst uint M = 1u;",
         "m.frag:3:9: error: expected the mode's slug in a-z, 0-9 and `-`, found `D`",

@@ -86,7 +86,7 @@ impl Order<'_> {
             _ => None,
         });
         let needs: Vec<usize> =
-            read.chain(pass.note.after.as_deref()).filter_map(|name| self.index.get(name).copied()).collect();
+            pass.note.after.as_deref().into_iter().chain(read).filter_map(|name| self.index.get(name).copied()).collect();
         for need in needs {
             self.emit(need, path)?;
         }
