@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, TargetFormat};
+use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Scene, TargetFormat};
 use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
 use crate::pipeline::{Outcome, PipelineSet, Reload, Reloader, endless_loop};
 use crate::render::{
@@ -386,13 +386,13 @@ impl Headless {
         self.finish_or_fail()?;
         self.provide()?;
         let whole = self.frame_state()?;
-        let Some(scene) = whole.scene.clone() else { return Ok(Vec::new()) };
-        let near = scene::near_pixel(scene.model(), whole.camera.clip_from_world(), self.size, at);
-        let part = scene.only(near);
-        let part = if part.is_transmissive() { scene } else { part };
-        let state_of = |mode: &Mode| {
+        let Some(all) = whole.scene.clone() else { return Ok(Vec::new()) };
+        let near = scene::near_pixel(all.model(), whole.camera.clip_from_world(), self.size, at);
+        let part = all.only(near);
+        let part = if part.is_transmissive() { all.clone() } else { part };
+        let state_in = |mode: &Mode, scene: &Scene| {
             let settings = Settings { mode: mode.slug.clone(), ..self.session.settings.clone() };
-            let scene = Some(&part);
+            let scene = Some(scene);
             let (shaders, revisions, target) = (&whole.shaders, self.session.revisions, whole.pipelines.target);
             FrameState::new(&FrameInputs {
                 settings: &settings,
@@ -403,6 +403,11 @@ impl Headless {
                 size: self.size,
                 target,
             })
+        };
+        let state_of = |mode: &Mode| {
+            let state = state_in(mode, &part);
+            // A declared pass may read the picture anywhere.
+            if state.pipelines.passes.is_empty() { state } else { state_in(mode, &all) }
         };
         let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
         self.view.probe = Some(at);

@@ -31,14 +31,7 @@ fn readback(gpu: &Arc<Gpu>, name: &str) -> Arc<Buffer> {
 fn clear(encoder: &mut Encoder, image: &Arc<Image>, color: [f32; 4]) {
     let area = Rect { x: 0, y: 0, width: SIDE, height: SIDE };
     encoder.transition(image, Use::Undefined, Use::Color);
-    encoder.begin_rendering(&Attachments {
-        color: image,
-        clear: Some(color),
-        resolve: None,
-        depth: None,
-        goes_on: false,
-        area,
-    });
+    encoder.begin_rendering(&Attachments { clear: Some(color), area, ..Attachments::of(image) });
     encoder.end_rendering();
 }
 
@@ -117,19 +110,13 @@ fn validation_messages_name_pipelines_after_their_stages() {
         raster: Raster::Solid,
         samples: 1,
         class: PrimitiveClass::Triangles,
+        layout: None,
     };
     let pipeline = Pipeline::new(&gpu, &layouts, &desc).unwrap();
     let target = image(&gpu, "target", vk::ImageUsageFlags::COLOR_ATTACHMENT);
     record(&gpu, |encoder| {
         encoder.transition(&target, Use::Undefined, Use::Color);
-        encoder.begin_rendering(&Attachments {
-            color: &target,
-            clear: None,
-            resolve: None,
-            depth: None,
-            goes_on: false,
-            area: Rect { x: 0, y: 0, width: SIDE, height: SIDE },
-        });
+        encoder.begin_rendering(&Attachments::of(&target));
         encoder.bind_pipeline(&pipeline);
         encoder.draw(3);
         encoder.end_rendering();

@@ -24,7 +24,7 @@ use crate::interface::{Frame, Light, MAX_LIGHTS};
 use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
 use crate::shader::graph::Input;
-use crate::shader::{GraphPass, Mode, ShaderSet, values};
+use crate::shader::{Mode, ShaderSet, values};
 
 /// Largest half float.
 pub(crate) const LARGEST_HALF: f32 = 65504.0;

@@ -17,11 +17,9 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<Strin
         return;
     }
     section(ui, "Parameters", true, |ui| {
-        for parameter in &shaders.parameters {
-            let value = values.get(&parameter.name);
-            if let Some(new) = row(ui, &parameter.label, &parameter.name, |ui| edit_parameter(ui, parameter, value)) {
-                values.insert(parameter.name.clone(), new);
-            }
+        // Those of passes stand below the switch of their pass.
+        for parameter in shaders.parameters.iter().filter(|parameter| parameter.offset.is_some()) {
+            show_parameter(ui, parameter, values);
         }
         for constant in &shaders.constants {
             let value = values.get(&constant.name);
@@ -35,6 +33,14 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<Strin
             values.clear();
         }
     });
+}
+
+/// Shows the row of a parameter.
+pub(super) fn show_parameter(ui: &mut Ui, parameter: &Parameter, values: &mut BTreeMap<String, ShaderValue>) {
+    let value = values.get(&parameter.name);
+    if let Some(new) = row(ui, &parameter.label, &parameter.name, |ui| edit_parameter(ui, parameter, value)) {
+        values.insert(parameter.name.clone(), new);
+    }
 }
 
 fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue>) -> Option<ShaderValue> {

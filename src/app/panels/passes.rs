@@ -2,10 +2,11 @@
 
 use egui::{RichText, Ui};
 
+use super::parameters::show_parameter;
 use super::{QUIET, section};
 use crate::app::playback::Playback;
 use crate::settings::Settings;
-use crate::shader::ShaderSet;
+use crate::shader::{Parameter, ShaderSet};
 
 /// Shows the panel. `is_animated`: something on screen reads the time.
 pub(super) fn show(
@@ -20,8 +21,10 @@ pub(super) fn show(
     }
     section(ui, "Passes", true, |ui| {
         for pass in &shaders.graph.passes {
+            let is_own = |parameter: &&Parameter| parameter.offset.is_none() && pass.has_parameter(&parameter.name);
+            let own: Vec<&Parameter> = shaders.parameters.iter().filter(is_own).collect();
             // What only serves other passes is drawn when they need it.
-            if !pass.note.to_picture && pass.note.on {
+            if !pass.note.to_picture && pass.note.on && own.is_empty() {
                 continue;
             }
             let name = pass.name();
@@ -32,6 +35,9 @@ pub(super) fn show(
                     true => settings.passes.remove(name),
                     false => settings.passes.insert(name.to_owned(), on),
                 };
+            }
+            if on {
+                own.into_iter().for_each(|parameter| show_parameter(ui, parameter, &mut settings.shader));
             }
         }
         if is_animated {

@@ -68,6 +68,14 @@ impl GraphPass {
         &self.note.name
     }
 
+    /// Whether its own uniform block has a member of this name.
+    pub fn has_parameter(&self, name: &str) -> bool {
+        self.inputs.iter().any(|input| match input {
+            Input::Parameters(_, members) => members.iter().any(|(_, member)| member == name),
+            _ => false,
+        })
+    }
+
     /// The slug of the debug mode that shows its image.
     pub fn slug(&self) -> String {
         format!("pass:{}", self.note.name)

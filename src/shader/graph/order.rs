@@ -85,8 +85,14 @@ impl Order<'_> {
             Input::Image(name) => Some(name.as_str()),
             _ => None,
         });
-        let needs: Vec<usize> =
-            pass.note.after.as_deref().into_iter().chain(read).filter_map(|name| self.index.get(name).copied()).collect();
+        let needs: Vec<usize> = pass
+            .note
+            .after
+            .as_deref()
+            .into_iter()
+            .chain(read)
+            .filter_map(|name| self.index.get(name).copied())
+            .collect();
         for need in needs {
             self.emit(need, path)?;
         }
