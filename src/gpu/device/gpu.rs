@@ -122,6 +122,13 @@ impl Gpu {
         counts.contains(vk::SampleCountFlags::from_raw(samples))
     }
 
+    /// Whether shaders can blend texels of this format. Devices need not blend full floats.
+    pub fn blends_texels(&self, format: vk::Format) -> bool {
+        // SAFETY: the instance is live, and the device belongs to it.
+        let properties = unsafe { self.instance.raw.get_physical_device_format_properties(self.physical, format) };
+        properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR)
+    }
+
     /// Whether vertex and fragment stages can write buffers. Compute stages always can.
     pub fn graphics_stores(&self) -> (bool, bool) {
         (self.vertex_stores, self.fragment_stores)

@@ -278,10 +278,10 @@ impl DeclaredPasses {
         let mut resources = Vec::new();
         for (binding, input) in pass.inputs.iter().enumerate() {
             resources.push(match input {
-                Input::Picture => PassResource::Texture(picture, &self.linear),
+                Input::Picture => self.sampled(picture),
                 Input::Depth => PassResource::Texture(drawn.depth.unwrap_or(&blank), &self.nearest),
-                Input::Image(name) => PassResource::Texture(self.images.current(name).unwrap_or(&blank), &self.linear),
-                Input::Before(name) => PassResource::Texture(self.images.before(name).unwrap_or(&blank), &self.linear),
+                Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&blank)),
+                Input::Before(name) => self.sampled(self.images.before(name).unwrap_or(&blank)),
                 Input::Texture(name) => match textures.get(name) {
                     Some((image, sampler)) => PassResource::Texture(image, sampler),
                     None => PassResource::Texture(&blank, &self.linear),
@@ -307,6 +307,12 @@ impl DeclaredPasses {
         }
         self.sets.push((key, set.clone()));
         Ok(set)
+    }
+
+    /// An image as passes read it: with blended texels, if the device can blend them.
+    fn sampled<'a>(&'a self, image: &'a Arc<Image>) -> PassResource<'a> {
+        let blends = self.gpu.blends_texels(image.desc().format);
+        PassResource::Texture(image, if blends { &self.linear } else { &self.nearest })
     }
 
     fn cached(
