@@ -88,9 +88,9 @@ pub fn endless_loop(
     let rounds = rounds(gpu, stage.kind);
     let snapshot = Snapshot::new(source);
     let diagnostic = match &place {
-        Place { number: Some(number), function } => {
+        Place { number: Some(_), .. } => {
             let lines = compiler.compile_with_lines(&snapshot, &stage.path);
-            let line = lines.and_then(|words| loops::line_of_loop(&words, *number));
+            let line = lines.and_then(|words| place.line(&words));
             let message = format!("this loop did not end ({rounds} iterations)");
             match line {
                 Some((file, line)) => {
@@ -100,6 +100,7 @@ pub fn endless_loop(
                     Diagnostic::error(snapshot.display_path(&path), message).on_line(line, excerpt)
                 }
                 None => {
+                    let function = place.function_in_glsl();
                     let message = format!("a loop in `{function}` did not end ({rounds} iterations)");
                     Diagnostic::error(snapshot.display_path(&stage.path), message)
                 }
