@@ -9,6 +9,7 @@ pub mod annotation;
 pub mod compile;
 pub mod contract;
 pub mod diagnostic;
+mod incremental;
 pub mod library;
 mod pixel;
 pub mod source;

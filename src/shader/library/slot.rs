@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use crate::shader::compile::{Compiler, StageKind};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::incremental::{FileCache, Files, Rebuilt, rebuild};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
@@ -67,6 +69,8 @@ pub(super) struct Built {
     /// Hash of the text that was compiled.
     pub hash: u64,
     pub warnings: Vec<Diagnostic>,
+    /// The text, if all of it could be read.
+    pub files: Option<Files>,
 }
 
 /// A failed compilation.
@@ -110,6 +114,13 @@ impl Slot {
     /// Whether the current result, if there is one, is that of the snapshot's text.
     pub fn is_current(&self, snapshot: &Snapshot<'_>) -> bool {
         self.current.as_ref().is_none_or(|outcome| snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome))
+    }
+
+    /// The newest result that an edit can be compiled against.
+    pub fn base(&self) -> Option<&Built> {
+        let current = self.current.as_ref().and_then(|outcome| outcome.as_ref().ok());
+        // A warning of an unchanged function would be lost.
+        current.or(self.good.as_ref()).filter(|built| built.warnings.is_empty())
     }
 
     /// Every path whose change can affect the result.
@@ -163,25 +174,56 @@ fn same(a: &Outcome, b: &Outcome) -> bool {
     }
 }
 
-/// Compiles, reflects and checks one stage. Also returns the compilation's time in milliseconds.
-pub(super) fn build(compiler: &Compiler, snapshot: &Snapshot<'_>, path: &TreePath) -> (Outcome, f64) {
-    let compiled = compiler.compile(snapshot, path);
-    let (dependencies, ms) = (compiled.dependencies, compiled.ms);
+/// A stage that was built.
+pub(super) struct Done {
+    pub outcome: Outcome,
+    /// Wall time of the compilation in milliseconds; `None` if the stage's code has not changed.
+    pub ms: Option<f64>,
+}
+
+/// Compiles, reflects and checks one stage. If there is a `base`, an earlier result, and the text differs from its text only in
+/// functions, compiles only these.
+pub(super) fn build(
+    compiler: &Compiler,
+    snapshot: &Snapshot<'_>,
+    cache: &FileCache,
+    path: &TreePath,
+    base: Option<&Built>,
+) -> Done {
+    let start = Instant::now();
+    let files = base.and_then(|base| cache.files(snapshot, &base.stage.dependencies));
+    let rebuilt = base.zip(files.as_ref()).and_then(|(base, files)| {
+        let old = (base.stage.spirv.as_slice(), base.files.as_ref()?);
+        Some((base, rebuild(compiler, snapshot, path, old, files)?))
+    });
+    let (spirv, dependencies, warnings) = match rebuilt {
+        Some((base, Rebuilt::Same)) => {
+            let (stage, hash) = (Arc::clone(&base.stage), snapshot.closure_hash(&base.stage.dependencies));
+            return Done { outcome: Ok(Built { stage, hash, warnings: Vec::new(), files }), ms: None };
+        }
+        Some((base, Rebuilt::Linked(spirv))) => (Ok(spirv), base.stage.dependencies.clone(), Vec::new()),
+        None => {
+            let compiled = compiler.compile(snapshot, path);
+            (compiled.result, compiled.dependencies, compiled.warnings)
+        }
+    };
+    let ms = Some(start.elapsed().as_secs_f64() * 1e3);
     let hash = snapshot.closure_hash(&dependencies);
     let broken = |diagnostics| Err(Broken { hash, dependencies: dependencies.clone(), diagnostics });
-    let spirv = match compiled.result {
+    let spirv = match spirv {
         Ok(spirv) => spirv,
-        Err(errors) => return (broken(errors.into_iter().chain(compiled.warnings).collect()), ms),
+        Err(errors) => return Done { outcome: broken(errors.into_iter().chain(warnings).collect()), ms },
     };
     let reflection = Reflection::of(&spirv);
     let errors = contract::check(&reflection, Texts { snapshot, stage: path, dependencies: &dependencies });
     let outcome = match StageKind::of(path) {
         Some(kind) if errors.is_empty() => {
+            let files = cache.files(snapshot, &dependencies);
             let stage =
                 Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies, hashes: Mutex::default() });
-            Ok(Built { stage, hash, warnings: compiled.warnings })
+            Ok(Built { stage, hash, warnings, files })
         }
         _ => broken(errors),
     };
-    (outcome, ms)
+    Done { outcome, ms }
 }

@@ -4,6 +4,7 @@
 mod conditions;
 mod declared;
 mod hash;
+pub mod link;
 pub mod loops;
 mod opcode;
 mod operands;
