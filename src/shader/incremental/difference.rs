@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use foldhash::HashSet;
+
 use super::scan::{File, Function, Parts};
 use crate::shader::source::TreePath;
 
@@ -42,19 +44,24 @@ fn compare(old: &Parts, new: &Parts, changed: &mut BTreeSet<Box<str>>, moved: &m
         return None;
     }
     let (old_places, new_places) = (places(old)?, places(new)?);
-    let is_in_both = |f: &&Function| old_places.contains_key(&f.place) && new_places.contains_key(&f.place);
+    let is_in_both = |f: &&Function| old_places.contains(&place(f)) && new_places.contains(&place(f));
     let common = || old.functions.iter().filter(is_in_both).zip(new.functions.iter().filter(is_in_both));
-    if common().any(|(old, new)| old.place != new.place) {
+    if common().any(|(old, new)| place(old) != place(new)) {
         return None;
     }
-    changed.extend(common().filter(|(old, new)| old.code != new.code).map(|(old, _)| old.name.clone()));
+    changed.extend(common().filter(|(old, new)| old.body != new.body).map(|(old, _)| old.name.clone()));
     let all = old.functions.iter().chain(&new.functions);
     moved.extend(all.filter(|f| !is_in_both(f)).map(|function| function.name.clone()));
     Some(())
 }
 
-/// The functions of a file by their places. `None` if two have the same.
-fn places(parts: &Parts) -> Option<BTreeMap<(usize, u64), &Function>> {
-    let places: BTreeMap<_, _> = parts.functions.iter().map(|function| (function.place, function)).collect();
+/// What tells a function from all others of the file.
+fn place(function: &Function) -> (usize, &str) {
+    (function.place, &function.head)
+}
+
+/// The places of a file's functions. `None` if two have the same.
+fn places(parts: &Parts) -> Option<HashSet<(usize, &str)>> {
+    let places: HashSet<_> = parts.functions.iter().map(place).collect();
     (places.len() == parts.functions.len()).then_some(places)
 }

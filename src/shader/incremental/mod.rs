@@ -73,29 +73,26 @@ pub fn rebuild(
     if whole.is_empty() {
         return Some(Rebuilt::Same);
     }
-    let reached: BTreeSet<Box<str>> = link::function_names(spirv)?.into_iter().map(Into::into).collect();
+    let base = link::Base::parse(spirv)?;
+    let reached = base.function_names();
     let words = close(new, &mut whole, &reached)?;
     let selection = Selection::new(new, &whole, &reached)?;
     let mut texts: BTreeMap<TreePath, Read> = BTreeMap::new();
     for (path, file) in new {
         let text = match file {
-            Some(file) => Ok(selection.thin(&file.text, file.parts()?, |name| words.contains(name)).into()),
+            Some(file) => Ok(selection.thin(file.parts()?, |name| words.contains(name)).into()),
             None => Err(SourceError::Missing),
         };
         texts.insert(path.clone(), text);
     }
     let thin = compiler.compile_silently(&Snapshot::holding(snapshot.source(), texts), stage)?;
-    link::link(spirv, &thin, &whole, CALLER).map(Rebuilt::Linked)
+    link::link(&base, &thin, &whole, CALLER).map(Rebuilt::Linked)
 }
 
 /// Adds to `whole` the functions that these may call and that the module lacks, since `main` did not reach them before. Returns
 /// the words from which functions may be called: those of `whole`, and those outside of functions, where macros are. `None` if
 /// the stage is not usual.
-fn close<'a>(
-    files: &'a Files,
-    whole: &mut BTreeSet<Box<str>>,
-    reached: &BTreeSet<Box<str>>,
-) -> Option<HashSet<&'a str>> {
+fn close<'a>(files: &'a Files, whole: &mut BTreeSet<Box<str>>, reached: &BTreeSet<&str>) -> Option<HashSet<&'a str>> {
     let mut functions: HashMap<&str, Vec<&Function>> = HashMap::default();
     let mut words = HashSet::default();
     for file in files.values().flatten() {
@@ -112,7 +109,7 @@ fn close<'a>(
     while let Some(name) = open.pop() {
         for word in functions.get(&*name).into_iter().flatten().flat_map(|function| &function.words) {
             words.insert(&**word);
-            if functions.contains_key(&**word) && !reached.contains(word) && whole.insert(word.clone()) {
+            if functions.contains_key(&**word) && !reached.contains(&**word) && whole.insert(word.clone()) {
                 open.push(word.clone());
             }
         }

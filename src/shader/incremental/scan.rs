@@ -1,10 +1,8 @@
 //! Splits a GLSL file into function definitions and the rest, without a preprocessor.
 
-use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use foldhash::HashSet;
-use xxhash_rust::xxh3::xxh3_64;
 
 use super::header::{Header, Parameter};
 use super::token::{Kind, Token, tokens};
@@ -17,13 +15,13 @@ pub struct File {
     parts: OnceLock<Option<Parts>>,
 }
 
-/// The function definitions of a file, and what is between them.
+/// The function definitions of a file, and what is between them. All code is without comments, and each white space is one space.
 #[derive(Debug)]
 pub struct Parts {
     /// In the order of the file.
     pub functions: Vec<Function>,
-    /// Hash of the code outside of functions.
-    pub rest: u64,
+    /// The code outside of functions.
+    pub rest: String,
     /// The words of that code, macros and their definitions included.
     pub rest_words: HashSet<Box<str>>,
 }
@@ -36,15 +34,13 @@ pub struct Function {
     pub returns: Box<str>,
     /// `None` if they are written in a way that is not known here.
     pub parameters: Option<Vec<Parameter>>,
-    /// Bytes of the file, from the return type to the closing brace.
-    pub range: Range<usize>,
-    /// Byte offset of the opening brace.
-    pub body: usize,
-    /// What tells the function from all others of the file: where it stands in the rest of the file, and a hash of its header.
-    pub place: (usize, u64),
-    /// Hash of the code between the braces.
-    pub code: u64,
-    /// The words of that code.
+    /// The byte of the rest of the file before which it stands.
+    pub place: usize,
+    /// From the return type to the closing parenthesis.
+    pub head: String,
+    /// The body with its braces.
+    pub body: String,
+    /// The words of the body.
     pub words: HashSet<Box<str>>,
 }
 
@@ -88,10 +84,6 @@ impl Code {
             self.words.insert(token.text.into());
         }
     }
-
-    fn hash(&self) -> u64 {
-        xxh3_64(self.text.as_bytes())
-    }
 }
 
 #[derive(Default)]
@@ -125,8 +117,7 @@ impl Scanner {
             }
         }
         self.rest(&tokens[first..]);
-        let rest = self.rest.hash();
-        Some(Parts { functions: self.functions, rest, rest_words: self.rest.words })
+        Some(Parts { functions: self.functions, rest: self.rest.text, rest_words: self.rest.words })
     }
 
     fn rest(&mut self, tokens: &[Token<'_>]) {
@@ -141,20 +132,18 @@ impl Scanner {
     fn function(&mut self, before: &[Token<'_>], block: &[Token<'_>]) -> bool {
         let has_directive = block.iter().any(|token| token.kind == Kind::Directive);
         let (Some(header), false) = (Header::parse(before), has_directive) else { return false };
-        let (mut head, mut code) = (Code::default(), Code::default());
+        let (mut head, mut body) = (Code::default(), Code::default());
         before.iter().for_each(|token| head.push(token));
-        block.iter().for_each(|token| code.push(token));
-        let [open, close] = [&block[0], &block[block.len() - 1]];
+        block.iter().for_each(|token| body.push(token));
         self.is_behind_function = true;
         self.functions.push(Function {
             name: header.name.into(),
             returns: header.returns.into(),
             parameters: header.parameters,
-            range: before[0].start..close.start + close.text.len(),
-            body: open.start,
-            place: (self.rest.text.len(), head.hash()),
-            code: code.hash(),
-            words: code.words,
+            place: self.rest.text.len(),
+            head: head.text,
+            body: body.text,
+            words: body.words,
         });
         true
     }
@@ -190,8 +179,7 @@ mod tests {
         assert_eq!(names(text), ["f", "h"]);
         let parts = parts(text).unwrap();
         let f = &parts.functions[0];
-        assert_eq!(&text[f.range.clone()], "float[2] f(const in S s, float x[2]) { { } }");
-        assert_eq!(&text[f.body..f.range.end], "{ { } }");
+        assert_eq!((f.head.as_str(), f.body.as_str()), ("float[2] f(const in S s, float x[2])", "{ { } }"));
         assert_eq!(&*f.returns, "float [ 2 ]");
         let parameters = f.parameters.as_ref().unwrap();
         assert_eq!(parameters[0].declaration("p"), "S p");
@@ -215,7 +203,7 @@ mod tests {
     fn comments_and_white_space_do_not_count() {
         let of = |text: &str| {
             let parts = parts(text).unwrap();
-            let functions: Vec<_> = parts.functions.iter().map(|function| (function.place, function.code)).collect();
+            let functions: Vec<_> = parts.functions.into_iter().map(|f| (f.place, f.head, f.body)).collect();
             (parts.rest, functions)
         };
         let text = "int a;\nfloat f(int x) { return 1.0; }\nint b;";

@@ -80,8 +80,7 @@ fn functions(files: &Files) -> Vec<(TreePath, usize)> {
 const KINDS: usize = 8;
 
 /// The body of an edited function. `kind` is below [`KINDS`].
-fn edited(kind: usize, stage: StageKind, before: &[Function], function: &Function, body: &str) -> String {
-    let inside = &body[1..];
+fn edited(kind: usize, stage: StageKind, before: &[Function], function: &Function) -> String {
     let statement = match kind {
         0 => "float edit = 0.1234567; ".to_owned(),
         1 => "mat3x2 edit[3]; edit[1][2] = vec2(7.25); ".to_owned(),
@@ -112,21 +111,28 @@ fn edited(kind: usize, stage: StageKind, before: &[Function], function: &Functio
             return if &**returns == "void" { "{ }".to_owned() } else { format!("{{ {returns} edit; return edit; }}") };
         }
     };
-    format!("{{ {statement}{inside}")
+    format!("{{ {statement}{}", &function.body[1..])
 }
 
 /// The texts with an edit of each of these functions, of another kind each.
 fn edit_all(texts: &Texts, stage: &TreePath, files: &Files, chosen: &[(TreePath, usize)], first: usize) -> Texts {
     let mut out = texts.clone();
     let kind = StageKind::of(stage).unwrap();
-    // From the end, so that byte ranges stay.
-    for (number, (path, index)) in chosen.iter().enumerate().rev() {
+    let mut bodies: BTreeMap<&TreePath, BTreeMap<usize, String>> = BTreeMap::new();
+    for (number, (path, index)) in chosen.iter().enumerate() {
+        let functions = &files[path].as_ref().unwrap().parts().unwrap().functions;
+        let body = edited((first + number) % KINDS, kind, &functions[..*index], &functions[*index]);
+        bodies.entry(path).or_default().insert(*index, body);
+    }
+    for (path, bodies) in bodies {
         let parts = files[path].as_ref().unwrap().parts().unwrap();
-        let function = &parts.functions[*index];
-        let range = function.body..function.range.end;
-        let text = out.get_mut(path).unwrap();
-        let body = edited((first + number) % KINDS, kind, &parts.functions[..*index], function, &text[range.clone()]);
-        text.replace_range(range, &body);
+        let (mut text, mut end) = (String::new(), 0);
+        for (index, function) in parts.functions.iter().enumerate() {
+            let body = bodies.get(&index).unwrap_or(&function.body);
+            text.extend([&parts.rest[end..function.place], " ", &function.head, " ", body, "\n"]);
+            end = function.place;
+        }
+        out.insert(path.clone(), text + &parts.rest[end..]);
     }
     out
 }

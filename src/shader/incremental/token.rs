@@ -19,8 +19,6 @@ pub enum Kind {
 pub struct Token<'a> {
     pub kind: Kind,
     pub text: &'a str,
-    /// Byte offset.
-    pub start: usize,
     /// Whether white space or a comment precedes it.
     pub is_spaced: bool,
 }
@@ -52,7 +50,7 @@ pub fn tokens(text: &str) -> Option<Vec<Token<'_>>> {
             // A character outside ASCII is kept whole.
             _ => (Kind::Other, text[at..].chars().next()?.len_utf8()),
         };
-        let token = Token { kind, text: text.get(at..at + length)?, start: at, is_spaced };
+        let token = Token { kind, text: text.get(at..at + length)?, is_spaced };
         let is_open = token.text.starts_with('"') && token.text.ends_with('\n');
         let pastes = kind == Kind::Directive
             && (token.text.contains("##") || FAR_REACHING.iter().any(|word| token.text.contains(word)));

@@ -63,7 +63,7 @@ impl<'a> Importer<'a> {
         for i in &to.globals {
             if opcode(i) != op::TYPE_FORWARD_POINTER {
                 let id = *i.get(result_place(i))?;
-                let key = key(to, i, id, |id| Some(id))?;
+                let key = key(to, i, id, Some)?;
                 this.keys.entry(key).or_insert(id);
             }
         }
@@ -137,7 +137,7 @@ impl<'a> Importer<'a> {
             self.set(id, known)?;
             return Some(known);
         }
-        let decorations = self.from.decorations.get(&id).map_or(&[][..], Vec::as_slice);
+        let decorations = self.from.decorations.of(id);
         let has = |kind: u32| decorations.iter().any(|i| opcode(i) == op::DECORATE && i.get(2) == Some(&kind));
         // Every other variable is declared in the text, and so is every specialization constant.
         if (code == op::VARIABLE && !has(BUILT_IN) && !self.has_built_in_members(i[1])) || has(SPEC_ID) {
@@ -162,16 +162,27 @@ impl<'a> Importer<'a> {
 
     /// Whether a pointer of the other module leads to a block such as `gl_PerVertex`.
     fn has_built_in_members(&self, pointer: Id) -> bool {
-        let target = self.defined.get(&pointer).and_then(|at| self.from.globals[*at].get(3));
-        let decorations = target.and_then(|target| self.from.decorations.get(target));
-        decorations.into_iter().flatten().any(|i| opcode(i) == op::MEMBER_DECORATE && i.get(3) == Some(&BUILT_IN))
+        let target = self.defined.get(&pointer).and_then(|at| self.from.globals[*at].get(3).copied());
+        let mut decorations = self.from.decorations.of(target.unwrap_or(0)).iter();
+        decorations.any(|i| opcode(i) == op::MEMBER_DECORATE && i.get(3) == Some(&BUILT_IN))
     }
 
     /// Copies names and decorations.
     pub fn describe(&mut self, from: Id, to: Id) {
         let retarget = |i: &&[u32]| [&[i[0], to], &i[2..]].concat();
-        self.names.extend(self.from.names.get(&from).into_iter().flatten().map(retarget));
-        self.decorations.extend(self.from.decorations.get(&from).into_iter().flatten().map(retarget));
+        self.names.extend(self.from.names.of(from).iter().map(retarget));
+        self.decorations.extend(self.from.decorations.of(from).iter().map(retarget));
+    }
+
+    /// Copies the names and decorations of ids whose functions were imported: `locals` are the new ids, by id; 0 for others.
+    pub fn describe_locals(&mut self, locals: &[Id]) {
+        for (about, out) in [(&self.from.names, &mut self.names), (&self.from.decorations, &mut self.decorations)] {
+            let retarget = |i: &'a [u32]| match locals.get(i[1] as usize) {
+                None | Some(0) => None,
+                Some(to) => Some([&[i[0], *to], &i[2..]].concat()),
+            };
+            out.extend(about.all().filter_map(retarget));
+        }
     }
 }
 
@@ -187,7 +198,7 @@ fn key(parts: &Parts<'_>, i: &[u32], result: Id, mut map: impl FnMut(Id) -> Opti
         }
     }
     for list in [&parts.names, &parts.decorations] {
-        let mut about: Vec<&[u32]> = list.get(&result).into_iter().flatten().copied().collect();
+        let mut about = list.of(result).to_vec();
         about.sort_unstable_by(|a, b| (a[0], &a[2..]).cmp(&(b[0], &b[2..])));
         about.iter().for_each(|i| {
             key.push(i[0]);
@@ -209,7 +220,7 @@ fn forward_pointers(parts: &Parts<'_>) -> Option<Vec<(Id, Id)>> {
 
 fn name_of(parts: &Parts<'_>, id: Id) -> Option<String> {
     let is_name = |i: &&&[u32]| opcode(i) == op::NAME;
-    parts.names.get(&id)?.iter().find(is_name).map(|i| text(&i[2..]))
+    parts.names.of(id).iter().find(is_name).map(|i| text(&i[2..]))
 }
 
 /// A header with another bound.

@@ -21,20 +21,30 @@ use super::specialize::{Id, Instruction, instruction, opcode};
 use import::{Importer, header};
 use parts::{Function, Parts, plain_name};
 
-/// The names in GLSL of the functions of a module. `None` if the module cannot be linked.
-pub fn function_names(words: &[u32]) -> Option<BTreeSet<String>> {
-    Some(Parts::parse(words)?.functions.iter().map(|function| function.plain_name().to_owned()).collect())
+/// A module that edited functions can be linked into.
+pub struct Base<'a>(Parts<'a>);
+
+impl<'a> Base<'a> {
+    /// `None` if the module cannot be linked.
+    pub fn parse(words: &'a [u32]) -> Option<Self> {
+        Parts::parse(words).map(Self)
+    }
+
+    /// The names in GLSL of its functions.
+    pub fn function_names(&self) -> BTreeSet<&str> {
+        self.0.functions.iter().map(Function::plain_name).collect()
+    }
 }
 
 /// The module `base` with the functions `edited` (names in GLSL) of the module `thin`, in which `caller` calls them. `None` if
 /// that is not certain to be what compiling the whole text gives.
-pub fn link(base: &[u32], thin: &[u32], edited: &BTreeSet<Box<str>>, caller: &str) -> Option<Vec<u32>> {
-    let (base, thin) = (Parts::parse(base)?, Parts::parse(thin)?);
-    if !same_head(&base, &thin) {
+pub fn link(Base(base): &Base<'_>, thin: &[u32], edited: &BTreeSet<Box<str>>, caller: &str) -> Option<Vec<u32>> {
+    let thin = Parts::parse(thin)?;
+    if !same_head(base, &thin) {
         return None;
     }
-    let functions = select(&base, &thin, edited, caller)?;
-    let mut importer = Importer::new(&base, &thin)?;
+    let functions = select(base, &thin, edited, caller)?;
+    let mut importer = Importer::new(base, &thin)?;
     // In place of a function stands the edited one, or its stub, if the thin module has one.
     let (base_names, thin_names) = (base.by_name()?, thin.by_name()?);
     for (function, _) in &functions {
@@ -48,19 +58,19 @@ pub fn link(base: &[u32], thin: &[u32], edited: &BTreeSet<Box<str>>, caller: &st
             }
         }
     }
-    let mut code = Vec::new();
+    let (mut code, mut locals) = (Vec::new(), vec![0; base.bound]);
     for (function, is_edited) in &functions {
         match is_edited {
             true => function.code.iter().for_each(|i| code.extend_from_slice(i)),
-            false => import_function(&mut importer, function, &mut code)?,
+            false => import_function(&mut importer, function, &mut locals, &mut code)?,
         }
         code.extend(instruction(op::FUNCTION_END, &[]));
     }
+    importer.describe_locals(&locals);
     if !importer.pointers_agree()? {
         return None;
     }
-    let decorations =
-        thin.decorations.values().flatten().copied().chain(importer.decorations.iter().map(Vec::as_slice));
+    let decorations = thin.decorations.all().chain(importer.decorations.iter().map(Vec::as_slice));
     let instructions = functions.iter().flat_map(|(function, _)| function.code.iter().copied());
     let capabilities =
         capability::capabilities(&base.capabilities, &thin.capabilities, decorations.chain(instructions))?;
@@ -150,13 +160,18 @@ fn reach<'a>(
     Some(())
 }
 
-/// Copies a function of the module before. Its results get new ids.
-fn import_function(importer: &mut Importer<'_>, function: &Function<'_>, out: &mut Vec<u32>) -> Option<()> {
+/// Copies a function of the module before. Its results get new ids, which are written to `locals`.
+fn import_function(
+    importer: &mut Importer<'_>,
+    function: &Function<'_>,
+    locals: &mut [Id],
+    out: &mut Vec<u32>,
+) -> Option<()> {
     for i in &function.code[1..] {
         if let Some(id) = result(i)? {
             let new = importer.fresh();
             importer.set(id, new)?;
-            importer.describe(id, new);
+            *locals.get_mut(id as usize)? = new;
         }
     }
     for i in &function.code {
@@ -208,9 +223,7 @@ fn write(
     out.extend(instruction(op::ENTRY_POINT, &variables));
     thin.modes.iter().chain(&thin.sources).for_each(|i| out.extend_from_slice(i));
     for (about, imported) in [(&thin.names, &importer.names), (&thin.decorations, &importer.decorations)] {
-        let mut own: Vec<_> = about.iter().filter(|(id, _)| !dropped.contains(*id)).collect();
-        own.sort_unstable_by_key(|(id, _)| **id);
-        own.iter().flat_map(|(_, list)| list.iter()).for_each(|i| out.extend_from_slice(i));
+        about.all().filter(|i| !dropped.contains(&i[1])).for_each(|i| out.extend_from_slice(i));
         imported.iter().for_each(|i: &Instruction| out.extend_from_slice(i));
     }
     thin.globals.iter().for_each(|i| out.extend_from_slice(i));

@@ -1,6 +1,6 @@
 //! A module in parts, as the linker needs them.
 
-use foldhash::{HashMap, HashMapExt};
+use foldhash::HashMap;
 
 use crate::shader::spirv::opcode as op;
 use crate::shader::spirv::operands::{is_id, text};
@@ -38,6 +38,29 @@ pub fn plain_name(name: &str) -> &str {
     name.split('(').next().unwrap_or_default()
 }
 
+/// Instructions about ids, ordered by these.
+#[derive(Default)]
+pub struct ByTarget<'a>(Vec<&'a [u32]>);
+
+impl<'a> ByTarget<'a> {
+    fn sort(&mut self) -> Option<()> {
+        let is_sound = self.0.iter().all(|i| i.len() > 2);
+        is_sound.then(|| self.0.sort_by_key(|i| i[1]))
+    }
+
+    /// Those about an id, in the order of the module.
+    pub fn of(&self, id: Id) -> &[&'a [u32]] {
+        let start = self.0.partition_point(|i| i[1] < id);
+        let count = self.0[start..].iter().take_while(|i| i[1] == id).count();
+        &self.0[start..start + count]
+    }
+
+    /// All of them.
+    pub fn all(&self) -> impl Iterator<Item = &'a [u32]> {
+        self.0.iter().copied()
+    }
+}
+
 /// A module with one entry point.
 pub struct Parts<'a> {
     pub header: &'a [u32],
@@ -49,10 +72,9 @@ pub struct Parts<'a> {
     pub modes: Vec<&'a [u32]>,
     /// Sources and their extensions.
     pub sources: Vec<&'a [u32]>,
-    /// OpName and OpMemberName, by target.
-    pub names: HashMap<Id, Vec<&'a [u32]>>,
-    /// Decorations, by target.
-    pub decorations: HashMap<Id, Vec<&'a [u32]>>,
+    /// OpName and OpMemberName.
+    pub names: ByTarget<'a>,
+    pub decorations: ByTarget<'a>,
     /// Types, constants and variables.
     pub globals: Vec<&'a [u32]>,
     pub functions: Vec<Function<'a>>,
@@ -71,8 +93,8 @@ impl<'a> Parts<'a> {
             entry: &[],
             modes: Vec::new(),
             sources: Vec::new(),
-            names: HashMap::new(),
-            decorations: HashMap::new(),
+            names: ByTarget::default(),
+            decorations: ByTarget::default(),
             globals: Vec::new(),
             functions: Vec::new(),
         };
@@ -84,8 +106,8 @@ impl<'a> Parts<'a> {
                 op::EXECUTION_MODE => parts.modes.push(i),
                 // Sources, their extensions and what processed them
                 2..=4 | 330 => parts.sources.push(i),
-                op::NAME | op::MEMBER_NAME => parts.names.entry(*i.get(1)?).or_default().push(i),
-                op::DECORATE | op::MEMBER_DECORATE => parts.decorations.entry(*i.get(1)?).or_default().push(i),
+                op::NAME | op::MEMBER_NAME => parts.names.0.push(i),
+                op::DECORATE | op::MEMBER_DECORATE => parts.decorations.0.push(i),
                 op::TYPE_FORWARD_POINTER => parts.globals.push(i),
                 op::UNDEF | 19..=33 | 41..=52 | op::VARIABLE => {
                     is_id(i, 1)?;
@@ -94,10 +116,12 @@ impl<'a> Parts<'a> {
                 _ => return None,
             }
         }
+        parts.names.sort()?;
+        parts.decorations.sort()?;
         for function in code.split(|i| opcode(i) == op::FUNCTION_END) {
             let Some(first) = function.first() else { continue };
             let id = *first.get(2)?;
-            let name = parts.names.get(&id).and_then(|names| names.first()).map(|i| text(&i[2..]))?;
+            let name = parts.names.of(id).first().map(|i| text(&i[2..]))?;
             parts.functions.push(Function { name, id, code: function.to_vec() });
         }
         // Entry point and functions refer to each other.
