@@ -1,7 +1,7 @@
 //! One stage of a library: how it is built, and what is remembered about it between updates.
 
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::shader::compile::{Compiler, StageKind};
@@ -26,12 +26,23 @@ pub struct Stage {
     pub reflection: Reflection,
     /// The stage's files, and the paths where an include was not found.
     pub dependencies: BTreeSet<TreePath>,
-    /// Hashes of the specialized modules that were asked for, by constants.
-    hashes: Mutex<Vec<(Constants, u64)>>,
+    /// The specialized modules that were asked for, the newest first.
+    specialized: Mutex<Vec<Specialized>>,
+}
+
+/// A stage's module with values for its constants.
+#[derive(Debug)]
+struct Specialized {
+    constants: Constants,
+    hash: u64,
+    /// The module, until a pipeline takes it.
+    words: Option<Vec<u32>>,
 }
 
 /// Hashes that a stage keeps.
 const HASHES_KEPT: usize = 64;
+/// Modules that a stage keeps until pipelines take them: as many as a scene has kinds of material, of 100 kB each.
+const MODULES_KEPT: usize = 8;
 
 /// Values of specialization constants: `constant_id` and the four bytes.
 type Constants = Vec<(u32, u32)>;
@@ -45,15 +56,31 @@ impl PartialEq for Stage {
 impl Stage {
     /// [`behavior_hash`] of the module that the driver gets for these constants. Computed once.
     pub fn specialized_hash(&self, constants: &[(u32, u32)]) -> u64 {
-        let mut hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, hash)) = hashes.iter().find(|(known, _)| known == constants) {
-            return *hash;
+        if let Some(known) = self.specialized().iter().find(|known| known.constants == constants) {
+            return known.hash;
         }
-        let hash = behavior_hash(&specialize(&self.spirv, constants));
+        // Without the lock, since the pipelines of a scene are built in parallel.
+        let words = specialize(&self.spirv, constants);
+        let hash = behavior_hash(&words);
+        let mut all = self.specialized();
         // Dragging a constant's slider asks for many.
-        hashes.truncate(HASHES_KEPT - 1);
-        hashes.insert(0, (constants.to_vec(), hash));
+        all.truncate(HASHES_KEPT - 1);
+        all.insert(0, Specialized { constants: constants.to_vec(), hash, words: Some(words) });
+        all.iter_mut().skip(MODULES_KEPT).for_each(|old| old.words = None);
         hash
+    }
+
+    /// The module with these constants, as [`specialize`] gives it.
+    pub fn specialize(&self, constants: &[(u32, u32)]) -> Vec<u32> {
+        let mut all = self.specialized();
+        let known = all.iter_mut().find(|known| known.constants == constants);
+        let words = known.and_then(|known| known.words.take());
+        drop(all);
+        words.unwrap_or_else(|| specialize(&self.spirv, constants))
+    }
+
+    fn specialized(&self) -> MutexGuard<'_, Vec<Specialized>> {
+        self.specialized.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The stage's source text, for messages.
@@ -219,8 +246,14 @@ pub(super) fn build(
     let outcome = match StageKind::of(path) {
         Some(kind) if errors.is_empty() => {
             let files = cache.files(snapshot, &dependencies);
-            let stage =
-                Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies, hashes: Mutex::default() });
+            let stage = Arc::new(Stage {
+                path: path.clone(),
+                kind,
+                spirv,
+                reflection,
+                dependencies,
+                specialized: Mutex::default(),
+            });
             Ok(Built { stage, hash, warnings, files })
         }
         _ => broken(errors),
