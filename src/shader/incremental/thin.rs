@@ -26,7 +26,7 @@ impl<'a> Selection<'a> {
             for function in file.parts()?.functions.iter().filter(is_called) {
                 let mut arguments = Vec::new();
                 for parameter in function.parameters.as_ref()? {
-                    let name = format!("a{number}");
+                    let name = format!("specula_argument_{number}");
                     lines.push_str(&format!("{}; ", parameter.declaration(&name)));
                     arguments.push(name);
                     number += 1;

@@ -259,7 +259,7 @@ impl Library {
         for (index, Done { outcome, ms }) in compiled {
             let slot = &mut self.slots[index];
             report.stages.extend(ms.map(|ms| (slot.path.to_string(), ms)));
-            slot.accept(outcome);
+            slot.accept(outcome, is_whole);
         }
     }
 

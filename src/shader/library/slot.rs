@@ -171,10 +171,17 @@ impl Slot {
     }
 
     /// Stores a new result. If the module is unchanged (an edit of a comment, or the same text compiled again), the
-    /// stage remains the same object, and no pipeline is rebuilt.
-    pub fn accept(&mut self, outcome: Outcome) {
+    /// stage remains the same object, and no pipeline is rebuilt. A module that was compiled as a whole, with `is_whole`, is also
+    /// unchanged if it does the same as one that was linked.
+    pub fn accept(&mut self, outcome: Outcome, is_whole: bool) {
+        let does_same = |a: &Stage, b: &Stage| {
+            (&a.reflection, &a.dependencies) == (&b.reflection, &b.dependencies)
+                && behavior_hash(&a.spirv) == behavior_hash(&b.spirv)
+        };
         self.current = Some(match (outcome, &self.good) {
-            (Ok(built), Some(good)) if built.stage == good.stage => {
+            (Ok(built), Some(good))
+                if built.stage == good.stage || (is_whole && does_same(&built.stage, &good.stage)) =>
+            {
                 Ok(Built { stage: Arc::clone(&good.stage), ..built })
             }
             (outcome, _) => outcome,

@@ -88,6 +88,15 @@ fn the_reload_key_compiles_everything_and_keeps_what_is_equal() {
 }
 
 #[test]
+fn the_reload_key_keeps_stages_that_were_linked() {
+    let mut library = two_stages();
+    let update = edit(&mut library, "lib/color.glsl", Some("float color() { float c = 0.6; return c; }\n"));
+    let Update::Ready(edited, _) = update else { panic!("{update:?}") };
+    assert!(matches!(library.update(&Change::All), Update::Unchanged { cleared: false }));
+    assert!(Arc::ptr_eq(library.set().unwrap(), &edited));
+}
+
+#[test]
 fn a_comment_about_the_time_moves_nothing() {
     let mut library = two_stages();
     let text =
