@@ -7,7 +7,7 @@ use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPH
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
 use crate::shader::spirv::optimize;
-use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath, specialize};
+use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
 
 /// Rounds that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so that whatever its
 /// size, the first of them take a tenth of a second for short rounds and a second for long ones.
@@ -32,15 +32,14 @@ fn rounds(gpu: &Gpu, kind: StageKind) -> u32 {
     }
 }
 
-/// The module of the stage at `path`, specialized with these constants, with loops that end, optimized.
+/// The module of a stage, specialized with these constants, with loops that end, optimized.
 pub(super) fn shader_module(
     gpu: &Arc<Gpu>,
-    path: &str,
-    spirv: &[u32],
+    stage: &Stage,
     constants: &[(u32, u32)],
 ) -> Result<Arc<ShaderModule>, GpuError> {
-    let mut words = specialize(spirv, constants);
-    let kind = StageKind::of(&TreePath::from(path)).unwrap_or(StageKind::Fragment);
+    let mut words = stage.specialize(constants);
+    let (path, kind) = (stage.path.as_str(), stage.kind);
     let stores = match kind {
         StageKind::Vertex => gpu.graphics_stores().0,
         StageKind::Fragment => gpu.graphics_stores().1,
@@ -61,7 +60,7 @@ pub(super) fn shader_module(
         report: stores.then_some(buffer),
         mark,
     };
-    let is_bounded = loops::bound(&mut words, spirv, &bounds);
+    let is_bounded = loops::bound(&mut words, &stage.spirv, &bounds);
     let specialized = words.len();
     fault::take_module(&words);
     let words = optimize(words);
@@ -88,9 +87,9 @@ pub fn endless_loop(
     let rounds = rounds(gpu, stage.kind);
     let snapshot = Snapshot::new(source);
     let diagnostic = match &place {
-        Place { number: Some(number), function } => {
+        Place { number: Some(_), .. } => {
             let lines = compiler.compile_with_lines(&snapshot, &stage.path);
-            let line = lines.and_then(|words| loops::line_of_loop(&words, *number));
+            let line = lines.and_then(|words| place.line(&words));
             let message = format!("this loop did not end ({rounds} iterations)");
             match line {
                 Some((file, line)) => {
@@ -100,6 +99,7 @@ pub fn endless_loop(
                     Diagnostic::error(snapshot.display_path(&path), message).on_line(line, excerpt)
                 }
                 None => {
+                    let function = place.function_in_glsl();
                     let message = format!("a loop in `{function}` did not end ({rounds} iterations)");
                     Diagnostic::error(snapshot.display_path(&stage.path), message)
                 }

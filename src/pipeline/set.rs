@@ -14,7 +14,7 @@ use crate::gpu::{
 use crate::pipeline::bounds::shader_module;
 use crate::pipeline::textures::PassTextures;
 use crate::shader::graph::Input;
-use crate::shader::{GraphPass, ShaderSet};
+use crate::shader::{GraphPass, ShaderSet, Stage};
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -228,14 +228,14 @@ impl PipelineSet {
         Some(BoundPipelines { pipelines, computes, textures: self.textures.clone() })
     }
 
-    /// The SPIR-V of a stage.
-    pub(crate) fn spirv(&self, path: &str) -> Result<&Vec<u32>, GpuError> {
-        self.shaders.stages.get(path).map(|stage| &stage.spirv).ok_or_else(|| GpuError::NoStage(path.to_owned()))
+    /// A stage of this generation.
+    fn stage(&self, path: &str) -> Result<&Arc<Stage>, GpuError> {
+        self.shaders.stages.get(path).ok_or_else(|| GpuError::NoStage(path.to_owned()))
     }
 
     /// The module of a stage, specialized with these constants.
     fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
-        shader_module(&self.gpu, path, self.spirv(path)?, constants)
+        shader_module(&self.gpu, self.stage(path)?, constants)
     }
 
     /// A compute pipeline, created at its first use.

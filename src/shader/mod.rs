@@ -10,6 +10,7 @@ pub mod compile;
 pub mod contract;
 pub mod diagnostic;
 pub mod graph;
+mod incremental;
 pub mod library;
 mod pixel;
 pub mod source;

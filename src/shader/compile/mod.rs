@@ -112,11 +112,23 @@ impl Compiler {
     /// Compiles a file as [`Compiler::compile`] does, with the lines of its instructions (`OpLine`). The instructions are the
     /// same. `None` if it does not compile.
     pub fn compile_with_lines(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Option<Vec<u32>> {
+        self.run_file(snapshot, stage, true).map(|(spirv, _)| spirv)
+    }
+
+    /// The module of a file; `None` if there is an error or a warning.
+    pub fn compile_silently(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Option<Vec<u32>> {
+        let (spirv, warnings) = self.run_file(snapshot, stage, false)?;
+        warnings.is_empty().then_some(spirv)
+    }
+
+    fn run_file(&self, snapshot: &Snapshot<'_>, stage: &TreePath, with_lines: bool) -> Option<(Vec<u32>, String)> {
         let text = snapshot.read(stage).ok()?;
         let includes = Includes::new(snapshot, stage.clone());
         let mut options = options(&text).ok()?;
-        options.set_generate_debug_info();
-        self.run(options, &includes, stage, &text, StageKind::of(stage)?).ok().map(|(spirv, _)| spirv)
+        if with_lines {
+            options.set_generate_debug_info();
+        }
+        self.run(options, &includes, stage, &text, StageKind::of(stage)?).ok()
     }
 
     /// Compiles a library as if a stage of this kind included nothing else, so the library must include what it uses.

@@ -37,10 +37,6 @@ pub fn unbound(text: &str) -> BTreeSet<String> {
 
 /// The names that a statement at file level declares, if it declares uniforms or buffers without a binding.
 fn declared(statement: &[&str], is_block: bool) -> Vec<String> {
-    let is = |word: &str| statement.contains(&word);
-    if !(is("uniform") || is("buffer")) || is("binding") || is("push_constant") {
-        return Vec::new();
-    }
     let is_name = |token: &&str| token.starts_with(|c: char| is_word(c) && !c.is_ascii_digit());
     // Without what is in brackets: the layout, and lengths of arrays.
     let mut depth = 0_u32;
@@ -54,6 +50,10 @@ fn declared(statement: &[&str], is_block: bool) -> Vec<String> {
             keep
         })
         .collect();
+    let is = |word: &str| statement.contains(&word);
+    if !(plain.contains(&"uniform") || plain.contains(&"buffer")) || is("binding") || is("push_constant") {
+        return Vec::new();
+    }
     if is_block {
         return plain.iter().rev().find(|token| is_name(token)).map(|name| (*name).to_owned()).into_iter().collect();
     }

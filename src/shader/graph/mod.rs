@@ -223,7 +223,7 @@ impl Graph {
 /// Whether a text has code that reads the time, the number of the frame or the mouse.
 pub fn text_reads_clock(text: &str) -> bool {
     const CLOCK: [&str; 4] = ["frame.time_s", "frame.delta_s", "frame.frame_index", "frame.mouse_px"];
-    text.contains("frame.")
+    CLOCK.iter().any(|member| text.contains(member))
         && lines(text).iter().any(|line| CLOCK.iter().any(|member| find_word(&line.code, member).is_some()))
 }
 

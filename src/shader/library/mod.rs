@@ -19,17 +19,18 @@ use crate::shader::compile::{Compiler, StageKind, declares_pass};
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
 use crate::shader::graph::{Graph, PassStage, text_reads_clock};
+use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{Source, TreePath};
 use crate::shader::spirv::reflect::Reflection;
-use slot::{Outcome, Slot, build};
+use slot::{Built, Done, Slot, build};
 
 pub use slot::Stage;
 
 /// The files that may have changed since the last update.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Anything: the first update, and the reload key. Every stage is compiled. A stage whose module comes out
+    /// Anything: the first update, and the reload key. Every stage is compiled as a whole. A stage whose module comes out
     /// unchanged remains the same object.
     All,
     /// These files.
@@ -81,7 +82,7 @@ pub struct ShaderSet {
 pub struct Report {
     /// Changed files that a stage depends on, as displayed.
     pub changed: Vec<String>,
-    /// Compiled stages and the time that each took, in milliseconds.
+    /// Compiled stages and the time that each took, in milliseconds. An edit of comments compiles none.
     pub stages: Vec<(String, f64)>,
     /// Wall time of the whole update, in milliseconds. Stages compile in parallel.
     pub compile_ms: f64,
@@ -105,6 +106,7 @@ pub enum Update {
 pub struct Library {
     source: Arc<Source>,
     compiler: Arc<Compiler>,
+    cache: FileCache,
     /// The entry points that every tree has, then the stages that declare a pass.
     slots: Vec<Slot>,
     /// Number of entry points that every tree has.
@@ -129,7 +131,8 @@ impl Library {
             .collect();
         let fixed = paths.len();
         let slots = paths.into_iter().map(Slot::new).collect();
-        Self { source: Arc::new(source), compiler, slots, fixed, pairs, set: None, failed: false, relink: false }
+        let (cache, source) = (FileCache::default(), Arc::new(source));
+        Self { source, compiler, cache, slots, fixed, pairs, set: None, failed: false, relink: false }
     }
 
     /// The tree.
@@ -194,7 +197,8 @@ impl Library {
             return Update::Unchanged { cleared: false };
         }
         let (first, rest): (Vec<_>, Vec<_>) = stale.compile.into_iter().partition(|(_, path)| is_first(path));
-        self.compile(&first, &snapshot, &mut report, || false);
+        let is_whole = matches!(change, Change::All);
+        self.compile(&first, &snapshot, is_whole, &mut report, || false);
         let is_complete = rest.is_empty() && self.slots.iter().all(Slot::is_good);
         if !is_complete && first.iter().any(|(index, _)| self.slots[*index].is_new()) {
             for (index, _) in &rest {
@@ -207,7 +211,7 @@ impl Library {
                 return self.commit(linked, self.next_generation(), &snapshot, report);
             }
         }
-        self.compile(&rest, &snapshot, &mut report, || false);
+        self.compile(&rest, &snapshot, is_whole, &mut report, || false);
         let linked = self.link(&snapshot, false);
         report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
         self.conclude(linked, self.next_generation(), &snapshot, report)
@@ -238,7 +242,7 @@ impl Library {
         let rest = self.slots.iter().map(|slot| slot.path.clone()).enumerate();
         let rest: Vec<_> = rest.filter(|(index, _)| self.slots[*index].current.is_none()).collect();
         let mut report = Report::default();
-        self.compile(&rest, &snapshot, &mut report, superseded);
+        self.compile(&rest, &snapshot, false, &mut report, superseded);
         if self.slots.iter().any(|slot| slot.current.is_none()) {
             return Update::Unchanged { cleared: false };
         }
@@ -275,27 +279,29 @@ impl Library {
         self.set.as_ref().map_or(0, |set| set.generation) + 1
     }
 
-    /// Compiles stages in parallel. Leaves out those that it has not begun when `superseded` returns true.
+    /// Compiles stages in parallel, with `is_whole` from the ground up. Leaves out those that it has not begun when `superseded`
+    /// returns true.
     fn compile(
         &mut self,
         stages: &[(usize, TreePath)],
         snapshot: &Snapshot<'_>,
+        is_whole: bool,
         report: &mut Report,
         superseded: impl Fn() -> bool + Sync,
     ) {
-        let compiler = &self.compiler;
-        let compiled: Vec<(usize, Outcome, f64)> = stages
+        let (compiler, cache) = (&self.compiler, &self.cache);
+        let bases: Vec<Option<&Built>> =
+            stages.iter().map(|(index, _)| self.slots[*index].base().filter(|_| !is_whole)).collect();
+        let compiled: Vec<(usize, Done)> = stages
             .par_iter()
+            .zip(bases)
             .filter(|_| !superseded())
-            .map(|(index, path)| {
-                let (outcome, ms) = build(compiler, snapshot, path);
-                (*index, outcome, ms)
-            })
+            .map(|((index, path), base)| (*index, build(compiler, snapshot, cache, path, base)))
             .collect();
-        for (index, outcome, ms) in compiled {
+        for (index, Done { outcome, ms }) in compiled {
             let slot = &mut self.slots[index];
-            report.stages.push((slot.path.to_string(), ms));
-            slot.accept(outcome);
+            report.stages.extend(ms.map(|ms| (slot.path.to_string(), ms)));
+            slot.accept(outcome, is_whole);
         }
     }
 

@@ -1,11 +1,13 @@
 //! One stage of a library: how it is built, and what is remembered about it between updates.
 
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use crate::shader::compile::{Compiler, StageKind};
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::incremental::{FileCache, Files, Rebuilt, rebuild};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
@@ -24,12 +26,23 @@ pub struct Stage {
     pub reflection: Reflection,
     /// The stage's files, and the paths where an include was not found.
     pub dependencies: BTreeSet<TreePath>,
-    /// Hashes of the specialized modules that were asked for, by constants.
-    hashes: Mutex<Vec<(Constants, u64)>>,
+    /// The specialized modules that were asked for, the newest first.
+    specialized: Mutex<Vec<Specialized>>,
+}
+
+/// A stage's module with values for its constants.
+#[derive(Debug)]
+struct Specialized {
+    constants: Constants,
+    hash: u64,
+    /// The module, until a pipeline takes it.
+    words: Option<Vec<u32>>,
 }
 
 /// Hashes that a stage keeps.
 const HASHES_KEPT: usize = 64;
+/// Modules that a stage keeps until pipelines take them: as many as a scene has kinds of material, of 100 kB each.
+const MODULES_KEPT: usize = 8;
 
 /// Values of specialization constants: `constant_id` and the four bytes.
 type Constants = Vec<(u32, u32)>;
@@ -43,15 +56,31 @@ impl PartialEq for Stage {
 impl Stage {
     /// [`behavior_hash`] of the module that the driver gets for these constants. Computed once.
     pub fn specialized_hash(&self, constants: &[(u32, u32)]) -> u64 {
-        let mut hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, hash)) = hashes.iter().find(|(known, _)| known == constants) {
-            return *hash;
+        if let Some(known) = self.specialized().iter().find(|known| known.constants == constants) {
+            return known.hash;
         }
-        let hash = behavior_hash(&specialize(&self.spirv, constants));
+        // Without the lock, since the pipelines of a scene are built in parallel.
+        let words = specialize(&self.spirv, constants);
+        let hash = behavior_hash(&words);
+        let mut all = self.specialized();
         // Dragging a constant's slider asks for many.
-        hashes.truncate(HASHES_KEPT - 1);
-        hashes.insert(0, (constants.to_vec(), hash));
+        all.truncate(HASHES_KEPT - 1);
+        all.insert(0, Specialized { constants: constants.to_vec(), hash, words: Some(words) });
+        all.iter_mut().skip(MODULES_KEPT).for_each(|old| old.words = None);
         hash
+    }
+
+    /// The module with these constants, as [`specialize`] gives it.
+    pub fn specialize(&self, constants: &[(u32, u32)]) -> Vec<u32> {
+        let mut all = self.specialized();
+        let known = all.iter_mut().find(|known| known.constants == constants);
+        let words = known.and_then(|known| known.words.take());
+        drop(all);
+        words.unwrap_or_else(|| specialize(&self.spirv, constants))
+    }
+
+    fn specialized(&self) -> MutexGuard<'_, Vec<Specialized>> {
+        self.specialized.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The stage's source text, for messages.
@@ -67,6 +96,8 @@ pub(super) struct Built {
     /// Hash of the text that was compiled.
     pub hash: u64,
     pub warnings: Vec<Diagnostic>,
+    /// The text, if all of it could be read.
+    pub files: Option<Files>,
 }
 
 /// A failed compilation.
@@ -112,6 +143,13 @@ impl Slot {
         self.current.as_ref().is_none_or(|outcome| snapshot.closure_hash(dependencies_of(outcome)) == hash_of(outcome))
     }
 
+    /// The newest result that an edit can be compiled against.
+    pub fn base(&self) -> Option<&Built> {
+        let current = self.current.as_ref().and_then(|outcome| outcome.as_ref().ok());
+        // A warning of an unchanged function would be lost.
+        current.or(self.good.as_ref()).filter(|built| built.warnings.is_empty())
+    }
+
     /// Every path whose change can affect the result.
     pub fn dependencies(&self) -> impl Iterator<Item = &TreePath> {
         let current = self.current.as_ref().map(dependencies_of);
@@ -133,10 +171,17 @@ impl Slot {
     }
 
     /// Stores a new result. If the module is unchanged (an edit of a comment, or the same text compiled again), the
-    /// stage remains the same object, and no pipeline is rebuilt.
-    pub fn accept(&mut self, outcome: Outcome) {
+    /// stage remains the same object, and no pipeline is rebuilt. A module that was compiled as a whole, with `is_whole`, is also
+    /// unchanged if it does the same as one that was linked.
+    pub fn accept(&mut self, outcome: Outcome, is_whole: bool) {
+        let does_same = |a: &Stage, b: &Stage| {
+            (&a.reflection, &a.dependencies) == (&b.reflection, &b.dependencies)
+                && behavior_hash(&a.spirv) == behavior_hash(&b.spirv)
+        };
         self.current = Some(match (outcome, &self.good) {
-            (Ok(built), Some(good)) if built.stage == good.stage => {
+            (Ok(built), Some(good))
+                if built.stage == good.stage || (is_whole && does_same(&built.stage, &good.stage)) =>
+            {
                 Ok(Built { stage: Arc::clone(&good.stage), ..built })
             }
             (outcome, _) => outcome,
@@ -163,25 +208,62 @@ fn same(a: &Outcome, b: &Outcome) -> bool {
     }
 }
 
-/// Compiles, reflects and checks one stage. Also returns the compilation's time in milliseconds.
-pub(super) fn build(compiler: &Compiler, snapshot: &Snapshot<'_>, path: &TreePath) -> (Outcome, f64) {
-    let compiled = compiler.compile(snapshot, path);
-    let (dependencies, ms) = (compiled.dependencies, compiled.ms);
+/// A stage that was built.
+pub(super) struct Done {
+    pub outcome: Outcome,
+    /// Wall time of the compilation in milliseconds; `None` if the stage's code has not changed.
+    pub ms: Option<f64>,
+}
+
+/// Compiles, reflects and checks one stage. If there is a `base`, an earlier result, and the text differs from its text only in
+/// functions, compiles only these.
+pub(super) fn build(
+    compiler: &Compiler,
+    snapshot: &Snapshot<'_>,
+    cache: &FileCache,
+    path: &TreePath,
+    base: Option<&Built>,
+) -> Done {
+    let start = Instant::now();
+    let files = base.and_then(|base| cache.files(snapshot, &base.stage.dependencies));
+    let rebuilt = base.zip(files.as_ref()).and_then(|(base, files)| {
+        let old = (base.stage.spirv.as_slice(), base.files.as_ref()?);
+        Some((base, rebuild(compiler, snapshot, path, old, files)?))
+    });
+    let (spirv, dependencies, warnings) = match rebuilt {
+        Some((base, Rebuilt::Same)) => {
+            let (stage, hash) = (Arc::clone(&base.stage), snapshot.closure_hash(&base.stage.dependencies));
+            return Done { outcome: Ok(Built { stage, hash, warnings: Vec::new(), files }), ms: None };
+        }
+        Some((base, Rebuilt::Linked(spirv))) => (Ok(spirv), base.stage.dependencies.clone(), Vec::new()),
+        None => {
+            let compiled = compiler.compile(snapshot, path);
+            (compiled.result, compiled.dependencies, compiled.warnings)
+        }
+    };
+    let ms = Some(start.elapsed().as_secs_f64() * 1e3);
     let hash = snapshot.closure_hash(&dependencies);
     let broken = |diagnostics| Err(Broken { hash, dependencies: dependencies.clone(), diagnostics });
-    let spirv = match compiled.result {
+    let spirv = match spirv {
         Ok(spirv) => spirv,
-        Err(errors) => return (broken(errors.into_iter().chain(compiled.warnings).collect()), ms),
+        Err(errors) => return Done { outcome: broken(errors.into_iter().chain(warnings).collect()), ms },
     };
     let reflection = Reflection::of(&spirv);
     let errors = contract::check(&reflection, Texts { snapshot, stage: path, dependencies: &dependencies });
     let outcome = match StageKind::of(path) {
         Some(kind) if errors.is_empty() => {
-            let stage =
-                Arc::new(Stage { path: path.clone(), kind, spirv, reflection, dependencies, hashes: Mutex::default() });
-            Ok(Built { stage, hash, warnings: compiled.warnings })
+            let files = cache.files(snapshot, &dependencies);
+            let stage = Arc::new(Stage {
+                path: path.clone(),
+                kind,
+                spirv,
+                reflection,
+                dependencies,
+                specialized: Mutex::default(),
+            });
+            Ok(Built { stage, hash, warnings, files })
         }
         _ => broken(errors),
     };
-    (outcome, ms)
+    Done { outcome, ms }
 }

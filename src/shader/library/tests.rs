@@ -88,6 +88,15 @@ fn the_reload_key_compiles_everything_and_keeps_what_is_equal() {
 }
 
 #[test]
+fn the_reload_key_keeps_stages_that_were_linked() {
+    let mut library = two_stages();
+    let update = edit(&mut library, "lib/color.glsl", Some("float color() { float c = 0.6; return c; }\n"));
+    let Update::Ready(edited, _) = update else { panic!("{update:?}") };
+    assert!(matches!(library.update(&Change::All), Update::Unchanged { cleared: false }));
+    assert!(Arc::ptr_eq(library.set().unwrap(), &edited));
+}
+
+#[test]
 fn a_comment_about_the_time_moves_nothing() {
     let mut library = two_stages();
     let text =
@@ -122,6 +131,62 @@ fn unrelated_files_and_comments_build_nothing() {
     assert!(matches!(update, Update::Unchanged { cleared: false }), "{update:?}");
     failed(&edit(&mut library, "b.frag", Some("broken")));
     assert!(matches!(edit(&mut library, "4914", Some("x")), Update::Unchanged { cleared: false }));
+}
+
+#[test]
+fn an_edit_of_comments_compiles_no_stage_and_is_remembered() {
+    let mut library = two_stages();
+    let first = Arc::clone(&library.set().unwrap().stages["a.frag"]);
+    let text = |comment: &str| {
+        format!("// {comment}\nfloat color() {{ return 0.5; }}\n//@mode a \"{comment}\"\nconst uint MODE_A = 3u;\n")
+    };
+    edit(&mut library, "lib/color.glsl", Some(&text("one")));
+    let before = Arc::clone(&library.set().unwrap().stages["a.frag"]);
+    let update = edit(&mut library, "lib/color.glsl", Some(&text("two")));
+    assert_eq!(compiled(&update), [""; 0]);
+    let Update::Ready(set, _) = update else { panic!("{update:?}") };
+    assert_eq!(set.modes[0].name, "two");
+    assert!(Arc::ptr_eq(&set.stages["a.frag"], &before));
+    assert_eq!(first.specialized_hash(&[]), before.specialized_hash(&[]));
+    // The next edit of a function is compared with the newest text.
+    let update = edit(&mut library, "lib/color.glsl", Some(&text("three").replace("0.5", "0.6")));
+    assert_eq!(compiled(&update), ["a.frag"]);
+}
+
+/// The diagnostics of an edit are those of the same text in a library that has not seen any other.
+#[test]
+fn messages_are_those_of_the_whole_stage() {
+    let files = |color: &str| {
+        let a = format!(
+            "{HEAD}#extension GL_EXT_control_flow_attributes : warn\n#include \"lib/color.glsl\"\n\
+            void main() {{ o = vec4(color() + other()); }}\n"
+        );
+        [("a.frag", a), ("lib/color.glsl", format!("float other() {{\n    return 0.25;\n}}\n/* x */ {color}\n"))]
+    };
+    let texts = |color: &str| files(color).map(|(path, text)| (TreePath::from(path), text));
+    let good = "float color() {\n    float c = 0.5;\n    return c;\n}";
+    let new = |color: &str| {
+        Library::new(Source::Memory(texts(color).into()), Arc::new(Compiler::new().unwrap()), &["a.frag"])
+    };
+    let messages = |update: Update| match update {
+        Update::Ready(set, _) => set.warnings.iter().map(Diagnostic::render).collect::<Vec<_>>(),
+        Update::Failed(diagnostics, _) => diagnostics.iter().map(Diagnostic::render).collect(),
+        Update::Unchanged { .. } => Vec::new(),
+    };
+    for (from, to, count) in [
+        ("return c;", "return c + 1.0;", 0),
+        ("return c;", "\n    /* e */ return unknown;", 1),
+        ("return c;", "float d = c\n    return d;", 1),
+        ("return c;", "[[unroll]] for (int i = 0; i < 3; ++i) c += 1.0;\n    return c;", 1),
+        ("    return c;\n", "", 1),
+    ] {
+        let mut library = new(good);
+        assert_eq!(messages(library.update(&Change::All)), [""; 0]);
+        let color = good.replacen(from, to, 1);
+        let found = messages(edit(&mut library, "lib/color.glsl", Some(&texts(&color)[1].1)));
+        assert_eq!(found, messages(new(&color).update(&Change::All)), "{color}");
+        assert_eq!(found.len(), count, "{found:#?}");
+    }
 }
 
 #[test]

@@ -22,6 +22,11 @@ impl<'a> Snapshot<'a> {
         Self { source, files: Mutex::default() }
     }
 
+    /// A snapshot that has these files already.
+    pub fn holding(source: &'a Source, files: BTreeMap<TreePath, Read>) -> Self {
+        Self { source, files: Mutex::new(files) }
+    }
+
     /// The text of a file at the first call.
     pub fn read(&self, path: &TreePath) -> Read {
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);

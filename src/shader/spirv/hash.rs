@@ -1,6 +1,6 @@
-//! A hash of what a module does: equal for modules that differ only in the numbers of their ids, in names, or in
-//! declarations that nothing uses. An edit elsewhere in the source moves all ids behind it, so a hash of the words would
-//! tell most edits from each other that the driver cannot.
+//! A hash of what a module does: equal for modules that differ only in the numbers of their ids, in names, in declarations
+//! that nothing uses, or in types and constants that are declared more than once. An edit elsewhere in the source moves all ids
+//! behind it, so a hash of the words would tell most edits from each other that the driver cannot.
 
 use foldhash::{HashMap, HashMapExt};
 
@@ -31,6 +31,8 @@ struct Module<'a> {
     /// `OpDecorate` and `OpMemberDecorate` by target, in the order of the module.
     decorations: HashMap<u32, Vec<&'a [u32]>>,
     functions: HashMap<u32, Vec<&'a [u32]>>,
+    /// The first type or constant that is equal to one, by id, if it is another. glslang declares arrays once per block.
+    first: HashMap<u32, u32>,
 }
 
 impl<'a> Module<'a> {
@@ -38,6 +40,8 @@ impl<'a> Module<'a> {
         let mut module = Self::default();
         let mut rest = words.get(HEADER..)?;
         let mut function = None;
+        // Types and constants, in the order of the module
+        let mut values = Vec::new();
         while let Some(first) = rest.first() {
             let length = (first >> 16) as usize;
             let i = rest.get(..length).filter(|i| !i.is_empty())?;
@@ -58,12 +62,40 @@ impl<'a> Module<'a> {
                 2..=8 | 317 | 330 => {}
                 op::DECORATE | op::MEMBER_DECORATE => module.decorations.entry(*i.get(1)?).or_default().push(i),
                 // OpExtInstImport, and types: the result is the first operand.
-                11 | 19..=39 => _ = module.globals.insert(*i.get(1)?, i),
-                1 | 41..=52 | op::VARIABLE => _ = module.globals.insert(*i.get(2)?, i),
+                11 | op::TYPE_FORWARD_POINTER => _ = module.globals.insert(*i.get(1)?, i),
+                op::VARIABLE => _ = module.globals.insert(*i.get(2)?, i),
+                1 | 19..=33 | 41..=52 => {
+                    let place = if code < op::TYPE_FORWARD_POINTER && code != op::UNDEF { 1 } else { 2 };
+                    module.globals.insert(*i.get(place)?, i);
+                    values.push((i[place], place, i));
+                }
                 _ => module.head.push(i),
             }
         }
+        module.find_equal(&values);
         Some(module)
+    }
+
+    /// Fills `first` from types and constants: id, its place in the instruction, the instruction. All operands of an instruction
+    /// precede it, but for the target of a pointer that is declared before, whose number then tells two pointers apart.
+    fn find_equal(&mut self, values: &[(u32, usize, &[u32])]) {
+        let mut seen: HashMap<Vec<u32>, u32> = HashMap::with_capacity(values.len());
+        for (id, place, i) in values {
+            let operand = |at: usize| match is_id(i, at) {
+                Some(true) => self.first.get(&i[at]).copied().unwrap_or(i[at]),
+                _ => i[at],
+            };
+            let mut key = vec![i[0]];
+            key.extend((1..i.len()).filter(|at| at != place).map(operand));
+            for decoration in self.decorations.get(id).into_iter().flatten() {
+                key.push(decoration[0]);
+                key.extend_from_slice(&decoration[2..]);
+            }
+            let first = *seen.entry(key).or_insert(*id);
+            if first != *id {
+                self.first.insert(*id, first);
+            }
+        }
     }
 }
 
@@ -113,6 +145,7 @@ impl<'a> Hasher<'a> {
 
     /// Hashes the number of an id, and at its first occurrence what defines it.
     fn id(&mut self, id: u32) {
+        let id = self.module.first.get(&id).copied().unwrap_or(id);
         let next = self.numbers.len() as u32;
         let number = *self.numbers.entry(id).or_insert(next);
         self.word(number);

@@ -5,6 +5,7 @@ pub mod bindings;
 mod conditions;
 mod declared;
 mod hash;
+pub mod link;
 pub mod loops;
 mod opcode;
 mod operands;

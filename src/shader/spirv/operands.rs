@@ -1,4 +1,4 @@
-//! Which words of an instruction are ids.
+//! The operands of instructions: which words are ids, and literal strings.
 
 use super::opcode as op;
 
@@ -59,4 +59,10 @@ pub(super) fn is_id(i: &[u32], at: usize) -> Option<bool> {
         _ => return None,
     };
     Some(at <= leading)
+}
+
+/// A literal string.
+pub(super) fn text(words: &[u32]) -> String {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).take_while(|byte| *byte != 0).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
 }

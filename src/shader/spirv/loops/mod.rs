@@ -10,7 +10,7 @@ mod plan;
 mod rewrite;
 mod rounds;
 
-pub use place::{Overrun, Place, line_of_loop};
+pub use place::{Overrun, Place};
 
 use super::opcode as op;
 use super::specialize::{instructions, opcode};

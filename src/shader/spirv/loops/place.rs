@@ -3,6 +3,7 @@
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::shader::spirv::opcode as op;
+use crate::shader::spirv::operands::text;
 use crate::shader::spirv::specialize::{Id, instructions, opcode};
 
 /// The first two of the three words that a bounded module writes to its buffer; both are 0 at first. The third is 1 at first,
@@ -18,10 +19,10 @@ pub struct Overrun {
 /// The loop that an [`Overrun`] names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Number of the loop among all loops of the module before specialization; `None` if several loops used up the budget
+    /// Number of the loop among the loops of its function before specialization; `None` if several loops used up the budget
     /// together.
     pub number: Option<usize>,
-    /// Name of its function in GLSL; empty if it is unknown.
+    /// glslang's name of its function, which has the types of the parameters: `f(vf3;`. Empty if it is unknown.
     pub function: String,
 }
 
@@ -33,15 +34,11 @@ impl Place {
         let (mut label, mut function, mut number) = (0, 0, 0);
         for i in &all {
             match opcode(i) {
-                op::FUNCTION => function = *i.get(2)?,
+                op::FUNCTION => (function, number) = (*i.get(2)?, 0),
                 op::LABEL => label = *i.get(1)?,
                 op::LOOP_MERGE => {
                     if overrun.one == name(seed, label) {
-                        let names = all.iter().find(|i| opcode(i) == op::NAME && i.get(1) == Some(&function));
-                        let text = names.map(|i| text(&i[2..])).unwrap_or_default();
-                        // glslang's name has the types of the arguments: `f(vf3;`.
-                        let function = text.split('(').next().unwrap_or_default().to_owned();
-                        return Some(Self { number: Some(number), function });
+                        return Some(Self { number: Some(number), function: name_of(&all, function) });
                     }
                     number += 1;
                 }
@@ -51,20 +48,30 @@ impl Place {
         let is_module = overrun.one == 0 && overrun.together == name(seed, 0);
         is_module.then(|| Self { number: None, function: String::new() })
     }
+
+    /// The function's name in GLSL.
+    pub fn function_in_glsl(&self) -> &str {
+        self.function.split('(').next().unwrap_or_default()
+    }
+
+    /// File and line of the loop, in a module of the same text that was compiled with debug information. An edit may have moved
+    /// functions, so the loop is found by its function.
+    pub fn line(&self, words: &[u32]) -> Option<(String, u32)> {
+        let all = instructions(words)?;
+        let is_function = |i: &&[u32]| opcode(i) == op::FUNCTION && i.len() > 2 && name_of(&all, i[2]) == self.function;
+        let start = all.iter().position(is_function)?;
+        let body = all[start..].iter().take_while(|i| opcode(i) != op::FUNCTION_END).enumerate();
+        let at = start + body.filter(|(_, i)| opcode(i) == op::LOOP_MERGE).nth(self.number?)?.0;
+        let line = all[..at].iter().rev().find(|i| opcode(i) == op::LINE)?;
+        let file = all.iter().find(|i| opcode(i) == op::STRING && i.get(1) == line.get(1))?;
+        Some((text(&file[2..]), *line.get(2)?))
+    }
 }
 
-/// File and line of the loop with this number, in a module that was compiled with debug information.
-pub fn line_of_loop(words: &[u32], number: usize) -> Option<(String, u32)> {
-    let all = instructions(words)?;
-    let at = all.iter().enumerate().filter(|(_, i)| opcode(i) == op::LOOP_MERGE).nth(number)?.0;
-    let line = all[..at].iter().rev().find(|i| opcode(i) == op::LINE)?;
-    let file = all.iter().find(|i| opcode(i) == op::STRING && i.get(1) == line.get(1))?;
-    Some((text(&file[2..]), *line.get(2)?))
-}
-
-fn text(words: &[u32]) -> String {
-    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).take_while(|byte| *byte != 0).collect();
-    String::from_utf8_lossy(&bytes).into_owned()
+/// glslang's name of a function.
+fn name_of(all: &[&[u32]], function: Id) -> String {
+    let name = all.iter().find(|i| opcode(i) == op::NAME && i.get(1) == Some(&function));
+    name.map(|i| text(&i[2..])).unwrap_or_default()
 }
 
 /// Identifies a module before specialization.

@@ -1,0 +1,67 @@
+//! What an edit has changed: the functions that differ between two versions of a stage's files.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use foldhash::HashSet;
+
+use super::scan::{File, Function, Parts};
+use crate::shader::source::TreePath;
+
+/// The files of a stage; `None` for paths where an include was not found.
+pub type Files = BTreeMap<TreePath, Option<Arc<File>>>;
+
+/// The names of functions that were edited or added. `None` if the edit reaches more than these functions: a declaration, a
+/// signature that others call, the order of definitions.
+pub fn changed_functions(old: &Files, new: &Files) -> Option<BTreeSet<Box<str>>> {
+    let (mut changed, mut moved) = (BTreeSet::new(), BTreeSet::new());
+    for (path, old) in old {
+        match (old, new.get(path)?) {
+            (None, None) => {}
+            (Some(old), Some(new)) if Arc::ptr_eq(old, new) => {}
+            (Some(old), Some(new)) => compare(old.parts()?, new.parts()?, &mut changed, &mut moved)?,
+            _ => return None,
+        }
+    }
+    // A new function may hide another, or be the better overload, wherever its name stands. So may the absence of one.
+    if !moved.is_empty() {
+        for file in new.values().flatten() {
+            let parts = file.parts()?;
+            let unchanged = parts.functions.iter().filter(|f| !changed.contains(&f.name) && !moved.contains(&f.name));
+            let mut words = unchanged.map(|function| &function.words).chain([&parts.rest_words]);
+            if words.any(|words| moved.iter().any(|name| words.contains(name))) {
+                return None;
+            }
+        }
+    }
+    changed.extend(moved);
+    Some(changed)
+}
+
+/// Adds the names of functions whose code differs to `changed`, and those that only one version has to `moved`.
+fn compare(old: &Parts, new: &Parts, changed: &mut BTreeSet<Box<str>>, moved: &mut BTreeSet<Box<str>>) -> Option<()> {
+    if old.rest != new.rest {
+        return None;
+    }
+    let (old_places, new_places) = (places(old)?, places(new)?);
+    let is_in_both = |f: &&Function| old_places.contains(&place(f)) && new_places.contains(&place(f));
+    let common = || old.functions.iter().filter(is_in_both).zip(new.functions.iter().filter(is_in_both));
+    if common().any(|(old, new)| place(old) != place(new)) {
+        return None;
+    }
+    changed.extend(common().filter(|(old, new)| old.body != new.body).map(|(old, _)| old.name.clone()));
+    let all = old.functions.iter().chain(&new.functions);
+    moved.extend(all.filter(|f| !is_in_both(f)).map(|function| function.name.clone()));
+    Some(())
+}
+
+/// What tells a function from all others of the file.
+fn place(function: &Function) -> (usize, &str) {
+    (function.place, &function.head)
+}
+
+/// The places of a file's functions. `None` if two have the same.
+fn places(parts: &Parts) -> Option<HashSet<(usize, &str)>> {
+    let places: HashSet<_> = parts.functions.iter().map(place).collect();
+    (places.len() == parts.functions.len()).then_some(places)
+}

@@ -1,0 +1,77 @@
+//! The header of a function definition.
+
+use super::token::{Kind, Token};
+
+/// Return type, name and parameters of a function.
+pub struct Header {
+    /// The return type in GLSL.
+    pub returns: String,
+    pub name: String,
+    /// `None` if they are written in a way that is not known here.
+    pub parameters: Option<Vec<Parameter>>,
+}
+
+/// The type of a parameter.
+#[derive(Debug)]
+pub struct Parameter {
+    /// With the array sizes behind it.
+    kind: String,
+    /// The array sizes behind the name.
+    sizes: String,
+}
+
+impl Parameter {
+    /// The declaration of a variable of this type, without a semicolon.
+    pub fn declaration(&self, name: &str) -> String {
+        format!("{} {name}{}", self.kind, self.sizes)
+    }
+
+    /// Reads `const in float x[3]`.
+    fn parse(tokens: &[Token<'_>]) -> Option<Self> {
+        const QUALIFIERS: [&str; 8] = ["const", "in", "out", "inout", "highp", "mediump", "lowp", "restrict"];
+        // A local variable cannot have these types.
+        const OPAQUE: [&str; 6] = ["sampler", "image", "texture", "subpass", "acceleration", "rayQuery"];
+        let first = tokens.iter().position(|token| !QUALIFIERS.contains(&token.text))?;
+        let (kind, rest) = tokens[first..].split_first()?;
+        let is_opaque = OPAQUE.iter().any(|word| kind.text.trim_start_matches(['i', 'u']).starts_with(word));
+        let is_sizes = |tokens: &[Token<'_>]| {
+            let ends = tokens.first().is_none_or(|t| t.text == "[") && tokens.last().is_none_or(|t| t.text == "]");
+            ends && tokens.iter().all(|token| token.kind == Kind::Word || matches!(token.text, "[" | "]"))
+        };
+        // The first word outside of brackets is the name, which may be missing.
+        let mut depth = 0_i32;
+        let is_name = |token: &Token<'_>| {
+            depth += i32::from(token.text == "[") - i32::from(token.text == "]");
+            depth == 0 && token.kind == Kind::Word
+        };
+        let (before, after) = match rest.iter().position(is_name) {
+            Some(at) => (&rest[..at], &rest[at + 1..]),
+            None => (rest, &[][..]),
+        };
+        let is_known = kind.kind == Kind::Word && !is_opaque && is_sizes(before) && is_sizes(after);
+        let text = |tokens: &[Token<'_>]| tokens.iter().map(|token| token.text).collect::<String>();
+        is_known.then(|| Self { kind: format!("{}{}", kind.text, text(before)), sizes: text(after) })
+    }
+}
+
+impl Header {
+    /// Reads `TYPE NAME(PARAMETERS)`. `None` if the tokens are anything else, such as a macro with arguments.
+    pub fn parse(tokens: &[Token<'_>]) -> Option<Self> {
+        let open = tokens.iter().position(|token| token.text == "(")?;
+        let (name, returns) = tokens[..open].split_last()?;
+        let is_type = |token: &Token<'_>| token.kind == Kind::Word || matches!(token.text, "[" | "]");
+        let is_name = name.kind == Kind::Word && returns.first().is_some_and(|token| token.kind == Kind::Word);
+        let (close, parameters) = tokens[open + 1..].split_last()?;
+        let is_list = close.text == ")" && !parameters.iter().any(|token| matches!(token.text, "(" | ")" | "="));
+        if !is_name || !is_list || !returns.iter().all(is_type) {
+            return None;
+        }
+        let parameters = match parameters {
+            [] => Some(Vec::new()),
+            [only] if only.text == "void" => Some(Vec::new()),
+            list => list.split(|token| token.text == ",").map(Parameter::parse).collect(),
+        };
+        let returns: Vec<&str> = returns.iter().map(|token| token.text).collect();
+        Some(Self { returns: returns.join(" "), name: name.text.to_owned(), parameters })
+    }
+}

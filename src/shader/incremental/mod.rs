@@ -1,0 +1,121 @@
+//! Incremental compilation: an edit compiles only the functions that it changes.
+//!
+//! glslang takes most of its time for the bodies of functions. So each file is split into function definitions and the rest
+//! ([`scan`]), and two versions of a stage's files are compared ([`difference`]). If only functions differ, a thin version of the
+//! files is compiled, which has all declarations but only these functions ([`thin`]), and the linker puts them into the module of
+//! the version before ([`spirv::link`](crate::shader::spirv::link)). The module does the same as one that is compiled as a whole.
+//!
+//! Whatever is unusual is compiled as a whole, and so is every edit with an error or a warning: messages do not depend on it.
+
+mod difference;
+mod header;
+mod scan;
+mod thin;
+mod token;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use foldhash::{HashMap, HashSet};
+
+use crate::shader::compile::Compiler;
+use crate::shader::source::snapshot::{Read, Snapshot};
+use crate::shader::source::{SourceError, TreePath};
+use crate::shader::spirv::link;
+
+pub use difference::Files;
+use scan::{File, Function};
+use thin::{CALLER, Selection};
+
+/// The newest version of each file, so that all stages and edits share what scanning has found.
+#[derive(Debug, Default)]
+pub struct FileCache(Mutex<BTreeMap<TreePath, Arc<File>>>);
+
+impl FileCache {
+    /// The files of a stage. `None` if one cannot be read, although it is there.
+    pub fn files<'p>(&self, snapshot: &Snapshot<'_>, paths: impl IntoIterator<Item = &'p TreePath>) -> Option<Files> {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut file = |path: &TreePath| match snapshot.read(path) {
+            Err(SourceError::Missing) => Some(None),
+            Err(_) => None,
+            Ok(text) => match known.get(path) {
+                Some(file) if file.text == text => Some(Some(Arc::clone(file))),
+                _ => {
+                    let file = Arc::new(File::new(text));
+                    known.insert(path.clone(), Arc::clone(&file));
+                    Some(Some(file))
+                }
+            },
+        };
+        paths.into_iter().map(|path| Some((path.clone(), file(path)?))).collect()
+    }
+}
+
+/// The module of an edited stage.
+#[derive(Debug)]
+pub enum Rebuilt {
+    /// The edit changes no code.
+    Same,
+    /// The new module.
+    Linked(Vec<u32>),
+}
+
+/// Compiles what has changed in the files of `stage`: `spirv` is the module of the `old` files. `None` if the stage must be
+/// compiled as a whole.
+pub fn rebuild(
+    compiler: &Compiler,
+    snapshot: &Snapshot<'_>,
+    stage: &TreePath,
+    (spirv, old): (&[u32], &Files),
+    new: &Files,
+) -> Option<Rebuilt> {
+    let mut whole = difference::changed_functions(old, new)?;
+    if whole.is_empty() {
+        return Some(Rebuilt::Same);
+    }
+    let base = link::Base::parse(spirv)?;
+    let reached = base.function_names();
+    let words = close(new, &mut whole, &reached)?;
+    let selection = Selection::new(new, &whole, &reached)?;
+    let mut texts: BTreeMap<TreePath, Read> = BTreeMap::new();
+    for (path, file) in new {
+        let text = match file {
+            Some(file) => Ok(selection.thin(file.parts()?, |name| words.contains(name)).into()),
+            None => Err(SourceError::Missing),
+        };
+        texts.insert(path.clone(), text);
+    }
+    let thin = compiler.compile_silently(&Snapshot::holding(snapshot.source(), texts), stage)?;
+    link::link(&base, &thin, &whole, CALLER).map(Rebuilt::Linked)
+}
+
+/// Adds to `whole` the functions that these may call and that the module lacks, since `main` did not reach them before. Returns
+/// the words from which functions may be called: those of `whole`, and those outside of functions, where macros are. `None` if
+/// the stage is not usual.
+fn close<'a>(files: &'a Files, whole: &mut BTreeSet<Box<str>>, reached: &BTreeSet<&str>) -> Option<HashSet<&'a str>> {
+    let mut functions: HashMap<&str, Vec<&Function>> = HashMap::default();
+    let mut words = HashSet::default();
+    for file in files.values().flatten() {
+        let parts = file.parts()?;
+        words.extend(parts.rest_words.iter().map(|word| &**word));
+        for function in &parts.functions {
+            functions.entry(&function.name).or_default().push(function);
+        }
+    }
+    if functions.get("main").is_none_or(|mains| mains.len() != 1) {
+        return None;
+    }
+    let mut open: Vec<Box<str>> = whole.iter().cloned().collect();
+    while let Some(name) = open.pop() {
+        for word in functions.get(&*name).into_iter().flatten().flat_map(|function| &function.words) {
+            words.insert(&**word);
+            if functions.contains_key(&**word) && !reached.contains(&**word) && whole.insert(word.clone()) {
+                open.push(word.clone());
+            }
+        }
+    }
+    Some(words)
+}
+
+#[cfg(test)]
+mod tests;
