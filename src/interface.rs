@@ -19,7 +19,7 @@ pub use print::glsl;
 pub use textures::*;
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 7;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;
