@@ -90,6 +90,7 @@ const uint FEATURE_RECT_LIGHTS = 0x10000u;
 const uint FEATURE_TEXTURE_COORDINATES = 0x20000u;
 const uint FEATURE_UV1 = 0x40000u;
 const uint FEATURE_VERTEX_COLOR = 0x80000u;
+const uint FEATURE_SUN = 0x100000u;
 const uint ATTRIBUTE_NORMAL = 1u;
 const uint ATTRIBUTE_TANGENT = 2u;
 const uint ATTRIBUTE_UV0 = 4u;
@@ -168,6 +169,9 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     vec2 environment_rotation;         // Cosine and sine of the environment's rotation around +Y; at 0 the map's center column is seen looking down -Z.
     float environment_intensity;       // Factor from the values of the environment's images to cd/m^2.
     float environment_blur;            // Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
+    vec3 sun_direction;                // The environment's sun, which the specular levels leave out: unit vector to its center, in the map.
+    vec3 sun_intensity;                // Its irradiance on a surface that faces it, in the unit of the environment's images; 0: the map has no sun.
+    float sun_variance;                // Variance of its directions along one axis, radians squared.
     uint sample_index;                 // Accumulating modes: frames since the picture changed.
     uint sample_count;                 // Accumulating modes: random paths a pixel in each frame.
     uint path_bounces;                 // Modes that trace the model: number of times that a path goes on from the surface that it has hit.
@@ -234,6 +238,7 @@ layout(set = SET_TASK, binding = BINDING_TASK, scalar) uniform Task {
     uint levels;                       // Number of mip levels of the image.
     uint samples;                      // Samples for each texel or result.
     float radiance_scale;              // Factor that fits radiance into half floats.
+    uint separates_sun;                // 1: a sun is taken out of the list of small lights. Else 0.
     float roughness_first;             // Roughness of the first row.
     float roughness_last;              // Roughness of the last row.
     float theta_first;                 // Angle to the normal of the first column, degrees.

@@ -33,9 +33,14 @@ fn texel(n: DVec3, level: f64) -> Option<DVec3> {
     (is_sure && p.abs().max_element() < 1.0).then_some(at)
 }
 
-/// Every texel of a map: unit direction, radiance times solid angle, solid angle.
+/// A texel of a map: unit direction, radiance times solid angle, solid angle.
+type Texel = (DVec3, DVec3, f64);
+
+/// Every texel of a map.
 struct Sky {
-    texels: Vec<(DVec3, DVec3, f64)>,
+    texels: Vec<Texel>,
+    /// Those of a source that the baked levels leave out.
+    sun: Vec<Texel>,
 }
 
 impl Sky {
@@ -49,22 +54,40 @@ impl Sky {
             let radiance = Vec3::new(pixel[0], pixel[1], pixel[2]).as_dvec3();
             (at.as_dvec3(), radiance * solid_angle, solid_angle)
         };
-        Self { texels: map.pixels.iter().enumerate().map(texel).collect() }
+        let texels: Vec<Texel> = map.pixels.iter().enumerate().map(texel).collect();
+        let radiance = |(_, light, area): &Texel| light.max_element() / area;
+        let brightest = texels.iter().max_by(|a, b| radiance(a).total_cmp(&radiance(b))).unwrap().0;
+        let average =
+            texels.iter().map(|(_, light, _)| light.max_element()).sum::<f64>() / (4.0 * std::f64::consts::PI);
+        let is_sun = |texel: &&Texel| texel.0.dot(brightest) > 0.02_f64.cos() && radiance(texel) > 100.0 * average;
+        Self { sun: texels.iter().filter(is_sun).copied().collect(), texels }
     }
 
     /// Mean radiance, weighted by a function of the cosine to `n`.
     fn mean(&self, n: DVec3, weight: impl Fn(f64) -> f64) -> DVec3 {
-        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        for (at, radiance, solid_angle) in &self.texels {
-            let cosine = at.dot(n);
-            if cosine > 0.0 {
-                let weight = weight(cosine);
-                sum += *radiance * weight;
-                weights += weight * solid_angle;
-            }
-        }
+        let (sum, weights) = sums(&self.texels, n, &weight);
         sum / weights
     }
+
+    /// The same where a lookup reads the texel at `texel`, but adds the sun for `n`.
+    fn mean_at_texel(&self, n: DVec3, texel: DVec3, weight: impl Fn(f64) -> f64) -> DVec3 {
+        let (sum, weights) = sums(&self.texels, texel, &weight);
+        (sum - sums(&self.sun, texel, &weight).0 + sums(&self.sun, n, &weight).0) / weights
+    }
+}
+
+/// The weighted sums of light and of solid angle.
+fn sums(texels: &[Texel], n: DVec3, weight: impl Fn(f64) -> f64) -> (DVec3, f64) {
+    let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+    for (at, radiance, solid_angle) in texels {
+        let cosine = at.dot(n);
+        if cosine > 0.0 {
+            let weight = weight(cosine);
+            sum += *radiance * weight;
+            weights += weight * solid_angle;
+        }
+    }
+    (sum, weights)
 }
 
 /// D V NoL of GGX with n = v, without constant factors: NoH^2 = (1 + NoL) / 2, and V = 1 / 2 (root + NoL) (Heitz 2014, eq. 99).
@@ -111,9 +134,7 @@ fn baked_like_brute_force(environment: &str) {
     // centers, where only the bake does.
     let between: &[f64] = &[4.5, 6.5, 8.5, 9.5, 10.5, 12.5, 15.5];
     let whole: &[f64] = &[4.0, 5.0, 7.0, 8.0, 10.0, 11.0, 13.0, 16.0];
-    // Under the sun, between two levels one lobe is too sharp and one too wide.
-    let allowed = if environment == "sky" { 0.05 } else { 0.03 };
-    let edits = [(between, allowed), (whole, 0.03), (whole, 0.017)];
+    let edits = [(between, 0.03), (whole, 0.03), (whole, 0.017)];
     for (pass, (levels, allowed)) in edits.into_iter().enumerate() {
         let at_texels = pass == 2;
         if at_texels {
@@ -126,8 +147,8 @@ fn baked_like_brute_force(environment: &str) {
             let found = shown(&mut session, "prefiltered");
             let alpha = roughness * roughness;
             let place = |n: DVec3| if at_texels { texel(n, *level) } else { Some(n) };
-            let known = found.iter().filter_map(|(n, value)| Some((*value, place(*n)?)));
-            let pairs: Vec<_> = known.map(|(value, at)| (value, sky.mean(at, ggx(alpha)))).collect();
+            let known = found.iter().filter_map(|(n, value)| Some((*value, *n, place(*n)?)));
+            let pairs: Vec<_> = known.map(|(value, n, at)| (value, sky.mean_at_texel(n, at, ggx(alpha)))).collect();
             assert!(pairs.len() > 20, "{} texels", pairs.len());
             let error = rmse(&pairs);
             let what = format!("{environment}, roughness {roughness}, at texels: {at_texels}");
@@ -141,6 +162,108 @@ fn baked_like_brute_force(environment: &str) {
     let error = rmse(&pairs);
     println!("{environment}, irradiance: {:.3} %", error * 100.0);
     assert!(error < 0.005, "{environment}, irradiance: {error}");
+    assert_validated();
+}
+
+/// A disk whose normals point to all sides of `center`, with angles that grow by the same factor from ring to ring.
+fn disk_of_normals(center: Vec3, rings: u32, sectors: u32) -> glb::Mesh {
+    let (x, y) = center.any_orthonormal_pair();
+    let mut mesh = glb::Mesh::default();
+    for ring in 0..=rings {
+        let radius = ring as f32 / rings as f32;
+        let angle = SMALLEST_ANGLE * (LARGEST_ANGLE / SMALLEST_ANGLE).powf(radius);
+        for sector in 0..=sectors {
+            let azimuth = std::f32::consts::TAU * sector as f32 / sectors as f32;
+            mesh.positions.push([radius * azimuth.cos(), radius * azimuth.sin(), 0.0]);
+            let side = x * azimuth.cos() + y * azimuth.sin();
+            mesh.normals.push((center * angle.cos() + side * angle.sin()).to_array());
+        }
+    }
+    let index = |ring: u32, sector: u32| ring * (sectors + 1) + sector;
+    for (ring, sector) in (0..rings).flat_map(|ring| (0..sectors).map(move |sector| (ring, sector))) {
+        let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| index(ring + i, sector + j));
+        mesh.indices.extend([a, b, c, a, c, d]);
+    }
+    mesh
+}
+
+/// Radians.
+const SMALLEST_ANGLE: f32 = 0.001;
+const LARGEST_ANGLE: f32 = 1.0;
+
+/// The sky with every texel near the sun split into `parts` x `parts`, interpolated as the bake's sampler does.
+fn with_fine_sun(map: &Environment, sun: Vec3, parts: usize) -> Sky {
+    let mut sky = Sky::new(map);
+    let near = |at: &DVec3| at.dot(sun.as_dvec3()) > 0.05_f64.cos();
+    sky.texels.retain(|(at, ..)| !near(at));
+    let (width, height) = (map.width as usize, map.height as usize);
+    let pixel = |x: usize, y: usize| {
+        let [r, g, b, _] = map.pixels[y.min(height - 1) * width + x % width];
+        Vec3::new(r, g, b).as_dvec3()
+    };
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        let center = direction_from_uv((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+        if !near(&center.as_dvec3()) {
+            continue;
+        }
+        for part in 0..parts * parts {
+            let [s, t] = [part % parts, part / parts].map(|i| (i as f64 + 0.5) / parts as f64);
+            let (u, v) = ((x as f64 + s) / width as f64, (y as f64 + t) / height as f64);
+            // Between the centers of four texels.
+            let (left, above) = (x as f64 + s - 0.5, y as f64 + t - 0.5);
+            let (i, j) = (left.floor() as usize, above.floor() as usize);
+            let (p, q) = (left.fract(), above.fract());
+            let upper = pixel(i, j).lerp(pixel(i + 1, j), p);
+            let radiance = upper.lerp(pixel(i, j + 1).lerp(pixel(i + 1, j + 1), p), q);
+            let area = std::f64::consts::TAU * std::f64::consts::PI / (width * height * parts * parts) as f64;
+            let solid_angle = area * (v * std::f64::consts::PI).sin();
+            sky.texels.push((direction_from_uv(u as f32, v as f32).as_dvec3(), radiance * solid_angle, solid_angle));
+        }
+    }
+    sky
+}
+
+/// Around the sun, every highlight has the shape of the lobe, however smooth the surface is.
+#[test]
+fn the_suns_highlight() {
+    let map = EnvironmentFile::open("sky").unwrap().decode().unwrap();
+    let brightest = (0..).zip(&map.pixels).max_by(|a, b| a.1[0].total_cmp(&b.1[0])).unwrap().0;
+    let (x, y) = (brightest % map.width, brightest / map.width);
+    let sun = direction_from_uv((x as f32 + 0.5) / map.width as f32, (y as f32 + 0.5) / map.height as f32);
+    let sky = with_fine_sun(&map, sun, 6);
+    let chosen = settings(&["environment.name=sky", "lights.source=none", "view.msaa=1", "view.background=none"]);
+    let mut session = Session::new(load(&glb::model(&disk_of_normals(sun, 64, 64), &glb::gray())), chosen);
+    ready(&session.edit("debug/light.glsl", "specular_radiance(s, v)", "prefiltered_radiance(s.n, s.roughness)"));
+    // Half floats hold small differences with more digits.
+    let difference = format!("value = s.n - vec3({}, {}, {});", sun.x, sun.y, sun.z);
+    ready(&session.edit("debug/geometry.glsl", "value = s.n;", &difference));
+    for assignment in ["camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.fovy=35", "material.enabled=true"] {
+        session.set(assignment);
+    }
+    let normals = session.mode("shading-normal");
+    for level in [1.0, 1.5, 2.5, 3.0, 4.5, 6.0, 7.5, 9.5, 12.0, 14.5, 16.0] {
+        let roughness = (0.25 * (level - LAST)).exp2();
+        let alpha: f64 = roughness * roughness;
+        session.set(&format!("material.roughness={roughness}"));
+        let found = session.mode("prefiltered");
+        let vector = |v: &[f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
+        let pixels = found.raw.iter().zip(&normals.raw).filter(|(value, _)| value[3] == 1.0);
+        // The angle of h is half of this one.
+        let around = pixels.map(|(value, n)| (vector(value), vector(n))).filter(|(_, n)| n.length() < 4.0 * alpha);
+        let errors: Vec<f64> = around
+            .step_by(5)
+            .map(|(value, n)| {
+                let truth = sky.mean((sun.as_dvec3() + n).normalize(), ggx(alpha));
+                (value.element_sum() / truth.element_sum() - 1.0).powi(2)
+            })
+            .collect();
+        let error = (errors.iter().sum::<f64>() / errors.len() as f64).sqrt();
+        println!("level {level}, {} pixels: {:.3} %", errors.len(), error * 100.0);
+        // The sun's disk widens the lobe, which is exact to the second order of their ratio. Up to level 2 the disk, as the map
+        // shows it, is half as wide as the lobe or more.
+        let allowed = if level < 2.5 { 0.08 } else { 0.031 };
+        assert!(errors.len() > 100 && error < allowed, "level {level}: {error} of {} pixels", errors.len());
+    }
     assert_validated();
 }
 

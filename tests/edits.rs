@@ -1,53 +1,11 @@
 //! An edit of the BRDF reaches light from all directions as it reaches lamps: the tables and the prefilter come from the same
-//! functions. Random paths, which call them directly, say by how much the picture must change.
+//! functions. What an edit bakes, and what becomes of values that no such function may have. tests/matrix.rs has the amounts.
 
 mod support;
 
 use specula::render::Capture;
-use support::process::run;
+use support::process::{finish, specula};
 use support::{Session, Tree, assert_validated, failed, glb, load, ready, settings};
-
-/// A function of the BRDF and an edit of it.
-struct Edit {
-    file: &'static str,
-    from: &'static str,
-    to: &'static str,
-    /// Metallic and roughness of a surface that shows it.
-    surface: (f64, f64),
-}
-
-const EDITS: [Edit; 5] = [
-    Edit {
-        file: "brdf/ndf.glsl",
-        from: "return a2 / (PI * spread * spread);",
-        to: "return 0.5 * a2 / (PI * spread * spread);",
-        surface: (1.0, 0.4),
-    },
-    Edit {
-        file: "brdf/visibility.glsl",
-        from: "return 0.5 / (n_dot_v * smith_root(n_dot_l, a2_l)",
-        to: "return 0.25 / (n_dot_v * smith_root(n_dot_l, a2_l)",
-        surface: (1.0, 0.8),
-    },
-    Edit {
-        file: "brdf/fresnel.glsl",
-        from: "return f0 + (f90 - f0) * pow5(1.0 - c); }",
-        to: "return 0.5 * (f0 + (f90 - f0) * pow5(1.0 - c)); }",
-        surface: (1.0, 0.3),
-    },
-    Edit {
-        file: "brdf/fresnel.glsl",
-        from: "return f0 + (f90 - f0) * pow5(1.0 - c); }",
-        to: "return f0 + (f90 - f0) * (1.0 - c); }",
-        surface: (0.0, 0.3),
-    },
-    Edit {
-        file: "brdf/diffuse.glsl",
-        from: "return albedo / PI; }",
-        to: "return 0.5 * albedo / PI; }",
-        surface: (0.0, 0.5),
-    },
-];
 
 /// A sphere that the environment alone lights.
 fn session(environment: &str, more: &[&str]) -> Session {
@@ -67,45 +25,6 @@ fn mean(capture: &Capture) -> f64 {
     let on = capture.raw.iter().filter(|pixel| pixel[3] == 1.0);
     let values: Vec<f64> = on.map(|pixel| pixel[..3].iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0).collect();
     values.iter().sum::<f64>() / values.len() as f64
-}
-
-#[test]
-fn every_edit_reaches_light_from_the_environment() {
-    for edit in &EDITS {
-        let surface = material(edit.surface);
-        let mut session = session("studio", &surface.each_ref().map(String::as_str));
-        let before = [mean(&session.mode("final")), mean(&session.mode("monte-carlo"))];
-        ready(&session.edit(edit.file, edit.from, edit.to));
-        let after = [mean(&session.mode("final")), mean(&session.mode("monte-carlo"))];
-        let [picture, paths] = [after[0] - before[0], after[1] - before[1]];
-        let what = format!("{} -> {}: the picture changes by {picture:.4}, paths by {paths:.4}", edit.file, edit.to);
-        // The split sum itself is off by some percent of the light.
-        assert!(paths.abs() > 0.02 * before[1], "{what}: too little to tell");
-        assert!((picture - paths).abs() < 0.15 * paths.abs(), "{what}");
-    }
-    assert_validated();
-}
-
-#[test]
-fn every_choice_of_models_reaches_the_environment() {
-    for (choice, surface) in [
-        ("NDF=Beckmann", (1.0, 0.5)),
-        ("MASKING_SHADOWING=Separable", (1.0, 0.8)),
-        ("MASKING_SHADOWING=Schlick", (1.0, 0.8)),
-        ("FRESNEL_METAL=Conductor", (1.0, 0.4)),
-        ("FRESNEL_METAL=F82", (1.0, 0.4)),
-        ("FRESNEL_DIELECTRIC=Exact", (0.0, 0.3)),
-        ("DIFFUSE=Burley", (0.0, 1.0)),
-        ("DIFFUSE=RenormalizedBurley", (0.0, 1.0)),
-        ("DIFFUSE=OrenNayar", (0.0, 1.0)),
-        ("DIFFUSE=CallOfDuty", (0.0, 1.0)),
-    ] {
-        let surface = material(surface);
-        let mut session = session("studio", &[&surface.each_ref().map(String::as_str)[..], &[choice]].concat());
-        let [picture, paths] = [mean(&session.mode("final")), mean(&session.mode("monte-carlo"))];
-        assert!((picture / paths - 1.0).abs() < 0.04, "{choice}: picture {picture:.4}, paths {paths:.4}");
-    }
-    assert_validated();
 }
 
 #[test]
@@ -151,22 +70,72 @@ fn an_edit_bakes_only_what_depends_on_it() {
     assert_validated();
 }
 
+/// A function of the BRDF: its file, the start of its body, and a `%` where a bad value is returned instead, from `x`.
+struct Function {
+    file: &'static str,
+    body: &'static str,
+    bad: &'static str,
+    /// Parts of a bake that do not depend on it: of the cube map, specular and sheen levels, and three tables.
+    kept: usize,
+}
+
+const FUNCTIONS: [Function; 4] = [
+    Function {
+        file: "brdf/ndf.glsl",
+        body: "    float a2 = alpha * alpha;\n    float spread =",
+        bad: "    float x = n_dot_h;\n    return %;\n",
+        kept: 4,
+    },
+    Function {
+        file: "brdf/visibility.glsl",
+        body: "    return 0.5 / (n_dot_v * smith_root(n_dot_l, a2_l)",
+        bad: "    float x = n_dot_v;\n    return %;\n",
+        kept: 4,
+    },
+    Function {
+        file: "brdf/fresnel.glsl",
+        body: " return f0 + (f90 - f0) * pow5(1.0 - c); }",
+        bad: " float x = c; return vec3(%);",
+        kept: 5,
+    },
+    Function {
+        file: "brdf/diffuse.glsl",
+        body: " return albedo / PI; }",
+        bad: " float x = albedo.x; return vec3(%);",
+        kept: 5,
+    },
+];
+
+/// NaN, infinite, negative and huge for any `x` of 0..1 that the compiler does not know.
+const BAD: [&str; 4] = ["sqrt(-1.0 - x)", "exp(1000.0 + x)", "-1.0 - x", "1e30 * (1.0 + x)"];
+
+impl Function {
+    fn returning(&self, value: &str) -> String {
+        self.bad.replace('%', value) + self.body
+    }
+}
+
 #[test]
 fn values_that_are_no_numbers_are_named_and_stay_out_of_the_tables() {
-    for (file, from, to) in [
-        ("brdf/ndf.glsl", "return a2 / (PI * spread * spread);", "return sqrt(-1.0 - n_dot_h);"),
-        ("brdf/ndf.glsl", "return a2 / (PI * spread * spread);", "return -1.0;"),
-        ("brdf/visibility.glsl", "return 0.5 / (n_dot_v", "return 1.0 / max(n_dot_v - 2.0, 0.0) + 0.0 / (n_dot_v"),
-        ("brdf/fresnel.glsl", "return f0 + (f90 - f0) * pow5(1.0 - c); }", "return f0 / 0.0 + log(vec3(c - 2.0)); }"),
-        ("brdf/diffuse.glsl", "return albedo / PI; }", "return albedo * 1e30; }"),
-    ] {
-        let mut session = session("studio", &[]);
-        ready(&session.edit(file, from, to));
-        // The tables alone: the lobe itself is as wrong as the edit made it.
-        let dfg = session.mode("dfg");
-        assert!(dfg.raw.iter().flatten().all(|value| value.is_finite()), "{file}: the table is not finite");
-        let warnings = session.headless.bake_warnings();
-        assert!(warnings.iter().any(|warning| warning.contains(file)), "{file} -> {to}: {warnings:?}");
+    let mut session = session("studio", &["material.enabled=true", "material.metallic=0.5", "material.roughness=0.5"]);
+    session.set("view.frames=2");
+    for function in &FUNCTIONS {
+        let good = session.tree.read(function.file);
+        for value in BAD {
+            let what = format!("{} returns {value}", function.file);
+            assert!(good.contains(function.body), "{what}");
+            ready(&session.save(function.file, &good.replacen(function.body, &function.returning(value), 1)));
+            // The tables alone: the lobe itself is as wrong as the edit made it.
+            let dfg = session.mode("dfg");
+            assert!(dfg.raw.iter().flatten().all(|value| value.is_finite()), "{what}: the table is not finite");
+            let warnings = session.headless.bake_warnings();
+            assert!(warnings.iter().any(|warning| warning.contains(function.file)), "{what}: {warnings:?}");
+            let marked = session.mode("monte-carlo").not_finite.iter().filter(|is_bad| **is_bad).count();
+            assert!(marked > 500, "{what}: {marked} pixels are marked");
+        }
+        ready(&session.save(function.file, &good));
+        let marked = session.mode("monte-carlo").not_finite.contains(&true);
+        assert!(!marked && session.headless.bake_warnings().is_empty(), "{} as it ships", function.file);
     }
     assert_validated();
 }
@@ -186,13 +155,18 @@ fn ambient_light_is_that_of_a_furnace() {
 }
 
 #[test]
-fn a_command_warns_of_wrong_values() {
-    let tree = Tree::new();
-    let edited = tree.edited("brdf/ndf.glsl", "return a2 / (PI * spread * spread);", "return sqrt(-1.0 - n_dot_h);");
-    tree.write("brdf/ndf.glsl", &edited);
-    let more = ["--size", "32x24", "--out", "out.png"];
-    let finished = run(&tree.root(), &[&["render", "shader-ball", "--shaders", "."], &more[..]].concat());
-    finished.expect(0, &["warning", "D in brdf/ndf.glsl", "NaN"]);
+fn a_command_warns_of_wrong_values_and_keeps_none() {
+    for (function, value) in FUNCTIONS.iter().zip(BAD) {
+        let tree = Tree::new();
+        tree.write(function.file, &tree.edited(function.file, function.body, &function.returning(value)));
+        let mut command = specula(&tree.root());
+        command.env("SPECULA_CACHE", tree.beside("cache"));
+        command.args(["render", "shader-ball", "--shaders", ".", "--size", "32x24", "--out", "out.png"]);
+        finish(&mut command).expect(0, &["warning", function.file, "NaN"]);
+        // Every part has a file of its own.
+        let kept = std::fs::read_dir(tree.beside("cache/baked")).unwrap().count();
+        assert_eq!(kept, function.kept, "parts of the bake in the cache, {} returns {value}", function.file);
+    }
 }
 
 #[test]

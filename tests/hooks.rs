@@ -146,6 +146,27 @@ fn the_light_hook_changes_one_light_at_one_point() {
     passes_check(&session);
 }
 
+/// Without shadows, which a sphere does not cast on its lit side, random paths see the lamps that the picture sees.
+#[test]
+fn the_light_hook_reaches_random_paths() {
+    let more = ["lights.rect.enabled=true", "view.frames=24", "view.bounces=0", "lights.ambient_strength=0"];
+    let mut session = sphere(64, &more);
+    let sum = |capture: &Capture| covered(capture).iter().map(|(_, v)| f64::from(v[1])).sum::<f64>();
+    let all = sum(&session.mode("path-traced"));
+    fill(&mut session, USER, LIGHT_HOOK, "if (index != 0u) light.intensity = vec3(0.0);");
+    let [picture, paths] = ["final", "path-traced"].map(|mode| sum(&session.mode(mode)));
+    assert!(paths < 0.8 * all, "the first light alone: {paths} of {all}");
+    assert!((paths / picture - 1.0).abs() < 0.05, "paths {paths}, the picture {picture}");
+    // Where the hook depends on the place, so do the paths.
+    ready(&session.edit(USER, "if (index != 0u)", "if (position_ws.x > 0.0)"));
+    let positions = covered(&session.mode("position"));
+    let values = session.mode("path-traced");
+    for (i, p) in positions.iter().filter(|(_, p)| p[0].abs() > 0.05) {
+        assert!(p[0] < 0.0 || values.raw[*i][1] == 0.0, "pixel {i} at {p:?}: {:?}", values.raw[*i]);
+    }
+    assert!(sum(&values) > 0.0, "the left side is lit");
+}
+
 #[test]
 fn the_background_hook_changes_what_is_behind_the_model() {
     let mut session = sphere(64, &["environment.name=furnace"]);

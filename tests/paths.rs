@@ -226,8 +226,8 @@ fn the_prefilter_is_told_apart_from_the_split_sum() {
     let all = |session: &mut Session, mode: &str| mean(&session.mode(mode), 0..96, 0..64)[1];
     let [prefilter, split_sum] = ["prefilter-error", "split-sum-error"].map(|mode| all(&mut session, mode));
     let light = all(&mut session, "ibl-specular");
-    let from = "return frame.environment_intensity * mix(even,";
-    let to = "return 1.2 * frame.environment_intensity * mix(even,";
+    let from = "return frame.environment_intensity * sky;";
+    let to = "return 1.2 * frame.environment_intensity * sky;";
     ready(&session.edit("lighting/environment.glsl", from, to));
     let [wrong, unchanged] = ["prefilter-error", "split-sum-error"].map(|mode| all(&mut session, mode));
     assert!((wrong - prefilter + 0.2 * light).abs() < 0.002 * light, "{prefilter} {wrong}, of {light}");
@@ -265,9 +265,9 @@ fn a_broken_formula_is_marked_and_does_not_stay() {
     let mut session = Session::new(ball, settings(&chosen));
     let good = session.mode("path-traced");
     assert!(!good.not_finite.contains(&true));
-    let unedited = "    f.sheen *= above;\n";
+    let unedited = "    brdf.sheen *= above;\n";
     let with = |line: &str| format!("{unedited}    if (l.x > 0.5) {line}\n");
-    let (nan, huge) = (with("f.diffuse = vec3(sqrt(-1.0 - f.n_dot_v));"), with("f.diffuse *= 1e20;"));
+    let (nan, huge) = (with("brdf.diffuse = vec3(sqrt(-1.0 - brdf.n_dot_v));"), with("brdf.diffuse *= 1e20;"));
     ready(&session.edit("brdf/evaluate.glsl", unedited, &nan));
     for (next, why) in [(&huge, "not a number"), (&unedited.to_owned(), "too large")] {
         let capture = session.render();

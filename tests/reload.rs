@@ -26,7 +26,7 @@ const PARAMS: &str = "user/params.glsl";
 const SKY: &[&str] = &["debug.frag", "paths.frag", "pbr.frag", "sky.frag"];
 /// Stages that evaluate D: the picture, random paths, and the tables and reflections of light from all directions.
 const SPECULAR: &[&str] =
-    &["debug.frag", "ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag"];
+    &["debug.frag", "ibl/dfg.comp", "ibl/lobe.comp", "ibl/prefilter.comp", "paths.frag", "pbr.frag", "sky.frag"];
 /// Stages that round to half floats.
 const ROUNDING: &[&str] = &[
     "ibl/cube.comp",
@@ -120,7 +120,7 @@ fn what_is_on_screen_compiles_first() {
     assert_differ(&before, &after, "another NDF, of which the modes are not compiled yet");
     let rest = session.headless.finish().expect("stages are left");
     ready(&rest);
-    assert_eq!((stages(&rest), rest.pipelines), (vec!["debug.frag", "paths.frag"], 0));
+    assert_eq!((stages(&rest), rest.pipelines), (vec!["debug.frag", "paths.frag", "sky.frag"], 0));
     assert_same(&after, &session.render(), "after the rest was compiled");
     assert!(session.headless.finish().is_none());
 

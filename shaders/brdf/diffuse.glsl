@@ -45,8 +45,8 @@ float eon_albedo(float c, float r, float a) {
 vec3 f_oren_nayar(vec3 albedo, float n_dot_l, float n_dot_v, float l_dot_v, float r) {
     float a = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * r);
     float average = a * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * PI)) * r);
-    float s = l_dot_v - n_dot_l * n_dot_v;
-    float s_over_t = s > 0.0 ? s / max(n_dot_l, n_dot_v) : s;
+    float projected = l_dot_v - n_dot_l * n_dot_v;   // the paper's s
+    float s_over_t = projected > 0.0 ? projected / max(n_dot_l, n_dot_v) : projected;
     vec3 single = albedo * (a * (1.0 + r * s_over_t));
 
     // Lambert (r = 0) loses nothing, so `multi` would be 0 / 0; 1e-6 makes it 0.

@@ -5,19 +5,15 @@
 
 #include "interface.glsl"
 #include "brdf/dfg.glsl"
+#include "brdf/dfg_table.glsl"
 #include "brdf/diffuse.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 
-layout(set = SET_FRAME, binding = BINDING_DFG) uniform sampler2D dfg_table;
 layout(set = SET_FRAME, binding = BINDING_LAMP_DFG) uniform sampler2D lamp_dfg_table;
 layout(set = SET_FRAME, binding = BINDING_DIFFUSE_ALBEDO) uniform sampler2D diffuse_table;
 layout(set = SET_FRAME, binding = BINDING_SHEEN_ALBEDO) uniform sampler2D sheen_albedo_table;
-
-vec4 dfg_texel(float cosine, float roughness, uint slice) {
-    return textureLod(dfg_table, table_uv(cosine, roughness, slice, DFG_SIDE, DFG_SLICES), 0.0);
-}
 
 Dfg dfg_of(vec4 terms, vec4 weights) { return Dfg(terms.r, terms.g, terms.b, terms.a, weights); }
 
@@ -28,28 +24,27 @@ Dfg dfg_at(float cosine, float roughness) {
     return dfg_of(dfg_texel(cosine, roughness, DFG_DIRECTION), weights);
 }
 
-// The moments towards a lamp. Its table holds B and `lost` alone. A follows from them: f_schlick(1, 1, c) does not depend on c,
-// so A + B is proportional to E, which is proportional to 1 - lost; the factor is that of the direction to the eye.
+// A + B. f_schlick(1, 1, c) does not depend on c, so A + B is proportional to E, which is proportional to 1 - lost; the factor
+// is that of the direction to the eye. 1e-3: a lobe that masking takes away entirely.
+float sum_of_terms(float lost, Dfg towards_eye) {
+    return (1.0 - lost) * (towards_eye.a + towards_eye.b) / max(1.0 - towards_eye.lost, 1e-3);
+}
+
+// The moments towards a lamp. Its table holds B and `lost` alone, from which A follows.
 Dfg dfg_towards_lamp(float cosine, float roughness, Dfg towards_eye) {
     if (F_IS_SAMPLED) return dfg_at(cosine, roughness);
     vec2 b_lost = textureLod(lamp_dfg_table, table_uv(cosine, roughness, 0u, DFG_SIDE, 1u), 0.0).rg;
-    float factor = (towards_eye.a + towards_eye.b) / max(1.0 - towards_eye.lost, 1e-3);
-    float sum = (1.0 - b_lost.y) * factor;
+    float sum = sum_of_terms(b_lost.y, towards_eye);
     return Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
 }
 
-// Their cosine-weighted means, 2 integral over 0..1 of x(mu) mu dmu.
-Dfg dfg_mean(float roughness) {
-    vec4 terms = texelFetch(dfg_table, mean_texel(roughness), 0);
-    if (!F_IS_SAMPLED) return Dfg(terms.r, terms.g, 0.0, terms.a, vec4(0.0));
-    float e = dfg_texel(0.5, roughness, DFG_LOBE).r;
-    return Dfg(terms.r, terms.g, e, terms.a, dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS));
-}
-
-// Roughness of the GGX whose facets spread as widely as those of the selected D: half of their area lies within tan =
-// alpha (Walter et al. 2007, eq. 35). For formulas and tables that only exist for GGX (lighting/area.glsl).
-float ggx_roughness(float roughness) {
-    return min(roughness * sqrt(texelFetch(dfg_table, mean_texel(roughness), 0).b), 1.0);
+// Their cosine-weighted means, 2 integral over 0..1 of x(mu) mu dmu. Likewise, the table has no A.
+Dfg dfg_mean(float roughness, Dfg towards_eye) {
+    vec2 b_lost = texelFetch(dfg_table, fine_texel(roughness, DFG_MEAN), 0).ga;
+    float sum = sum_of_terms(b_lost.y, towards_eye);
+    if (!F_IS_SAMPLED) return Dfg(sum - b_lost.x, b_lost.x, sum, b_lost.y, vec4(0.0));
+    float e = texelFetch(dfg_table, fine_texel(roughness, DFG_LOBE), 0).r;
+    return Dfg(sum - b_lost.x, b_lost.x, e, b_lost.y, dfg_texel(0.5, roughness, DFG_MEAN_WEIGHTS));
 }
 
 // alpha along t and b. Anisotropy raises alpha along t towards 1 (KHR_materials_anisotropy).
@@ -114,8 +109,7 @@ vec3 mean_dielectric_fresnel(Surface s, float n_dot_v) {
 // Columns are sqrt(NoV), since E is steep at grazing angles; rows as in the other tables. The error is below 0.001 for
 // NoV >= 0.1 and roughness >= 0.15.
 float sheen_albedo(float n_dot_v, float sheen_roughness) {
-    const float ROWS = 64.0;
-    return textureLod(sheen_albedo_table, vec2(sqrt(n_dot_v), (sheen_roughness * (ROWS - 1.0) + 0.5) / ROWS), 0.0).r;
+    return textureLod(sheen_albedo_table, table_uv(n_dot_v, sheen_roughness, 0u, SHEEN_SIDE, 1u), 0.0).r;
 }
 
 // The fraction of light that the sheen layer transmits to the layers below (Estevez & Kulla 2017; KHR_materials_sheen).

@@ -38,9 +38,9 @@ struct Brdf {
     float n_dot_v;
     float n_dot_h;
     float v_dot_h;
-    float d;
-    float g;
-    float v;                   // G / (4 NoL NoV)
+    float distribution;        // D
+    float masking;             // G
+    float visibility;          // V = G / (4 NoL NoV)
     vec3 f_dielectric;
     vec3 f_metal;
     float k_d;
@@ -55,20 +55,14 @@ struct Brdf {
     vec3 value;                // f: their sum
 };
 
-// D and V of the specular lobe, isotropic or anisotropic.
-void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
-    float alpha = alpha_from_roughness(s.roughness);
-    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) {
-        f.d = d_specular(f.n_dot_h, sin2_between(s.n, h), alpha);
-        f.v = v_specular(f.n_dot_l, f.n_dot_v, alpha);
-        return;
-    }
-    vec2 stretched = alpha_sides(s);
+// D and V of an anisotropic specular lobe.
+void stretched_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf brdf) {
+    vec2 alpha = alpha_sides(s);
     mat3 ts_from_ws = transpose(mat3(s.t, s.b, s.n));
-    f.d = d_specular_anisotropic(vec3((ts_from_ws * h).xy, f.n_dot_h), stretched);
-    float a2_l = a2_towards(ts_from_ws * l, stretched);
-    float a2_v = a2_towards(ts_from_ws * v, stretched);
-    f.v = v_specular(f.n_dot_l, f.n_dot_v, a2_l, a2_v);
+    float a2_l = a2_towards(ts_from_ws * l, alpha);
+    float a2_v = a2_towards(ts_from_ws * v, alpha);
+    brdf.distribution = d_specular_anisotropic(vec3((ts_from_ws * h).xy, brdf.n_dot_h), alpha);
+    brdf.visibility = v_specular(brdf.n_dot_l, brdf.n_dot_v, a2_l, a2_v);
 }
 
 // The fraction of light that passes the dielectric boundary on the way in and again on the way out. A colored F counts
@@ -79,8 +73,8 @@ void specular_lobe(Surface s, vec3 l, vec3 v, vec3 h, inout Brdf f) {
 //
 // Albedo: (1 - R(l)) (1 - R(v)) / (1 - R_avg), with R the boundary's total reflectance (Kelemen & Szirmay-Kalos 2001).
 // A white base returns exactly what the boundary transmitted. R = 1 everywhere would be 0 / 0; 1e-4 makes it 0.
-float entering(Surface s, Brdf f, Dfg dfg_l) {
-    if (DIFFUSE_COUPLING == GLTF_SAMPLE_COUPLING) return 1.0 - max_component(f.f_dielectric);
+float entering(Surface s, Brdf brdf, Dfg dfg_l) {
+    if (DIFFUSE_COUPLING == GLTF_SAMPLE_COUPLING) return 1.0 - max_component(brdf.f_dielectric);
     return (1.0 - boundary_albedo(s, dfg_l)) * (1.0 - s.boundary) / max(1.0 - s.mean_boundary, 1e-4);
 }
 
@@ -90,7 +84,7 @@ float entering(Surface s, Brdf f, Dfg dfg_l) {
 //
 // The caller multiplies f by |NoL| of the base normal; the quotient `turned` replaces it by NoL of the coat normal. So
 // a bump of the base that turns away from the light does not darken the coat. Returns clearcoat F.
-float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf f) {
+float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf brdf) {
     vec3 h = safe_normalize(l + v, s.clearcoat_n);
     float n_dot_l = saturate(dot(s.clearcoat_n, l));
     float n_dot_v = clamp(dot(s.clearcoat_n, v), MIN_N_DOT_V, 1.0);
@@ -98,28 +92,28 @@ float evaluate_clearcoat(Surface s, vec3 l, vec3 v, inout Brdf f) {
     float d = d_specular(saturate(dot(s.clearcoat_n, h)), sin2_between(s.clearcoat_n, h), alpha);
     float weight = s.clearcoat * f_schlick(0.04, n_dot_v);
     float turned = n_dot_l / max(abs(dot(s.n, l)), MIN_N_DOT_V);
-    f.clearcoat = vec3(weight * d * v_specular(n_dot_l, n_dot_v, alpha) * turned);
+    brdf.clearcoat = vec3(weight * d * v_specular(n_dot_l, n_dot_v, alpha) * turned);
     return weight;
 }
 
 // Adds sheen and clear coat, and attenuates what is below them.
-void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf f) {
+void cover(Surface s, vec3 l, vec3 v, float n_dot_l, inout Brdf brdf) {
     float passes = 1.0;
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
-        f.sheen = s.sheen_color * f_sheen(f.n_dot_l, f.n_dot_v, f.n_dot_h, f.v_dot_h, s.sheen_roughness);
-        float stopped = max(sheen_albedo(n_dot_l, s.sheen_roughness), sheen_albedo(f.n_dot_v, s.sheen_roughness));
+        brdf.sheen = s.sheen_color * f_sheen(brdf.n_dot_l, brdf.n_dot_v, brdf.n_dot_h, brdf.v_dot_h, s.sheen_roughness);
+        float stopped = max(sheen_albedo(n_dot_l, s.sheen_roughness), sheen_albedo(brdf.n_dot_v, s.sheen_roughness));
         passes = under_sheen(s, stopped);
     }
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
-        float uncoated = 1.0 - evaluate_clearcoat(s, l, v, f);
+        float uncoated = 1.0 - evaluate_clearcoat(s, l, v, brdf);
         passes *= uncoated;
-        f.sheen *= uncoated;
+        brdf.sheen *= uncoated;
     }
-    f.k_d *= passes;
-    f.k_s *= passes;
-    f.multiple *= passes;
-    f.transmitted *= passes;
-    f.diffuse_transmitted *= passes;
+    brdf.k_d *= passes;
+    brdf.k_s *= passes;
+    brdf.multiple *= passes;
+    brdf.transmitted *= passes;
+    brdf.diffuse_transmitted *= passes;
 }
 
 // The caller multiplies f by |n . l| and the light's irradiance. For l below the horizon only the transmitted lobes,
@@ -131,51 +125,57 @@ Brdf evaluate_brdf(Surface s, vec3 l, vec3 v) {
     float cos_l = dot(s.n, l);
     float above = cos_l > 0.0 ? 1.0 : 0.0;
 
-    Brdf f;
-    f.n_dot_l = saturate(cos_l);
-    f.n_dot_v = clamp(dot(s.n, v), MIN_N_DOT_V, 1.0);
-    f.n_dot_h = saturate(dot(s.n, h));
-    f.v_dot_h = saturate(dot(v, h));
-    f.sheen = f.clearcoat = f.transmitted = f.diffuse_transmitted = vec3(0.0);
+    Brdf brdf;
+    brdf.n_dot_l = saturate(cos_l);
+    brdf.n_dot_v = clamp(dot(s.n, v), MIN_N_DOT_V, 1.0);
+    brdf.n_dot_h = saturate(dot(s.n, h));
+    brdf.v_dot_h = saturate(dot(v, h));
+    brdf.sheen = brdf.clearcoat = brdf.transmitted = brdf.diffuse_transmitted = vec3(0.0);
 
-    specular_lobe(s, l, v, h, f);
-    f.d *= above;
-    f.v *= above;
-    f.g = 4.0 * f.n_dot_l * f.n_dot_v * f.v;
-    f.f_dielectric = dielectric_fresnel(s, f.v_dot_h);
-    f.f_metal = metal_fresnel(s, f.v_dot_h);
+    float alpha = alpha_from_roughness(s.roughness);
+    if ((FEATURES & FEATURE_ANISOTROPY) != 0u) {
+        stretched_lobe(s, l, v, h, brdf);
+    } else {
+        brdf.distribution = d_specular(brdf.n_dot_h, sin2_between(s.n, h), alpha);
+        brdf.visibility = v_specular(brdf.n_dot_l, brdf.n_dot_v, alpha);
+    }
+    brdf.distribution *= above;
+    brdf.visibility *= above;
+    brdf.masking = 4.0 * brdf.n_dot_l * brdf.n_dot_v * brdf.visibility;
+    brdf.f_dielectric = dielectric_fresnel(s, brdf.v_dot_h);
+    brdf.f_metal = metal_fresnel(s, brdf.v_dot_h);
 
     Dfg dfg_l = s.dfg;
     if (MULTI_SCATTER == KULLA_CONTY || DIFFUSE_COUPLING == ALBEDO_COUPLING) {
         dfg_l = dfg_towards_lamp(abs(cos_l), table_roughness(s), s.dfg);
     }
-    f.multiple = vec3(0.0);
-    if (MULTI_SCATTER != SINGLE_SCATTER) f.multiple = f_multiple(s, dfg_l.lost);
+    brdf.multiple = vec3(0.0);
+    if (MULTI_SCATTER != SINGLE_SCATTER) brdf.multiple = f_multiple(s, dfg_l.lost);
 
-    f.k_s = mix(f.f_dielectric, f.f_metal, s.metallic);
-    f.k_d = (1.0 - s.metallic) * entering(s, f, dfg_l);
+    brdf.k_s = mix(brdf.f_dielectric, brdf.f_metal, s.metallic);
+    brdf.k_d = (1.0 - s.metallic) * entering(s, brdf, dfg_l);
     float below = 1.0 - above;
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         // Lambertian, on the far side (KHR_materials_diffuse_transmission).
-        f.diffuse_transmitted = f_lambert(s.diffuse_transmission_color) * (below * f.k_d * s.diffuse_transmission);
-        f.k_d *= 1.0 - s.diffuse_transmission;
+        brdf.diffuse_transmitted = f_lambert(s.diffuse_transmission_color) * (below * brdf.k_d * s.diffuse_transmission);
+        brdf.k_d *= 1.0 - s.diffuse_transmission;
     }
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
         float transmitted = (1.0 - s.metallic) * s.transmission * below;
         float sin2_h = sin2_between(s.n, h);
-        f.transmitted = f_transmitted(s, abs(cos_l), f.n_dot_v, f.n_dot_h, sin2_h, f.f_dielectric) * transmitted;
-        f.diffuse_transmitted *= 1.0 - s.transmission;
-        f.k_d *= 1.0 - s.transmission;
+        brdf.transmitted = f_transmitted(s, abs(cos_l), brdf.n_dot_v, brdf.n_dot_h, sin2_h, brdf.f_dielectric) * transmitted;
+        brdf.diffuse_transmitted *= 1.0 - s.transmission;
+        brdf.k_d *= 1.0 - s.transmission;
     }
-    cover(s, l, v, abs(cos_l), f);
+    cover(s, l, v, abs(cos_l), brdf);
 
-    Cosines cosines = Cosines(f.n_dot_l, f.n_dot_v, f.n_dot_h, f.v_dot_h, dot(l, v));
-    f.diffuse = f_diffuse(s.base_color, s.roughness, alpha_from_roughness(s.roughness), cosines) * (f.k_d * above);
-    f.specular = f.k_s * (f.d * f.v);
-    f.multiple *= above;
-    f.sheen *= above;
-    f.value = f.diffuse + f.specular + f.multiple + f.sheen + f.clearcoat + f.transmitted + f.diffuse_transmitted;
-    return f;
+    Cosines cosines = Cosines(brdf.n_dot_l, brdf.n_dot_v, brdf.n_dot_h, brdf.v_dot_h, dot(l, v));
+    brdf.diffuse = f_diffuse(s.base_color, s.roughness, alpha, cosines) * (brdf.k_d * above);
+    brdf.specular = brdf.k_s * (brdf.distribution * brdf.visibility);
+    brdf.multiple *= above;
+    brdf.sheen *= above;
+    brdf.value = brdf.diffuse + brdf.specular + brdf.multiple + brdf.sheen + brdf.clearcoat + brdf.transmitted + brdf.diffuse_transmitted;
+    return brdf;
 }
 
 #endif

@@ -27,9 +27,9 @@ float f_dielectric_exact(float ior, float c) {
     float g2 = ior * ior - 1.0 + c * c;
     if (g2 <= 0.0) return 1.0;
     float g = sqrt(g2);
-    float s = (g - c) / max(g + c, 1e-6);
-    float p = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
-    return 0.5 * s * s * (1.0 + p * p);
+    float root_s = (g - c) / max(g + c, 1e-6);
+    float root_ratio = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
+    return 0.5 * root_s * root_s * (1.0 + root_ratio * root_ratio);
 }
 
 // A conductor with the complex index of refraction n + i k (Born & Wolf 1999, section 14.4).
@@ -45,9 +45,9 @@ vec3 f_conductor(vec3 n, vec3 k, float c) {
     vec3 difference = n * n - k * k - sin2;
     vec3 sum = sqrt(difference * difference + 4.0 * n * n * k * k);
     vec3 ac2 = 2.0 * c * sqrt(max(0.5 * (sum + difference), 0.0));
-    vec3 s = (sum + cos2 - ac2) / (sum + cos2 + ac2);
-    vec3 p = (cos2 * sum + sin2 * sin2 - ac2 * sin2) / (cos2 * sum + sin2 * sin2 + ac2 * sin2);
-    return saturate(0.5 * s * (1.0 + p));
+    vec3 f_s = (sum + cos2 - ac2) / (sum + cos2 + ac2);
+    vec3 ratio = (cos2 * sum + sin2 * sin2 - ac2 * sin2) / (cos2 * sum + sin2 * sin2 + ac2 * sin2);
+    return saturate(0.5 * f_s * (1.0 + ratio));
 }
 
 // n and k of a metal from its color alone (Gulbrandsen 2014). F0 leaves one of the two free; the edge tint g, 0..1,

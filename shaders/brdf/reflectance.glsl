@@ -19,27 +19,31 @@ const bool DIELECTRIC_IS_SAMPLED = FRESNEL_DIELECTRIC != SCHLICK_DIELECTRIC || H
 const bool METAL_IS_SAMPLED = FRESNEL_METAL != SCHLICK_METAL || HAS_FILM;
 const bool F_IS_SAMPLED = DIELECTRIC_IS_SAMPLED || METAL_IS_SAMPLED;
 
-// How far the exact F has risen from F0 to 1, (F - F(1)) / (1 - F(1)): replaces Schlick's (1 - c)^5, so that
-// KHR_materials_specular's color and factor keep their meaning.
+// How far the exact F (Walter et al. 2007, eq. 22) has risen from F0 to 1: (F(c) - F(1)) / (1 - F(1)). It replaces (1 - c)^5 in
+// Schlick 1994, eq. 15, so that KHR_materials_specular's color and factor keep their meaning. c = 1 -> 0, c = 0 -> 1.
 float exact_rise(float ior, float c) {
     float f0 = f0_from_ior(ior);
     return saturate((f_dielectric_exact(ior, c) - f0) / max(1.0 - f0, 1e-4));   // 1e-4: infinite ior, where F is 1
 }
 
+// F of the dielectric: F0 + (F90 - F0) rise (KHR_materials_specular), with the film's F mixed in by its factor
+// (KHR_materials_iridescence).
 vec3 dielectric_fresnel(Surface s, float c) {
     vec3 f90 = vec3(s.f90);
-    vec3 f = FRESNEL_DIELECTRIC == EXACT_DIELECTRIC ? mix(s.f0, f90, exact_rise(s.ior, c)) : f_schlick(s.f0, f90, c);
-    if (HAS_FILM) f = mix(f, f_film(s.f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
-    return f;
+    vec3 fresnel = FRESNEL_DIELECTRIC == EXACT_DIELECTRIC ? mix(s.f0, f90, exact_rise(s.ior, c)) : f_schlick(s.f0, f90, c);
+    if (HAS_FILM) fresnel = mix(fresnel, f_film(s.f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
+    return fresnel;
 }
 
+// n and k of the metal: the model's, or those that its color gives (Gulbrandsen 2014).
 void metal_ior(Surface s, out vec3 n, out vec3 k) {
     n = s.conductor_n;
     k = s.conductor_k;
     if ((FEATURES & FEATURE_CONDUCTOR) == 0u) complex_ior(s.base_color, EDGE_TINT, n, k);
 }
 
-// Reflectance of the metal at normal incidence.
+// Reflectance of the metal at normal incidence: the base color (glTF 2.0, appendix B.3.1), or F(1) of n and k (Born & Wolf 1999,
+// section 14.4).
 vec3 metal_f0(Surface s) {
     if (FRESNEL_METAL == SCHLICK_METAL) return s.base_color;
     vec3 n, k;
@@ -47,18 +51,19 @@ vec3 metal_f0(Surface s) {
     return f_conductor(n, k, 1.0);
 }
 
+// F of the metal by the selected equation (brdf/fresnel.glsl has the sources), with the film's mixed in.
 vec3 metal_fresnel(Surface s, float c) {
     vec3 f0 = metal_f0(s);
-    vec3 f;
+    vec3 fresnel;
     if (FRESNEL_METAL == SCHLICK_METAL) {
-        f = f_schlick(f0, vec3(1.0), c);
+        fresnel = f_schlick(f0, vec3(1.0), c);
     } else {
         vec3 n, k;
         metal_ior(s, n, k);
-        f = FRESNEL_METAL == F82_METAL ? f_82(f0, f_conductor(n, k, COS_82), c) : f_conductor(n, k, c);
+        fresnel = FRESNEL_METAL == F82_METAL ? f_82(f0, f_conductor(n, k, COS_82), c) : f_conductor(n, k, c);
     }
-    if (HAS_FILM) f = mix(f, f_film(f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
-    return f;
+    if (HAS_FILM) fresnel = mix(fresnel, f_film(f0, s.iridescence_ior, s.iridescence_nm, c), s.iridescence);
+    return fresnel;
 }
 
 // The sum of F at F_COSINES and at c = 1 with these weights, of which the last is what is left of `total`.

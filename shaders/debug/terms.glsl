@@ -24,17 +24,17 @@ LightRange lights_of_terms() {
 // `lit`: the result for lights_of_terms.
 bool debug_terms(Surface s, vec3 v, Lit lit, out vec3 value) {
     if (!shows_terms()) return false;
-    Brdf f = lit.last;
+    Brdf brdf = lit.last;
     bool present = !is_empty(lights_of_terms());
-    if (MODE == MODE_D) value = vec3(f.d);
-    else if (MODE == MODE_G) value = vec3(f.g);
-    else if (MODE == MODE_V) value = vec3(f.v);
-    else if (MODE == MODE_F) value = mix(f.f_dielectric, f.f_metal, s.metallic);
-    else if (MODE == MODE_K_D) value = vec3(f.k_d);
-    else if (MODE == MODE_K_S) value = f.k_s;
-    else if (MODE == MODE_N_DOT_L) value = vec3(f.n_dot_l);
-    else if (MODE == MODE_N_DOT_H) value = vec3(f.n_dot_h);
-    else if (MODE == MODE_V_DOT_H) value = vec3(f.v_dot_h);
+    if (MODE == MODE_D) value = vec3(brdf.distribution);
+    else if (MODE == MODE_G) value = vec3(brdf.masking);
+    else if (MODE == MODE_V) value = vec3(brdf.visibility);
+    else if (MODE == MODE_F) value = mix(brdf.f_dielectric, brdf.f_metal, s.metallic);
+    else if (MODE == MODE_K_D) value = vec3(brdf.k_d);
+    else if (MODE == MODE_K_S) value = brdf.k_s;
+    else if (MODE == MODE_N_DOT_L) value = vec3(brdf.n_dot_l);
+    else if (MODE == MODE_N_DOT_H) value = vec3(brdf.n_dot_h);
+    else if (MODE == MODE_V_DOT_H) value = vec3(brdf.v_dot_h);
     else if (MODE == MODE_DIFFUSE_LOBE) value = lit.lobes.diffuse;
     else if (MODE == MODE_SPECULAR_LOBE) value = lit.lobes.specular;
     else if (MODE == MODE_MULTI_SCATTER_LOBE) value = lit.lobes.multiple;

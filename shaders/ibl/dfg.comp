@@ -10,8 +10,7 @@
 #include "ibl/half.glsl"
 
 // Integrates the moments of the specular lobe (brdf/dfg.glsl) with the D, V and F of the selected models, so that the
-// tables follow an edit of them. One workgroup per row (roughness 0 to 1), one invocation per column (NoV at texel
-// centers).
+// tables follow an edit of them. One workgroup per row (roughness 0 to 1), one invocation per column.
 
 layout(local_size_x = 128) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
@@ -39,7 +38,12 @@ void store(uint slice, vec4 value) {
 
 // A value that D, V and F must not have: the caller counts such samples as 0, and Rust warns.
 bool is_wrong(float x) { return isnan(x) || isinf(x) || x < 0.0 || x > 1e20; }
-bool is_wrong(vec3 x) { return any(isnan(x)) || any(isinf(x)) || any(greaterThan(abs(x), vec3(1e3))); }
+
+// f: a(c), b(c), 0. Either may be negative; F of a white surface and of glass, f0 a + f90 b, may not. 1e-6: rounding.
+bool is_wrong(vec3 f) {
+    bool is_number = !any(isnan(f)) && !any(isinf(f)) && all(lessThan(abs(f), vec3(1e3)));
+    return !is_number || f.r + f.g < -1e-6 || 0.04 * f.r + f.g < -1e-6;
+}
 
 uint wrong = 0u;               // DFG_FLAG bits
 
@@ -86,12 +90,12 @@ Moments moments(vec3 v, float alpha) {
 
             float visibility = v_specular(l.z, v.z, alpha);
             // One call for both: a(c) in the first channel, b(c) in the second.
-            vec3 f = f_schlick(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), c);
+            vec3 fresnel = f_schlick(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), c);
             if (is_wrong(visibility)) wrong |= DFG_FLAG_V;
-            if (is_wrong(f)) wrong |= DFG_FLAG_F;
+            if (is_wrong(fresnel)) wrong |= DFG_FLAG_F;
             float lobe = checked_d(h.z, dot(h.xy, h.xy), alpha) * (is_wrong(visibility) ? 0.0 : visibility) * l.z;
             lobe *= SHARE[density] * 6.0 * u * (1.0 - u) / (pdf * float(count));
-            sum.terms += lobe * vec4(is_wrong(f) ? vec2(0.0) : f.rg, 1.0, 0.0);
+            sum.terms += lobe * vec4(is_wrong(fresnel) ? vec2(0.0) : fresnel.rg, 1.0, 0.0);
             sum.weights += lobe * f_weights(c);
         }
     }
@@ -145,7 +149,8 @@ float relative_width(float alpha) {
 
 void main() {
     uvec2 texel = gl_GlobalInvocationID.xy;
-    float n_dot_v = (float(texel.x) + 0.5) / float(COLUMNS);
+    float cosine = cosine_of_column(texel.x, COLUMNS);
+    float n_dot_v = max(cosine, MIN_N_DOT_V);
     float alpha = alpha_from_roughness(float(texel.y) / float(task.size.y - 1u));
     float area = facet_area(alpha);
     float width = relative_width(alpha);
@@ -155,9 +160,13 @@ void main() {
     store(DFG_DIRECTION, here.terms);
     store(DFG_DIRECTION_WEIGHTS, here.weights);
 
-    float weight = n_dot_v * (2.0 / float(COLUMNS));
+    // The trapezoidal rule for 2 mu dmu, mu = u^2, with columns that are equally spaced in u.
+    float weight = 4.0 * cosine * sqrt(cosine) / float(COLUMNS - 1u);
+    if (texel.x == COLUMNS - 1u) weight *= 0.5;
     vec4 mean = sum_over_columns(here.terms * weight);
-    store(DFG_MEAN, vec4(mean.rg, width, mean.a));
-    store(DFG_LOBE, vec4(mean.b, area, float(wrong), 0.0));
+    // The last column is the normal.
+    float facing = sum_over_columns(vec4(texel.x == COLUMNS - 1u ? here.terms.b : 0.0)).x;
+    store(DFG_MEAN, vec4(facing, mean.g, width, mean.a));
     store(DFG_MEAN_WEIGHTS, sum_over_columns(here.weights * weight));
+    store(DFG_LOBE, vec4(mean.b, float(wrong), 0.0, 0.0));
 }

@@ -3,13 +3,14 @@
 #include "brdf/dfg.glsl"
 #include "brdf/diffuse.glsl"
 #include "brdf/surface.glsl"
+#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
 // Integrates the selected diffuse model, for brdf/energy.glsl: albedo = integral of f_diffuse NoL dl, for three base
-// colors at once, one per channel; and how the half vectors of that light are distributed. Columns are NoV at texel
-// centers; rows are roughness, 0 in the first and 1 in the last.
+// colors at once, one per channel; and how the half vectors of that light are distributed. Columns are sqrt(NoV)
+// and rows roughness, each 0 in the first and 1 in the last.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;
@@ -17,7 +18,7 @@ layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform imag
 void main() {
     uvec2 texel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(texel, task.size))) return;
-    float n_dot_v = (float(texel.x) + 0.5) / float(DIFFUSE_SIDE);
+    float n_dot_v = max(cosine_of_column(texel.x, DIFFUSE_SIDE), MIN_N_DOT_V);
     float roughness = float(texel.y) / float(DIFFUSE_SIDE - 1u);
     vec3 v = vec3(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
     vec3 base_color = vec3(1.0, 2.0, 3.0) / 3.0;

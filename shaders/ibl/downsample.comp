@@ -9,7 +9,7 @@
 // keeps the light of the one above, and a texel is the mean radiance of the area it covers. (A corner texel covers a
 // fifth of the solid angle of a center texel, so an unweighted mean would move light.)
 //
-// From level 0 to 1 small lights are removed (ibl/small_lights.glsl).
+// From level 0 to 1 small lights are removed (ibl/small_lights.glsl). With the last level their list is complete.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray level_above;
@@ -23,6 +23,7 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) limit = task.level == 1u ? brightness_limit() : NO_LIMIT;
     barrier();
     uvec3 texel = gl_GlobalInvocationID;
+    if (task.separates_sun != 0u && task.level == task.levels - 1u && texel == uvec3(0u)) separate_sun();
     if (any(greaterThanEqual(texel.xy, task.size))) return;
 
     float reach = 0.5 / float(task.size.x);

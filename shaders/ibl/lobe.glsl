@@ -22,11 +22,10 @@ struct Lobe {
     LobeSample samples[LARGEST_LOBE];
 };
 
-// alpha of both lobes of a pair, from 1 on: that of the even level and of the odd one. 0.999: at alpha = 1, GGX is flat.
+// alpha of both lobes of a pair, from 1 on: that of the even level and of the odd one.
 vec2 alpha_of_lobes(uint pair) {
-    float even = alpha_from_roughness(roughness_of_specular_level(2.0 * float(pair)));
-    float odd = alpha_from_roughness(roughness_of_specular_level(2.0 * float(pair) - 1.0));
-    return min(vec2(even, odd), 0.999);
+    return vec2(lobe_alpha(roughness_of_specular_level(2.0 * float(pair))),
+                lobe_alpha(roughness_of_specular_level(2.0 * float(pair) - 1.0)));
 }
 
 #endif

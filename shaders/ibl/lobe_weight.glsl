@@ -1,9 +1,13 @@
-// The weight of the split sum's second factor, the mean radiance of a lobe.
+// The weight of the split sum's first factor, the mean radiance of a lobe.
 #ifndef IBL_LOBE_WEIGHT_GLSL
 #define IBL_LOBE_WEIGHT_GLSL
 
 #include "brdf/ndf.glsl"
+#include "brdf/surface.glsl"
 #include "brdf/visibility.glsl"
+
+// 0.999: at alpha = 1, GGX is flat.
+float lobe_alpha(float roughness) { return min(alpha_from_roughness(roughness), 0.999); }
 
 // K = D V NoL of light that arrives at 1 - 2x to n = v, where x = sin^2 of the angle between n and h.
 float lobe_weight(float x, float alpha) {
@@ -13,5 +17,12 @@ float lobe_weight(float x, float alpha) {
 
 // False for values that D and V must not have. They count as 0.
 bool is_weight(float k) { return k >= 0.0 && k < 1e20; }
+
+// K of a small light, whose directions have the variance `spread` along one axis. x: of its center. The variance widens the
+// lobe.
+float lobe_weight_of_light(float x, float alpha, float spread) {
+    float k = lobe_weight(x, sqrt(alpha * alpha + spread));
+    return is_weight(k) ? k : 0.0;
+}
 
 #endif

@@ -36,7 +36,7 @@ Radiances filtered_means(vec3 n) {
     return Radiances(sum.even / max(weight.x, 1e-30), sum.odd / max(weight.y, 1e-30));
 }
 
-// The small lights: sum of K intensity over the integral of K. A light's variance widens the lobe.
+// The small lights but the sun: sum of K intensity over the integral of K.
 void add_small_lights(vec3 n, inout Radiances to) {
     vec2 alpha = alpha_of_lobes(task.level);
     vec2 scale = 1.0 / max(lobe.integral, vec2(1e-30));
@@ -44,10 +44,8 @@ void add_small_lights(vec3 n, inout Radiances to) {
         SmallLight light = listed.lights[i];
         vec3 chord = light.direction - n;
         float x = 0.25 * dot(chord, chord);   // not 1 - NoL, which loses its digits where a narrow lobe needs them
-        float even = lobe_weight(x, sqrt(alpha.x * alpha.x + light.spread));
-        float odd = lobe_weight(x, sqrt(alpha.y * alpha.y + light.spread));
-        if (is_weight(even)) to.even += light.intensity * (even * scale.x);
-        if (is_weight(odd)) to.odd += light.intensity * (odd * scale.y);
+        to.even += light.intensity * (lobe_weight_of_light(x, alpha.x, light.spread) * scale.x);
+        to.odd += light.intensity * (lobe_weight_of_light(x, alpha.y, light.spread) * scale.y);
     }
 }
 

@@ -1,12 +1,14 @@
 #version 460
 #include "interface.glsl"
+#include "brdf/dfg.glsl"
 #include "brdf/sheen.glsl"
+#include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "ibl/half.glsl"
 
-// Directional albedo of the selected sheen, for brdf/energy.glsl: E = integral of f NoL dl. Columns are sqrt(NoV) at
-// texel centers; rows are roughness, 0 in the first and 1 in the last. The samples cover the whole hemisphere, since
+// Directional albedo of the selected sheen, for brdf/energy.glsl: E = integral of f NoL dl. Columns are sqrt(NoV) and
+// rows roughness, each 0 in the first and 1 in the last. The samples cover the whole hemisphere, since
 // most of Charlie's distribution lies below it. They are a lattice with the cosine 3 u^2 - 2 u^3, weighted by its
 // derivative, as in ibl/dfg.comp.
 //
@@ -19,8 +21,7 @@ void main() {
     uvec2 texel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(texel, task.size))) return;
 
-    float root = (float(texel.x) + 0.5) / float(task.size.x);
-    float n_dot_v = root * root;
+    float n_dot_v = max(cosine_of_column(texel.x, task.size.x), MIN_N_DOT_V);
     float roughness = float(texel.y) / float(task.size.y - 1u);
     vec3 v = vec3(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
     float sum = 0.0;

@@ -3,6 +3,10 @@
 // highlights are off by up to half a texel. That was most of the prefilter's error (10 % RMSE under a sun, at level 2
 // with 64 samples; 0.02 % once they are removed). So level 0 keeps the full picture, while the levels below clip texels
 // at a limit. The clipped light becomes a list of directions, which the bake adds exactly.
+//
+// Where FEATURE_SUN is set, the brightest of these sources, if it is as small as a sun, is not in the list: the prefiltered
+// levels leave it out, and lighting/environment.glsl adds it at each lookup. For a sun, a level would need texels much smaller
+// than its lobe.
 #ifndef IBL_SMALL_LIGHTS_GLSL
 #define IBL_SMALL_LIGHTS_GLSL
 
@@ -18,8 +22,9 @@ struct SmallLight {
     float spread;              // variance of its directions along one axis, radians squared
 };
 
-// One buffer for the whole bake, zeroed at its start.
+// One buffer for the whole bake, zeroed at its start. Rust reads the sun, so its place is the first.
 struct SmallLightList {
+    SmallLight sun;                            // no intensity: there is none
     uint brightness_count[BRIGHTNESS_STEPS];   // histogram of level 0 by brightness_step
     uint count;                                // can exceed the list, see brightness_limit
     SmallLight lights[LARGEST_COUNT];

@@ -76,10 +76,10 @@ Albedo directional_albedo(Surface s, vec3 v) {
         // The transmitted lobe has the facet angles of the specular lobe, so F is that lobe's mean: its albedo over its
         // albedo for F = 1. 1e-3: a D of 0. Without multiple scattering, light between the facets is lost, as for lamps
         // (brdf/transmission.glsl).
-        float f = max_component(single_dielectric) / max(s.dfg.e, 1e-3);
+        float fresnel = max_component(single_dielectric) / max(s.dfg.e, 1e-3);
         float passes = base * (1.0 - s.metallic) * s.transmission;
         if (MULTI_SCATTER == SINGLE_SCATTER) passes *= dfg_at(n_dot_v, transmission_roughness(s.roughness, s.ior)).e;
-        albedo.transmitted = s.base_color * (1.0 - f) * passes;
+        albedo.transmitted = s.base_color * (1.0 - fresnel) * passes;
         enters *= 1.0 - s.transmission;
     }
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {

@@ -4,7 +4,9 @@
 #define LIGHTING_ENVIRONMENT_GLSL
 
 #include "interface.glsl"
+#include "brdf/dfg_table.glsl"
 #include "ibl/levels.glsl"
+#include "ibl/lobe_weight.glsl"
 #include "ibl/octahedral.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
@@ -15,15 +17,15 @@ layout(set = SET_FRAME, binding = BINDING_IRRADIANCE) uniform sampler2D irradian
 // Rotates a direction from the world into the map. The map turns by an angle around +Y, counterclockwise from above:
 // the camera sees its center column when it looks down -Z at 0 degrees, down -X at 90.
 vec3 map_from_world(vec3 d) {
-    float c = frame.environment_rotation.x;
-    float s = frame.environment_rotation.y;
-    return vec3(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
+    float cosine = frame.environment_rotation.x;
+    float sine = frame.environment_rotation.y;
+    return vec3(cosine * d.x - sine * d.z, d.y, sine * d.x + cosine * d.z);
 }
 
 vec3 world_from_map(vec3 d) {
-    float c = frame.environment_rotation.x;
-    float s = frame.environment_rotation.y;
-    return vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
+    float cosine = frame.environment_rotation.x;
+    float sine = frame.environment_rotation.y;
+    return vec3(cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x);
 }
 
 // Level `lod` of the unfiltered cube.
@@ -47,20 +49,30 @@ vec3 prefiltered_at(vec2 p, Tile tile) {
     return textureLod(prefiltered_levels, place / vec2(SPECULAR_WIDTH, SPECULAR_HEIGHT), 0.0).rgb;
 }
 
+// The sun's part of that mean, exact for every roughness: intensity K over the integral of K, where K is the lobe's weight
+// (ibl/lobe_weight.glsl). The levels from 1 on do not have the sun (ibl/small_lights.glsl). d: of any length,
+// in the map.
+vec3 sun_radiance(vec3 d, float roughness) {
+    vec3 chord = frame.sun_direction - normalize(d);
+    float weight = lobe_weight_of_light(0.25 * dot(chord, chord), lobe_alpha(roughness), frame.sun_variance);
+    return frame.sun_intensity * (weight / max(facing_albedo(roughness), 1e-3));   // 1e-3: a D of 0
+}
+
 // The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
-// (Karis 2013). It is interpolated between an even and an odd level (ibl/levels.glsl).
-vec3 prefiltered_level(vec3 r, float level) {
-    vec2 p = octahedral_point(map_from_world(r));
+// (Karis 2013). It is interpolated between an even and an odd level (ibl/levels.glsl). Level 0 shows the sun itself.
+vec3 prefiltered_radiance(vec3 r, float roughness) {
+    if (!HAS_ENVIRONMENT) return frame.ambient;
+    float level = specular_level(roughness);
+    vec3 d = map_from_world(r);
+    vec2 p = octahedral_point(d);
     float odd_row = min(floor(0.5 * level), float(SPECULAR_LEVELS / 2u - 1u)) + 1.0;
     float even_row = floor(0.5 * level + 0.5);   // the same, or the one above
     float scale = scale_of_row(odd_row);
     vec3 odd = prefiltered_at(p, odd_tile(scale));
     vec3 even = prefiltered_at(p, even_tile(even_row, even_row < odd_row ? scale / ROW_RATIO : scale));
-    return frame.environment_intensity * mix(even, odd, 1.0 - abs(level - (2.0 * odd_row - 1.0)));
-}
-
-vec3 prefiltered_radiance(vec3 r, float roughness) {
-    return HAS_ENVIRONMENT ? prefiltered_level(r, specular_level(roughness)) : frame.ambient;
+    vec3 sky = between_levels(even, odd, 1.0 - abs(level - (2.0 * odd_row - 1.0)));
+    if ((FEATURES & FEATURE_SUN) != 0u) sky += sun_radiance(d, roughness) * min(level, 1.0);
+    return frame.environment_intensity * sky;
 }
 
 // The same with the sheen distribution.
@@ -74,9 +86,10 @@ vec3 prefiltered_sheen(vec3 r, float roughness) {
 // more texels than level 0 of the prefiltered levels.
 vec3 background_radiance(vec3 direction) {
     float level = specular_level(frame.environment_blur);
-    if (level >= 1.0) return prefiltered_level(direction, level);
+    if (level >= 1.0) return prefiltered_radiance(direction, frame.environment_blur);
     vec3 sharp = environment_radiance(direction, 0.0);
-    return level <= 0.0 ? sharp : mix(sharp, prefiltered_level(direction, 1.0), level);
+    if (level <= 0.0) return sharp;
+    return mix(sharp, prefiltered_radiance(direction, roughness_of_specular_level(1.0)), level);
 }
 
 #endif

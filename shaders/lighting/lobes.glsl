@@ -34,9 +34,9 @@ Lobes with_sum(Lobes x) {
     return x;
 }
 
-Lobes lobes_of(Brdf f) {
-    vec3 transmitted = f.transmitted + f.diffuse_transmitted;
-    return Lobes(f.diffuse, f.specular, f.multiple, f.clearcoat, f.sheen, transmitted, f.value);
+Lobes lobes_of(Brdf brdf) {
+    vec3 transmitted = brdf.transmitted + brdf.diffuse_transmitted;
+    return Lobes(brdf.diffuse, brdf.specular, brdf.multiple, brdf.clearcoat, brdf.sheen, transmitted, brdf.value);
 }
 
 // sum + x * weight

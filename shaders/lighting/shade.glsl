@@ -43,18 +43,6 @@ LightRange chosen_lights() {
 
 bool is_empty(LightRange range) { return range.first >= range.end; }
 
-// L = f E |NoL|, with E the irradiance on a plane perpendicular to l.
-void add_punctual(inout Lit lit, Surface s, vec3 v, Light light, bool for_terms) {
-    Illumination illumination = illuminate(light, s.position_ws);
-    float n_dot_l = dot(s.n, illumination.l);
-    // Below the horizon f is 0, unless the surface transmits light or the coat has its own normal.
-    if (n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms) return;
-    lit.last = evaluate_brdf(s, illumination.l, v);
-    Lobes lobes = lobes_of(lit.last);
-    add(lit.lobes, lobes, vec3(1.0));
-    add(lit.punctual, lobes, illumination.irradiance * abs(n_dot_l));
-}
-
 // Attenuates transmitted light by the volume's thickness, wherever the light comes from.
 void cross_volume(Surface s, inout Lobes light) {
     light.all -= light.transmitted;
@@ -77,9 +65,17 @@ Lit shade(Surface s, vec3 v, LightRange range) {
         bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && light.kind == LIGHT_RECT;
         if (has_size) {
             add(lit.area, rectangle_light(s, v, albedo, light), vec3(1.0));
-        } else {
-            add_punctual(lit, s, v, light, range.for_terms);
+            continue;
         }
+        // L = f E |NoL|, with E the irradiance on a plane perpendicular to l. Below the horizon f is 0, unless the surface
+        // transmits light or the coat has its own normal.
+        Illumination illumination = illuminate(light, s.position_ws);
+        float n_dot_l = dot(s.n, illumination.l);
+        if (n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !range.for_terms) continue;
+        lit.last = evaluate_brdf(s, illumination.l, v);
+        Lobes lobes = lobes_of(lit.last);
+        add(lit.lobes, lobes, vec3(1.0));
+        add(lit.punctual, lobes, illumination.irradiance * abs(n_dot_l));
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {
         cross_volume(s, lit.punctual);

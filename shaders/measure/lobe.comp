@@ -25,6 +25,6 @@ void main() {
     float theta = PI * ((float(cell.x) + 0.5) / float(task.size.x) - 0.5);
     vec3 v = direction_at(theta, 0.0);
     Surface s = measured_surface(roughness_of_row(cell.y), v);
-    Brdf f = evaluate_brdf(s, l, v);
-    lobes[cell.y * task.size.x + cell.x] = Lobe(f.diffuse * v.z, f.specular * v.z, f.multiple * v.z);
+    Brdf brdf = evaluate_brdf(s, l, v);
+    lobes[cell.y * task.size.x + cell.x] = Lobe(brdf.diffuse * v.z, brdf.specular * v.z, brdf.multiple * v.z);
 }

@@ -27,7 +27,7 @@ Kernel cosine_kernel(vec3 axis) { return Kernel(axis, 0.0, 1.0 / PI); }
 
 // The weight is D V NoL with n = v, as in ibl/prefilter.comp. Its integral is the albedo E at normal incidence.
 Kernel lobe_kernel(vec3 axis, float roughness) {
-    return Kernel(normalize(axis), alpha_from_roughness(roughness), 1.0 / max(dfg_at(1.0, roughness).e, 1e-3));
+    return Kernel(normalize(axis), alpha_from_roughness(roughness), 1.0 / max(facing_albedo(roughness), 1e-3));
 }
 
 // Density with which the kernel's own sampler draws l.

@@ -26,7 +26,7 @@ struct PathLight {
     vec3 sky;                  // the same where nothing stands in its way
     vec3 lamps;                // punctual lights and rectangles, reflected once, with their shadows
     vec3 model;                // from other surfaces of the model: emitted there, or reflected more than once
-    uint not_finite;           // number of paths that were dropped since their light was no number
+    uint not_finite;           // number of paths that were dropped since their light was no radiance
 };
 
 // No light source is brighter than this, in cd/m^2, and its square still is a float. (The sun has 1.6e9.) A path with more
@@ -42,14 +42,21 @@ Ray ray_from(vec3 position_ws, vec3 facet_n, vec3 l, uint seed) {
     return Ray(position_ws + facet_n * (side * RAY_OFFSET * frame.scene_radius), l, seed);
 }
 
-// f |NoL| for light from direction l. What a surface transmits crosses its volume. Its specular transmission is that of
+// Whether an edit made a factor negative that cannot be. The sum of all lobes may hide it. 1e-3 is far above rounding errors.
+bool has_negative_factor(Brdf brdf) {
+    vec3 least = min(min(brdf.f_dielectric, brdf.f_metal), min(brdf.diffuse, vec3(min(brdf.distribution, brdf.visibility))));
+    return any(lessThan(least, vec3(-1e-3)));
+}
+
+// f |NoL| for light from direction l; NaN if a factor is negative. What a surface transmits crosses its volume. Its specular transmission is that of
 // punctual lights only: as in the picture, lighting/transmission.glsl looks all else up in the drawn scene.
 vec3 reflected(Surface s, vec3 l, vec3 v, bool is_point) {
-    Brdf f = evaluate_brdf(s, l, v);
-    vec3 value = f.value;
+    Brdf brdf = evaluate_brdf(s, l, v);
+    if (has_negative_factor(brdf)) return vec3(uintBitsToFloat(0x7fc00000u));
+    vec3 value = brdf.value;
     if (LIGHT_PASSES && dot(s.n, l) < 0.0) {
-        vec3 passes = f.diffuse_transmitted + (is_point ? f.transmitted : vec3(0.0));
-        value = passes * attenuation(s, s.thickness) + f.clearcoat;
+        vec3 passes = brdf.diffuse_transmitted + (is_point ? brdf.transmitted : vec3(0.0));
+        value = passes * attenuation(s, s.thickness) + brdf.clearcoat;
     }
     return value * abs(dot(s.n, l));
 }

@@ -19,6 +19,8 @@ pub(crate) use pipelines::{Pass, PipelineKey, pass_format};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 
+use bytemuck::{Pod, Zeroable};
+
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHTS};
 use crate::scene::{CameraView, Model, frame, lights};
@@ -103,6 +105,19 @@ pub struct FrameState {
     params: Vec<u8>,
     pass_blocks: PassBlocks,
     constants: Frame,
+}
+
+/// A source so small that lighting evaluates it instead of looking it up; all zeros: none. It has the layout of `SmallLight`
+/// in ibl/small_lights.glsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct Sun {
+    /// Unit vector to its center, in the environment's map.
+    pub(crate) direction: [f32; 3],
+    /// Irradiance on a surface that faces it, in the unit of the environment's images.
+    pub(crate) intensity: [f32; 3],
+    /// Variance of its directions along one axis, radians squared.
+    pub(crate) variance: f32,
 }
 
 impl FrameState {
@@ -197,11 +212,14 @@ impl FrameState {
         &self.pass_blocks
     }
 
-    /// The frame constants for a picture at `rect` of the output. The environment's images hold radiance times `scale`.
-    /// `sample_index` counts the frames of an accumulated picture from 0.
-    pub(crate) fn constants(&self, rect: Rect, scale: f32, sample_index: u32) -> Frame {
+    /// The frame constants for a picture at `rect` of the output. The environment's images hold radiance times `scale`,
+    /// and its specular levels leave out `sun`. `sample_index` counts the frames of an accumulated picture from 0.
+    pub(crate) fn constants(&self, rect: Rect, (scale, sun): (f32, Sun), sample_index: u32) -> Frame {
         Frame {
             environment_intensity: self.constants.environment_intensity / scale,
+            sun_direction: sun.direction,
+            sun_intensity: sun.intensity,
+            sun_variance: sun.variance,
             sample_index,
             viewport_origin_px: [rect.x as f32, rect.y as f32],
             ..self.constants

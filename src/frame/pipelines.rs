@@ -9,7 +9,7 @@ use crate::interface::{
     self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
     UNROLLED_LIGHTS,
 };
-use crate::scene::light_count;
+use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::annotation::pass::PassFormat;
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, ModeStage, ShaderSet, values};
@@ -68,7 +68,7 @@ pub struct PipelineRequest {
     pub target: TargetFormat,
     /// Kinds of material in the scene.
     pub materials: BTreeSet<MaterialVariant>,
-    /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_RECT_LIGHTS`.
+    /// Features that all materials share: `FEATURE_ENVIRONMENT`, `FEATURE_SUN`, `FEATURE_RECT_LIGHTS`.
     pub shared_features: u32,
     /// Number of lights, if there are few enough to unroll the loop over them; otherwise 0.
     pub light_count: u32,
@@ -242,7 +242,7 @@ impl PipelineRequest {
             pass: Pass::Sky,
             format: self.target.color,
             samples: self.target.samples,
-            specialization: self.constants.clone(),
+            specialization: [&[(SPEC_FEATURES, self.shared_features)], &*self.constants].concat(),
         })
     }
 
@@ -324,6 +324,9 @@ fn shared_features(settings: &Settings) -> u32 {
     let mut features = 0;
     if settings.environment.is_lit() {
         features |= interface::FEATURE_ENVIRONMENT;
+    }
+    if has_exact_sun(&settings.environment.name) {
+        features |= interface::FEATURE_SUN;
     }
     if settings.lights.rect.enabled && settings.lights.source != LightSource::None {
         features |= interface::FEATURE_RECT_LIGHTS;

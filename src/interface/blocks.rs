@@ -132,6 +132,12 @@ blocks! {
         environment_intensity: float,
         /// Blur of the environment behind the model: 0 sharp .. 1, as a roughness.
         environment_blur: float,
+        /// The environment's sun, which the specular levels leave out: unit vector to its center, in the map.
+        sun_direction: vec3,
+        /// Its irradiance on a surface that faces it, in the unit of the environment's images; 0: the map has no sun.
+        sun_intensity: vec3,
+        /// Variance of its directions along one axis, radians squared.
+        sun_variance: float,
         /// Accumulating modes: frames since the picture changed.
         sample_index: uint,
         /// Accumulating modes: random paths a pixel in each frame.
@@ -250,6 +256,8 @@ blocks! {
         samples: uint,
         /// Factor that fits radiance into half floats.
         radiance_scale: float,
+        /// 1: a sun is taken out of the list of small lights. Else 0.
+        separates_sun: uint,
         /// Roughness of the first row.
         roughness_first: float,
         /// Roughness of the last row.

@@ -29,7 +29,7 @@ const TABLES: [Table; 3] = [
         slices: 5,
         samples: 512,
         groups: [1, 128, 1],
-        flags: Some((4, 2, &["D in brdf/ndf.glsl", "V in brdf/visibility.glsl", "F in brdf/fresnel.glsl"])),
+        flags: Some((4, 1, &["D in brdf/ndf.glsl", "V in brdf/visibility.glsl", "F in brdf/fresnel.glsl"])),
     },
     Table {
         side: 64,
@@ -93,7 +93,7 @@ impl Tables {
                     let (image, texels) = bake(set, table, stage)?;
                     if images.is_empty() {
                         lamp_dfg = Some(table_of_lamps(&set.gpu, table, &texels)?);
-                        compute::upload(&set.gpu, &[(&image, &with_fine_means(table, &texels))])?;
+                        compute::upload(&set.gpu, &[(&image, &with_fine_rows(table, &texels))])?;
                     }
                     images.push(image);
                     wrong.extend(table.wrong(&texels));
@@ -141,20 +141,26 @@ pub fn wrong_values(function: &str) -> String {
     format!("{function} returns NaN, infinite, negative or huge values, which count as 0 in light from all directions")
 }
 
-/// The DFG table with its third slice, the means, interpolated between its rows: `mean_texel` of brdf/dfg.glsl.
-fn with_fine_means(dfg: &Table, texels: &[u8]) -> Vec<u8> {
+/// The slices of the DFG table with fine rows: `DFG_MEAN` and `DFG_LOBE` of brdf/dfg.glsl.
+const FINE_SLICES: [usize; 2] = [2, 4];
+
+/// The DFG table with its slices that do not depend on a cosine interpolated between their rows: `fine_texel` of
+/// brdf/dfg.glsl.
+fn with_fine_rows(dfg: &Table, texels: &[u8]) -> Vec<u8> {
     let mut halves: Vec<half::f16> =
         bytemuck::pod_collect_to_vec::<u8, u16>(texels).into_iter().map(half::f16::from_bits).collect();
     let (side, row) = (dfg.side as usize, dfg.side as usize * 4);
-    let means = &mut halves[2 * side * row..3 * side * row];
-    // All columns of a baked row are the same. The first stays.
-    for y in 0..side {
-        for x in 1..side {
-            for channel in 0..4 {
-                let below = means[(y + 1).min(side - 1) * row + channel].to_f32();
-                let above = means[y * row + channel].to_f32();
-                means[y * row + 4 * x + channel] =
-                    half::f16::from_f32(above + (below - above) * x as f32 / side as f32);
+    for slice in FINE_SLICES {
+        let rows = &mut halves[slice * side * row..(slice + 1) * side * row];
+        // All columns of a baked row are the same. The first stays.
+        for y in 0..side {
+            for x in 1..side {
+                for channel in 0..4 {
+                    let below = rows[(y + 1).min(side - 1) * row + channel].to_f32();
+                    let above = rows[y * row + channel].to_f32();
+                    rows[y * row + 4 * x + channel] =
+                        half::f16::from_f32(above + (below - above) * x as f32 / side as f32);
+                }
             }
         }
     }

@@ -13,11 +13,11 @@ use crate::frame::{BakeStage, EnvironmentKey, LARGEST_HALF};
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Memory, fault, vk};
 use crate::interface::{IRRADIANCE_SIDE, SPECULAR_HEIGHT, SPECULAR_LEVELS, SPECULAR_WIDTH};
 use crate::pipeline::PipelineSet;
-use crate::scene::{EnvironmentError, EnvironmentFile};
+use crate::scene::{EnvironmentError, EnvironmentFile, has_exact_sun};
 
 use crate::render::compute;
 use crate::render::environment::maps::{BakeReport, GpuEnvironment, HALF, Prefiltered, Radiance, SHARED_EXPONENT};
-use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, small_lights, small_lights_size};
+use crate::render::environment::passes::{IRRADIANCE_LEVEL, Lobes, Passes, small_lights, small_lights_size, sun_of};
 use crate::render::environment::transfer;
 
 const CUBE_SIDE: u32 = 512;
@@ -194,7 +194,8 @@ impl Bake<'_> {
         let file = Running::start(move || EnvironmentFile::open(&name)).wait_unless(self.control.superseded);
         let file = Arc::new(file.ok_or(BakeError::Superseded)??);
         self.report.environment.clone_from(&file.name);
-        let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits()];
+        let sun = has_exact_sun(&self.key.name);
+        let sizes = [CUBE_SIDE, IRRADIANCE_SIDE, IRRADIANCE_LEVEL, LARGEST_RANGE.to_bits(), sun.into()];
         let disk_key = key(&[file.fingerprint], &self.key.radiance, &sizes);
         let cube = self.cube("environment", CUBE_SIDE, CUBE_LEVELS)?;
         let irradiance = self.octahedral("irradiance", [IRRADIANCE_SIDE; 2])?;
@@ -207,9 +208,9 @@ impl Bake<'_> {
             let (images_part, rest) = entry.split_at(bytes as usize);
             self.fill(&images, images_part)?;
             let (lights, scale) = rest.split_at(rest.len() - 4);
-            let small_lights = Some(small_lights(self.gpu, lights)?);
+            let (sun, small_lights) = (sun_of(lights), Some(small_lights(self.gpu, lights)?));
             let scale = bytemuck::pod_read_unaligned(scale);
-            return Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights, map: file.fingerprint }));
+            return Ok(Arc::new(Radiance { cube, irradiance, scale, sun, small_lights, map: file.fingerprint }));
         }
         self.report.decode_ms = ms(time);
         // The pipelines are created while another thread decodes.
@@ -241,7 +242,7 @@ impl Bake<'_> {
 
         let lights = small_lights(self.gpu, &vec![0; lights as usize])?;
         let time = self.begin(0.15, "cube map")?;
-        self.passes(&lights).cube(&equirect, &cube, scale)?;
+        self.passes(&lights).cube(&equirect, &cube, scale, has_exact_sun(&self.key.name))?;
         self.report.cube_ms = ms(time);
 
         let time = self.begin(0.25, "irradiance")?;
@@ -252,10 +253,11 @@ impl Bake<'_> {
         let time = Instant::now();
         let buffers = [(&texels, texels.size()), (&lights, lights.size())];
         let mut entry = transfer::read(self.gpu, &[&cube], &buffers)?;
+        let sun = sun_of(&entry[bytes as usize..]);
         entry.extend(f32::to_ne_bytes(scale));
         disk_cache::store(&disk_key, &entry);
         self.storing_ms += ms(time);
-        Ok(Arc::new(Radiance { cube, irradiance, scale, small_lights: Some(lights), map: file.fingerprint }))
+        Ok(Arc::new(Radiance { cube, irradiance, scale, sun, small_lights: Some(lights), map: file.fingerprint }))
     }
 
     /// The levels of the specular lobe.

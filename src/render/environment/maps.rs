@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::frame::Sun;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, ImageDesc, Sampler, vk};
 
 use crate::render::compute;
@@ -29,6 +30,8 @@ pub(crate) struct Radiance {
     pub(crate) irradiance: Arc<Image>,
     /// The images hold radiance times this factor.
     pub(crate) scale: f32,
+    /// What the specular levels leave out.
+    pub(super) sun: Sun,
     /// The list of ibl/small_lights.glsl. `None` in an environment that is never prefiltered.
     pub(super) small_lights: Option<Arc<Buffer>>,
     /// Fingerprint of the map.
@@ -62,7 +65,8 @@ impl GpuEnvironment {
         let (levels, irradiance) = (image("uniform levels", flat)?, image("uniform irradiance", flat)?);
         let (sheen, cube) = (image("uniform sheen", cube)?, image("uniform cube", cube)?);
         let prefiltered = Arc::new(Prefiltered { levels, wrong: false });
-        let radiance = Arc::new(Radiance { cube, irradiance, scale: 1.0, small_lights: None, map: 0 });
+        let radiance =
+            Arc::new(Radiance { cube, irradiance, scale: 1.0, sun: Sun::default(), small_lights: None, map: 0 });
         Ok(Arc::new(Self::of(gpu, radiance, prefiltered, sheen)?))
     }
 
@@ -74,6 +78,11 @@ impl GpuEnvironment {
     ) -> Result<Self, GpuError> {
         let sampler = compute::linear(gpu, vk::SamplerAddressMode::CLAMP_TO_EDGE)?;
         Ok(Self { radiance, prefiltered, sheen, sampler, report: BakeReport::default() })
+    }
+
+    /// The factor from radiance to the values of the images, and the sun that is not in the specular levels.
+    pub(crate) fn scale_and_sun(&self) -> (f32, Sun) {
+        (self.radiance.scale, self.radiance.sun)
     }
 
     /// The functions that returned values which are no densities, and count as 0 in this light.

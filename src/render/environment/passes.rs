@@ -9,8 +9,8 @@ use crate::interface::{
     BINDING_SOURCE, BINDING_SOURCE_CUBE, BINDING_TARGET, MIRROR_SIDE, SET_TASK, SPECULAR_SIDE, Task,
 };
 
-use crate::frame::BakeStage;
 use crate::frame::stages::{CUBE, DOWNSAMPLE, IRRADIANCE};
+use crate::frame::{BakeStage, Sun};
 use crate::pipeline::PipelineSet;
 use crate::render::compute;
 use crate::render::environment::transfer;
@@ -29,6 +29,11 @@ fn declared_size(set: &PipelineSet, stage: &str, binding: u32) -> u64 {
 /// Bytes of the list of ibl/small_lights.glsl.
 pub(crate) fn small_lights_size(set: &PipelineSet) -> u64 {
     declared_size(set, DOWNSAMPLE, BINDING_RESULTS)
+}
+
+/// The first member of the list of ibl/small_lights.glsl.
+pub(crate) fn sun_of(list: &[u8]) -> Sun {
+    list.get(..size_of::<Sun>()).map_or_else(Sun::default, bytemuck::pod_read_unaligned)
 }
 
 /// The buffer of ibl/small_lights.glsl with these bytes; zeros for a new bake.
@@ -93,7 +98,14 @@ impl Passes<'_> {
     }
 
     /// Resamples the map to level 0, then each level from the level above. Leaves the cube in [`Use::Sampled`].
-    pub(crate) fn cube(&self, map: &Arc<Image>, cube: &Arc<Image>, radiance_scale: f32) -> Result<(), GpuError> {
+    /// `separates_sun`: takes the sun, if there is one, out of the list of small lights.
+    pub(crate) fn cube(
+        &self,
+        map: &Arc<Image>,
+        cube: &Arc<Image>,
+        radiance_scale: f32,
+        separates_sun: bool,
+    ) -> Result<(), GpuError> {
         let desc = *cube.desc();
         let sampler = compute::linear(self.gpu, vk::SamplerAddressMode::REPEAT)?;
         // At the center of a face, a texel of the cube spans 2 / side radians; the map has width / 2 pi texels per radian.
@@ -104,6 +116,7 @@ impl Passes<'_> {
             levels: desc.mips,
             samples: (finer as u32).min(8),
             radiance_scale,
+            separates_sun: separates_sun.into(),
             ..Task::default()
         };
         let bind = |task: &Task, more: &dyn Fn(SetWriter) -> SetWriter| {

@@ -180,7 +180,7 @@ impl View {
         }
 
         // Uniforms and set 0.
-        let constants = frame.state.constants(rect, frame.environment.radiance.scale, self.sample_index);
+        let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), self.sample_index);
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
         encoder.bind_set(&self.layouts, &set);
 

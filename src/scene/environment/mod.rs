@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use xxhash_rust::xxh3::xxh3_128_with_seed;
 
-pub use built_in::BUILT_IN;
+pub use built_in::{BUILT_IN, has_exact_sun};
 pub use direction::{direction_from_uv, uv_from_direction};
 pub use error::{EnvironmentError, EnvironmentProblem};
 pub use importance::CubeLuminance;
