@@ -24,7 +24,9 @@ vec3 display_value(vec3 value) {
 
 void main() {
     vec4 scene = texelFetch(scene_color, ivec2(gl_FragCoord.xy - frame.viewport_origin_px), 0);
-    float coverage = coverage_of(scene.a);
+    // The image of a pass may have anything in alpha.
+    bool is_pass = TONEMAP == TONEMAP_OFF && frame.mode >= PASS_MODES;
+    float coverage = is_pass ? 1.0 : coverage_of(scene.a);
     // The curves are not linear, so they want the color of the surface, not the color times how much of it there is. 1e-6:
     // where nothing covers the pixel, the color is 0.
     vec3 front = display_value(scene.rgb / max(coverage, 1e-6));

@@ -138,9 +138,13 @@ impl Headless {
         let variant = settings.variant.clone();
         let settings = Settings { variant: String::new(), ..settings };
         let mut this = Self::open(gpu, compiler, source, Model::default(), settings, size)?;
+        // Settings may name passes that are off, their modes and their parameters.
+        let settings = &this.session.settings;
+        let names_passes =
+            !settings.passes.is_empty() || !settings.shader.is_empty() || settings.mode.starts_with("pass:");
         let reloader = &mut this.reloader;
         let (compiled, model) = std::thread::scope(|scope| {
-            let compiled = scope.spawn(|| reloader.compile_first_picture());
+            let compiled = scope.spawn(|| reloader.compile_first_picture(names_passes));
             let model = read();
             (compiled.join().unwrap_or_else(|panic| resume_unwind(panic)), model)
         });
@@ -420,6 +424,7 @@ impl Headless {
             }
             for state in states {
                 let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
+                self.view.restart_passes();
                 let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
                 for _ in 0..frames {
                     self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;

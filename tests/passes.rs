@@ -7,7 +7,7 @@ use specula::render::Capture;
 use specula::shader::{Diagnostic, Library, Source, check};
 use support::{
     SIZE, Session, assert_differ, assert_same, assert_validated, compiler, failed, glb, lines, load, ready, settings,
-    stages,
+    srgb, stages,
 };
 
 /// A gray sphere, one sample a pixel, on nothing.
@@ -265,6 +265,34 @@ fn errors_have_their_line_and_the_picture_stays() {
         assert!(told.iter().any(|line| line.contains(expected)), "{text}\nsays\n{}\nnot\n{expected}", told.join("\n"));
         assert_same(&before, &session.render(), expected);
     }
+    let own_binding = "layout(set = 2, binding = 3) uniform sampler2D glow;";
+    let own_image = "layout(rgba16f) uniform writeonly image2D show;";
+    for (uniforms, body, expected) in [
+        (own_binding, "color = texture(glow, uv);", "show.frag:4:48: error: `glow` has a binding of its own"),
+        (
+            own_image,
+            "imageStore(show, ivec2(0), vec4(1.0)); color = vec4(1.0);",
+            "a fragment shader cannot write the image",
+        ),
+    ] {
+        let told = lines(failed(&session.save("passes/show.frag", &pass("show", uniforms, body))));
+        assert!(told.iter().any(|line| line.contains(expected)), "{uniforms}: {}", told.join("\n"));
+    }
+    // Two passes that share a buffer agree on its size.
+    let shares = |name: &str, count: u32| {
+        pass(name, &format!("readonly buffer B {{ float b[{count}]; }};"), "color = vec4(b[1]);")
+    };
+    ready(&session.save("passes/show.frag", &shares("show", 4)));
+    let told = lines(failed(&session.save("passes/other.frag", &shares("other", 8))));
+    assert!(told[0].contains("the buffer `B` has 16 bytes here and 32 in the pass `other`"), "{told:#?}");
+    std::fs::remove_file(session.tree.path("passes/other.frag")).unwrap();
+    session.changed(&["passes/other.frag"]);
+    // A file that cannot be read, or that is not written yet, is no pass that was removed.
+    for bytes in [&b"//@pass show\n\xff"[..], b""] {
+        std::fs::write(session.tree.path("passes/show.frag"), bytes).unwrap();
+        failed(&session.changed(&["passes/show.frag"]));
+        assert_same(&before, &session.render(), "an unreadable pass");
+    }
     // A cycle names its passes.
     let reads = |name: &str, other: &str| {
         pass(name, &format!("uniform sampler2D {other};"), &format!("color = texture({other}, uv);"))
@@ -275,6 +303,27 @@ fn errors_have_their_line_and_the_picture_stays() {
     let text = lines(&told).join("\n");
     assert!(text.contains("each of these passes waits for the next: glow -> show -> glow"), "{text}");
     assert_same(&before, &session.render(), "a cycle");
+}
+
+/// The mode of a pass shows what it draws: an image as it is, whatever it has in alpha, and a picture as a picture.
+#[test]
+fn the_mode_of_a_pass_shows_what_it_draws() {
+    let mut session = sphere(&["view.background=#000000"]);
+    let sees = |annotation: &str| pass(annotation, "uniform sampler2D picture;", "color = vec4(0.25, 0.5, 1.0, 0.0);");
+    let pixel =
+        |capture: &Capture| [0, 1, 2].map(|c| capture.rgba8[((SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2) * 4 + c) as usize]);
+    let encoded = [0.25, 0.5, 1.0].map(|value| (srgb(value) * 255.0).round() as u8);
+    ready(&session.save("passes/sees.frag", &sees("sees size=1/2")));
+    assert_eq!(pixel(&session.mode("pass:sees")), encoded);
+    // After the tone map, a pass draws what the display shows.
+    ready(&session.save("passes/sees.frag", &sees("sees after=tonemap")));
+    assert_eq!(pixel(&session.mode("pass:sees")), [64, 128, 255]);
+    ready(&session.save("passes/sees.frag", &sees("sees to=picture after=tonemap")));
+    assert_eq!(pixel(&session.mode("pass:sees")), [64, 128, 255]);
+    let final_picture = session.mode("final");
+    ready(&session.save("passes/later.frag", &pass("later to=picture after=sees", "", "color = vec4(0.0);")));
+    assert_same(&final_picture, &session.mode("pass:sees"), "the picture before later passes");
+    assert_eq!(pixel(&session.mode("final")), [0, 0, 0]);
 }
 
 #[test]

@@ -102,7 +102,9 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
     ] {
         let reload = session.edit(file, from, to);
         ready(&reload);
-        assert_eq!(stages(&reload), expected, "after {file}");
+        // Declared passes use libraries too; `tests/passes.rs` looks at them.
+        let compiled: Vec<&str> = stages(&reload).into_iter().filter(|stage| !stage.starts_with("passes/")).collect();
+        assert_eq!(compiled, expected, "after {file}");
         session.render();
     }
 }

@@ -60,7 +60,8 @@ impl Playback {
         let step = std::mem::take(&mut self.step);
         if !is_animated || (self.paused && !step) {
             self.last = None;
-            return if is_animated { Clock { delta_s: 0.0, ..self.clock } } else { Clock::default() };
+            // The same time gives the same picture, which is not drawn again.
+            return if is_animated { self.clock } else { Clock::default() };
         }
         // The first frame is at 0.
         let passed = before.map_or(0.0, |before| (now - before).as_secs_f32() * self.speed);

@@ -374,7 +374,7 @@ impl Screen {
         let image = self.view.output_image(frame.state.size)?;
         let mut encoder = self.frames.begin()?;
         let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
-        self.view.draw(&mut encoder, self.frames.current(), frame, &output, Redraw::Always)?;
+        self.view.draw(&mut encoder, self.frames.current(), frame, &output, Redraw::IfChanged)?;
         let readback = self.view.read_back(&mut encoder, &image)?;
         self.frames.submit(encoder, Default::default())?;
         // SYNC: the CPU reads the picture.

@@ -10,6 +10,9 @@ macro_rules! constants {
 }
 
 constants! {
+    /// Modes from here on show the image of a declared pass.
+    PASS_MODES = 1 << 30;
+
     /// glTF `alphaMode` OPAQUE.
     ALPHA_OPAQUE = 0;
     /// glTF `alphaMode` MASK.

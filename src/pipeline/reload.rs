@@ -110,7 +110,7 @@ impl Reloader {
         superseded: impl Fn() -> bool,
     ) -> Reload {
         let Some(on_screen) = self.library.set().map(|shaders| request(shaders).stages()) else {
-            let update = self.compile_first_picture();
+            let update = self.compile_first_picture(false);
             return self.build(update, request, superseded);
         };
         let is_first = |path: &TreePath| {
@@ -120,9 +120,10 @@ impl Reloader {
         self.build(update, request, superseded)
     }
 
-    /// Compiles what a first picture needs, while the model may still be loading. [`Reloader::build`] takes the result.
-    pub fn compile_first_picture(&mut self) -> Update {
-        self.library.first_picture(&LATER_STAGES)
+    /// Compiles what a first picture needs, while the model may still be loading. [`Reloader::build`] takes the result. Declared
+    /// passes that are off are not needed, unless `with_all_passes`.
+    pub fn compile_first_picture(&mut self, with_all_passes: bool) -> Update {
+        self.library.first_picture(&LATER_STAGES, with_all_passes)
     }
 
     /// Compiles the stages that [`Reloader::update_first`] has left. The set that it returns has the pipelines of the one before.

@@ -418,8 +418,10 @@ impl Thread {
             if !self.inbox.is_empty() || self.is_stale() {
                 return;
             }
+            let settings = Settings { mode: modes[neighbor].slug.clone(), ..snapshot.settings.clone() };
+            let (scene, target) = (snapshot.scene.clone(), snapshot.target);
             // An error is reported when the user selects the mode.
-            let _ = set.build(&request.with_mode(&modes[neighbor], snapshot.settings.view.tonemap));
+            let _ = set.build(&Snapshot { settings, scene, target }.request(&set.shaders));
         }
     }
 }

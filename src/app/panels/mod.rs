@@ -114,10 +114,10 @@ fn settings(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mu
     timing::show(ui, &mut viewer.panels.timing, readings, &device);
     let settings = &mut session.settings;
     parameters::show(ui, &shaders, &mut settings.shader);
-    passes::show(ui, &shaders, settings, &mut viewer.playback, is_animated);
     environment::show(ui, settings, viewer.threads.baker.progress(), &viewer.resources.environment().report);
     lights::show(ui, &mut settings.lights, model.lights.len());
     output::show(ui, settings, commands);
+    passes::show(ui, &shaders, settings, &mut viewer.playback, is_animated);
     camera::show(ui, &mut settings.camera, &model, commands);
     model::show(ui, settings, &model, &viewer.model);
 }

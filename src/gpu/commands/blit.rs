@@ -61,9 +61,12 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_clear_color_image(self.raw, image.raw, layout, &zero, &[range]) };
     }
 
-    /// Sets all bytes of a buffer to 0. Its usage must include `TRANSFER_DST`.
+    /// Sets all bytes of a buffer to 0, after what earlier shaders do with it. Its usage must include `TRANSFER_DST`.
     pub fn clear_buffer(&mut self, buffer: &Arc<Buffer>) {
+        use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
         self.keep(buffer);
+        let shaders = (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE);
+        self.order(shaders, (S::ALL_TRANSFER, A::TRANSFER_WRITE));
         // SAFETY: this encoder records the command buffer; the buffer is kept.
         unsafe { self.gpu.device.cmd_fill_buffer(self.raw, buffer.raw, 0, vk::WHOLE_SIZE, 0) };
     }
@@ -105,10 +108,11 @@ impl Encoder {
             .dst_subresource(layers(to_level, to_layer))
             .dst_offsets([vk::Offset3D::default(), corner(to, to_level)])];
         let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        let blends = self.gpu.blends_texels(from.desc().format);
+        let filter = if blends { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
         // SAFETY: this encoder records the command buffer; the caller keeps both images, and the regions lie within them.
         unsafe {
-            let device = &self.gpu.device;
-            device.cmd_blit_image(self.raw, from.raw, source, to.raw, target, &region, vk::Filter::LINEAR);
+            self.gpu.device.cmd_blit_image(self.raw, from.raw, source, to.raw, target, &region, filter);
         }
     }
 }

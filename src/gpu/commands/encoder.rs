@@ -41,6 +41,8 @@ pub enum Use {
     Color,
     /// Depth attachment.
     Depth,
+    /// Depth attachment that receives the resolved samples of another.
+    DepthResolve,
     /// Shaders sample it.
     Sampled,
     /// Compute shaders write and read single levels.
@@ -69,6 +71,12 @@ impl Use {
                 A::DEPTH_STENCIL_ATTACHMENT_WRITE | A::DEPTH_STENCIL_ATTACHMENT_READ,
                 L::DEPTH_ATTACHMENT_OPTIMAL,
             ),
+            // Vulkan resolves depth as it resolves color.
+            Self::DepthResolve => (
+                S::COLOR_ATTACHMENT_OUTPUT | S::LATE_FRAGMENT_TESTS,
+                A::COLOR_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
+                L::DEPTH_ATTACHMENT_OPTIMAL,
+            ),
             Self::Sampled => {
                 (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_SAMPLED_READ, L::SHADER_READ_ONLY_OPTIMAL)
             }
@@ -88,7 +96,7 @@ pub struct Attachments<'a> {
     pub clear: Option<[f32; 4]>,
     /// Image in [`Use::Color`] that receives the average of the color samples.
     pub resolve: Option<&'a Arc<Image>>,
-    /// Image in [`Use::Depth`] that receives the depth of each pixel's first sample.
+    /// Image in [`Use::DepthResolve`] that receives the depth of each pixel's first sample.
     pub resolve_depth: Option<&'a Arc<Image>>,
     /// Depth target, in [`Use::Depth`]. If color is cleared, depth is cleared to 0, which is far.
     pub depth: Option<&'a Arc<Image>>,

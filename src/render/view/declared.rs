@@ -54,6 +54,8 @@ pub(super) struct DeclaredPasses {
     sets: Vec<(Vec<usize>, Arc<DescriptorSet>)>,
     /// The HDR picture after the passes, or the image of the shown pass.
     picture: Option<Arc<Image>>,
+    /// What the display shows after the passes behind the tone map.
+    display: Option<Arc<Image>>,
 }
 
 /// What the passes of a frame are drawn with.
@@ -65,8 +67,8 @@ pub(super) struct Drawn<'a> {
     pub(super) depth: Option<&'a Arc<Image>>,
 }
 
-/// Sets that are kept before the cache begins again.
-const SETS_KEPT: usize = 512;
+/// Sets for each pass that are kept before the cache begins again: those of two slots with two images each, and some before.
+const SETS_KEPT: usize = 8;
 
 impl DeclaredPasses {
     pub(super) fn new(
@@ -85,6 +87,7 @@ impl DeclaredPasses {
             images: Images::default(),
             sets: Vec::new(),
             picture: None,
+            display: None,
         })
     }
 
@@ -96,7 +99,7 @@ impl DeclaredPasses {
         if let Some(next) = next {
             self.images = next;
             self.sets.clear();
-            self.picture = None;
+            (self.picture, self.display) = (None, None);
         }
         Ok(is_new)
     }
@@ -133,11 +136,7 @@ impl DeclaredPasses {
     /// Scales the image of a pass to the picture's size, for the tone map to show.
     fn show(&mut self, encoder: &mut Encoder, name: &str) {
         let (Some(from), Some(to)) = (self.images.current(name).cloned(), self.images.shown().cloned()) else { return };
-        encoder.transition(&from, Use::Sampled, Use::CopyFrom);
-        encoder.transition(&to, Use::Undefined, Use::CopyTo);
-        encoder.scale(&from, &to);
-        encoder.transition(&from, Use::CopyFrom, Use::Sampled);
-        encoder.transition(&to, Use::CopyTo, Use::Sampled);
+        scale(encoder, &from, &to);
         self.picture = Some(to);
     }
 
@@ -159,16 +158,47 @@ impl DeclaredPasses {
         drawn: &Drawn<'_>,
     ) -> Result<Option<Arc<Image>>, GpuError> {
         let Some(first) = self.images.displays.first().cloned() else { return Ok(None) };
-        self.run(encoder, drawn, &first, true).map(Some)
+        let mut last = self.run(encoder, drawn, &first, true)?;
+        let request = &drawn.frame.state.pipelines;
+        let is_shown = |pass: &&Arc<GraphPass>| request.shown_pass.as_deref() == Some(pass.name());
+        let shown = request.passes.iter().find(is_shown).filter(|pass| pass.after_tonemap && !pass.note.to_picture);
+        if let Some(pass) = shown
+            && let (Some(from), Some(to)) = (self.images.current(pass.name()), self.images.other_picture(true, &last))
+        {
+            scale(encoder, from, to);
+            last = to.clone();
+        }
+        self.display = Some(last.clone());
+        Ok(Some(last))
+    }
+
+    /// What the passes after the tone map drew last, while nothing that they read has changed.
+    pub(super) fn last_display(&self) -> Option<&Arc<Image>> {
+        self.display.as_ref()
+    }
+
+    /// Forgets what the passes drew: the frame's commands were not submitted.
+    pub(super) fn forget(&mut self) {
+        self.restart();
+        (self.picture, self.display) = (None, None);
+    }
+
+    /// Drops the cached sets, which keep images alive that were replaced.
+    pub(super) fn targets_replaced(&mut self) {
+        self.sets.clear();
+        self.picture = None;
     }
 
     /// The set of the tone map that reads `picture`.
     pub(super) fn tonemap_set(&mut self, picture: &Arc<Image>) -> Result<Arc<DescriptorSet>, GpuError> {
         let key = vec![Arc::as_ptr(picture) as usize];
-        self.cached(key, |this| {
-            let writer = SetWriter::default().texture(0, picture, &this.nearest);
-            DescriptorSet::new(&this.layouts, SET_PASS, writer)
-        })
+        if let Some((_, set)) = self.sets.iter().find(|(known, _)| *known == key) {
+            return Ok(set.clone());
+        }
+        let writer = SetWriter::default().texture(0, picture, &self.nearest);
+        let set = DescriptorSet::new(&self.layouts, SET_PASS, writer)?;
+        self.keep(key, &set, 0);
+        Ok(set)
     }
 
     /// Draws the passes of one side of the tone map, from this picture. Returns the last picture.
@@ -258,9 +288,14 @@ impl DeclaredPasses {
                 [target.desc().width.div_ceil(x), target.desc().height.div_ceil(y), 1]
             }
         };
-        encoder.transition(target, Use::Sampled, Use::Storage);
+        let writes_image = pass.inputs.contains(&Input::Output);
+        if writes_image {
+            encoder.transition(target, Use::Sampled, Use::Storage);
+        }
         encoder.dispatch_pass(layout, pipeline, &[drawn.frame_set, &set, &self.task_set.clone()], groups);
-        encoder.transition(target, Use::Storage, Use::Sampled);
+        if writes_image {
+            encoder.transition(target, Use::Storage, Use::Sampled);
+        }
         Ok(())
     }
 
@@ -302,11 +337,15 @@ impl DeclaredPasses {
             return Ok(set.clone());
         }
         let set = layout.set(&pass.note.name, &resources)?;
-        if self.sets.len() >= SETS_KEPT {
+        self.keep(key, &set, drawn.frame.state.pipelines.passes.len());
+        Ok(set)
+    }
+
+    fn keep(&mut self, key: Vec<usize>, set: &Arc<DescriptorSet>, passes: usize) {
+        if self.sets.len() >= SETS_KEPT * (passes + 1) {
             self.sets.clear();
         }
         self.sets.push((key, set.clone()));
-        Ok(set)
     }
 
     /// An image as passes read it: with blended texels, if the device can blend them.
@@ -314,19 +353,15 @@ impl DeclaredPasses {
         let blends = self.gpu.blends_texels(image.desc().format);
         PassResource::Texture(image, if blends { &self.linear } else { &self.nearest })
     }
+}
 
-    fn cached(
-        &mut self,
-        key: Vec<usize>,
-        make: impl FnOnce(&Self) -> Result<Arc<DescriptorSet>, GpuError>,
-    ) -> Result<Arc<DescriptorSet>, GpuError> {
-        if let Some((_, set)) = self.sets.iter().find(|(known, _)| *known == key) {
-            return Ok(set.clone());
-        }
-        let set = make(self)?;
-        self.sets.push((key, set.clone()));
-        Ok(set)
-    }
+/// Scales an image to the size of another. Both are in [`Use::Sampled`] then.
+fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
+    encoder.transition(from, Use::Sampled, Use::CopyFrom);
+    encoder.transition(to, Use::Undefined, Use::CopyTo);
+    encoder.scale(from, to);
+    encoder.transition(from, Use::CopyFrom, Use::Sampled);
+    encoder.transition(to, Use::CopyTo, Use::Sampled);
 }
 
 fn uses_buffers(pass: &GraphPass) -> bool {

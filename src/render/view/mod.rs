@@ -127,6 +127,7 @@ impl View {
             let samplers = (&self.nearest, &self.shared.linear);
             self.targets = Some(Targets::new(&self.gpu, &self.layouts, desc, samplers)?);
             self.drawn = None;
+            self.declared.targets_replaced();
         }
         if self.declared.prepare(frame)? {
             self.drawn = None;
@@ -138,7 +139,7 @@ impl View {
     /// [`View::forget`] if the commands are not submitted.
     ///
     /// # Errors
-    /// Out of memory. Nothing is recorded then.
+    /// Out of memory. Call [`View::forget`] then.
     pub fn draw(
         &mut self,
         encoder: &mut Encoder,
@@ -212,12 +213,16 @@ impl View {
             encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, output.image, rect));
             return Ok(());
         };
-        encoder.transition(&display, Use::Undefined, Use::Color);
-        encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, &display, rect));
-        encoder.transition(&display, Use::Color, Use::Sampled);
-
         // What the tree declares, after the tone map.
-        let last = self.declared.after_tonemap(encoder, &drawn)?;
+        let last = match self.declared.last_display().filter(|_| !redrawn) {
+            Some(last) => Some(last.clone()),
+            None => {
+                encoder.transition(&display, Use::Undefined, Use::Color);
+                encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, &display, rect));
+                encoder.transition(&display, Use::Color, Use::Sampled);
+                self.declared.after_tonemap(encoder, &drawn)?
+            }
+        };
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
         if let Some(last) = last {
@@ -233,6 +238,7 @@ impl View {
     /// Draws everything in the next frame, since the commands of a frame were not submitted and the targets may hold nothing.
     pub fn forget(&mut self) {
         self.drawn = None;
+        self.declared.forget();
     }
 
     /// Lets the declared passes begin again: images of the frame before and buffers become 0.

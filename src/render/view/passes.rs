@@ -57,7 +57,7 @@ impl Passes<'_> {
         let clear = (!has_opaque).then_some([0.0; 4]);
         let (resolve_depth, keeps_depth) = (targets.resolved_depth.as_ref(), targets.desc.reads_depth);
         if let Some(resolved) = resolve_depth {
-            encoder.transition(resolved, Use::Undefined, Use::Depth);
+            encoder.transition(resolved, Use::Undefined, Use::DepthResolve);
         }
         encoder.begin_rendering(&Attachments { clear, resolve_depth, keeps_depth, ..self.hdr() });
         if let Some(only) = self.only {
@@ -72,7 +72,8 @@ impl Passes<'_> {
         self.draw(encoder, &sorted.blended, PipelineRequest::model_key);
         encoder.end_rendering();
         if let Some(depth) = targets.read_depth() {
-            encoder.transition(depth, Use::Depth, Use::Sampled);
+            let before = if resolve_depth.is_some() { Use::DepthResolve } else { Use::Depth };
+            encoder.transition(depth, before, Use::Sampled);
         }
     }
 

@@ -4,6 +4,7 @@ use super::{Input, PassStage};
 use crate::interface::SET_PASS;
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::{PassFormat, PassNote, TextureNote};
+use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::spirv::reflect::Descriptor;
 
@@ -27,8 +28,15 @@ pub struct Names<'a> {
 pub fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Vec<Input>, Vec<Diagnostic>> {
     let own = stage.reflection.descriptors.iter().filter(|found| found.set == SET_PASS);
     let (mut inputs, mut errors) = (Vec::new(), Vec::new());
-    for found in own {
-        match input(note, found, names) {
+    for (index, found) in own.enumerate() {
+        let found_input = match found.binding as usize == index && !is_doubled(stage, found) {
+            true => input(note, stage.kind, found, names),
+            false => {
+                let message = format!("`{}` has a binding of its own", found.name);
+                Err((message, "leave out layout(set, binding): a pass declares what it reads by name alone".into()))
+            }
+        };
+        match found_input {
             Ok(input) => inputs.push(input),
             Err((message, help)) => {
                 let error = stage.texts.error(&[found.name.as_str(), "uniform"], message);
@@ -39,10 +47,16 @@ pub fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Resu
     if errors.is_empty() { Ok(inputs) } else { Err(errors) }
 }
 
+/// Whether another descriptor of the pass has the same binding.
+fn is_doubled(stage: &PassStage<'_>, found: &Descriptor) -> bool {
+    let same = |other: &&Descriptor| (other.set, other.binding) == (found.set, found.binding);
+    stage.reflection.descriptors.iter().filter(same).count() > 1
+}
+
 /// A message, and a help.
 type Refusal = (String, String);
 
-fn input(note: &PassNote, found: &Descriptor, names: &Names<'_>) -> Result<Input, Refusal> {
+fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>) -> Result<Input, Refusal> {
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
         "sampler2D" => sampled(note, name, names),
@@ -57,6 +71,10 @@ fn input(note: &PassNote, found: &Descriptor, names: &Names<'_>) -> Result<Input
             Ok(Input::Parameters(block.size.next_multiple_of(16), members))
         }
         "buffer block" => buffer(found),
+        glsl if glsl.ends_with("image2D") && kind != StageKind::Compute => {
+            let message = format!("a fragment shader cannot write the image `{name}`");
+            Err((message, "it draws to the image of its pass; a compute shader (.comp) writes it by imageStore".into()))
+        }
         glsl if glsl.ends_with("image2D") && name == &note.name => written(note, found),
         glsl if glsl.ends_with("image2D") => {
             let message = format!("`{name}` is not the image of this pass, which is `{}`", note.name);

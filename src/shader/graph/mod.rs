@@ -158,6 +158,7 @@ impl Graph {
                 Err(found) => errors.extend(found),
             }
         }
+        errors.extend(different_buffers(&passes));
         let used: BTreeSet<&str> = passes.iter().flat_map(|pass| &pass.inputs).filter_map(texture_name).collect();
         let mut textures = BTreeMap::new();
         for note in annotations.textures.iter().filter(|note| used.contains(note.name.as_str())) {
@@ -246,6 +247,26 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
         );
     }
     (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
+}
+
+/// Errors of passes whose buffer another pass declares with another size.
+fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
+    let mut first: BTreeMap<&str, (u32, &GraphPass)> = BTreeMap::new();
+    let mut errors = Vec::new();
+    for pass in passes {
+        for input in &pass.inputs {
+            let Input::Buffer(name, bytes) = input else { continue };
+            let (size, other) = *first.entry(name).or_insert((*bytes, pass));
+            if size != *bytes {
+                let message = format!(
+                    "the buffer `{name}` has {bytes} bytes here and {size} in the pass `{}`; both share it",
+                    other.name()
+                );
+                errors.push(pass.note.place.error(message).with_help("declare it once, in a file that both include"));
+            }
+        }
+    }
+    errors
 }
 
 fn texture_name(input: &Input) -> Option<&str> {

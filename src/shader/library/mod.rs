@@ -12,6 +12,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::interface;
 use crate::shader::annotation::pass::is_image_extension;
 use crate::shader::annotation::{self, Annotations, Constant, Mode, ModeStage, Parameter};
 use crate::shader::compile::include::files_of;
@@ -21,7 +22,7 @@ use crate::shader::diagnostic::{Diagnostic, Severity, unique};
 use crate::shader::graph::{Graph, PassStage, text_reads_clock};
 use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::{Source, TreePath};
+use crate::shader::source::{Source, SourceError, TreePath};
 use crate::shader::spirv::reflect::Reflection;
 use slot::{Built, Done, Slot, build};
 
@@ -217,13 +218,15 @@ impl Library {
         self.conclude(linked, self.next_generation(), &snapshot, report)
     }
 
-    /// The first update, in two steps: all but the stages of `later` and the passes that are off compile first.
-    pub fn first_picture(&mut self, later: &[&str]) -> Update {
+    /// The first update, in two steps: all but the stages of `later` compile first, and the passes that are off only if
+    /// `with_all_passes`.
+    pub fn first_picture(&mut self, later: &[&str], with_all_passes: bool) -> Update {
         let source = Arc::clone(&self.source);
         let snapshot = Snapshot::new(&source);
         self.find_passes(&Change::All, &snapshot);
         let passes = self.slots.iter().skip(self.fixed).map(|slot| slot.path.clone());
-        let off: BTreeSet<TreePath> = passes.filter(|path| annotation::is_off(&snapshot, path)).collect();
+        let off: BTreeSet<TreePath> =
+            passes.filter(|path| !with_all_passes && annotation::is_off(&snapshot, path)).collect();
         self.update_first(&Change::All, |path| !later.contains(&path.as_str()) && !off.contains(path))
     }
 
@@ -262,10 +265,18 @@ impl Library {
             Change::Paths(paths) => Box::new(paths.iter()),
         };
         let is_pass = |path: &TreePath| snapshot.read(path).is_ok_and(|text| declares_pass(&text));
-        for path in paths.filter(|path| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute))) {
+        // A file that cannot be read, or is still empty, is a broken pass, not one that was removed.
+        let is_no_pass = |path: &TreePath| match snapshot.read(path) {
+            Ok(text) => !text.trim().is_empty() && !declares_pass(&text),
+            Err(error) => error == SourceError::Missing,
+        };
+        let is_seen = |path: &TreePath| !path.as_str().split('/').any(|name| name.starts_with('.'));
+        let may_be_pass =
+            |path: &TreePath| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute));
+        for path in paths.filter(|path| may_be_pass(path) && is_seen(path)) {
             let place = self.slots.iter().position(|slot| slot.path == *path);
             match place {
-                Some(place) if place >= self.fixed && !is_pass(path) => {
+                Some(place) if place >= self.fixed && is_no_pass(path) => {
                     self.slots.remove(place);
                     self.relink = true;
                 }
@@ -345,7 +356,9 @@ impl Library {
         let mut warnings = snapshot.source().refusals();
         let mut files = BTreeSet::new();
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
-        let unseen = self.slots.iter().filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
+        // A pass that was never seen adds its modes and parameters when it has compiled.
+        let fixed = self.slots.iter().take(self.fixed);
+        let unseen = fixed.filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
         let unseen: Vec<TreePath> = unseen.flat_map(|slot| files_of(snapshot, &slot.path)).collect();
         files.extend(&unseen);
         match contract::interface_matches(snapshot) {
@@ -451,14 +464,14 @@ impl Library {
 
 /// A debug mode for the image of each pass.
 fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
-    /// Beyond the ids of annotated modes.
-    const FIRST: u32 = 1 << 30;
-    (FIRST..).zip(&graph.passes).map(|(id, pass)| Mode {
+    (interface::PASS_MODES..).zip(&graph.passes).map(|(id, pass)| Mode {
         id,
         slug: pass.slug(),
         name: pass.note.label.clone(),
         group: "Passes".to_owned(),
         components: 3,
+        // What gives a picture is shown as a picture.
+        tonemap: pass.note.to_picture || pass.after_tonemap,
         stage: ModeStage::Picture,
         pass: Some(pass.name().to_owned()),
         doc: pass.note.doc.clone(),

@@ -91,12 +91,26 @@ impl Images {
             next.passes.insert(pass.name().to_owned(), images);
         }
         for (name, bytes) in request.passes.iter().flat_map(|pass| &pass.inputs).filter_map(buffer_of) {
-            let known = self.buffers.get(name).filter(|buffer| buffer.size() == u64::from(bytes).max(1));
+            let known = next.buffers.get(name).or(self.buffers.get(name));
+            let known = known.filter(|buffer| buffer.size() == u64::from(bytes).max(1));
             let buffer = match known {
                 Some(known) => known.clone(),
                 None => next.new_buffer(gpu, name, bytes)?,
             };
             next.buffers.insert(name.to_owned(), buffer);
+        }
+        // What lasts from frame to frame outlives a look at another mode, and a switch.
+        let graph = &frame.state.shaders.graph;
+        for (name, images) in self.passes.iter().filter(|(name, _)| graph.pass(name).is_some_and(|p| p.note.keep)) {
+            next.passes.entry(name.clone()).or_insert_with(|| images.clone());
+        }
+        for (name, buffer) in &self.buffers {
+            let declared = graph.passes.iter().flat_map(|pass| &pass.inputs).filter_map(buffer_of);
+            let size =
+                u64::from(declared.filter(|(other, _)| other == name).map(|(_, bytes)| bytes).max().unwrap_or(0));
+            if buffer.size() == size {
+                next.buffers.entry(name.clone()).or_insert_with(|| buffer.clone());
+            }
         }
         let makers = |after: bool| {
             request.passes.iter().filter(|pass| pass.note.to_picture && pass.after_tonemap == after).count()
@@ -139,7 +153,7 @@ impl Images {
             size,
             format: pass_format(pass.note.format),
             mips: if pass.note.mips { mips::count(size.0, size.1) } else { 1 },
-            is_written: pass.is_compute,
+            is_written: pass.inputs.contains(&Input::Output),
             keeps: pass.note.keep,
         };
         if let Some(known) = known.filter(|known| known.desc == desc) {
