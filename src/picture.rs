@@ -57,7 +57,8 @@ pub fn check_path(path: &Path) -> Result<(), String> {
 /// `out` with the mode's name before the extension: `helmet.png` becomes `helmet.metallic.png`.
 pub fn path_of_mode(out: &Path, slug: &str) -> PathBuf {
     let ending = out.extension().unwrap_or_default().to_string_lossy();
-    out.with_extension(format!("{slug}.{ending}"))
+    // Not every file system has names with a colon.
+    out.with_extension(format!("{}.{ending}", slug.replace(':', "-")))
 }
 
 /// Writes a capture to a file, as [`write_image`] does: 8-bit color to a PNG, the raw values to an EXR.

@@ -249,6 +249,10 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
         let capture = capture(headless, args)?;
         return picture::write(&capture, out).map_err(Failure::Input);
     }
+    // The passes that are off, and their modes, are known when all stages have compiled.
+    if let Some(Outcome::Failed(diagnostics)) = headless.finish().map(|rest| rest.outcome) {
+        return Err(Failure::Shaders(diagnostics));
+    }
     let frames = headless.settings_mut().view.frames;
     for mode in &headless.shaders().modes {
         let settings = headless.settings_mut();
