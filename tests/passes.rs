@@ -44,11 +44,32 @@ fn sequence(session: &mut Session, frames: u32) -> Capture {
     session.render()
 }
 
+/// The text in the README that begins like this.
+fn in_readme(begin: &str) -> String {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let (_, rest) = readme.split_once(&format!("```glsl\n{begin}")).expect("README shows it");
+    format!("{begin}{}", rest.split_once("```").unwrap().0)
+}
+
+/// The compute pass and the slider of the README.
+#[test]
+fn the_readmes_ripples_spread_what_the_frame_before_had() {
+    let mut session = sphere(&[]);
+    ready(&session.save("passes/ripples.comp", &in_readme("//@pass ripples")));
+    let slider = in_readme("uniform Vignette");
+    let uniforms = format!("uniform sampler2D ripples;\n{slider}");
+    let body = "color = vec4(strength * texelFetch(ripples, ivec2(128), 0).r, 0.0, 0.0, 1.0);";
+    ready(&session.save("passes/show.frag", &pass("show to=picture", &uniforms, body)));
+    session.set("strength=2");
+    // The sequence begins at 1 s, with 10 frames a second.
+    let expected = 2.0 * (0.99 * 1.0_f32.sin() + 1.1_f32.sin());
+    let found = center(&sequence(&mut session, 2))[0];
+    assert!((found - expected).abs() < 1e-3, "{found} is not {expected}");
+}
+
 #[test]
 fn one_file_of_ten_lines_is_an_effect() {
-    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let (_, rest) = readme.split_once("```glsl\n//@pass vignette").expect("README shows the pass vignette");
-    let text = format!("//@pass vignette{}", rest.split_once("```").unwrap().0);
+    let text = in_readme("//@pass vignette");
     assert!(text.lines().count() <= 10, "{text}");
     let mut session = sphere(&["view.background=#808080"]);
     let before = session.render();
@@ -303,6 +324,23 @@ fn errors_have_their_line_and_the_picture_stays() {
     let text = lines(&told).join("\n");
     assert!(text.contains("each of these passes waits for the next: glow -> show -> glow"), "{text}");
     assert_same(&before, &session.render(), "a cycle");
+}
+
+#[test]
+fn a_file_in_passes_that_declares_none_is_told() {
+    let mut session = sphere(&[]);
+    let text = pass("forgotten to=picture", "", "color = vec4(1.0);");
+    let (_, without) = text.split_once('\n').unwrap();
+    ready(&session.save("passes/forgotten.frag", without));
+    let warnings = lines(&session.headless.shaders().warnings);
+    let expected = "forgotten.frag: warning: nothing draws this file, since no line of it says //@pass";
+    assert!(warnings.iter().any(|line| line.contains(expected)), "{warnings:#?}");
+    ready(&session.save("passes/forgotten.frag", &text));
+    assert_eq!(lines(&session.headless.shaders().warnings), [""; 0]);
+    assert_eq!(center(&session.render()), [1.0; 4]);
+    ready(&session.save("passes/forgotten.frag", without));
+    remove(&mut session, "passes/forgotten.frag");
+    assert_eq!(lines(&session.headless.shaders().warnings), [""; 0]);
 }
 
 /// The mode of a pass shows what it draws: an image as it is, whatever it has in alpha, and a picture as a picture.

@@ -23,10 +23,6 @@ pub(super) fn show(
         for pass in &shaders.graph.passes {
             let is_own = |parameter: &&Parameter| parameter.offset.is_none() && pass.has_parameter(&parameter.name);
             let own: Vec<&Parameter> = shaders.parameters.iter().filter(is_own).collect();
-            // What only serves other passes is drawn when they need it.
-            if !pass.note.to_picture && pass.note.on && own.is_empty() {
-                continue;
-            }
             let name = pass.name();
             let mut on = settings.passes.get(name).copied().unwrap_or(pass.note.on);
             let doc = format!("{}\n\n--set passes.{name}={}\n{}", pass.note.doc, !on, pass.note.stage);

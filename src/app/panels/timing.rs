@@ -4,13 +4,17 @@ use egui::{RichText, Ui};
 
 use super::{QUIET, Readings, section};
 
-/// The newest time of every pass drawn so far. Rows stay after their pass, so that the list does not jump.
+/// The newest time of every pass of the last whole frame. Rows stay while only the panels are drawn, so that the list does not
+/// jump.
 #[derive(Default)]
 pub(super) struct Timing {
     passes: Vec<(String, f64)>,
 }
 
 pub(super) fn show(ui: &mut Ui, timing: &mut Timing, readings: &Readings, device: &str) {
+    if readings.passes.iter().any(|pass| pass.name == "model") {
+        timing.passes.retain(|(name, _)| readings.passes.iter().any(|pass| pass.name == *name));
+    }
     for pass in &readings.passes {
         match timing.passes.iter_mut().find(|(name, _)| *name == pass.name) {
             Some((_, ms)) => *ms = pass.ms,

@@ -112,6 +112,8 @@ pub struct Library {
     slots: Vec<Slot>,
     /// Number of entry points that every tree has.
     fixed: usize,
+    /// Stages in `passes/` that declare no pass, so that nothing draws them.
+    idle: BTreeSet<TreePath>,
     pairs: Vec<(TreePath, TreePath)>,
     set: Option<Arc<ShaderSet>>,
     failed: bool,
@@ -132,8 +134,8 @@ impl Library {
             .collect();
         let fixed = paths.len();
         let slots = paths.into_iter().map(Slot::new).collect();
-        let (cache, source) = (FileCache::default(), Arc::new(source));
-        Self { source, compiler, cache, slots, fixed, pairs, set: None, failed: false, relink: false }
+        let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
+        Self { source, compiler, cache, slots, fixed, idle, pairs, set: None, failed: false, relink: false }
     }
 
     /// The tree.
@@ -275,6 +277,9 @@ impl Library {
             |path: &TreePath| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute));
         for path in paths.filter(|path| may_be_pass(path) && is_seen(path)) {
             let place = self.slots.iter().position(|slot| slot.path == *path);
+            let is_idle = path.as_str().starts_with("passes/") && snapshot.read(path).is_ok() && is_no_pass(path);
+            let changed = if is_idle { self.idle.insert(path.clone()) } else { self.idle.remove(path) };
+            self.relink |= changed;
             match place {
                 Some(place) if place >= self.fixed && is_no_pass(path) => {
                     self.slots.remove(place);
@@ -354,6 +359,12 @@ impl Library {
     fn link(&self, snapshot: &Snapshot<'_>, is_partial: bool) -> Result<Linked, Vec<Diagnostic>> {
         let mut errors = Vec::new();
         let mut warnings = snapshot.source().refusals();
+        warnings.extend(self.idle.iter().map(|path| {
+            let message = "nothing draws this file, since no line of it says //@pass";
+            let name = path.stem().rsplit('/').next().unwrap_or_default();
+            let help = format!("begin it with `//@pass {name} to=picture`");
+            Diagnostic::warning(snapshot.display_path(path), message).with_help(help)
+        }));
         let mut files = BTreeSet::new();
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
         // A pass that was never seen adds its modes and parameters when it has compiled.
