@@ -230,7 +230,7 @@ impl Bench {
         let pipeline = set.compute(stage, &self.constants)?;
         let groups = [grid.columns.div_ceil(8), grid.rows.div_ceil(8), 1];
         one_shot(gpu, |encoder| {
-            encoder.dispatch(layouts, &pipeline, &[&self.frame, &bindings], groups);
+            encoder.dispatch(&pipeline, &[&self.frame, &bindings], groups);
             encoder.computed();
             Ok(())
         })?;

@@ -5,51 +5,16 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::encoder::Encoder;
-use crate::gpu::{ComputePipeline, DescriptorSet, PassLayout, SetLayouts};
+use crate::gpu::{ComputePipeline, DescriptorSet};
 
 impl Encoder {
     /// Binds each set at its own number, then runs `groups` workgroups of a pipeline.
-    pub fn dispatch(
-        &mut self,
-        layouts: &Arc<SetLayouts>,
-        pipeline: &Arc<ComputePipeline>,
-        sets: &[&Arc<DescriptorSet>],
-        groups: [u32; 3],
-    ) {
+    pub fn dispatch(&mut self, pipeline: &Arc<ComputePipeline>, sets: &[&Arc<DescriptorSet>], groups: [u32; 3]) {
         let point = vk::PipelineBindPoint::COMPUTE;
         self.keep(pipeline);
         self.loops = self.loops.take().or_else(|| pipeline.loops.clone());
         for set in sets {
-            self.keep(*set);
-            // SAFETY: this encoder records the command buffer; the set is kept, and all pipelines share the layout.
-            unsafe {
-                self.gpu.device.cmd_bind_descriptor_sets(self.raw, point, layouts.pipeline, set.index, &[set.raw], &[]);
-            }
-        }
-        // SAFETY: this encoder records the command buffer; the pipeline is kept.
-        unsafe {
-            self.gpu.device.cmd_bind_pipeline(self.raw, point, pipeline.raw);
-            self.gpu.device.cmd_dispatch(self.raw, groups[0], groups[1], groups[2]);
-        }
-    }
-
-    /// Runs `groups` workgroups of a declared pass. `sets`: that of the frame, its own, and a task's.
-    pub fn dispatch_pass(
-        &mut self,
-        layout: &Arc<PassLayout>,
-        pipeline: &Arc<ComputePipeline>,
-        sets: &[&Arc<DescriptorSet>],
-        groups: [u32; 3],
-    ) {
-        let point = vk::PipelineBindPoint::COMPUTE;
-        self.keep(pipeline);
-        self.loops = self.loops.take().or_else(|| pipeline.loops.clone());
-        for set in sets {
-            self.keep(*set);
-            // SAFETY: this encoder records the command buffer; the set is kept, and the layout has its layout at its number.
-            unsafe {
-                self.gpu.device.cmd_bind_descriptor_sets(self.raw, point, layout.pipeline, set.index, &[set.raw], &[]);
-            }
+            self.bind(point, pipeline.raw_layout(), set);
         }
         // SAFETY: this encoder records the command buffer; the pipeline is kept.
         unsafe {

@@ -279,28 +279,25 @@ impl Encoder {
 
     /// Binds a descriptor set for drawing, at its own number.
     pub fn bind_set(&mut self, layouts: &Arc<SetLayouts>, set: &Arc<DescriptorSet>) {
-        self.keep(set);
-        // SAFETY: this encoder records the command buffer; the set is kept, and all pipelines share the layout.
-        unsafe {
-            self.gpu.device.cmd_bind_descriptor_sets(
-                self.raw,
-                vk::PipelineBindPoint::GRAPHICS,
-                layouts.pipeline,
-                set.index,
-                &[set.raw],
-                &[],
-            );
-        }
+        self.bind(vk::PipelineBindPoint::GRAPHICS, layouts.pipeline, set);
     }
 
     /// Binds the own set of a declared pass for drawing.
     pub fn bind_pass_set(&mut self, layout: &Arc<PassLayout>, set: &Arc<DescriptorSet>) {
+        self.bind(vk::PipelineBindPoint::GRAPHICS, layout.pipeline, set);
+    }
+
+    /// Binds a descriptor set at its own number.
+    pub(in crate::gpu) fn bind(
+        &mut self,
+        point: vk::PipelineBindPoint,
+        layout: vk::PipelineLayout,
+        set: &Arc<DescriptorSet>,
+    ) {
         self.keep(set);
-        let point = vk::PipelineBindPoint::GRAPHICS;
-        // SAFETY: this encoder records the command buffer; the set is kept, and was allocated with this layout.
-        unsafe {
-            self.gpu.device.cmd_bind_descriptor_sets(self.raw, point, layout.pipeline, set.index, &[set.raw], &[]);
-        }
+        let device = &self.gpu.device;
+        // SAFETY: this encoder records the command buffer; the set is kept, and the layout has the set's layout at its number.
+        unsafe { device.cmd_bind_descriptor_sets(self.raw, point, layout, set.index, &[set.raw], &[]) };
     }
 
     /// Sets the push constants.

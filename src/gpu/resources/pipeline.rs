@@ -203,7 +203,7 @@ impl Pipeline {
 /// A compute pipeline.
 pub struct ComputePipeline {
     gpu: Arc<Gpu>,
-    _layouts: Arc<SetLayouts>,
+    layouts: Arc<SetLayouts>,
     /// The layout of a declared pass.
     pub layout: Option<Arc<PassLayout>>,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
@@ -212,6 +212,11 @@ pub struct ComputePipeline {
 }
 
 impl ComputePipeline {
+    /// The layout that its sets are bound with.
+    pub(in crate::gpu) fn raw_layout(&self) -> vk::PipelineLayout {
+        self.layout.as_ref().map_or(self.layouts.pipeline, |layout| layout.pipeline)
+    }
+
     /// Creates a pipeline of one stage, named after its module. `layout`: that of a declared pass.
     ///
     /// # Errors
@@ -235,7 +240,7 @@ impl ComputePipeline {
         let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
         gpu.name(raw, &module.name);
         let loops = module.names_loops.then(|| layouts.blank.loops.clone());
-        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), layout, loops, raw }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, loops, raw }))
     }
 }
 

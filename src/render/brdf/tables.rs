@@ -195,7 +195,7 @@ fn bake(set: &PipelineSet, table: &Table, of: &BakeStage) -> Result<(Arc<Image>,
         compute::bindings(gpu, &set.layouts, &task, |writer| writer.storage_level(BINDING_TARGET, &image, 0))?;
     one_shot(gpu, |encoder| {
         encoder.transition(&image, Use::Undefined, Use::Storage);
-        encoder.dispatch(&set.layouts, &pipeline, &[&bindings], table.groups);
+        encoder.dispatch(&pipeline, &[&bindings], table.groups);
         encoder.transition(&image, Use::Storage, Use::CopyFrom);
         encoder.copy_levels_from_image(&image, &buffer, 0);
         encoder.transition(&image, Use::CopyFrom, Use::Sampled);

@@ -139,7 +139,7 @@ impl Passes<'_> {
         one_shot(self.gpu, |encoder| {
             encoder.transition(cube, Use::Undefined, Use::Storage);
             for (pipeline, set, side) in &dispatches {
-                encoder.dispatch(self.layouts, pipeline, &[set], compute::groups(*side, desc.layers));
+                encoder.dispatch(pipeline, &[set], compute::groups(*side, desc.layers));
                 encoder.transition(cube, Use::Storage, Use::Storage);
                 encoder.computed();
             }
@@ -159,7 +159,7 @@ impl Passes<'_> {
         let pipeline = self.set.compute(IRRADIANCE, &Vec::new())?;
         one_shot(self.gpu, |encoder| {
             encoder.transition(cube, Use::Sampled, Use::Storage);
-            encoder.dispatch(self.layouts, &pipeline, &[&bindings], compute::groups(side, to.desc().layers));
+            encoder.dispatch(&pipeline, &[&bindings], compute::groups(side, to.desc().layers));
             encoder.transition(cube, Use::Storage, Use::Sampled);
             encoder.computed();
             transfer::fill_from(encoder, texels, to);
@@ -180,7 +180,7 @@ impl Passes<'_> {
         }
         one_shot(self.gpu, |encoder| {
             for bindings in &dispatches {
-                encoder.dispatch(self.layouts, &pipeline, &[bindings], [1, 1, 1]);
+                encoder.dispatch(&pipeline, &[bindings], [1, 1, 1]);
             }
             encoder.computed();
             Ok(())
@@ -211,7 +211,7 @@ impl Passes<'_> {
         }
         one_shot(self.gpu, |encoder| {
             for (bindings, groups) in &dispatches {
-                encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
+                encoder.dispatch(&pipeline, &[bindings], *groups);
             }
             encoder.computed();
             Ok(())
@@ -259,7 +259,7 @@ impl Passes<'_> {
         one_shot(self.gpu, |encoder| {
             encoder.transition(to, Use::Undefined, Use::Storage);
             for (bindings, groups) in &dispatches {
-                encoder.dispatch(self.layouts, &pipeline, &[bindings], *groups);
+                encoder.dispatch(&pipeline, &[bindings], *groups);
             }
             encoder.transition(to, Use::Storage, Use::Sampled);
             Ok(())

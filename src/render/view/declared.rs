@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::frame::{PassBlocks, PipelineKey};
 use crate::gpu::{
-    Attachments, Buffer, DescriptorSet, Encoder, Gpu, GpuError, Image, Memory, PassResource, Rect, Sampler, SetLayouts,
+    Attachments, Buffer, DescriptorSet, Encoder, Gpu, GpuError, Image, Memory, PassResource, Sampler, SetLayouts,
     SetWriter, Use, vk,
 };
 use crate::interface::{SET_PASS, SET_TASK};
@@ -247,8 +247,7 @@ impl DeclaredPasses {
         let level = self.images.first_level(pass.name()).cloned();
         let color = level.as_ref().unwrap_or(target);
         encoder.transition(color, Use::Undefined, Use::Color);
-        let area = Rect { x: 0, y: 0, width: color.desc().width, height: color.desc().height };
-        encoder.begin_rendering(&Attachments { area, ..Attachments::of(color) });
+        encoder.begin_rendering(&Attachments::of(color));
         encoder.bind_pipeline(pipeline);
         encoder.bind_set(&self.layouts, drawn.frame_set);
         encoder.bind_pass_set(layout, &set);
@@ -292,7 +291,7 @@ impl DeclaredPasses {
         if writes_image {
             encoder.transition(target, Use::Sampled, Use::Storage);
         }
-        encoder.dispatch_pass(layout, pipeline, &[drawn.frame_set, &set, &self.task_set.clone()], groups);
+        encoder.dispatch(pipeline, &[drawn.frame_set, &set, &self.task_set], groups);
         if writes_image {
             encoder.transition(target, Use::Storage, Use::Sampled);
         }
