@@ -227,9 +227,6 @@ impl FrameState {
     }
 }
 
-/// The member of the block `Pass` in pass.glsl.
-const SIZE_MEMBER: &str = "size_px";
-
 /// The uniform blocks of declared passes, by the place of the pass in [`PipelineRequest::passes`] and the binding.
 pub(crate) type PassBlocks = BTreeMap<(usize, usize), Vec<u8>>;
 
@@ -237,15 +234,17 @@ fn pass_blocks(settings: &Settings, shaders: &ShaderSet, pipelines: &PipelineReq
     let mut blocks = PassBlocks::new();
     for (index, pass) in pipelines.passes.iter().enumerate() {
         for (binding, input) in pass.inputs.iter().enumerate() {
-            let Input::Parameters(bytes, members) = input else { continue };
-            let mut block = values::block(&settings.shader, &shaders.parameters, members, *bytes);
-            if let [(offset, name)] = members.as_slice()
-                && name == SIZE_MEMBER
-            {
-                let (width, height) = pass.note.size.pixels(size);
-                let at = *offset as usize;
-                block[at..at + 8].copy_from_slice(bytemuck::bytes_of(&[width as f32, height as f32]));
-            }
+            let block = match input {
+                Input::Parameters(bytes, members) => {
+                    values::block(&settings.shader, &shaders.parameters, members, *bytes)
+                }
+                Input::Size => {
+                    let (width, height) = pass.note.size.pixels(size);
+                    // Uniform blocks have at least 16 bytes.
+                    bytemuck::bytes_of(&[width as f32, height as f32, 0.0, 0.0]).to_vec()
+                }
+                _ => continue,
+            };
             blocks.insert((index, binding), block);
         }
     }

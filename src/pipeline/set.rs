@@ -255,7 +255,7 @@ impl PipelineSet {
             }
             Input::Output => PassBinding::Storage,
             Input::Buffer(..) => PassBinding::Buffer,
-            Input::Parameters(..) => PassBinding::Uniform,
+            Input::Parameters(..) | Input::Size => PassBinding::Uniform,
         });
         PassLayout::new(&self.gpu, &self.layouts, bindings.collect())
     }

@@ -1,43 +1,24 @@
 //! The passes that the shader tree declares: their images and buffers, and how a view draws them.
 
+mod blocks;
 mod images;
+mod sets;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::frame::{PassBlocks, PipelineKey};
+use crate::frame::PipelineKey;
 use crate::gpu::{
-    Attachments, Buffer, DescriptorSet, Encoder, Gpu, GpuError, Image, Memory, PassResource, Sampler, SetLayouts,
-    SetWriter, Use, vk,
+    Attachments, DescriptorSet, Encoder, Gpu, GpuError, Image, PassLayout, PassResource, Sampler, SetLayouts,
+    SetWriter, Use,
 };
 use crate::interface::{SET_PASS, SET_TASK};
 use crate::render::resources::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::Dispatch;
 use crate::shader::graph::Input;
+pub(super) use blocks::Blocks;
 use images::Images;
-
-/// The uniform blocks of a frame's declared passes. Each frame slot has its own, so that the CPU never writes what a frame in
-/// flight reads.
-#[derive(Default)]
-pub(super) struct Blocks(BTreeMap<(usize, usize), Arc<Buffer>>);
-
-impl Blocks {
-    /// Writes the blocks of a frame. SYNC: after the slot's fence.
-    pub(super) fn write(&mut self, gpu: &Arc<Gpu>, blocks: &PassBlocks) -> Result<(), GpuError> {
-        self.0.retain(|place, buffer| blocks.get(place).is_some_and(|bytes| buffer.size() == bytes.len() as u64));
-        for (place, bytes) in blocks {
-            let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
-            let buffer = match self.0.get(place) {
-                Some(buffer) => buffer.clone(),
-                None => Buffer::new(gpu, "pass parameters", bytes.len() as u64, usage, Memory::Upload)?,
-            };
-            buffer.write(0, bytes);
-            self.0.insert(*place, buffer);
-        }
-        Ok(())
-    }
-}
+use sets::Sets;
 
 /// The declared passes of a view: what they drew last, and what they need to draw again.
 pub(super) struct DeclaredPasses {
@@ -51,7 +32,7 @@ pub(super) struct DeclaredPasses {
     /// The set of tasks that compute stages report endless loops to.
     task_set: Arc<DescriptorSet>,
     images: Images,
-    sets: Vec<(Vec<usize>, Arc<DescriptorSet>)>,
+    sets: Sets,
     /// The HDR picture after the passes, or the image of the shown pass.
     picture: Option<Arc<Image>>,
     /// What the display shows after the passes behind the tone map.
@@ -85,7 +66,7 @@ impl DeclaredPasses {
             blank: images::blank(gpu)?,
             task_set: DescriptorSet::new(layouts, SET_TASK, SetWriter::default())?,
             images: Images::default(),
-            sets: Vec::new(),
+            sets: Sets::default(),
             picture: None,
             display: None,
         })
@@ -124,44 +105,40 @@ impl DeclaredPasses {
         self.images.begin_frame(encoder);
         let last = self.run(encoder, drawn, picture, false)?;
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
-        let shown = drawn.frame.state.pipelines.shown_pass.as_deref();
-        let is_before =
-            |name: &str| drawn.frame.state.pipelines.passes.iter().any(|p| p.name() == name && !p.after_tonemap);
-        if let Some(name) = shown.filter(|name| is_before(name)) {
-            self.show(encoder, name);
+        let shown = shown_image(drawn.frame).filter(|pass| !pass.after_tonemap);
+        // The tone map reads an image of the picture's size.
+        if let Some(pass) = shown
+            && let (Some(from), Some(to)) = (self.images.current(pass.name()), self.images.shown())
+        {
+            scale(encoder, from, to);
+            self.picture = Some(to.clone());
         }
         Ok(())
     }
 
-    /// Scales the image of a pass to the picture's size, for the tone map to show.
-    fn show(&mut self, encoder: &mut Encoder, name: &str) {
-        let (Some(from), Some(to)) = (self.images.current(name).cloned(), self.images.shown().cloned()) else { return };
-        scale(encoder, &from, &to);
-        self.picture = Some(to);
-    }
-
-    /// Whether passes come after the tone map. If so, it draws to [`DeclaredPasses::display`], not to the output.
+    /// Whether passes come after the tone map.
     pub(super) fn has_display_passes(frame: &BoundFrame) -> bool {
         frame.state.pipelines.passes.iter().any(|pass| pass.after_tonemap)
     }
 
-    /// The image that the tone map draws to if passes come after it.
-    pub(super) fn display(&self) -> Option<&Arc<Image>> {
-        self.images.displays.first()
-    }
-
-    /// Draws the passes after the tone map, which has left [`DeclaredPasses::display`] in [`Use::Sampled`]. Returns the last
-    /// image, in [`Use::Sampled`].
-    pub(super) fn after_tonemap(
+    /// Lets `tone_map` draw to an image of its own, and draws the passes after it. Returns the image for the display, in
+    /// [`Use::Sampled`]: the same as before unless the picture was `redrawn`.
+    pub(super) fn on_display(
         &mut self,
         encoder: &mut Encoder,
         drawn: &Drawn<'_>,
+        redrawn: bool,
+        tone_map: impl FnOnce(&mut Encoder, &Arc<Image>),
     ) -> Result<Option<Arc<Image>>, GpuError> {
+        if let Some(last) = self.display.clone().filter(|_| !redrawn) {
+            return Ok(Some(last));
+        }
         let Some(first) = self.images.displays.first().cloned() else { return Ok(None) };
+        encoder.transition(&first, Use::Undefined, Use::Color);
+        encoder.pass("tone map", |encoder| tone_map(encoder, &first));
+        encoder.transition(&first, Use::Color, Use::Sampled);
         let mut last = self.run(encoder, drawn, &first, true)?;
-        let request = &drawn.frame.state.pipelines;
-        let is_shown = |pass: &&Arc<GraphPass>| request.shown_pass.as_deref() == Some(pass.name());
-        let shown = request.passes.iter().find(is_shown).filter(|pass| pass.after_tonemap && !pass.note.to_picture);
+        let shown = shown_image(drawn.frame).filter(|pass| pass.after_tonemap);
         if let Some(pass) = shown
             && let (Some(from), Some(to)) = (self.images.current(pass.name()), self.images.other_picture(true, &last))
         {
@@ -170,11 +147,6 @@ impl DeclaredPasses {
         }
         self.display = Some(last.clone());
         Ok(Some(last))
-    }
-
-    /// What the passes after the tone map drew last, while nothing that they read has changed.
-    pub(super) fn last_display(&self) -> Option<&Arc<Image>> {
-        self.display.as_ref()
     }
 
     /// Forgets what the passes drew: the frame's commands were not submitted.
@@ -191,14 +163,9 @@ impl DeclaredPasses {
 
     /// The set of the tone map that reads `picture`.
     pub(super) fn tonemap_set(&mut self, picture: &Arc<Image>) -> Result<Arc<DescriptorSet>, GpuError> {
-        let key = vec![Arc::as_ptr(picture) as usize];
-        if let Some((_, set)) = self.sets.iter().find(|(known, _)| *known == key) {
-            return Ok(set.clone());
-        }
         let writer = SetWriter::default().texture(0, picture, &self.nearest);
-        let set = DescriptorSet::new(&self.layouts, SET_PASS, writer)?;
-        self.keep(key, &set, 0);
-        Ok(set)
+        let make = || DescriptorSet::new(&self.layouts, SET_PASS, writer);
+        self.sets.get(vec![Arc::as_ptr(picture) as usize], SETS_KEPT, make)
     }
 
     /// Draws the passes of one side of the tone map, from this picture. Returns the last picture.
@@ -298,53 +265,55 @@ impl DeclaredPasses {
         Ok(())
     }
 
-    /// The own set of a pass, for what its inputs are now.
+    /// The own set of a pass, for its inputs as they are now.
     fn set(
         &mut self,
-        layout: &Arc<crate::gpu::PassLayout>,
+        layout: &Arc<PassLayout>,
         drawn: &Drawn<'_>,
         (index, pass): (usize, &Arc<GraphPass>),
         picture: &Arc<Image>,
         target: &Arc<Image>,
     ) -> Result<Arc<DescriptorSet>, GpuError> {
-        let blank = self.blank.clone();
-        let textures = drawn.frame.pipelines.textures();
-        let mut resources = Vec::new();
-        for (binding, input) in pass.inputs.iter().enumerate() {
-            resources.push(match input {
-                Input::Picture => self.sampled(picture),
-                Input::Depth => PassResource::Texture(drawn.depth.unwrap_or(&blank), &self.nearest),
-                Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&blank)),
-                Input::Before(name) => self.sampled(self.images.before(name).unwrap_or(&blank)),
-                Input::Texture(name) => match textures.get(name) {
-                    Some((image, sampler)) => PassResource::Texture(image, sampler),
-                    None => PassResource::Texture(&blank, &self.linear),
-                },
-                Input::Output => PassResource::Storage(target),
-                Input::Buffer(name, _) => match self.images.buffer(name) {
-                    Some(buffer) => PassResource::Buffer(buffer),
-                    None => return Err(GpuError::NoStage(pass.note.stage.clone())),
-                },
-                Input::Parameters(..) => match drawn.blocks.0.get(&(index, binding)) {
-                    Some(buffer) => PassResource::Buffer(buffer),
-                    None => return Err(GpuError::NoStage(pass.note.stage.clone())),
-                },
-            });
-        }
-        let key = std::iter::once(Arc::as_ptr(layout) as usize).chain(resources.iter().map(PassResource::id)).collect();
-        if let Some((_, set)) = self.sets.iter().find(|(known, _)| *known == key) {
-            return Ok(set.clone());
-        }
-        let set = layout.set(&pass.note.name, &resources)?;
-        self.keep(key, &set, drawn.frame.state.pipelines.passes.len());
-        Ok(set)
+        let mut sets = std::mem::take(&mut self.sets);
+        let set = self.resources(drawn, (index, pass), picture, target).and_then(|resources| {
+            let ids = resources.iter().map(PassResource::id);
+            let key = std::iter::once(Arc::as_ptr(layout) as usize).chain(ids).collect();
+            let most = SETS_KEPT * drawn.frame.state.pipelines.passes.len();
+            sets.get(key, most, || layout.set(&pass.note.name, &resources))
+        });
+        self.sets = sets;
+        set
     }
 
-    fn keep(&mut self, key: Vec<usize>, set: &Arc<DescriptorSet>, passes: usize) {
-        if self.sets.len() >= SETS_KEPT * (passes + 1) {
-            self.sets.clear();
-        }
-        self.sets.push((key, set.clone()));
+    /// The inputs of a pass, by binding.
+    fn resources<'a>(
+        &'a self,
+        drawn: &'a Drawn<'_>,
+        (index, pass): (usize, &GraphPass),
+        picture: &'a Arc<Image>,
+        target: &'a Arc<Image>,
+    ) -> Result<Vec<PassResource<'a>>, GpuError> {
+        let textures = drawn.frame.pipelines.textures();
+        // The graph has a buffer and a block for each of these inputs.
+        let missing = || GpuError::NoStage(pass.note.stage.clone());
+        let resource = |(binding, input): (usize, &Input)| {
+            Ok(match input {
+                Input::Picture => self.sampled(picture),
+                Input::Depth => PassResource::Texture(drawn.depth.unwrap_or(&self.blank), &self.nearest),
+                Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&self.blank)),
+                Input::Before(name) => self.sampled(self.images.before(name).unwrap_or(&self.blank)),
+                Input::Texture(name) => {
+                    let (image, sampler) = textures.get(name).unwrap_or((&self.blank, &self.linear));
+                    PassResource::Texture(image, sampler)
+                }
+                Input::Output => PassResource::Storage(target),
+                Input::Buffer(name, _) => PassResource::Buffer(self.images.buffer(name).ok_or_else(missing)?),
+                Input::Parameters(..) | Input::Size => {
+                    PassResource::Buffer(drawn.blocks.get(index, binding).ok_or_else(missing)?)
+                }
+            })
+        };
+        pass.inputs.iter().enumerate().map(resource).collect()
     }
 
     /// An image as passes read it: with blended texels, if the device can blend them.
@@ -352,6 +321,13 @@ impl DeclaredPasses {
         let blends = self.gpu.blends_texels(image.desc().format);
         PassResource::Texture(image, if blends { &self.linear } else { &self.nearest })
     }
+}
+
+/// The pass whose own image the frame shows, if it shows one.
+fn shown_image(frame: &BoundFrame) -> Option<&Arc<GraphPass>> {
+    let request = &frame.state.pipelines;
+    let shown = request.shown_pass.as_deref()?;
+    request.passes.iter().find(|pass| pass.name() == shown && !pass.note.to_picture)
 }
 
 /// Scales an image to the size of another. Both are in [`Use::Sampled`] then.

@@ -193,7 +193,7 @@ impl View {
             passes.accumulate(encoder, self.sample_index);
         }
 
-        // What the tree declares, before the tone map.
+        // The declared passes before the tone map.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
         let drawn = Drawn { frame, frame_set: &set, blocks, depth };
         if redrawn {
@@ -207,30 +207,20 @@ impl View {
 
         // The HDR picture to the display: exposure, tone map, sRGB.
         let picture_set = self.declared.tonemap_set(&picture)?;
-        let display = self.declared.display().cloned().filter(|_| has_display_passes);
-        let Some(display) = display else {
+        if !has_display_passes {
             encoder.transition(output.image, output.before, Use::Color);
             encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, output.image, rect));
             return Ok(());
-        };
-        // What the tree declares, after the tone map.
-        let last = match self.declared.last_display().filter(|_| !redrawn) {
-            Some(last) => Some(last.clone()),
-            None => {
-                encoder.transition(&display, Use::Undefined, Use::Color);
-                encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, &display, rect));
-                encoder.transition(&display, Use::Color, Use::Sampled);
-                self.declared.after_tonemap(encoder, &drawn)?
-            }
-        };
+        }
+
+        // The display to the output, through the declared passes after the tone map.
+        let tone_map =
+            |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &picture_set, display, rect);
+        let display = self.declared.on_display(encoder, &drawn, redrawn, tone_map)?;
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
-        if let Some(last) = last {
-            encoder.transition(&last, Use::Sampled, Use::CopyFrom);
-            encoder.transition(output.image, Use::Color, Use::CopyTo);
-            encoder.copy_image_to(&last, output.image, output.at);
-            encoder.transition(output.image, Use::CopyTo, Use::Color);
-            encoder.transition(&last, Use::CopyFrom, Use::Sampled);
+        if let Some(display) = display {
+            passes::copy(encoder, &display, output);
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::Output;
 use super::targets::Targets;
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, DescriptorSet, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
@@ -197,6 +198,15 @@ impl Passes<'_> {
 pub(super) fn clear(encoder: &mut Encoder, output: &Arc<Image>) {
     encoder.begin_rendering(&cleared(output));
     encoder.end_rendering();
+}
+
+/// Copies an image in [`Use::Sampled`] to its place in an output in [`Use::Color`].
+pub(super) fn copy(encoder: &mut Encoder, display: &Arc<Image>, output: &Output<'_>) {
+    encoder.transition(display, Use::Sampled, Use::CopyFrom);
+    encoder.transition(output.image, Use::Color, Use::CopyTo);
+    encoder.copy_image_to(display, output.image, output.at);
+    encoder.transition(output.image, Use::CopyTo, Use::Color);
+    encoder.transition(display, Use::CopyFrom, Use::Sampled);
 }
 
 fn cleared(output: &Arc<Image>) -> Attachments<'_> {

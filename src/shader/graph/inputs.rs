@@ -13,6 +13,9 @@ const LARGEST_BUFFER: u32 = 128 << 20;
 /// Most bytes of a uniform block: what every device can bind.
 const LARGEST_BLOCK: u32 = 16 << 10;
 
+/// The block in pass.glsl with the size of a pass's image: a `vec2` in pixels.
+const SIZE_BLOCK: &str = "Pass";
+
 /// The names that a pass can read.
 pub struct Names<'a> {
     /// All declared passes.
@@ -60,6 +63,7 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
         "sampler2D" => sampled(note, name, names),
+        "uniform block" if name == SIZE_BLOCK => Ok(Input::Size),
         "uniform block" => {
             let block = found.block.clone().unwrap_or_default();
             if block.size > LARGEST_BLOCK {

@@ -39,6 +39,8 @@ pub enum Input {
     Output,
     /// A storage buffer that all passes share by the name of its block, with its size in bytes. It lasts from frame to frame.
     Buffer(String, u32),
+    /// The block `Pass` of pass.glsl.
+    Size,
     /// The pass's own uniform block: its size in bytes, and its members with their offsets.
     Parameters(u32, Vec<(u32, String)>),
 }

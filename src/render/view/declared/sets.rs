@@ -1,0 +1,37 @@
+//! Descriptor sets, found by what they point to.
+
+use std::sync::Arc;
+
+use crate::gpu::{DescriptorSet, GpuError};
+
+/// Numbers that identify the objects that a set points to. A set keeps them alive, so no other object gets their numbers.
+pub(super) type Key = Vec<usize>;
+
+/// The sets of the last frames.
+#[derive(Default)]
+pub(super) struct Sets(Vec<(Key, Arc<DescriptorSet>)>);
+
+impl Sets {
+    /// The set of `key`. `make` makes it if it is new; then all others go if there are `most` of them.
+    pub(super) fn get(
+        &mut self,
+        key: Key,
+        most: usize,
+        make: impl FnOnce() -> Result<Arc<DescriptorSet>, GpuError>,
+    ) -> Result<Arc<DescriptorSet>, GpuError> {
+        if let Some((_, set)) = self.0.iter().find(|(known, _)| *known == key) {
+            return Ok(set.clone());
+        }
+        let set = make()?;
+        if self.0.len() >= most {
+            self.0.clear();
+        }
+        self.0.push((key, set.clone()));
+        Ok(set)
+    }
+
+    /// Drops all sets, which keep alive what they point to.
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+}
