@@ -1,5 +1,9 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
+mod loops;
+mod probe;
+mod ui;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -8,22 +12,20 @@ use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
 use super::input::Mouse;
-use super::panels::{self, Readings};
+use super::panels;
 use super::viewer::Viewer;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
-use crate::gpu::{
-    Attachments, Encoder, Frames, Gpu, GpuError, Image, Rect, SetLayouts, Surface, Swapchain, UiRenderer, Use,
-};
+use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::picture;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 
 /// The CPU prepares a frame while the device draws the one before.
 const FRAMES_IN_FLIGHT: usize = 2;
-/// How soon a frame is tried again while memory is short.
+/// Time until the next attempt at a frame while memory is short.
 const RETRY: Duration = Duration::from_millis(500);
-/// A repaint delay of egui from which on no repaint is scheduled.
+/// Repaint delays of egui from here on mean that it needs no repaint.
 const NEVER: Duration = Duration::from_secs(3600);
 
 /// The part of the window that shows the picture, in pixels.
@@ -49,11 +51,11 @@ pub(super) struct Screen {
     first: bool,
     /// The last frame for which targets could be allocated. It is drawn again while memory is short.
     last: Option<BoundFrame>,
-    /// The lack of memory that the current frame met.
+    /// The out-of-memory error of the current frame.
     shortage: Option<GpuError>,
     /// The picture of each frame slot's last frame, until its loops are known to have ended.
     unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
-    /// The number of the work that each of them shows, see [`Viewer::record`].
+    /// The attempt number of each of these pictures, see [`Viewer::record`].
     attempts: [Option<u64>; FRAMES_IN_FLIGHT],
     /// The last picture in which a loop did not end.
     endless: Option<Arc<FrameState>>,
@@ -120,11 +122,11 @@ impl Screen {
         self.last.as_ref().map(|frame| frame.state.camera)
     }
 
-    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event. If memory runs out, the last picture
-    /// stays, the viewer says so, and the next frame tries again.
+    /// Draws a frame. Returns the time until the next frame, or `None` to wait for an event. If memory runs out, the
+    /// last picture stays, the viewer says so, and the next frame tries again.
     ///
     /// # Errors
-    /// A device error other than a lack of memory.
+    /// A device error other than out of memory.
     pub(super) fn draw(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         let drawn = self.draw_frame(window, viewer);
         let drawn = self.survive(drawn)?;
@@ -136,7 +138,8 @@ impl Screen {
         Ok(if viewer.set_shortage(shortage.as_ref()) { Some(Duration::ZERO) } else { wait })
     }
 
-    /// Draws a frame. Without memory for the targets of a new picture it draws the last one; any other lack of memory is an error.
+    /// Draws a frame. Without memory for the targets of a new picture it draws the last one; any other lack of memory
+    /// is an error.
     fn draw_frame(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         if !self.resize(window, viewer)? {
             return Ok(None);
@@ -154,7 +157,7 @@ impl Screen {
         }
         let frame = self.next_frame(viewer)?;
         self.view.probe = self.mouse.over.then(|| self.mouse_pixel()).flatten();
-        // A screenshot that was asked for before the first picture waits for it.
+        // A screenshot that was requested before the first picture waits for it.
         if let Some(frame) = frame.as_ref().filter(|_| viewer.screenshot) {
             viewer.screenshot = false;
             match self.screenshot(viewer, frame) {
@@ -208,51 +211,6 @@ impl Screen {
         Ok(self.swapchain.is_some())
     }
 
-    /// Runs the panels. Returns their primitives, the pixels per point, and the delay until egui wants a repaint.
-    fn run_ui(
-        &mut self,
-        window: &Window,
-        viewer: &mut Viewer,
-    ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
-        self.read_pixel();
-        let readings = Readings {
-            device_ms: self.frames.last_device_ms(),
-            passes: self.frames.pass_times().to_vec(),
-            value: self.pixel.filter(|_| self.mouse.over).and_then(|pixel| viewer.value_text(&pixel)),
-            title: viewer.title(self.view.accumulated()),
-        };
-        let input = self.input.take_egui_input(window);
-        let (mut picture, mut commands) = (egui::Rect::NOTHING, Vec::new());
-        let output = self.egui.run_ui(input, |ui| picture = panels::show(ui, viewer, &readings, &mut commands));
-        commands.into_iter().for_each(|command| viewer.execute(command));
-        self.input.handle_platform_output(window, output.platform_output);
-        if let Some(swapchain) = &self.swapchain {
-            self.rect = pixels(picture, output.pixels_per_point, swapchain.extent());
-        }
-        self.take_textures(output.textures_delta)?;
-        let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);
-        let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
-        Ok((primitives, output.pixels_per_point, delay))
-    }
-
-    /// Draws the user interface over an image in [`Use::Color`].
-    fn draw_ui(
-        &mut self,
-        encoder: &mut Encoder,
-        image: &Arc<Image>,
-        pixels_per_point: f32,
-        primitives: &[egui::ClippedPrimitive],
-    ) -> Result<(), GpuError> {
-        let (width, height) = (image.desc().width, image.desc().height);
-        encoder.transition(image, Use::Color, Use::Color);
-        let area = Rect { x: 0, y: 0, width, height };
-        let over = Attachments { area, ..Attachments::of(image) };
-        encoder.begin_rendering(&over);
-        self.ui.draw(encoder, (width, height), pixels_per_point, primitives)?;
-        encoder.end_rendering();
-        Ok(())
-    }
-
     /// Moves a flying camera and orbiting lights. Returns whether the camera moved.
     fn advance(&mut self, viewer: &mut Viewer) -> bool {
         let seconds = self.last_frame.elapsed().as_secs_f32();
@@ -272,7 +230,7 @@ impl Screen {
         Ok(self.last.clone())
     }
 
-    /// Turns a lack of memory into `None`, and remembers it for the end of the frame.
+    /// Turns an out-of-memory error into `None`, and keeps it for the end of the frame.
     fn survive<T>(&mut self, result: Result<T, GpuError>) -> Result<Option<T>, GpuError> {
         match result {
             Err(error @ GpuError::OutOfMemory(_)) => {
@@ -283,63 +241,8 @@ impl Screen {
         }
     }
 
-    /// The pixel of the picture under the mouse.
-    fn mouse_pixel(&self) -> Option<(u32, u32)> {
-        let (x, y) = (self.mouse.at.x - self.rect.at.0 as f32, self.mouse.at.y - self.rect.at.1 as f32);
-        let (width, height) = self.last.as_ref()?.state.size;
-        (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32)).filter(|(x, y)| *x < width && *y < height)
-    }
-
-    /// Reads the probed pixel of the newest finished frame.
-    fn read_pixel(&mut self) {
-        let newest_first =
-            (0..FRAMES_IN_FLIGHT).map(|age| (self.frames.current() + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT);
-        let finished = newest_first.into_iter().find(|slot| self.frames.is_finished(*slot));
-        if let Some(slot) = finished {
-            self.pixel = self.view.pixel(slot);
-        }
-    }
-
-    /// Whether the value under the mouse does not belong to the current picture yet.
-    fn awaits_pixel(&self) -> bool {
-        let current = self.view.probe.map(|at| (at, self.view.picture()));
-        current.is_some() && self.pixel.map(|pixel| (pixel.at, pixel.picture)) != current
-    }
-
-    /// Takes what finished frames say about their loops, the older frame first.
-    fn check_loops(&mut self, viewer: &mut Viewer) {
-        // `begin` has waited for the current slot, whose frame is the oldest.
-        for newer in 0..FRAMES_IN_FLIGHT {
-            let slot = (self.frames.current() + newer) % FRAMES_IN_FLIGHT;
-            if !self.frames.is_finished(slot) {
-                continue;
-            }
-            let Some(state) = self.unchecked[slot].take() else { continue };
-            if let Some(words) = self.frames.endless_loop(slot) {
-                self.endless = Some(state);
-                viewer.on_endless_loop(words);
-                continue;
-            }
-            viewer.drawn(&state, self.attempts[slot]);
-            if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
-                viewer.all_loops_end();
-            }
-        }
-    }
-
-    /// Whether to draw a frame more, in which [`Self::check_loops`] learns about the ones before. A frame that is drawn for
-    /// nothing else is followed by as many as there are slots, so a window in which nothing happens comes to rest.
-    fn awaits_loops(&mut self) -> bool {
-        let awaits = (0..FRAMES_IN_FLIGHT).any(|slot| self.unchecked[slot].is_some() && self.frames.has_loops(slot));
-        self.checks = match (awaits, self.checks) {
-            (false, _) => 0,
-            (true, 0) => FRAMES_IN_FLIGHT,
-            (true, left) => left - 1,
-        };
-        self.checks > 0
-    }
-
-    /// Measures and reports the first frame of the window, of a reload and of the model. Returns whether panels must be redrawn.
+    /// Measures and reports the first frame of the window, of a reload and of the model. Returns whether panels must be
+    /// redrawn.
     fn finished(&mut self, viewer: &mut Viewer, frame: Option<&BoundFrame>, begin: Instant) -> Result<bool, GpuError> {
         if std::mem::take(&mut self.first) {
             // SYNC: once, so that the time includes the device's work.
@@ -353,20 +256,6 @@ impl Screen {
         self.frames.wait_all()?;
         viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3);
         Ok(!viewer.times_next_frame())
-    }
-
-    /// Uploads egui's textures, and frees those that the last frame used last. What fails is tried again with the next frame.
-    /// SYNC: waits for the frames in flight; this is rare, because textures change only with a new glyph or image.
-    fn take_textures(&mut self, delta: egui::TexturesDelta) -> Result<(), GpuError> {
-        if !delta.is_empty() || !self.textures.is_empty() {
-            self.frames.wait_all()?;
-            self.ui.free_textures(&self.textures)?;
-            self.textures.free.clear();
-            self.textures.append(delta);
-            self.ui.set_textures(&self.textures)?;
-            self.textures.set.clear();
-        }
-        Ok(())
     }
 
     /// Writes the picture, without panels, to `specula-N.png` in the working directory.
@@ -395,12 +284,4 @@ impl Drop for Screen {
     fn drop(&mut self) {
         self.textures.clear();
     }
-}
-
-/// Converts a rectangle from egui's points to pixels inside the window, with at least one pixel a side.
-fn pixels(rect: egui::Rect, pixels_per_point: f32, (width, height): (u32, u32)) -> PictureRect {
-    let pixel = |points: f32, most: u32| ((points * pixels_per_point).round().max(0.0) as u32).min(most);
-    let (x, y) = (pixel(rect.min.x, width - 1), pixel(rect.min.y, height - 1));
-    let right = pixel(rect.max.x, width).saturating_sub(x).max(1);
-    PictureRect { at: (x, y), size: (right, pixel(rect.max.y, height).saturating_sub(y).max(1)) }
 }

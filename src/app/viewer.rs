@@ -1,6 +1,7 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod messages;
+mod picture;
 mod recording;
 
 use std::path::PathBuf;
@@ -10,15 +11,15 @@ use std::time::Instant;
 use super::command::{Command, open_as};
 use super::panels::PanelState;
 use super::playback::Playback;
-use super::status::{Notices, ShaderStatus, title};
+use super::status::{Notices, ShaderStatus};
 use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
-use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene, TargetFormat};
+use crate::frame::{Revisions, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::pipeline::endless_loop;
 use crate::recovery::Recorder;
-use crate::render::{BoundFrame, PixelAt, Resources, View};
+use crate::render::{BoundFrame, Resources};
 use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -26,6 +27,7 @@ use crate::shader::{Change, Compiler, Diagnostic, Source};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{Outbox, Threads};
+use picture::target;
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
 struct LastComplete {
@@ -38,7 +40,7 @@ struct LastComplete {
 /// A loop that did not end.
 struct EndlessLoop {
     words: [u32; 2],
-    /// `None` while its line is looked for.
+    /// `None` until its line has been found.
     diagnostic: Option<Diagnostic>,
 }
 
@@ -142,104 +144,6 @@ impl Viewer {
         Ok(viewer)
     }
 
-    /// The frame to draw: the picture that the settings describe if it is complete, otherwise the last complete picture with the
-    /// current camera. Requests what is missing from the threads. `None` before the first shaders. `prepare` allocates the targets;
-    /// a picture for which that fails is not taken as shown.
-    ///
-    /// # Errors
-    /// Out of memory.
-    pub(super) fn next_frame(
-        &mut self,
-        size: (u32, u32),
-        mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
-    ) -> Result<Option<BoundFrame>, GpuError> {
-        let is_animated = self.is_animated();
-        let clock = self.playback.next(is_animated);
-        let target = target(&self.gpu, &self.session.settings);
-        let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
-        let state = Arc::new(state);
-        let is_complete = self.request_missing(&state) && state.shaders.pending.is_empty();
-        // The first picture of a model does not wait for its environment.
-        let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
-        if let Some(frame) = self.resources.bind(&state, is_first)? {
-            prepare(&frame)?;
-            let generation = state.shaders.generation;
-            if is_complete && state.scene.is_some() && self.settled.replace(generation) != Some(generation) {
-                emit(self.events, &Event::Settled { generation });
-            }
-            let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
-            self.shown = Some(LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
-            return Ok(Some(frame));
-        }
-        let interim = self.shown.as_ref().map(|shown| self.interim(shown, clock, size));
-        interim.iter().try_for_each(prepare)?;
-        Ok(interim)
-    }
-
-    /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow the
-    /// current settings, since they need no new resources. All else is unchanged.
-    fn interim(&self, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
-        let mut settings = shown.settings.clone();
-        let same_model = match (&shown.scene, self.session.model()) {
-            (Some(scene), Some(model)) => Arc::ptr_eq(scene.model(), model),
-            (scene, model) => scene.is_none() && model.is_none(),
-        };
-        if same_model {
-            settings.camera = self.session.settings.camera.clone();
-            for (old, new) in settings.lights.orbit.iter_mut().zip(&self.session.settings.lights.orbit) {
-                old.azimuth = new.azimuth;
-            }
-        }
-        let state = &shown.frame.state;
-        shown.frame.with_state(FrameState::new(&FrameInputs {
-            settings: &settings,
-            shaders: &state.shaders,
-            scene: shown.scene.as_ref(),
-            revisions: shown.revisions,
-            clock,
-            size,
-            target: state.pipelines.target,
-        }))
-    }
-
-    /// Requests from the threads what a state lacks. Returns whether it lacks nothing.
-    fn request_missing(&mut self, state: &FrameState) -> bool {
-        let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
-        self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target });
-        let Some(set) = self.resources.pipelines() else { return false };
-        let missing = self.resources.missing(state);
-        let is_empty = missing.is_empty();
-        if missing.pipelines {
-            self.threads.worker.build(set, &state.pipelines);
-        }
-        self.threads.baker.bake_tables(set, missing.tables, &self.resources);
-        self.threads.baker.bake(set, missing.environment, &self.resources);
-        self.threads.baker.read(missing.measured);
-        self.threads.baker.trace(missing.traced);
-        is_empty
-    }
-
-    /// The state of the picture on screen.
-    pub(super) fn shown(&self) -> Option<&FrameState> {
-        self.shown.as_ref().map(|shown| &*shown.frame.state)
-    }
-
-    /// The title over the picture: see [`title`]. `frames` is the number of frames in the mean of an accumulating mode.
-    pub(super) fn title(&self, frames: u32) -> Option<String> {
-        let shown = self.shown()?;
-        let request = &shown.pipelines;
-        let paths = request.accumulates.then(|| frames.saturating_mul(request.paths_per_frame()));
-        title(shown.mode()?, self.session.mode(), paths)
-    }
-
-    /// The text of a pixel's value; `None` where nothing covers the pixel.
-    pub(super) fn value_text(&self, pixel: &PixelAt) -> Option<String> {
-        let PixelAt { at: (x, y), value, .. } = pixel;
-        let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
-        let mode = self.shown().filter(|_| covered)?.mode()?;
-        Some(format!("{}   at {x}, {y}", value.text(mode)))
-    }
-
     /// Whether the picture is animated: the lights orbit, or a shader or a pass moves while the time runs.
     pub(super) fn moves(&self) -> bool {
         self.session.settings.lights.spin != 0.0 || (self.is_animated() && self.playback.runs())
@@ -256,7 +160,7 @@ impl Viewer {
         self.gpu.info().kind != "cpu"
     }
 
-    /// Whether to measure the next frame: the first of a shader generation, or of the model.
+    /// Whether to measure the next frame, because it is the first of a shader generation or of the model.
     pub(super) fn times_next_frame(&self) -> bool {
         self.first_frame.is_some() || (!self.ready && self.session.model().is_some())
     }
@@ -295,12 +199,12 @@ impl Viewer {
         }
     }
 
-    /// Whether the diagnostics tell of a loop that cut the picture short, so that it is not the last good one.
+    /// Whether a loop that did not end has cut the picture on screen short, so that it is not the last good one.
     pub(super) fn is_cut_short(&self) -> bool {
         self.endless_loop.as_ref().is_some_and(|endless| endless.diagnostic.is_some())
     }
 
-    /// Shows the diagnostics of a reload behind that of a loop that did not end.
+    /// Shows the diagnostics of a reload after the diagnostic of a loop that did not end.
     fn set_diagnostics(&mut self, of_reload: Vec<Diagnostic>) {
         let of_loop = self.endless_loop.iter().filter_map(|endless| endless.diagnostic.clone());
         self.session.diagnostics = of_loop.chain(of_reload).collect();
@@ -321,7 +225,7 @@ impl Viewer {
         }
     }
 
-    /// Shows that memory is short for as long as it is. Returns whether the message changes.
+    /// Shows a message while memory is short. Returns whether the message changes.
     pub(super) fn set_shortage(&mut self, error: Option<&GpuError>) -> bool {
         let text = error.map(|error| format!("{error}. The last picture stays."));
         if self.shortage == text {
@@ -410,9 +314,4 @@ impl Viewer {
             light.azimuth = (light.azimuth + lights.spin * seconds + 180.0).rem_euclid(360.0) - 180.0;
         }
     }
-}
-
-/// Half floats with the samples of the settings, or 1 if the device does not support them.
-fn target(gpu: &Gpu, settings: &Settings) -> TargetFormat {
-    View::target_format(gpu, settings.view.msaa, false).unwrap_or(TargetFormat::half(1))
 }

@@ -1,31 +1,24 @@
 //! The worker compiles shaders and builds pipelines, so that the window never waits for either.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+mod thread;
+
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, unbounded};
+use crossbeam_channel::{Sender, unbounded};
 
-use super::{Message, Outbox, Role};
-use crate::file_kind::FileKind;
+use super::Outbox;
 use crate::frame::{MaterialVariant, PipelineRequest, Scene, TargetFormat};
-use crate::gpu::{Gpu, SetLayouts, fault};
+use crate::gpu::{Gpu, SetLayouts};
 use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
-use crate::message::panic_text;
-use crate::pipeline::{Outcome, PipelineSet, Reload, Reloader};
+use crate::pipeline::{PipelineSet, Reload, Reloader};
 use crate::recovery::Recorder;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, ShaderSet, Source, TreePath, text_hash};
-
-/// How often the thread starts again by itself if each attempt panics.
-const RESTARTS: u32 = 3;
-/// How long the worker waits for the first frame of a reload.
-const LONGEST_FRAME: Duration = Duration::from_secs(2);
-const PENDING: &str = "this mode's shader does not compile; its errors are in the list";
+use crate::shader::{Change, Compiler, ShaderSet, Source};
+use thread::Thread;
 
 /// The settings, scene and target that the window draws now. A reload builds their pipelines.
 #[derive(Clone)]
@@ -204,224 +197,6 @@ impl Drop for Worker {
         }
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
-        }
-    }
-}
-
-/// Joins an edit with an older one that has not been compiled yet.
-fn join(old: Option<Edit>, new: Edit) -> Edit {
-    match old {
-        Some(old) => Edit { change: old.change.and(new.change), since: old.since, ..new },
-        None => new,
-    }
-}
-
-struct Thread {
-    reloader: Reloader,
-    snapshot: Arc<Mutex<Snapshot>>,
-    inbox: Receiver<Job>,
-    edits: Arc<AtomicU64>,
-    /// How many of `edits` were taken out of the inbox.
-    edits_taken: u64,
-    /// Whether the first reload has begun.
-    has_compiled: bool,
-    /// Panics since the last reload that ended.
-    panics: u32,
-    /// Whether the last reload has left stages to [`Thread::finish`].
-    unfinished: bool,
-    /// Whether the first frame of the last reload is on screen. Until then, the driver needs the CPU.
-    is_shown: bool,
-    recorder: Recorder,
-    outbox: Outbox,
-}
-
-impl Thread {
-    /// Works until the window drops its [`Jobs`]. After a panic the thread starts again with a new reloader.
-    fn run(&mut self) {
-        let mut edit = Some(Edit::new(Change::All, Instant::now()));
-        while let Err(panic) = catch_unwind(AssertUnwindSafe(|| self.work(edit.take()))) {
-            self.outbox.send(Message::Panicked(Role::Worker, panic_text(&*panic).to_owned()));
-            self.reloader.open(self.reloader.library().source().clone());
-            self.panics += 1;
-            // If each attempt panics, wait for the next edit, with which a new reloader compiles the whole tree.
-            edit = (self.panics <= RESTARTS).then(|| Edit::new(Change::All, Instant::now()));
-        }
-    }
-
-    /// Of all waiting jobs, first joins and compiles the edits, then builds the newest request, even if an edit has failed.
-    fn work(&mut self, mut edit: Option<Edit>) {
-        let mut build: Option<Build> = None;
-        loop {
-            if edit.is_none() && self.has_compiled && !self.unfinished && self.holds_back() {
-                // All stages of the last good texts are compiled. The texts on disk that differ follow as an edit.
-                edit = Some(Edit::new(Change::Paths(BTreeSet::new()), Instant::now()));
-            }
-            let mut waiting = Vec::new();
-            // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is closing.
-            if edit.is_none() && (self.is_stale() || (build.is_none() && !(self.unfinished && self.is_shown))) {
-                match self.next_job() {
-                    Ok(job) => waiting.push(job),
-                    Err(RecvTimeoutError::Timeout) => waiting.push(Job::Shown),
-                    Err(RecvTimeoutError::Disconnected) => return,
-                }
-            }
-            waiting.extend(self.inbox.try_iter());
-            for job in waiting {
-                self.edits_taken += u64::from(job.is_edit());
-                match job {
-                    Job::Shown => self.is_shown = true,
-                    Job::Edit(new) => edit = Some(join(edit, new)),
-                    Job::OpenTree(source) => {
-                        self.reloader.open(source);
-                        edit = Some(Edit::new(Change::All, Instant::now()));
-                    }
-                    Job::Build(newest) => build = Some(newest),
-                }
-            }
-            if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
-                // Drop a request for an older set. The window sends one for the new set.
-                build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
-            } else if self.is_stale() {
-                // The edit goes first.
-            } else if self.unfinished && (self.is_shown || build.is_some()) {
-                self.finish();
-            } else if let Some((set, request)) = build.take() {
-                let pending = request.needs_pending(&set.shaders);
-                let newest = self.reloader.library().set();
-                if pending && !newest.is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {
-                    // The window does not know yet that these stages have been compiled. It will ask again.
-                    continue;
-                }
-                let built = set.build(&request).map(|_| ()).map_err(|error| error.to_string());
-                let built = if pending { Err(PENDING.to_owned()) } else { built };
-                self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
-                self.build_ahead(&set);
-            }
-        }
-    }
-
-    /// Whether a newer edit waits, or the window is closing.
-    fn is_stale(&self) -> bool {
-        self.edits.load(Ordering::SeqCst) > self.edits_taken
-    }
-
-    fn snapshot(&self) -> Snapshot {
-        self.snapshot.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// Compiles the edit and builds its pipelines. Returns the new set, if there is one.
-    fn reload(&mut self, edit: Edit) -> Option<Arc<PipelineSet>> {
-        assert!(!fault::strikes("worker-panic"), "the injected fault worker-panic");
-        fault::delay("compile-delay-ms");
-        let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
-        let request =
-            |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
-        let superseded = || edits.load(Ordering::SeqCst) > taken;
-        let change = self.release(edit.change);
-        let before = self.try_texts(&change);
-        let reload = self.reloader.update_first(change, false, request, superseded);
-        self.panics = 0;
-        if !reload.reaches_device() {
-            self.recorder.take_back(before);
-        }
-        let set = match &reload.outcome {
-            Outcome::Ready(set) => Some(set.clone()),
-            Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
-        };
-        self.unfinished = set.as_ref().is_some_and(|set| !set.shaders.pending.is_empty());
-        self.is_shown = false;
-        let source = self.reloader.library().source().clone();
-        let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
-        let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, source };
-        self.outbox.send(Message::Worker(message));
-        if let Some(set) = &set {
-            self.build_ahead(set);
-        }
-        set
-    }
-
-    /// Whether texts are held back that [`Thread::release`] would release.
-    fn holds_back(&self) -> bool {
-        self.reloader.library().source().released().is_some()
-    }
-
-    /// Releases held texts ([`Source::released`]) with a change, unless it is the first, which shows the last good texts.
-    fn release(&mut self, change: Change) -> Change {
-        if !self.has_compiled {
-            self.has_compiled = true;
-            return change;
-        }
-        let Some((source, paths)) = self.reloader.library().source().released() else { return change };
-        self.reloader.set_source(source);
-        change.and(Change::Paths(paths))
-    }
-
-    /// Records the texts of the change before they are used. Returns what [`Recorder::try_texts`] does.
-    fn try_texts(&self, change: &Change) -> BTreeMap<String, u64> {
-        let library = self.reloader.library();
-        let source = library.source();
-        let known = library.dependencies();
-        let paths = match change {
-            Change::Paths(paths) => paths.clone(),
-            Change::All if library.set().is_some() => known.clone(),
-            // The last good texts come first.
-            Change::All if matches!(source, Source::Held(_)) => BTreeSet::new(),
-            Change::All => source.list().into_iter().collect(),
-        };
-        // A new file may be included only now. Editors save other files beside, with names and endings of their own.
-        let is_shader = |path: &TreePath| {
-            let is_hidden = path.as_str().split('/').any(|name| name.starts_with('.'));
-            FileKind::of(Path::new(path.as_str())) == FileKind::Shader && !is_hidden
-        };
-        let is_tried = |path: &TreePath| known.contains(path) || is_shader(path);
-        let paths = paths.into_iter().filter(is_tried);
-        let texts = paths.map(|path| (path.clone(), text_hash(&source.read(&path)))).collect();
-        self.recorder.try_texts(texts, source.refused())
-    }
-
-    /// Compiles the stages that the last reload has left, unless a newer edit arrives.
-    fn finish(&mut self) {
-        self.unfinished = false;
-        let (snapshot, edits, taken) = (self.snapshot.clone(), self.edits.clone(), self.edits_taken);
-        let request =
-            |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
-        let reload = self.reloader.finish(request, || edits.load(Ordering::SeqCst) > taken);
-        let set = match &reload.outcome {
-            Outcome::Ready(set) => Some(set.clone()),
-            Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
-        };
-        self.outbox.send(Message::Worker(WorkerMessage::Completed(Box::new(reload))));
-        if let Some(set) = &set {
-            self.build_ahead(set);
-        }
-    }
-
-    /// Waits for a job. A window that shows nothing, since it is minimized, does not hold back the stages that the last reload
-    /// has left.
-    fn next_job(&self) -> Result<Job, RecvTimeoutError> {
-        match self.unfinished {
-            true => self.inbox.recv_timeout(LONGEST_FRAME),
-            false => self.inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-        }
-    }
-
-    /// Builds the modes before and after the current one, which `[` and `]` select, unless other work waits.
-    fn build_ahead(&self, set: &Arc<PipelineSet>) {
-        let (snapshot, modes) = (self.snapshot(), &set.shaders.modes);
-        // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
-        if snapshot.scene.is_none() || !set.shaders.pending.is_empty() || self.recorder.is_careful() {
-            return;
-        }
-        let request = snapshot.request(&set.shaders);
-        let Some(at) = modes.iter().position(|mode| mode.id == request.mode) else { return };
-        for neighbor in [(at + 1) % modes.len(), (at + modes.len() - 1) % modes.len()] {
-            if !self.inbox.is_empty() || self.is_stale() {
-                return;
-            }
-            let settings = Settings { mode: modes[neighbor].slug.clone(), ..snapshot.settings.clone() };
-            let (scene, target) = (snapshot.scene.clone(), snapshot.target);
-            // An error is reported when the user selects the mode.
-            let _ = set.build(&Snapshot { settings, scene, target }.request(&set.shaders));
         }
     }
 }

@@ -37,7 +37,7 @@ impl Viewer {
         }
     }
 
-    /// Takes the stages of a reload that the picture did not need.
+    /// Accepts the stages of a reload that the picture did not need.
     fn on_completed(&mut self, reload: &Reload) {
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
         match &reload.outcome {
@@ -107,8 +107,8 @@ impl Viewer {
         self.shader.last = Some(event);
     }
 
-    /// Reports settings and modes that the shaders lack. The settings stay, because the next edit may declare them. Unknown names
-    /// are reported only for the first shaders.
+    /// Reports settings and modes that the shaders lack. The settings stay, because the next edit may declare them.
+    /// Unknown names are reported only for the first shaders.
     fn check_names(&mut self, is_first: bool) {
         let mut problems = self.session.problems(is_first);
         if self.session.mode().is_none() {
@@ -226,7 +226,7 @@ impl Viewer {
         }
     }
 
-    /// Says that a thread has panicked, and treats its work as failed.
+    /// Reports that a thread has panicked, and treats its work as failed.
     fn on_panic(&mut self, role: Role, text: &str) {
         let thread = match role {
             Role::Worker => {

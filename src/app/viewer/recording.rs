@@ -1,4 +1,4 @@
-//! Records the session for the process that takes this one's place after a loss of the device.
+//! Records the session for the process that replaces this one after a loss of the device.
 
 use std::path::Path;
 
@@ -10,8 +10,8 @@ use crate::frame::FrameState;
 use crate::recovery::{Geometry, Work};
 
 impl Viewer {
-    /// Records what the next frame shows, for the process that takes this one's place if the device does not survive it. Returns
-    /// the number of the work, unless the frame is that of the last complete picture.
+    /// Records what the next frame shows, for the process that replaces this one if the frame loses the device. Returns
+    /// the attempt's number, unless the frame shows the last complete picture.
     pub(in crate::app) fn record(&self, window: &Window) -> Option<u64> {
         let model = if self.model.loading { &self.model.requested } else { &self.model.path };
         let tree = self.source.root().map(Path::to_owned);
@@ -23,7 +23,7 @@ impl Viewer {
         (shown.settings == work.settings).then_some(attempt)
     }
 
-    /// Records that the device has drawn a frame: the work with the number `attempt`, and if all of it was there, the shaders.
+    /// Records that the device has drawn the frame of `attempt`, and if the frame was complete, its shaders.
     pub(in crate::app) fn drawn(&self, state: &FrameState, attempt: Option<u64>) {
         attempt.into_iter().for_each(|attempt| self.recorder.drawn(attempt));
         if self.settled == Some(state.shaders.generation) && state.shaders.pending.is_empty() {
@@ -31,7 +31,7 @@ impl Viewer {
         }
     }
 
-    /// Reports the loss that has ended the process before.
+    /// Reports the loss that ended the previous process.
     pub(super) fn report_loss(&mut self) {
         let state = self.recorder.state();
         let Some(loss) = &state.loss else { return };

@@ -286,7 +286,8 @@ fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {
     };
     size.ok_or_else(|| {
         let message = format!(
-            "expected size=1, size=1/2 to size=1/64, or size=512x256 (1 to {LARGEST_SIDE} pixels a side), found `{value}`"
+            "expected size=1, size=1/2 to size=1/64, or size=512x256 (1 to {LARGEST_SIDE} pixels a side), \
+             found `{value}`"
         );
         cursor.error(bytes, message)
     })
@@ -302,7 +303,7 @@ fn format(cursor: &mut Cursor<'_>) -> Result<PassFormat, Box<Diagnostic>> {
 }
 
 fn dispatch(cursor: &mut Cursor<'_>) -> Result<Dispatch, Box<Diagnostic>> {
-    /// What every device can dispatch along an axis.
+    /// The most workgroups along an axis that every device supports.
     const MOST: u32 = 65535;
     let (bytes, value) = cursor.value("dispatch")?;
     if value == "size" {
@@ -316,7 +317,8 @@ fn dispatch(cursor: &mut Cursor<'_>) -> Result<Dispatch, Box<Diagnostic>> {
         Some([x, y, z]) => Ok(Dispatch::Groups([*x, *y, *z])),
         _ => {
             let message = format!(
-                "expected dispatch=size or a number of workgroups, as dispatch=64 or dispatch=8x8x1 (1 to {MOST}), found `{value}`"
+                "expected dispatch=size or a number of workgroups, as dispatch=64 or dispatch=8x8x1 (1 to {MOST}), \
+                 found `{value}`"
             );
             Err(cursor.error(bytes, message))
         }

@@ -1,6 +1,7 @@
 //! Annotations read from compiled shaders.
 
 use super::*;
+use crate::interface;
 use crate::shader::compile::Compiler;
 use crate::shader::source::Source;
 
@@ -132,7 +133,8 @@ fn what_does_not_parse_says_what_was_expected() {
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
-        "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, key= or doc=, found `colour`",
+        "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, \
+         key= or doc=, found `colour`",
     );
     refused(
         "const uint M = 1u; //@mode d \"D\" accumulate accumulate",

@@ -2,6 +2,8 @@
 //! second case the old set remains.
 
 pub mod check;
+mod link;
+mod passes;
 mod slot;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,18 +14,16 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::interface;
 use crate::shader::annotation::pass::is_image_extension;
-use crate::shader::annotation::{self, Annotations, Constant, Mode, ModeStage, Parameter};
-use crate::shader::compile::include::files_of;
-use crate::shader::compile::{Compiler, StageKind, declares_pass};
+use crate::shader::annotation::{Constant, Mode, Parameter};
+use crate::shader::compile::{Compiler, StageKind};
 use crate::shader::contract;
-use crate::shader::diagnostic::{Diagnostic, Severity, unique};
-use crate::shader::graph::{Graph, PassStage, text_reads_clock};
+use crate::shader::diagnostic::{Diagnostic, unique};
+use crate::shader::graph::Graph;
 use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::{Source, SourceError, TreePath};
-use crate::shader::spirv::reflect::Reflection;
+use crate::shader::source::{Source, TreePath};
+use link::Linked;
 use slot::{Built, Done, Slot, build};
 
 pub use slot::Stage;
@@ -31,8 +31,8 @@ pub use slot::Stage;
 /// The files that may have changed since the last update.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Anything: the first update, and the reload key. Every stage is compiled as a whole. A stage whose module comes out
-    /// unchanged remains the same object.
+    /// Anything: the first update, and the reload key. Every stage is compiled as a whole. A stage whose module comes
+    /// out unchanged remains the same object.
     All,
     /// These files.
     Paths(BTreeSet<TreePath>),
@@ -122,7 +122,8 @@ pub struct Library {
 }
 
 impl Library {
-    /// A library with the entry points `stages`, and every other stage of the tree that declares a pass. The outputs of `NAME.vert` are the inputs of `NAME.frag`.
+    /// A library with the entry points `stages`, and every other stage of the tree that declares a pass. The outputs of
+    /// `NAME.vert` are the inputs of `NAME.frag`.
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
         let paths: Vec<TreePath> = stages.iter().map(|path| TreePath::from(*path)).collect();
         let of = |kind| paths.iter().filter(move |path| StageKind::of(path) == Some(kind));
@@ -207,7 +208,7 @@ impl Library {
             for (index, _) in &rest {
                 self.slots[*index].current = None;
             }
-            // An error may come from what is not compiled yet, so only a complete update reports it.
+            // An error may come from a stage that is not compiled yet, so only a complete update reports it.
             let firsts_are_good = self.slots.iter().all(|slot| !is_first(&slot.path) || slot.is_good());
             if let Some(Ok(linked)) = firsts_are_good.then(|| self.link(&snapshot, true)) {
                 report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -220,21 +221,19 @@ impl Library {
         self.conclude(linked, self.next_generation(), &snapshot, report)
     }
 
-    /// The first update, in two steps: all but the stages of `later` compile first, and the passes that are off only if
-    /// `with_all_passes`.
+    /// The first update, in two steps: [`Library::finish`] compiles the stages of `later`, and unless `with_all_passes`
+    /// the passes that are off.
     pub fn first_picture(&mut self, later: &[&str], with_all_passes: bool) -> Update {
         let source = Arc::clone(&self.source);
         let snapshot = Snapshot::new(&source);
         self.find_passes(&Change::All, &snapshot);
-        let passes = self.slots.iter().skip(self.fixed).map(|slot| slot.path.clone());
-        let off: BTreeSet<TreePath> =
-            passes.filter(|path| !with_all_passes && annotation::is_off(&snapshot, path)).collect();
+        let off = if with_all_passes { BTreeSet::new() } else { self.passes_off(&snapshot) };
         self.update_first(&Change::All, |path| !later.contains(&path.as_str()) && !off.contains(path))
     }
 
-    /// Compiles the stages that [`Library::update_first`] has left. The new set has the same generation. On an error the set
-    /// stays, without the stages that are still pending. Ends early if `superseded` returns that a newer edit waits, or if the
-    /// files have changed since.
+    /// Compiles the stages that [`Library::update_first`] has left. The new set has the same generation. On an error
+    /// the set stays, without the stages that are still pending. Ends early if `superseded` returns that a newer edit
+    /// waits, or if the files have changed since.
     pub fn finish(&mut self, superseded: impl Fn() -> bool + Sync) -> Update {
         let pending = self.set.as_ref().filter(|set| !set.pending.is_empty());
         let Some(generation) = pending.map(|set| set.generation) else { return Update::Unchanged { cleared: false } };
@@ -256,47 +255,12 @@ impl Library {
         self.conclude(linked, generation, &snapshot, report)
     }
 
-    /// Adds the stages that declare a pass since `change`, and removes those that no longer do.
-    fn find_passes(&mut self, change: &Change, snapshot: &Snapshot<'_>) {
-        let listed;
-        let paths: Box<dyn Iterator<Item = &TreePath>> = match change {
-            Change::All => {
-                listed = self.source.list();
-                Box::new(listed.iter())
-            }
-            Change::Paths(paths) => Box::new(paths.iter()),
-        };
-        let is_pass = |path: &TreePath| snapshot.read(path).is_ok_and(|text| declares_pass(&text));
-        // A file that cannot be read, or is still empty, is a broken pass, not one that was removed.
-        let is_no_pass = |path: &TreePath| match snapshot.read(path) {
-            Ok(text) => !text.trim().is_empty() && !declares_pass(&text),
-            Err(error) => error == SourceError::Missing,
-        };
-        let is_seen = |path: &TreePath| !path.as_str().split('/').any(|name| name.starts_with('.'));
-        let may_be_pass =
-            |path: &TreePath| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute));
-        for path in paths.filter(|path| may_be_pass(path) && is_seen(path)) {
-            let place = self.slots.iter().position(|slot| slot.path == *path);
-            let is_idle = path.as_str().starts_with("passes/") && snapshot.read(path).is_ok() && is_no_pass(path);
-            let changed = if is_idle { self.idle.insert(path.clone()) } else { self.idle.remove(path) };
-            self.relink |= changed;
-            match place {
-                Some(place) if place >= self.fixed && is_no_pass(path) => {
-                    self.slots.remove(place);
-                    self.relink = true;
-                }
-                None if is_pass(path) => self.slots.push(Slot::new(path.clone())),
-                _ => {}
-            }
-        }
-    }
-
     fn next_generation(&self) -> u64 {
         self.set.as_ref().map_or(0, |set| set.generation) + 1
     }
 
-    /// Compiles stages in parallel, with `is_whole` from the ground up. Leaves out those that it has not begun when `superseded`
-    /// returns true.
+    /// Compiles stages in parallel. If `is_whole`, no stage reuses its last module. Once `superseded` returns true, no
+    /// further stage begins.
     fn compile(
         &mut self,
         stages: &[(usize, TreePath)],
@@ -354,69 +318,6 @@ impl Library {
         stale
     }
 
-    /// Links the stages: all must have compiled, interfaces must match, and annotations must parse. If `is_partial`, stages
-    /// that have not compiled are left out, and their annotations are those in the files of their last good versions.
-    fn link(&self, snapshot: &Snapshot<'_>, is_partial: bool) -> Result<Linked, Vec<Diagnostic>> {
-        let mut errors = Vec::new();
-        let mut warnings = snapshot.source().refusals();
-        warnings.extend(self.idle.iter().map(|path| {
-            let message = "nothing draws this file, since no line of it says //@pass";
-            let name = path.stem().rsplit('/').next().unwrap_or_default();
-            let help = format!("begin it with `//@pass {name} to=picture`");
-            Diagnostic::warning(snapshot.display_path(path), message).with_help(help)
-        }));
-        let mut files = BTreeSet::new();
-        let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
-        // A pass that was never seen adds its modes and parameters when it has compiled.
-        let fixed = self.slots.iter().take(self.fixed);
-        let unseen = fixed.filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
-        let unseen: Vec<TreePath> = unseen.flat_map(|slot| files_of(snapshot, &slot.path)).collect();
-        files.extend(&unseen);
-        match contract::interface_matches(snapshot) {
-            Some(diagnostic) if diagnostic.severity == Severity::Error => errors.push(diagnostic),
-            diagnostic => warnings.extend(diagnostic),
-        }
-        for slot in &self.slots {
-            match &slot.current {
-                Some(Ok(built)) => {
-                    files.extend(&built.stage.dependencies);
-                    warnings.extend(built.warnings.iter().cloned());
-                    modules.insert(&slot.path, &built.stage);
-                }
-                Some(Err(broken)) if !is_partial => errors.extend(broken.diagnostics.iter().cloned()),
-                Some(Err(_)) | None => {
-                    let good = slot.good.iter();
-                    files.extend(good.clone().flat_map(|built| &built.stage.dependencies));
-                    warnings.extend(good.flat_map(|built| &built.warnings).cloned());
-                }
-            }
-        }
-        for (vertex, fragment) in &self.pairs {
-            let (Some(vertex), Some(fragment)) = (modules.get(vertex), modules.get(fragment)) else { continue };
-            errors.extend(contract::check_pair(
-                (&vertex.reflection, vertex.texts(snapshot)),
-                (&fragment.reflection, fragment.texts(snapshot)),
-            ));
-        }
-        if !errors.is_empty() {
-            return Err(errors);
-        }
-        // The parameters of passes and what they read stay known while the passes are pending.
-        let passes = self.slots.iter().skip(self.fixed);
-        let goods = passes.filter_map(|slot| slot.good.as_ref().filter(|_| is_partial));
-        let goods = goods.map(|built| (&built.stage.path, &*built.stage));
-        let known: BTreeMap<&TreePath, &Stage> = goods.chain(modules.clone()).collect();
-        let reflections: Vec<&Reflection> = known.values().map(|stage| &stage.reflection).collect();
-        let mut annotations = annotation::read(snapshot, files, &reflections)?;
-        let declared = known.into_iter().map(|(path, stage)| {
-            let texts = stage.texts(snapshot);
-            (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts })
-        });
-        let graph = Graph::new(&annotations, &declared.collect(), snapshot)?;
-        annotations.modes.extend(modes_of(&graph));
-        Ok(Linked { annotations, graph, warnings: unique(warnings) })
-    }
-
     fn conclude(
         &mut self,
         linked: Result<Linked, Vec<Diagnostic>>,
@@ -432,71 +333,6 @@ impl Library {
             }
         }
     }
-
-    /// Makes a set of the stages that have compiled. The others are pending.
-    fn commit(&mut self, linked: Linked, generation: u64, snapshot: &Snapshot<'_>, report: Report) -> Update {
-        let cleared = std::mem::replace(&mut self.failed, false);
-        let dependencies = self.dependencies().into_iter();
-        let texts: BTreeMap<_, _> =
-            dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
-        // Passes say themselves whether they move.
-        let fixed = self.slots.iter().take(self.fixed).flat_map(Slot::dependencies);
-        let fixed: BTreeSet<&TreePath> = fixed.filter(|path| path.as_str() != contract::INTERFACE_FILE).collect();
-        let animated = texts.iter().any(|(path, text)| fixed.contains(path) && text_reads_clock(text));
-        let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
-        for slot in &mut self.slots {
-            match &slot.current {
-                Some(Ok(built)) => slot.good = Some(built.clone()),
-                Some(Err(_)) | None => {
-                    pending.insert(slot.path.to_string());
-                }
-            }
-            if let Some(good) = &slot.good {
-                stages.insert(slot.path.to_string(), Arc::clone(&good.stage));
-            }
-        }
-        let Linked { annotations: Annotations { modes, constants, parameters, .. }, graph, warnings } = linked;
-        if let Some(set) = &self.set {
-            let same_stages = stages.len() == set.stages.len()
-                && stages.values().zip(set.stages.values()).all(|(new, old)| Arc::ptr_eq(new, old));
-            let same_texts = (&modes, &constants, &parameters, &graph, &warnings)
-                == (&set.modes, &set.constants, &set.parameters, &set.graph, &set.warnings);
-            if same_stages && same_texts && pending == set.pending {
-                return Update::Unchanged { cleared };
-            }
-        }
-        let set =
-            ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, animated };
-        let set = Arc::new(set);
-        self.set = Some(Arc::clone(&set));
-        Update::Ready(set, report)
-    }
-}
-
-/// A debug mode for the image of each pass.
-fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
-    (interface::PASS_MODES..).zip(&graph.passes).map(|(id, pass)| Mode {
-        id,
-        slug: pass.slug(),
-        name: pass.note.label.clone(),
-        group: "Passes".to_owned(),
-        components: 3,
-        // What gives a picture is shown as a picture.
-        tonemap: pass.note.to_picture || pass.after_tonemap,
-        stage: ModeStage::Picture,
-        pass: Some(pass.name().to_owned()),
-        doc: pass.note.doc.clone(),
-        file: pass.note.place.file.clone(),
-        line: pass.note.place.line,
-        ..Mode::default()
-    })
-}
-
-/// The parts of a set that all stages share.
-struct Linked {
-    annotations: Annotations,
-    graph: Graph,
-    warnings: Vec<Diagnostic>,
 }
 
 struct Stale {

@@ -59,11 +59,11 @@ impl Stage {
         if let Some(known) = self.specialized().iter().find(|known| known.constants == constants) {
             return known.hash;
         }
-        // Without the lock, since the pipelines of a scene are built in parallel.
+        // Computed without the lock, since the pipelines of a scene are built in parallel.
         let words = specialize(&self.spirv, constants);
         let hash = behavior_hash(&words);
         let mut all = self.specialized();
-        // Dragging a constant's slider asks for many.
+        // A constant's slider requests one module per value.
         all.truncate(HASHES_KEPT - 1);
         all.insert(0, Specialized { constants: constants.to_vec(), hash, words: Some(words) });
         all.iter_mut().skip(MODULES_KEPT).for_each(|old| old.words = None);
@@ -146,7 +146,7 @@ impl Slot {
     /// The newest result that an edit can be compiled against.
     pub fn base(&self) -> Option<&Built> {
         let current = self.current.as_ref().and_then(|outcome| outcome.as_ref().ok());
-        // A warning of an unchanged function would be lost.
+        // A compilation of the changed functions would not repeat the warnings of the others.
         current.or(self.good.as_ref()).filter(|built| built.warnings.is_empty())
     }
 
@@ -171,8 +171,8 @@ impl Slot {
     }
 
     /// Stores a new result. If the module is unchanged (an edit of a comment, or the same text compiled again), the
-    /// stage remains the same object, and no pipeline is rebuilt. A module that was compiled as a whole, with `is_whole`, is also
-    /// unchanged if it does the same as one that was linked.
+    /// stage remains the same object, and no pipeline is rebuilt. A module that was compiled as a whole, with
+    /// `is_whole`, is also unchanged if it does the same as one that was linked.
     pub fn accept(&mut self, outcome: Outcome, is_whole: bool) {
         let does_same = |a: &Stage, b: &Stage| {
             (&a.reflection, &a.dependencies) == (&b.reflection, &b.dependencies)
@@ -215,8 +215,8 @@ pub(super) struct Done {
     pub ms: Option<f64>,
 }
 
-/// Compiles, reflects and checks one stage. If there is a `base`, an earlier result, and the text differs from its text only in
-/// functions, compiles only these.
+/// Compiles, reflects and checks one stage. If there is a `base`, an earlier result, and the text differs from its text
+/// only in functions, compiles only these.
 pub(super) fn build(
     compiler: &Compiler,
     snapshot: &Snapshot<'_>,

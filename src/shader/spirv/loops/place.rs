@@ -6,8 +6,9 @@ use crate::shader::spirv::opcode as op;
 use crate::shader::spirv::operands::text;
 use crate::shader::spirv::specialize::{Id, instructions, opcode};
 
-/// The first two of the three words that a bounded module writes to its buffer; both are 0 at first. The third is 1 at first,
-/// and 0 once an invocation has used up its budget. (Mesa's lavapipe reads 0 for helper invocations, and would wait for them.)
+/// The first two of the three words that a bounded module writes to its buffer; both are 0 at first. The third is 1 at
+/// first, and 0 once an invocation has used up its budget. (Mesa's lavapipe reads 0 for helper invocations, and would
+/// wait for them.)
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overrun {
     /// The loop that took at least half of an invocation's budget, as [`Place::find`] knows it; 0 if there is none.
@@ -19,8 +20,8 @@ pub struct Overrun {
 /// The loop that an [`Overrun`] names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Number of the loop among the loops of its function before specialization; `None` if several loops used up the budget
-    /// together.
+    /// Number of the loop among the loops of its function before specialization; `None` if several loops used up the
+    /// budget together.
     pub number: Option<usize>,
     /// glslang's name of its function, which has the types of the parameters: `f(vf3;`. Empty if it is unknown.
     pub function: String,
@@ -54,8 +55,8 @@ impl Place {
         self.function.split('(').next().unwrap_or_default()
     }
 
-    /// File and line of the loop, in a module of the same text that was compiled with debug information. An edit may have moved
-    /// functions, so the loop is found by its function.
+    /// File and line of the loop, in a module of the same text that was compiled with debug information. An edit may
+    /// have moved functions, so the loop is found by its function.
     pub fn line(&self, words: &[u32]) -> Option<(String, u32)> {
         let all = instructions(words)?;
         let is_function = |i: &&[u32]| opcode(i) == op::FUNCTION && i.len() > 2 && name_of(&all, i[2]) == self.function;

@@ -1,4 +1,4 @@
-//! Which loops count their rounds, and how many rounds a round counts for.
+//! Decides which loops count their rounds, and the weight of each round.
 
 use std::cell::RefCell;
 
@@ -45,8 +45,8 @@ impl<'a> Plan<'a> {
         Self { module, loops, calls, calls_outside, of_calls: RefCell::default() }
     }
 
-    /// The loops that count, for each function, with the rounds that one round of theirs counts for: itself and the counted
-    /// loops in it.
+    /// The loops that count, for each function, with the rounds that one round of theirs counts for: itself and the
+    /// counted loops in it.
     pub(super) fn bounded(&self) -> Vec<Vec<(usize, u32)>> {
         let mut inside: HashSet<usize> = HashSet::new();
         loop {

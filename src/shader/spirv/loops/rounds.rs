@@ -1,7 +1,7 @@
-//! How many rounds a loop can take at most, where its own instructions decide that.
+//! Computes the largest number of rounds that a loop can take, if its own instructions determine it.
 //!
-//! Expects glslang's unoptimized code: a loop variable lives in memory, the condition is in the block behind the header, and
-//! one store per round changes the variable.
+//! Expects glslang's unoptimized code: a loop variable lives in memory, the condition is in the block behind the
+//! header, and one store per round changes the variable.
 
 use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 
@@ -157,7 +157,7 @@ impl<'a> Values<'a> {
     fn parts(&self, condition: Id, depth: u32, out: &mut Vec<Id>) {
         let Some((block, i)) = self.made_by.get(&condition).filter(|_| depth > 0) else { return };
         let here = self.function.blocks[*block].label;
-        // The value that the block of `a` hands on is false, as the branch on it comes here only then.
+        // A branch leads from the block of `a` to here only if `a` is false.
         let is_false = |pair: &[u32]| {
             let from = self.function.blocks.iter().find(|block| pair.get(1) == Some(&block.label));
             let last = from.and_then(|block| block.body.last()).filter(|i| opcode(i) == op::BRANCH_CONDITIONAL);
@@ -267,8 +267,8 @@ impl<'a> Values<'a> {
         })
     }
 
-    /// The rounds of a loop like `for (uint i = first; i < min(count, 200); ++i)`: the condition compares the variable with a
-    /// value of which only a limit is known.
+    /// The rounds of a loop like `for (uint i = first; i < min(count, 200); ++i)`: the condition compares the variable
+    /// with a value of which only a limit is known.
     fn limited(&self, first: Option<u32>, variable: Id, condition: Id, step: Id, of: &Loop) -> Option<u64> {
         let is_variable = |id: &Id| {
             let made = self.made_by.get(id);

@@ -13,7 +13,8 @@ const BOUNDS: Bounds =
 fn module(functions: &str, main: &str) -> Vec<u32> {
     let text = format!(
         "#version 460\nlayout(constant_id = 7) const uint COUNT = 5u;\n\
-         layout(location = 0) in flat uvec4 given;\nlayout(location = 1) in vec4 x;\nlayout(location = 0) out vec4 color;\n\
+         layout(location = 0) in flat uvec4 given;\nlayout(location = 1) in vec4 x;\n\
+         layout(location = 0) out vec4 color;\n\
          {functions}\nvoid main() {{ color = x;\n{main}\n}}\n"
     );
     let source = Source::memory([("m.frag", text.as_str())]);

@@ -1,82 +1,26 @@
 //! Rendering without a window: the same reload and the same frames as on screen, on one thread.
 
+mod draw;
+mod error;
+mod pixel;
+mod sequence;
+
 use std::collections::BTreeSet;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rayon::prelude::*;
-
-use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Scene, TargetFormat};
-use crate::gpu::{Encoder, Frames, Gpu, GpuError, Image, PassTime, SetLayouts, Use, return_freed_memory};
-use crate::pipeline::{Outcome, PipelineSet, Reload, Reloader, endless_loop};
-use crate::render::{
-    BakeError, BakeReport, BoundFrame, Capture, GpuModel, Output, ProvideError, Redraw, Resources, TraceError,
-    UploadError, View, wrong_values,
-};
-use crate::scene::{self, MeasuredError, Model};
+use crate::frame::{Clock, FrameState, PipelineRequest, TargetFormat};
+use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, return_freed_memory};
+use crate::pipeline::{Outcome, Reload, Reloader, endless_loop};
+use crate::render::{BakeError, BakeReport, BoundFrame, GpuModel, Resources, View, wrong_values};
+use crate::scene::Model;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, Diagnostic, Mode, PixelValue, ShaderSet, Source};
+use crate::shader::{Change, Compiler, ShaderSet, Source};
 
-/// Why rendering failed.
-#[derive(Debug, thiserror::Error)]
-pub enum HeadlessError {
-    /// The shaders do not compile, and there are no earlier ones; or one of their loops does not end.
-    #[error("the shaders are wrong")]
-    Shaders(Vec<Diagnostic>),
-    /// A setting does not fit the shaders, the model or the device.
-    #[error("{0}")]
-    Settings(String),
-    /// The file of a measured BRDF cannot be read.
-    #[error(transparent)]
-    Measured(#[from] MeasuredError),
-    /// The environment cannot be read or baked.
-    #[error(transparent)]
-    Bake(#[from] BakeError),
-    /// The model does not fit the device.
-    #[error(transparent)]
-    Upload(#[from] UploadError),
-    /// A device error.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-}
-
-impl From<ProvideError> for HeadlessError {
-    fn from(error: ProvideError) -> Self {
-        match error {
-            ProvideError::Bake(error) => error.into(),
-            ProvideError::Gpu(error) | ProvideError::Trace(TraceError::Gpu(error)) => error.into(),
-            ProvideError::Trace(error) => Self::Settings(error.to_string()),
-            ProvideError::Measured(error) => error.into(),
-            ProvideError::Stale => Self::Settings(error.to_string()),
-        }
-    }
-}
-
-/// Frames at even distances in time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sequence {
-    /// Number of frames, at least 1.
-    pub frames: u32,
-    /// Time of the first, seconds.
-    pub start_s: f32,
-    /// Frames a second.
-    pub fps: f32,
-}
-
-impl Default for Sequence {
-    fn default() -> Self {
-        Self { frames: 1, start_s: 0.0, fps: 60.0 }
-    }
-}
-
-impl Sequence {
-    fn clock(&self, frame_index: u32) -> Clock {
-        let delta_s = if frame_index == 0 { 0.0 } else { 1.0 / self.fps };
-        Clock { time_s: self.start_s + frame_index as f32 / self.fps, delta_s, frame_index, ..Clock::default() }
-    }
-}
+pub use error::HeadlessError;
+pub use sequence::Sequence;
 
 /// A session, a device and one view.
 pub struct Headless {
@@ -96,8 +40,8 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Compiles the tree, uploads the model and creates everything that the first frame needs. The HDR target has full floats,
-    /// so that readback returns exactly what the shader wrote.
+    /// Compiles the tree, uploads the model and creates everything that the first frame needs. The HDR target has full
+    /// floats, so that readback returns exactly what the shader wrote.
     ///
     /// # Errors
     /// Shaders that do not compile, settings or a model that do not fit, a device error.
@@ -121,9 +65,9 @@ impl Headless {
         Ok((this, reload))
     }
 
-    /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the picture needs, and does not
-    /// create the resources of a frame. If the reload has failed, [`Headless::update_first`] may be called any number of times
-    /// before the first picture.
+    /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the picture needs, and
+    /// does not create the resources of a frame. If the reload has failed, [`Headless::update_first`] may be called any
+    /// number of times before the first picture.
     ///
     /// # Errors
     /// Those of `read`, settings or a model that do not fit, a device error.
@@ -156,8 +100,8 @@ impl Headless {
         Ok((this, reload))
     }
 
-    /// Like [`Headless::new`], but compiles nothing. Call [`Headless::update`], which may fail any number of times before the
-    /// first picture.
+    /// Like [`Headless::new`], but compiles nothing. Call [`Headless::update`], which may fail any number of times
+    /// before the first picture.
     ///
     /// # Errors
     /// Settings or a model that do not fit, a device error.
@@ -195,8 +139,8 @@ impl Headless {
         Ok(this)
     }
 
-    /// Creates everything that the next frame lacks: the environment, the measured BRDF and the pipelines. On failure those in
-    /// use stay.
+    /// Creates the environment, the measured BRDF and the pipelines that the next frame lacks. On failure those in use
+    /// stay.
     ///
     /// # Errors
     /// A bad file, or a device error.
@@ -292,7 +236,7 @@ impl Headless {
         self.reload(|reloader, request| reloader.update(change, request))
     }
 
-    /// Reloads what the next frame needs of the changed shaders. [`Headless::finish`] compiles the rest.
+    /// Reloads the changed shaders that the next frame needs. [`Headless::finish`] compiles the others.
     pub fn update_first(&mut self, change: Change) -> Reload {
         self.reload(|reloader, request| reloader.update_first(change, true, request, || false))
     }
@@ -336,106 +280,6 @@ impl Headless {
         Ok(())
     }
 
-    /// Random paths that [`Headless::render`] spends on each pixel; `None` if the mode does not accumulate.
-    ///
-    /// # Errors
-    /// As [`Headless::frame_state`].
-    pub fn paths_per_pixel(&self) -> Result<Option<u64>, HeadlessError> {
-        let request = self.frame_state()?.pipelines;
-        let paths = u64::from(request.paths_per_frame()) * u64::from(self.session.settings.view.frames);
-        Ok(request.accumulates.then_some(paths))
-    }
-
-    /// Renders the frames of the sequence from the beginning, and reads the last one back. In an accumulating mode that is the mean
-    /// of `view.frames` frames.
-    ///
-    /// # Errors
-    /// Settings that do not fit, a bad file, a device error.
-    pub fn render(&mut self) -> Result<Capture, HeadlessError> {
-        self.view.restart_passes();
-        let last = self.sequence.frames.saturating_sub(1);
-        for index in 0..last {
-            self.clock = self.sequence.clock(index);
-            let frame = self.bind()?;
-            self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
-        }
-        self.clock = self.sequence.clock(last);
-        let frame = self.bind()?;
-        if frame.state.pipelines.accumulates {
-            for _ in 1..self.session.settings.view.frames {
-                self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
-            }
-        }
-        let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;
-        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
-    }
-
-    /// Renders one frame and waits for it without reading it back, which is the work of a frame in a window.
-    ///
-    /// # Errors
-    /// As [`Headless::render`].
-    pub fn draw(&mut self) -> Result<(), HeadlessError> {
-        let frame = self.bind()?;
-        self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))
-    }
-
-    /// The values of one pixel, counted from the upper left corner, in each of `modes`; zero where nothing covers the pixel.
-    ///
-    /// Only the instances near the pixel are drawn, and only their pipelines are created. If one of them is transmissive, all
-    /// instances are drawn, since a transmissive surface refracts light from around the pixel.
-    ///
-    /// # Errors
-    /// As [`Headless::render`].
-    pub fn pixel(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<PixelValue>, HeadlessError> {
-        self.finish_or_fail()?;
-        self.provide()?;
-        let whole = self.frame_state()?;
-        let Some(all) = whole.scene.clone() else { return Ok(Vec::new()) };
-        let near = scene::near_pixel(all.model(), whole.camera.clip_from_world(), self.size, at);
-        let part = all.only(near);
-        let part = if part.is_transmissive() { all.clone() } else { part };
-        let state_in = |mode: &Mode, scene: &Scene| {
-            let settings = Settings { mode: mode.slug.clone(), ..self.session.settings.clone() };
-            let scene = Some(scene);
-            let (shaders, revisions, target) = (&whole.shaders, self.session.revisions, whole.pipelines.target);
-            FrameState::new(&FrameInputs {
-                settings: &settings,
-                shaders,
-                scene,
-                revisions,
-                clock: self.clock,
-                size: self.size,
-                target,
-            })
-        };
-        let state_of = |mode: &Mode| {
-            let state = state_in(mode, &part);
-            // A declared pass may read the picture anywhere.
-            if state.pipelines.passes.is_empty() { state } else { state_in(mode, &all) }
-        };
-        let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
-        self.view.probe = Some(at);
-        let mut values = Vec::new();
-        // A set keeps the pipelines of its newest requests only.
-        for states in states.chunks(PipelineSet::REQUESTS_KEPT as usize / 2) {
-            if let Some(set) = self.resources.pipelines() {
-                // A driver compiles a pipeline on the calling thread.
-                states.par_iter().try_for_each(|state| set.build(&state.pipelines).map(|_| ()))?;
-            }
-            for state in states {
-                let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
-                self.view.restart_passes();
-                let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
-                for _ in 0..frames {
-                    self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
-                }
-                values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
-            }
-        }
-        self.view.probe = None;
-        Ok(values)
-    }
-
     /// The picture that the settings describe.
     ///
     /// # Errors
@@ -477,31 +321,6 @@ impl Headless {
         }
     }
 
-    /// Draws a frame to the output image, records `more`, and waits for both.
-    fn draw_frame<T>(
-        &mut self,
-        frame: &BoundFrame,
-        redraw: Redraw,
-        more: impl FnOnce(&View, &mut Encoder, &Arc<Image>) -> Result<T, GpuError>,
-    ) -> Result<T, HeadlessError> {
-        self.view.prepare(frame)?;
-        let output = self.output_image()?;
-        let mut encoder = self.frames.begin()?;
-        let slot = self.frames.current();
-        let drawn = self.view.draw(&mut encoder, slot, frame, &to(&output), redraw);
-        let recorded = drawn.and_then(|()| more(&self.view, &mut encoder, &output));
-        let submitted = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
-        if submitted.is_err() {
-            self.view.forget();
-        }
-        let result = submitted?;
-        self.frames.wait()?;
-        match self.frames.endless_loop(self.frames.current()) {
-            Some(words) => Err(self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words)))),
-            None => Ok(result),
-        }
-    }
-
     /// Replaces the error of a loop that did not end by a diagnostic with the loop's line.
     fn explained(&self, error: HeadlessError) -> HeadlessError {
         let words = match &error {
@@ -513,17 +332,4 @@ impl Headless {
         let diagnostic = endless_loop(&self.gpu, words, &self.shaders(), library.compiler(), library.source());
         diagnostic.map_or(error, |diagnostic| HeadlessError::Shaders(vec![diagnostic]))
     }
-
-    fn output_image(&mut self) -> Result<Arc<Image>, HeadlessError> {
-        if let Some(output) = &self.output {
-            return Ok(output.clone());
-        }
-        let output = self.view.output_image(self.size)?;
-        self.output = Some(output.clone());
-        Ok(output)
-    }
-}
-
-fn to(image: &Arc<Image>) -> Output<'_> {
-    Output { image, before: Use::Undefined, at: (0, 0) }
 }

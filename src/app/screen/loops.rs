@@ -1,0 +1,39 @@
+//! Learns from finished frames whether their loops have ended.
+
+use super::{FRAMES_IN_FLIGHT, Screen};
+use crate::app::viewer::Viewer;
+
+impl Screen {
+    /// Tells the viewer whether the loops of the finished frames have ended, the older frame first.
+    pub(super) fn check_loops(&mut self, viewer: &mut Viewer) {
+        // `begin` has waited for the current slot, whose frame is the oldest.
+        for newer in 0..FRAMES_IN_FLIGHT {
+            let slot = (self.frames.current() + newer) % FRAMES_IN_FLIGHT;
+            if !self.frames.is_finished(slot) {
+                continue;
+            }
+            let Some(state) = self.unchecked[slot].take() else { continue };
+            if let Some(words) = self.frames.endless_loop(slot) {
+                self.endless = Some(state);
+                viewer.on_endless_loop(words);
+                continue;
+            }
+            viewer.drawn(&state, self.attempts[slot]);
+            if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
+                viewer.all_loops_end();
+            }
+        }
+    }
+
+    /// Whether to draw one more frame, in which [`Self::check_loops`] checks the frames before. If nothing else
+    /// happens, at most as many frames follow as there are slots, so an idle window comes to rest.
+    pub(super) fn awaits_loops(&mut self) -> bool {
+        let awaits = (0..FRAMES_IN_FLIGHT).any(|slot| self.unchecked[slot].is_some() && self.frames.has_loops(slot));
+        self.checks = match (awaits, self.checks) {
+            (false, _) => 0,
+            (true, 0) => FRAMES_IN_FLIGHT,
+            (true, left) => left - 1,
+        };
+        self.checks > 0
+    }
+}

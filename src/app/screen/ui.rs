@@ -1,0 +1,80 @@
+//! The user interface on the screen: runs the panels and draws them over the picture.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use winit::window::Window;
+
+use super::{PictureRect, Screen};
+use crate::app::panels::{self, Readings};
+use crate::app::viewer::Viewer;
+use crate::gpu::{Attachments, Encoder, GpuError, Image, Rect, Use};
+
+impl Screen {
+    /// Runs the panels. Returns their primitives, the pixels per point, and the delay until egui wants a repaint.
+    pub(super) fn run_ui(
+        &mut self,
+        window: &Window,
+        viewer: &mut Viewer,
+    ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
+        self.read_pixel();
+        let readings = Readings {
+            device_ms: self.frames.last_device_ms(),
+            passes: self.frames.pass_times().to_vec(),
+            value: self.pixel.filter(|_| self.mouse.over).and_then(|pixel| viewer.value_text(&pixel)),
+            title: viewer.title(self.view.accumulated()),
+        };
+        let input = self.input.take_egui_input(window);
+        let (mut picture, mut commands) = (egui::Rect::NOTHING, Vec::new());
+        let output = self.egui.run_ui(input, |ui| picture = panels::show(ui, viewer, &readings, &mut commands));
+        commands.into_iter().for_each(|command| viewer.execute(command));
+        self.input.handle_platform_output(window, output.platform_output);
+        if let Some(swapchain) = &self.swapchain {
+            self.rect = pixels(picture, output.pixels_per_point, swapchain.extent());
+        }
+        self.take_textures(output.textures_delta)?;
+        let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);
+        let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
+        Ok((primitives, output.pixels_per_point, delay))
+    }
+
+    /// Draws the user interface over an image in [`Use::Color`].
+    pub(super) fn draw_ui(
+        &mut self,
+        encoder: &mut Encoder,
+        image: &Arc<Image>,
+        pixels_per_point: f32,
+        primitives: &[egui::ClippedPrimitive],
+    ) -> Result<(), GpuError> {
+        let (width, height) = (image.desc().width, image.desc().height);
+        encoder.transition(image, Use::Color, Use::Color);
+        let area = Rect { x: 0, y: 0, width, height };
+        let over = Attachments { area, ..Attachments::of(image) };
+        encoder.begin_rendering(&over);
+        self.ui.draw(encoder, (width, height), pixels_per_point, primitives)?;
+        encoder.end_rendering();
+        Ok(())
+    }
+
+    /// Uploads egui's textures, and frees those that no later frame uses. The next frame tries a failed upload again.
+    /// SYNC: waits for the frames in flight; this is rare, because textures change only with a new glyph or image.
+    fn take_textures(&mut self, delta: egui::TexturesDelta) -> Result<(), GpuError> {
+        if !delta.is_empty() || !self.textures.is_empty() {
+            self.frames.wait_all()?;
+            self.ui.free_textures(&self.textures)?;
+            self.textures.free.clear();
+            self.textures.append(delta);
+            self.ui.set_textures(&self.textures)?;
+            self.textures.set.clear();
+        }
+        Ok(())
+    }
+}
+
+/// Converts a rectangle from egui's points to pixels inside the window, with at least one pixel a side.
+fn pixels(rect: egui::Rect, pixels_per_point: f32, (width, height): (u32, u32)) -> PictureRect {
+    let pixel = |points: f32, most: u32| ((points * pixels_per_point).round().max(0.0) as u32).min(most);
+    let (x, y) = (pixel(rect.min.x, width - 1), pixel(rect.min.y, height - 1));
+    let right = pixel(rect.max.x, width).saturating_sub(x).max(1);
+    PictureRect { at: (x, y), size: (right, pixel(rect.max.y, height).saturating_sub(y).max(1)) }
+}

@@ -1,0 +1,90 @@
+//! Draws the frames of a sequence and reads the last one back.
+
+use std::sync::Arc;
+
+use super::{Headless, HeadlessError};
+use crate::gpu::{Encoder, GpuError, Image, Use};
+use crate::render::{BoundFrame, Capture, Output, Redraw, View};
+
+impl Headless {
+    /// Random paths that [`Headless::render`] spends on each pixel; `None` if the mode does not accumulate.
+    ///
+    /// # Errors
+    /// As [`Headless::frame_state`].
+    pub fn paths_per_pixel(&self) -> Result<Option<u64>, HeadlessError> {
+        let request = self.frame_state()?.pipelines;
+        let paths = u64::from(request.paths_per_frame()) * u64::from(self.session.settings.view.frames);
+        Ok(request.accumulates.then_some(paths))
+    }
+
+    /// Renders the frames of the sequence from the beginning, and reads the last one back. In an accumulating mode that
+    /// is the mean of `view.frames` frames.
+    ///
+    /// # Errors
+    /// Settings that do not fit, a bad file, a device error.
+    pub fn render(&mut self) -> Result<Capture, HeadlessError> {
+        self.view.restart_passes();
+        let last = self.sequence.frames.saturating_sub(1);
+        for index in 0..last {
+            self.clock = self.sequence.clock(index);
+            let frame = self.bind()?;
+            self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
+        }
+        self.clock = self.sequence.clock(last);
+        let frame = self.bind()?;
+        if frame.state.pipelines.accumulates {
+            for _ in 1..self.session.settings.view.frames {
+                self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
+            }
+        }
+        let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;
+        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
+    }
+
+    /// Renders one frame and waits for it without reading it back: the same work as a frame in a window.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn draw(&mut self) -> Result<(), HeadlessError> {
+        let frame = self.bind()?;
+        self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))
+    }
+
+    /// Draws a frame to the output image, records `more`, and waits for both.
+    pub(super) fn draw_frame<T>(
+        &mut self,
+        frame: &BoundFrame,
+        redraw: Redraw,
+        more: impl FnOnce(&View, &mut Encoder, &Arc<Image>) -> Result<T, GpuError>,
+    ) -> Result<T, HeadlessError> {
+        self.view.prepare(frame)?;
+        let output = self.output_image()?;
+        let mut encoder = self.frames.begin()?;
+        let slot = self.frames.current();
+        let drawn = self.view.draw(&mut encoder, slot, frame, &to(&output), redraw);
+        let recorded = drawn.and_then(|()| more(&self.view, &mut encoder, &output));
+        let submitted = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
+        if submitted.is_err() {
+            self.view.forget();
+        }
+        let result = submitted?;
+        self.frames.wait()?;
+        match self.frames.endless_loop(self.frames.current()) {
+            Some(words) => Err(self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words)))),
+            None => Ok(result),
+        }
+    }
+
+    fn output_image(&mut self) -> Result<Arc<Image>, HeadlessError> {
+        if let Some(output) = &self.output {
+            return Ok(output.clone());
+        }
+        let output = self.view.output_image(self.size)?;
+        self.output = Some(output.clone());
+        Ok(output)
+    }
+}
+
+fn to(image: &Arc<Image>) -> Output<'_> {
+    Output { image, before: Use::Undefined, at: (0, 0) }
+}

@@ -1,0 +1,247 @@
+//! `//@mode`: a debug mode, and how its annotation is parsed.
+
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::cursor::Cursor;
+use crate::interface;
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::text::{Line, tokens};
+
+/// The keys that the window reserves.
+const WINDOW_KEYS: &str = "h r l q 0-9 [ ]";
+
+/// How the tone map stores a mode's values as 8-bit pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Encode {
+    /// Linear color, sRGB-encoded.
+    #[default]
+    Color,
+    /// Numbers, stored as they are.
+    Data,
+    /// Vectors, stored as `v * 0.5 + 0.5`.
+    Vector,
+}
+
+impl Encode {
+    /// The `interface::ENCODE_*` number.
+    pub fn id(self) -> u32 {
+        match self {
+            Self::Color => interface::ENCODE_COLOR,
+            Self::Data => interface::ENCODE_DATA,
+            Self::Vector => interface::ENCODE_VECTOR,
+        }
+    }
+}
+
+/// How a mode draws the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DrawAs {
+    /// Its surfaces.
+    #[default]
+    Surfaces,
+    /// The edges of its triangles.
+    Lines,
+    /// The sum of all fragments, hidden or not: overdraw.
+    Layers,
+}
+
+/// The fragment stage that computes a mode's value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+pub enum ModeStage {
+    /// The picture.
+    #[serde(rename = "pbr.frag")]
+    Picture,
+    /// Channels, terms and checks.
+    #[default]
+    #[serde(rename = "debug.frag")]
+    Debug,
+    /// Random paths.
+    #[serde(rename = "paths.frag")]
+    Paths,
+}
+
+impl ModeStage {
+    /// The path of the stage in the shader tree.
+    pub const fn path(self) -> &'static str {
+        match self {
+            Self::Picture => "pbr.frag",
+            Self::Debug => "debug.frag",
+            Self::Paths => "paths.frag",
+        }
+    }
+}
+
+/// A debug mode.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Mode {
+    /// Value of the specialization constant `MODE`.
+    pub id: u32,
+    /// Name on the command line and in file names.
+    pub slug: String,
+    /// Display name.
+    pub name: String,
+    /// Heading in lists; empty if the annotation has none.
+    pub group: String,
+    /// How its values are stored.
+    pub encode: Encode,
+    /// Number of components of a value, 1 to 3. The shader repeats a scalar in all channels.
+    #[serde(skip)]
+    pub components: u8,
+    /// Unit of the value before exposure; empty for none.
+    #[serde(skip)]
+    pub unit: String,
+    /// Whether exposure and tone mapping apply.
+    pub tonemap: bool,
+    /// Whether the view averages frames, each of which is a noisy estimate.
+    pub accumulate: bool,
+    /// The stage that computes the value.
+    pub stage: ModeStage,
+    /// Whether the mode traces rays through the model, which needs its bounding volume hierarchy.
+    pub traces: bool,
+    /// Whether transmissive surfaces show the final picture behind them instead of this mode.
+    pub through: bool,
+    /// How the model is drawn.
+    pub draw: DrawAs,
+    /// The pass whose image the mode shows; such modes need no annotation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pass: Option<String>,
+    /// Key in the window.
+    pub key: Option<char>,
+    /// A description of the mode.
+    pub doc: String,
+    /// File as printed.
+    #[serde(skip)]
+    pub file: String,
+    /// 1-based line of the annotation.
+    #[serde(skip)]
+    pub line: u32,
+}
+
+/// Parses the rest of a `//@mode`, whose id stands in `declaration`.
+pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode, Box<Diagnostic>> {
+    let (bytes, slug) = cursor.word();
+    let valid = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    if slug.is_empty() || !slug.chars().all(valid) {
+        let message = format!("expected the mode's slug in a-z, 0-9 and `-`, found `{slug}`");
+        return Err(cursor.error(bytes, message));
+    }
+    let Some(name) = cursor.string()? else {
+        return Err(cursor.expected("the mode's name in quotes"));
+    };
+    let mut mode = Mode {
+        id: mode_id(cursor, declaration)?,
+        slug: slug.to_owned(),
+        name,
+        components: 3,
+        file: cursor.place().file.clone(),
+        line: cursor.place().line,
+        ..Mode::default()
+    };
+    let mut given: Vec<&str> = Vec::new();
+    while !cursor.at_end() {
+        let (bytes, key) = cursor.key();
+        if given.contains(&key) {
+            return Err(cursor.error(bytes, format!("`{key}` is given twice")));
+        }
+        given.push(key);
+        set(&mut mode, key, bytes, cursor)?;
+    }
+    if mode.traces && mode.stage != ModeStage::Paths {
+        return Err(cursor.expected("stage=paths beside `traces`: only paths.frag can trace rays"));
+    }
+    Ok(mode)
+}
+
+/// Sets the property `key` of a mode, with the value that follows if it has one.
+fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>) -> Result<(), Box<Diagnostic>> {
+    match key {
+        "tonemap" => mode.tonemap = true,
+        "accumulate" => mode.accumulate = true,
+        "traces" => mode.traces = true,
+        "through" => mode.through = true,
+        "group" => mode.group = cursor.value(key)?.1,
+        "doc" => mode.doc = cursor.value(key)?.1,
+        "unit" => mode.unit = cursor.value(key)?.1,
+        "components" => mode.components = one_of(cursor, key, &[("1", 1), ("2", 2), ("3", 3)])?,
+        "encode" => {
+            let all = [("color", Encode::Color), ("data", Encode::Data), ("vector", Encode::Vector)];
+            mode.encode = one_of(cursor, key, &all)?;
+        }
+        "stage" => {
+            let all = [("pbr", ModeStage::Picture), ("debug", ModeStage::Debug), ("paths", ModeStage::Paths)];
+            mode.stage = one_of(cursor, key, &all)?;
+        }
+        "draw" => {
+            let all = [("surfaces", DrawAs::Surfaces), ("lines", DrawAs::Lines), ("layers", DrawAs::Layers)];
+            mode.draw = one_of(cursor, key, &all)?;
+        }
+        "key" => mode.key = Some(window_key(cursor)?),
+        other => {
+            let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, key= or \
+                doc=";
+            return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
+        }
+    }
+    Ok(())
+}
+
+/// Reads the value of `key`, which is one of three names.
+fn one_of<T: Copy>(cursor: &mut Cursor<'_>, key: &str, all: &[(&str, T); 3]) -> Result<T, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value(key)?;
+    let found = all.iter().find(|(name, _)| *name == value);
+    found.map(|(_, one)| *one).ok_or_else(|| {
+        let [a, b, c] = all.each_ref().map(|(name, _)| format!("{key}={name}"));
+        cursor.error(bytes, format!("expected {a}, {b} or {c}, found `{value}`"))
+    })
+}
+
+/// Reads the value of `key=`.
+fn window_key(cursor: &mut Cursor<'_>) -> Result<char, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("key")?;
+    let mut chars = value.chars();
+    let (Some(key), None) = (chars.next(), chars.next()) else {
+        return Err(cursor.error(bytes, format!("expected one character after key=, found `{value}`")));
+    };
+    check_key(key).map_err(|message| cursor.error(bytes, message))?;
+    Ok(key)
+}
+
+/// Checks that a mode may have this key. The window ignores case and reserves [`WINDOW_KEYS`].
+fn check_key(key: char) -> Result<(), String> {
+    let taken = match key {
+        'a'..='z' if !WINDOW_KEYS.contains(key) => return Ok(()),
+        'A'..='Z' => return Err(format!("expected a lowercase letter after key=, found `{key}`")),
+        'h' => "hides the panels",
+        'r' => "frames the model",
+        'l' => "stops the lights",
+        'q' => "quits, with Ctrl",
+        '0'..='9' => "chooses a mode by its place in the list",
+        '[' | ']' => "steps through the modes",
+        _ => return Err(format!("expected a letter a-z after key=, found `{key}`")),
+    };
+    Err(format!(
+        "expected a key that the window does not use itself (it uses {WINDOW_KEYS}), found `{key}`, which {taken}"
+    ))
+}
+
+/// The number of `const uint MODE_X = 120u;`.
+fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<u32, Box<Diagnostic>> {
+    let words: Vec<&str> = declaration.map(|line| tokens(&line.code)).unwrap_or_default().iter().map(|t| t.1).collect();
+    if let ["const", "uint", _, "=", literal, ";", ..] = words.as_slice() {
+        let digits = literal.trim_end_matches(['u', 'U']);
+        let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
+            Some(digits) => u32::from_str_radix(digits, 16),
+            None => digits.parse(),
+        };
+        if let Ok(number) = number {
+            return Ok(number);
+        }
+    }
+    let found = declaration.map_or("the end of the file", |line| line.raw.trim());
+    let message = format!("expected `const uint NAME = NUMBER;` with the mode, found `{found}`");
+    Err(cursor.place().error(None, message))
+}

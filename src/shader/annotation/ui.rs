@@ -1,0 +1,177 @@
+//! Parses `//@ui` with the declaration that it belongs to.
+
+use super::ParameterType;
+use super::cursor::{Cursor, Place};
+use super::value::{choices, claim, claimed, default, range};
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::text::{Line, is_word, tokens};
+use crate::shader::spirv::reflect::Scalar;
+
+/// The declaration that a `//@ui` belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Declared {
+    /// A specialization constant of this type.
+    Constant(Scalar),
+    /// A member of `Params`.
+    Member(ParameterType),
+}
+
+/// A parsed `//@ui`.
+#[derive(Debug)]
+pub struct Ui {
+    /// Name in GLSL.
+    pub name: String,
+    /// The given label, or one derived from the name.
+    pub label: String,
+    /// `lo..hi`
+    pub range: Option<(f64, f64)>,
+    /// `choice A=0 B=1`
+    pub choices: Vec<(String, i64)>,
+    /// `conserves="A"`
+    pub conserves: Option<Vec<String>>,
+    /// `reciprocal="A B"`
+    pub reciprocal: Option<Vec<String>>,
+    /// `color`
+    pub color: bool,
+    /// `= ...`, one number per component.
+    pub default: Option<Vec<f64>>,
+    /// The annotated declaration.
+    pub declared: Declared,
+    /// Location of the annotation.
+    pub place: Place,
+}
+
+/// Parses the rest of a `//@ui` that belongs to `declaration`.
+pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Ui, Box<Diagnostic>> {
+    let (declared, name) = ui_declaration(cursor, declaration)?;
+    let label = cursor.string()?;
+    let label = label.unwrap_or_else(|| label_of(&name));
+    let place = cursor.place().clone();
+    let mut ui = Ui {
+        name,
+        label,
+        range: None,
+        choices: Vec::new(),
+        conserves: None,
+        reciprocal: None,
+        color: false,
+        default: None,
+        declared,
+        place,
+    };
+    let scalar = match declared {
+        Declared::Constant(scalar) => scalar,
+        Declared::Member(kind) => kind.scalar(),
+    };
+    let mut default_bytes = None;
+    while !cursor.at_end() {
+        if cursor.peek('=') {
+            let Declared::Member(kind) = declared else {
+                let message = "a constant's default stands in its declaration, not after //@ui";
+                return Err(cursor.place().error(None, message));
+            };
+            cursor.take('=');
+            let (bytes, values) = default(cursor, kind)?;
+            (ui.default, default_bytes) = (Some(values), Some(bytes));
+            continue;
+        }
+        if let Some(claim) = claim(cursor) {
+            let names = Some(claimed(cursor, &ui.choices)?);
+            *(if claim == "conserves" { &mut ui.conserves } else { &mut ui.reciprocal }) = names;
+            continue;
+        }
+        let (bytes, word) = cursor.word();
+        match word {
+            "color" => ui.color = true,
+            "choice" if matches!(scalar, Scalar::Bool | Scalar::Float) => {
+                return Err(cursor.error(bytes, "a choice must be int or uint"));
+            }
+            "choice" => ui.choices = choices(cursor, scalar)?,
+            word if word.contains("..") && scalar == Scalar::Bool => {
+                return Err(cursor.error(bytes, "a bool has no range"));
+            }
+            word if word.contains("..") => ui.range = Some(range(cursor, bytes, word, scalar)?),
+            word => {
+                let message = format!("expected \"Label\", lo..hi, choice A=0 B=1, color or = default, found `{word}`");
+                return Err(cursor.error(bytes, message));
+            }
+        }
+    }
+    let message = match declared {
+        Declared::Member(kind) if ui.color && !matches!(kind, ParameterType::Vec3 | ParameterType::Vec4) => {
+            "a color must be vec3 or vec4"
+        }
+        Declared::Constant(_) if ui.color => "a constant cannot be a color",
+        _ => {
+            let given = ui.default.as_deref().and_then(|values| values.first());
+            return match given.and_then(|value| outside_of_choices(&ui.choices, *value)) {
+                Some(message) => Err(cursor.error(default_bytes.unwrap_or_default(), message)),
+                None => Ok(ui),
+            };
+        }
+    };
+    Err(cursor.place().error(None, message))
+}
+
+/// A message if there are choices and `default` is not one of them.
+pub fn outside_of_choices(choices: &[(String, i64)], default: f64) -> Option<String> {
+    if choices.is_empty() || choices.iter().any(|(_, value)| *value as f64 == default) {
+        return None;
+    }
+    let list: Vec<String> = choices.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    Some(format!("expected a default among the choices {}, found {default}", list.join(" ")))
+}
+
+/// Parses `layout(constant_id = ...) const TYPE NAME` or the member `TYPE NAME;`.
+fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(Declared, String), Box<Diagnostic>> {
+    let error = |message: String| Err(cursor.place().error(None, message));
+    let words: Vec<&str> = declaration.map(|line| tokens(&line.code)).unwrap_or_default().iter().map(|t| t.1).collect();
+    if words.contains(&"constant_id") {
+        let at = words.iter().position(|word| *word == "const");
+        let scalar = match at.and_then(|at| words.get(at + 1).copied()) {
+            Some("bool") => Some(Scalar::Bool),
+            Some("int") => Some(Scalar::Int),
+            Some("uint") => Some(Scalar::Uint),
+            Some("float") => Some(Scalar::Float),
+            _ => None,
+        };
+        return match (scalar, at.and_then(|at| words.get(at + 2))) {
+            (Some(scalar), Some(name)) if name.starts_with(is_word) => {
+                Ok((Declared::Constant(scalar), (*name).to_owned()))
+            }
+            _ => error(
+                "expected `layout(constant_id = ...) const TYPE NAME = DEFAULT;` on one line with TYPE one of \
+                 bool, int, uint and float"
+                    .to_owned(),
+            ),
+        };
+    }
+    let end = words.iter().position(|word| *word == ";");
+    let (Some(kind), Some(name)) =
+        (end.and_then(|end| words.get(end.checked_sub(2)?)), end.and_then(|end| words.get(end.checked_sub(1)?)))
+    else {
+        return error("expected //@ui behind `TYPE NAME;` in Params, or behind a constant_id".to_owned());
+    };
+    let kind = match *kind {
+        "float" => ParameterType::Float,
+        "int" => ParameterType::Int,
+        "uint" => ParameterType::Uint,
+        "bool" => ParameterType::Bool,
+        "vec2" => ParameterType::Vec2,
+        "vec3" => ParameterType::Vec3,
+        "vec4" => ParameterType::Vec4,
+        other => {
+            return error(format!(
+                "expected float, int, uint, bool, vec2, vec3 or vec4 before the name, found `{other}`"
+            ));
+        }
+    };
+    Ok((Declared::Member(kind), (*name).to_owned()))
+}
+
+/// Turns a name into a label: `rim_strength` into `Rim strength`, `WRAP_DIFFUSE` into `Wrap diffuse`.
+fn label_of(name: &str) -> String {
+    let words = name.replace('_', " ").to_lowercase();
+    let mut chars = words.trim().chars();
+    chars.next().map_or_else(|| name.to_owned(), |first| first.to_uppercase().chain(chars).collect())
+}

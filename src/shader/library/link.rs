@@ -1,0 +1,129 @@
+//! Makes a [`ShaderSet`] of compiled stages: checks that they fit together and reads their annotations.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::passes::modes_of;
+use super::slot::Slot;
+use super::{Library, Report, ShaderSet, Stage, Update};
+use crate::shader::annotation::{self, Annotations};
+use crate::shader::compile::include::files_of;
+use crate::shader::contract;
+use crate::shader::diagnostic::{Diagnostic, Severity, unique};
+use crate::shader::graph::{Graph, PassStage, text_reads_clock};
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::reflect::Reflection;
+
+/// The parts of a set that all stages share.
+pub(super) struct Linked {
+    annotations: Annotations,
+    graph: Graph,
+    warnings: Vec<Diagnostic>,
+}
+
+impl Library {
+    /// Links the stages: all must have compiled, interfaces must match, and annotations must parse. If `is_partial`,
+    /// stages that have not compiled are left out, and their annotations are those in the files of their last good
+    /// versions.
+    pub(super) fn link(&self, snapshot: &Snapshot<'_>, is_partial: bool) -> Result<Linked, Vec<Diagnostic>> {
+        let mut errors = Vec::new();
+        let mut warnings = snapshot.source().refusals();
+        warnings.extend(self.idle_warnings(snapshot));
+        let mut files = BTreeSet::new();
+        let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
+        // A stage that has never compiled adds the annotations of its files. A pass adds its own once it has compiled.
+        let fixed = self.slots.iter().take(self.fixed);
+        let unseen = fixed.filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
+        let unseen: Vec<TreePath> = unseen.flat_map(|slot| files_of(snapshot, &slot.path)).collect();
+        files.extend(&unseen);
+        match contract::interface_matches(snapshot) {
+            Some(diagnostic) if diagnostic.severity == Severity::Error => errors.push(diagnostic),
+            diagnostic => warnings.extend(diagnostic),
+        }
+        for slot in &self.slots {
+            match &slot.current {
+                Some(Ok(built)) => {
+                    files.extend(&built.stage.dependencies);
+                    warnings.extend(built.warnings.iter().cloned());
+                    modules.insert(&slot.path, &built.stage);
+                }
+                Some(Err(broken)) if !is_partial => errors.extend(broken.diagnostics.iter().cloned()),
+                Some(Err(_)) | None => {
+                    let good = slot.good.iter();
+                    files.extend(good.clone().flat_map(|built| &built.stage.dependencies));
+                    warnings.extend(good.flat_map(|built| &built.warnings).cloned());
+                }
+            }
+        }
+        for (vertex, fragment) in &self.pairs {
+            let (Some(vertex), Some(fragment)) = (modules.get(vertex), modules.get(fragment)) else { continue };
+            errors.extend(contract::check_pair(
+                (&vertex.reflection, vertex.texts(snapshot)),
+                (&fragment.reflection, fragment.texts(snapshot)),
+            ));
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        // The parameters of passes and what they read stay known while the passes are pending.
+        let passes = self.slots.iter().skip(self.fixed);
+        let goods = passes.filter_map(|slot| slot.good.as_ref().filter(|_| is_partial));
+        let goods = goods.map(|built| (&built.stage.path, &*built.stage));
+        let known: BTreeMap<&TreePath, &Stage> = goods.chain(modules.clone()).collect();
+        let reflections: Vec<&Reflection> = known.values().map(|stage| &stage.reflection).collect();
+        let mut annotations = annotation::read(snapshot, files, &reflections)?;
+        let declared = known.into_iter().map(|(path, stage)| {
+            let texts = stage.texts(snapshot);
+            (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts })
+        });
+        let graph = Graph::new(&annotations, &declared.collect(), snapshot)?;
+        annotations.modes.extend(modes_of(&graph));
+        Ok(Linked { annotations, graph, warnings: unique(warnings) })
+    }
+
+    /// Makes a set of the stages that have compiled. The others are pending.
+    pub(super) fn commit(
+        &mut self,
+        linked: Linked,
+        generation: u64,
+        snapshot: &Snapshot<'_>,
+        report: Report,
+    ) -> Update {
+        let cleared = std::mem::replace(&mut self.failed, false);
+        let dependencies = self.dependencies().into_iter();
+        let texts: BTreeMap<_, _> =
+            dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
+        // The graph knows which passes move.
+        let fixed = self.slots.iter().take(self.fixed).flat_map(Slot::dependencies);
+        let fixed: BTreeSet<&TreePath> = fixed.filter(|path| path.as_str() != contract::INTERFACE_FILE).collect();
+        let animated = texts.iter().any(|(path, text)| fixed.contains(path) && text_reads_clock(text));
+        let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
+        for slot in &mut self.slots {
+            match &slot.current {
+                Some(Ok(built)) => slot.good = Some(built.clone()),
+                Some(Err(_)) | None => {
+                    pending.insert(slot.path.to_string());
+                }
+            }
+            if let Some(good) = &slot.good {
+                stages.insert(slot.path.to_string(), Arc::clone(&good.stage));
+            }
+        }
+        let Linked { annotations: Annotations { modes, constants, parameters, .. }, graph, warnings } = linked;
+        if let Some(set) = &self.set {
+            let same_stages = stages.len() == set.stages.len()
+                && stages.values().zip(set.stages.values()).all(|(new, old)| Arc::ptr_eq(new, old));
+            let same_texts = (&modes, &constants, &parameters, &graph, &warnings)
+                == (&set.modes, &set.constants, &set.parameters, &set.graph, &set.warnings);
+            if same_stages && same_texts && pending == set.pending {
+                return Update::Unchanged { cleared };
+            }
+        }
+        let set =
+            ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, animated };
+        let set = Arc::new(set);
+        self.set = Some(Arc::clone(&set));
+        Update::Ready(set, report)
+    }
+}

@@ -1,0 +1,85 @@
+//! The stages that declare a pass: finds them in the tree, tells which are off, and gives each a debug mode.
+
+use std::collections::BTreeSet;
+
+use super::slot::Slot;
+use super::{Change, Library};
+use crate::interface;
+use crate::shader::annotation::{self, Mode, ModeStage};
+use crate::shader::compile::{StageKind, declares_pass};
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::graph::Graph;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::{SourceError, TreePath};
+
+impl Library {
+    /// Adds the stages that declare a pass since `change`, and removes those that no longer do.
+    pub(super) fn find_passes(&mut self, change: &Change, snapshot: &Snapshot<'_>) {
+        let listed;
+        let paths: Box<dyn Iterator<Item = &TreePath>> = match change {
+            Change::All => {
+                listed = self.source.list();
+                Box::new(listed.iter())
+            }
+            Change::Paths(paths) => Box::new(paths.iter()),
+        };
+        let is_pass = |path: &TreePath| snapshot.read(path).is_ok_and(|text| declares_pass(&text));
+        // A file that cannot be read, or is still empty, is a broken pass, not one that was removed.
+        let is_no_pass = |path: &TreePath| match snapshot.read(path) {
+            Ok(text) => !text.trim().is_empty() && !declares_pass(&text),
+            Err(error) => error == SourceError::Missing,
+        };
+        let is_seen = |path: &TreePath| !path.as_str().split('/').any(|name| name.starts_with('.'));
+        let may_be_pass =
+            |path: &TreePath| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute));
+        for path in paths.filter(|path| may_be_pass(path) && is_seen(path)) {
+            let place = self.slots.iter().position(|slot| slot.path == *path);
+            let is_idle = path.as_str().starts_with("passes/") && snapshot.read(path).is_ok() && is_no_pass(path);
+            let changed = if is_idle { self.idle.insert(path.clone()) } else { self.idle.remove(path) };
+            self.relink |= changed;
+            match place {
+                Some(place) if place >= self.fixed && is_no_pass(path) => {
+                    self.slots.remove(place);
+                    self.relink = true;
+                }
+                None if is_pass(path) => self.slots.push(Slot::new(path.clone())),
+                _ => {}
+            }
+        }
+    }
+
+    /// The passes that are off unless the user switches them on.
+    pub(super) fn passes_off(&self, snapshot: &Snapshot<'_>) -> BTreeSet<TreePath> {
+        let passes = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
+        passes.filter(|path| annotation::is_off(snapshot, path)).cloned().collect()
+    }
+
+    /// A warning for each stage in `passes/` that declares no pass.
+    pub(super) fn idle_warnings(&self, snapshot: &Snapshot<'_>) -> impl Iterator<Item = Diagnostic> {
+        self.idle.iter().map(|path| {
+            let message = "nothing draws this file, since no line of it says //@pass";
+            let name = path.stem().rsplit('/').next().unwrap_or_default();
+            let help = format!("begin it with `//@pass {name} to=picture`");
+            Diagnostic::warning(snapshot.display_path(path), message).with_help(help)
+        })
+    }
+}
+
+/// A debug mode for the image of each pass.
+pub(super) fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
+    (interface::PASS_MODES..).zip(&graph.passes).map(|(id, pass)| Mode {
+        id,
+        slug: pass.slug(),
+        name: pass.note.label.clone(),
+        group: "Passes".to_owned(),
+        components: 3,
+        // A pass that changes the picture is shown like the picture.
+        tonemap: pass.note.to_picture || pass.after_tonemap,
+        stage: ModeStage::Picture,
+        pass: Some(pass.name().to_owned()),
+        doc: pass.note.doc.clone(),
+        file: pass.note.place.file.clone(),
+        line: pass.note.place.line,
+        ..Mode::default()
+    })
+}
