@@ -7,7 +7,7 @@
 //   void main() { color = texture(picture, uv) * (1.0 - dot(uv - 0.5, uv - 0.5)); }
 //
 // The picture before the tone map is linear light in cd/m^2, times coverage; its alpha also holds flags
-// (common/pixel.glsl), so give it on as it is. After the tone map it is what the display shows, 0..1 and sRGB-encoded.
+// (common/pixel.glsl), so pass it on unchanged. After the tone map it is the displayed picture, 0..1 and sRGB-encoded.
 #ifndef PASS_GLSL
 #define PASS_GLSL
 
@@ -15,10 +15,10 @@
 
 // Position in this pass's image, 0..1 from the upper left corner.
 layout(location = 0) in vec2 uv;
-// What the pass writes.
+// The output of the pass.
 layout(location = 0) out vec4 color;
 
-// About this pass's image.
+// Properties of this pass's image.
 uniform Pass {
     vec2 size_px;              // width and height, pixels
 } pass;

@@ -1,4 +1,4 @@
-//! What the driver gets of a shader computes what its GLSL says: pictures of small programs, against the same programs in Rust.
+//! The SPIR-V that the driver gets does what the GLSL says: pictures of small shaders match the same programs in Rust.
 
 mod support;
 

@@ -308,7 +308,7 @@ fn packed_radiance_is_within_a_511th_of_its_largest_channel() {
         ("vec3(0.999, 0.5, 0.1)", [0.999, 0.5, 0.1]),
         ("vec3(2e4, 2.0, 1e3)", [2e4, 2.0, 1e3]),
         ("vec3(1e-3, 3e-5, 0.0)", [1e-3, 3e-5, 0.0]),
-        // What is no radiance is black. A GPU keeps the sign of zero, which a software device drops.
+        // Values that cannot be radiance become black. A GPU keeps the sign of zero, which a software device drops.
         ("vec3(-0.0)", [0.0; 3]),
         ("vec3(-1.0, sqrt(-1.0 - n.x * n.x), -0.0)", [0.0; 3]),
     ] {

@@ -425,7 +425,7 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
         let to_picture = random.below(3) == 0;
         let is_compute = !to_picture && random.below(4) == 0;
         let mut annotation = name.clone();
-        // What every device can write from a compute shader comes first.
+        // Every device can write the first four formats from a compute shader.
         let formats = ["rgba16f", "rgba32f", "rgba8", "r32f", "rg16f", "r16f", "rg32f"];
         let format = formats[random.below(if is_compute { 4 } else { 7 }) as usize];
         if to_picture {

@@ -15,7 +15,7 @@ uniform Bloom {
     int bloom_levels;          //@ui "Bloom width" 2..8 = 6
 };
 
-// A level of the blur. The tent of 3 x 3 texels, weights 1 2 1, hides its texels (Jimenez 2014).
+// A level of the blur. A tent filter of 3 x 3 texels, weights 1 2 1, hides the texels of the level (Jimenez 2014).
 vec3 blurred(int level) {
     vec2 texel = 1.0 / vec2(textureSize(bloom_source, level));
     vec3 sum = vec3(0.0);
@@ -35,7 +35,7 @@ void main() {
     for (int level = 0; level < min(levels, 12); ++level) blur += blurred(level);
     blur *= bloom_strength / float(levels);
     color.rgb = scene.rgb * (1.0 - bloom_strength) + blur / frame.exposure;
-    // Beside the model, scattered light hides the background as far as it is bright. The flags of alpha stay.
+    // Outside the model, scattered light covers the background in proportion to its brightness. Alpha's flags stay.
     float cover = saturate(max(blur.r, max(blur.g, blur.b)));
     color.a = scene.a + max(cover - coverage_of(scene.a), 0.0);
 }

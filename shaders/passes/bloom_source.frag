@@ -3,11 +3,11 @@
 #include "pass.glsl"
 #include "common/color.glsl"
 
-// What bloom.frag blurs: exposed light, of which the mip levels are ever wider blurs.
+// The source of the blurs in bloom.frag: exposed light. Each mip level is a wider blur than the one before.
 
 uniform sampler2D picture;
 
-// Four pixels make one. Weighted by 1 / (1 + luminance), a single very bright pixel does not flicker as a square
+// Averages four pixels. The weight 1 / (1 + luminance) keeps a single very bright pixel from flickering as a square
 // (Karis 2013, "Real Shading in Unreal Engine 4", tone-mapped average).
 void main() {
     vec2 texel = 0.5 / pass.size_px;

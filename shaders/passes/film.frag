@@ -22,7 +22,7 @@ void main() {
     float cos2 = 1.0 / (1.0 + film_vignette * dot(tangent, tangent));
     vec3 shown = srgb_from_linear(linear_from_srgb(scene.rgb) * cos2 * cos2);
     // Grain is strongest in middle tones: where every grain is exposed, or none, there is no noise. The sum of two random
-    // numbers is nearer to a normal distribution than one.
+    // numbers is closer to a normal distribution than a single number is.
     vec3 random = random_numbers(uvec3(gl_FragCoord.xy, 0u));
     float noise = random.x + random.y - 1.0;
     float tone = luminance(shown);

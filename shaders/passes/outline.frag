@@ -3,8 +3,8 @@
 #include "pass.glsl"
 #include "common/color.glsl"
 
-// Lines where depth has a step. Depth is reversed and infinite, near / distance, so it is linear over a plane on screen: the
-// second difference of a plane is 0, however steep it is, and what is left is an edge.
+// Draws lines where depth jumps. Depth is near / distance (reversed, 0 at infinity), which is linear over a plane on
+// screen. So its second difference is 0 on a plane of any slope, and differs from 0 at an edge.
 
 uniform sampler2D picture;
 uniform sampler2D depth;
@@ -21,7 +21,7 @@ void main() {
     vec2 x = vec2(texture(depth, uv - vec2(far.x, 0.0)).r, texture(depth, uv + vec2(far.x, 0.0)).r);
     vec2 y = vec2(texture(depth, uv - vec2(0.0, far.y)).r, texture(depth, uv + vec2(0.0, far.y)).r);
     float bend = max(abs(x.x + x.y - 2.0 * here), abs(y.x + y.y - 2.0 * here));
-    // Relative to the nearest of them, so that a line does not depend on the distance. 1e-9: all may be 0, at infinity.
+    // Relative to the nearest depth, so that a line does not depend on the distance. 1e-9: all may be 0, at infinity.
     float nearest = max(max(max(x.x, x.y), max(y.x, y.y)), max(here, 1e-9));
     float line = smoothstep(outline_threshold, 2.0 * outline_threshold, bend / nearest);
     vec4 scene = texture(picture, uv);

@@ -1,20 +1,20 @@
-//! The time of animated shaders in a window: it runs, stands still, goes on by single frames, and starts again.
+//! The clock of animated shaders in a window, which can run, pause, advance by single frames, and restart.
 
 use std::time::Instant;
 
 use crate::frame::Clock;
 
-/// Seconds of a single step.
+/// Length of a single step, seconds.
 const STEP_S: f32 = 1.0 / 60.0;
 
 /// The clock of the window's frames.
 pub(super) struct Playback {
     clock: Clock,
-    /// When the last frame was, while the time runs.
+    /// The time of the last frame, while the clock runs.
     last: Option<Instant>,
-    /// Whether the user has stopped the time.
+    /// Whether the user has paused the clock.
     pub(super) paused: bool,
-    /// Seconds of the clock for each second of the user.
+    /// Seconds of the clock per second of real time.
     pub(super) speed: f32,
     step: bool,
     restarted: bool,
@@ -27,43 +27,43 @@ impl Default for Playback {
 }
 
 impl Playback {
-    /// Whether the time runs.
+    /// Whether the clock runs.
     pub(super) fn runs(&self) -> bool {
         !self.paused || self.step
     }
 
-    /// Goes on by one frame in the next picture, and stops.
+    /// Advances the clock by one step in the next frame, and pauses it.
     pub(super) fn step(&mut self) {
         (self.paused, self.step) = (true, true);
     }
 
-    /// Sets the time back to 0.
+    /// Sets the clock back to 0.
     pub(super) fn restart(&mut self) {
         self.clock = Clock { mouse_px: self.clock.mouse_px, ..Clock::default() };
         (self.last, self.restarted) = (None, true);
     }
 
-    /// Whether the time was set back since the last call, so that passes begin again.
+    /// Whether the clock was set back since the last call. The passes must then restart too.
     pub(super) fn take_restart(&mut self) -> bool {
         std::mem::take(&mut self.restarted)
     }
 
-    /// Seconds since the start.
+    /// Seconds of the clock since its start.
     pub(super) fn time_s(&self) -> f32 {
         self.clock.time_s
     }
 
-    /// The time of the next frame. It stands still while nothing is animated, so that a still picture need not be redrawn.
+    /// The clock of the next frame. It reads 0 while nothing is animated, so that a still picture need not be redrawn.
     pub(super) fn next(&mut self, is_animated: bool) -> Clock {
         let now = Instant::now();
         let before = self.last.replace(now);
         let step = std::mem::take(&mut self.step);
         if !is_animated || (self.paused && !step) {
             self.last = None;
-            // The same time gives the same picture, which is not drawn again.
+            // An unchanged clock gives the same picture, which is not drawn again.
             return if is_animated { self.clock } else { Clock::default() };
         }
-        // The first frame is at 0.
+        // No time passes before the first frame, nor during a pause.
         let passed = before.map_or(0.0, |before| (now - before).as_secs_f32() * self.speed);
         self.clock.delta_s = if step { STEP_S } else { passed };
         self.clock.time_s += self.clock.delta_s;

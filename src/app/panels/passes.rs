@@ -1,4 +1,4 @@
-//! The panel Passes: a switch for each pass that the tree declares, and the time of animated ones.
+//! The panel Passes: a switch for each pass that the tree declares, and the clock of animated shaders.
 
 use egui::{RichText, Ui};
 

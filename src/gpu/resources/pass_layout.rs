@@ -1,4 +1,4 @@
-//! The layout of a pass that a shader tree declares. Its set `interface::SET_PASS` has what the pass's stage declares.
+//! The pipeline layout of a declared pass. Its set `interface::SET_PASS` has the bindings that the stage declares.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
 use crate::interface;
 
-/// Kind of a descriptor of a pass.
+/// The kind of a descriptor of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PassBinding {
     /// `sampler2D`
@@ -36,9 +36,9 @@ impl PassBinding {
     }
 }
 
-/// What a descriptor of a pass points to.
+/// The resource that a descriptor of a pass points to.
 pub enum PassResource<'a> {
-    /// An image in [`crate::gpu::Use::Sampled`], and how it is sampled.
+    /// An image in [`crate::gpu::Use::Sampled`], and its sampler.
     Texture(&'a Arc<Image>, &'a Arc<Sampler>),
     /// An image with one level in [`crate::gpu::Use::Storage`].
     Storage(&'a Arc<Image>),
@@ -56,7 +56,7 @@ impl PassResource<'_> {
     }
 }
 
-/// A pipeline layout with the frame's set and the pass's own. Sets of the contract that a pass does not have are empty.
+/// A pipeline layout with the frame's set, the set of tasks, and the pass's own set. The other sets are empty.
 pub struct PassLayout {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
@@ -93,7 +93,7 @@ impl PassLayout {
         let mut sets = [this.empty; 4];
         sets[interface::SET_FRAME as usize] = layouts.sets[interface::SET_FRAME as usize];
         sets[interface::SET_PASS as usize] = this.own;
-        // A compute stage reports its endless loops there.
+        // Compute stages report endless loops through this set.
         sets[interface::SET_TASK as usize] = layouts.sets[interface::SET_TASK as usize];
         let ranges = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&ranges);
@@ -157,7 +157,7 @@ impl PassLayout {
                 })
             })
             .collect();
-        // SAFETY: the set is new, so no command uses it; it keeps alive what it points to.
+        // SAFETY: the set is new, so no command uses it. The set keeps its resources alive.
         unsafe { self.gpu.device.update_descriptor_sets(&writes, &[]) };
         Ok(Arc::new(set))
     }

@@ -222,7 +222,7 @@ impl Window {
             image_count: (capabilities.min_image_count + 1).min(most),
             transform: capabilities.current_transform,
             mode,
-            // What passes after the tone map draw is copied to the window.
+            // If passes follow the tone map, their result is copied to the swapchain's image.
             usage: vk::ImageUsageFlags::COLOR_ATTACHMENT
                 | (vk::ImageUsageFlags::TRANSFER_DST & capabilities.supported_usage_flags),
         }))

@@ -30,7 +30,7 @@ pub(crate) struct Radiance {
     pub(crate) irradiance: Arc<Image>,
     /// The images hold radiance times this factor.
     pub(crate) scale: f32,
-    /// What the specular levels leave out.
+    /// The sun that the specular levels leave out.
     pub(super) sun: Sun,
     /// The list of ibl/small_lights.glsl. `None` in an environment that is never prefiltered.
     pub(super) small_lights: Option<Arc<Buffer>>,

@@ -20,26 +20,26 @@ pub(super) use blocks::Blocks;
 use images::Images;
 use sets::Sets;
 
-/// The declared passes of a view: what they drew last, and what they need to draw again.
+/// Draws the declared passes of a view, and keeps their images, buffers and descriptor sets between frames.
 pub(super) struct DeclaredPasses {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
-    /// Blends texels and levels.
+    /// Interpolates between texels and between levels.
     linear: Arc<Sampler>,
     nearest: Arc<Sampler>,
-    /// What a pass that is off has drawn: nothing.
+    /// Reads as 0. Passes read it in place of a missing image, such as that of a pass that is switched off.
     blank: Arc<Image>,
-    /// The set of tasks that compute stages report endless loops to.
+    /// The set of tasks, through which compute stages report endless loops.
     task_set: Arc<DescriptorSet>,
     images: Images,
     sets: Sets,
-    /// The HDR picture after the passes, or the image of the shown pass.
+    /// The HDR picture after the passes before the tone map, or the image of the shown pass.
     picture: Option<Arc<Image>>,
-    /// What the display shows after the passes behind the tone map.
+    /// The displayed picture, after the passes that follow the tone map.
     display: Option<Arc<Image>>,
 }
 
-/// What the passes of a frame are drawn with.
+/// The arguments of a frame's passes.
 pub(super) struct Drawn<'a> {
     pub(super) frame: &'a BoundFrame,
     pub(super) frame_set: &'a Arc<DescriptorSet>,
@@ -48,7 +48,8 @@ pub(super) struct Drawn<'a> {
     pub(super) depth: Option<&'a Arc<Image>>,
 }
 
-/// Sets for each pass that are kept before the cache begins again: those of two slots with two images each, and some before.
+/// Number of cached sets per pass at which the cache is cleared: the sets of two frame slots with two images each, and
+/// spares.
 const SETS_KEPT: usize = 8;
 
 impl DeclaredPasses {
@@ -72,8 +73,8 @@ impl DeclaredPasses {
         })
     }
 
-    /// Creates the images and buffers that `frame` needs. Those that it needs as they were stay, with their content. Returns
-    /// whether anything is new.
+    /// Creates the images and buffers that `frame` needs. Those that still fit are kept, with their content. Returns
+    /// false if the needs are the same as before.
     pub(super) fn prepare(&mut self, frame: &BoundFrame) -> Result<bool, GpuError> {
         let next = self.images.next(&self.gpu, frame)?;
         let is_new = next.is_some();
@@ -85,7 +86,7 @@ impl DeclaredPasses {
         Ok(is_new)
     }
 
-    /// Sets all images and buffers back to 0 in the next frame.
+    /// Makes the next frame clear all images and buffers to 0.
     pub(super) fn restart(&mut self) {
         self.images.restart();
     }
@@ -121,8 +122,8 @@ impl DeclaredPasses {
         frame.state.pipelines.passes.iter().any(|pass| pass.after_tonemap)
     }
 
-    /// Lets `tone_map` draw to an image of its own, and draws the passes after it. Returns the image for the display, in
-    /// [`Use::Sampled`]: the same as before unless the picture was `redrawn`.
+    /// Lets `tone_map` draw to an intermediate image, and draws the passes after the tone map. Returns the image for
+    /// the display, in [`Use::Sampled`]. It is the image of the previous frame unless the picture was `redrawn`.
     pub(super) fn on_display(
         &mut self,
         encoder: &mut Encoder,
@@ -149,26 +150,26 @@ impl DeclaredPasses {
         Ok(Some(last))
     }
 
-    /// Forgets what the passes drew: the frame's commands were not submitted.
+    /// Discards the results of the passes, since the frame's commands were not submitted.
     pub(super) fn forget(&mut self) {
         self.restart();
         (self.picture, self.display) = (None, None);
     }
 
-    /// Drops the cached sets, which keep images alive that were replaced.
+    /// Drops the cached sets, which would keep the replaced targets alive.
     pub(super) fn targets_replaced(&mut self) {
         self.sets.clear();
         self.picture = None;
     }
 
-    /// The set of the tone map that reads `picture`.
+    /// The set with which the tone map reads `picture`.
     pub(super) fn tonemap_set(&mut self, picture: &Arc<Image>) -> Result<Arc<DescriptorSet>, GpuError> {
         let writer = SetWriter::default().texture(0, picture, &self.nearest);
         let make = || DescriptorSet::new(&self.layouts, SET_PASS, writer);
         self.sets.get(vec![Arc::as_ptr(picture) as usize], SETS_KEPT, make)
     }
 
-    /// Draws the passes of one side of the tone map, from this picture. Returns the last picture.
+    /// Draws the passes before or after the tone map, starting with `picture`. Returns the last picture.
     fn run(
         &mut self,
         encoder: &mut Encoder,
@@ -221,7 +222,7 @@ impl DeclaredPasses {
         encoder.draw(3);
         encoder.end_rendering();
         match &level {
-            // An attachment has one level, so the pass draws to an image of its own, from which the levels are made.
+            // An attachment has one level. So the pass draws to a separate image, from which all levels are made.
             Some(level) => {
                 encoder.transition(level, Use::Color, Use::CopyFrom);
                 encoder.transition(target, Use::Undefined, Use::CopyTo);
@@ -265,7 +266,7 @@ impl DeclaredPasses {
         Ok(())
     }
 
-    /// The own set of a pass, for its inputs as they are now.
+    /// The pass's own set, for its current inputs.
     fn set(
         &mut self,
         layout: &Arc<PassLayout>,
@@ -294,7 +295,7 @@ impl DeclaredPasses {
         target: &'a Arc<Image>,
     ) -> Result<Vec<PassResource<'a>>, GpuError> {
         let textures = drawn.frame.pipelines.textures();
-        // The graph has a buffer and a block for each of these inputs.
+        // Does not happen: `Images` has a buffer for each name, and `Blocks` has one for each block.
         let missing = || GpuError::NoStage(pass.note.stage.clone());
         let resource = |(binding, input): (usize, &Input)| {
             Ok(match input {
@@ -316,7 +317,7 @@ impl DeclaredPasses {
         pass.inputs.iter().enumerate().map(resource).collect()
     }
 
-    /// An image as passes read it: with blended texels, if the device can blend them.
+    /// An image for passes to read. Its texels are interpolated if the device supports that for the format.
     fn sampled<'a>(&'a self, image: &'a Arc<Image>) -> PassResource<'a> {
         let blends = self.gpu.blends_texels(image.desc().format);
         PassResource::Texture(image, if blends { &self.linear } else { &self.nearest })
@@ -330,7 +331,7 @@ fn shown_image(frame: &BoundFrame) -> Option<&Arc<GraphPass>> {
     request.passes.iter().find(|pass| pass.name() == shown && !pass.note.to_picture)
 }
 
-/// Scales an image to the size of another. Both are in [`Use::Sampled`] then.
+/// Scales an image to the size of another. Leaves both in [`Use::Sampled`].
 fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
     encoder.transition(from, Use::Sampled, Use::CopyFrom);
     encoder.transition(to, Use::Undefined, Use::CopyTo);

@@ -24,7 +24,7 @@ use crate::gpu::{
 use crate::shader::PixelValue;
 use crate::shader::graph::Input;
 
-/// Where a view puts its picture.
+/// The destination of a view's picture.
 pub struct Output<'a> {
     /// The image. [`View::draw`] leaves it in [`Use::Color`].
     pub image: &'a Arc<Image>,
@@ -72,7 +72,7 @@ pub struct View {
     in_flight: Vec<InFlight>,
     targets: Option<Targets>,
     declared: DeclaredPasses,
-    /// The frame that the HDR target holds, and the part of it.
+    /// The frame that the HDR target holds, and the part of it that was shaded. `None` is all of it.
     drawn: Option<(BoundFrame, Option<Rect>)>,
     /// How often the model was drawn.
     picture: u64,
@@ -82,7 +82,8 @@ pub struct View {
 }
 
 impl View {
-    /// An accumulating mode stops after this many frames, unless the caller redraws always. More make no visible difference.
+    /// An accumulating mode stops after this many frames, unless the caller passes [`Redraw::Always`]. Further frames
+    /// make no visible difference.
     pub const MOST_ACCUMULATED: u32 = 4096;
 
     /// Creates a view for this many frames in flight.
@@ -225,13 +226,14 @@ impl View {
         Ok(())
     }
 
-    /// Draws everything in the next frame, since the commands of a frame were not submitted and the targets may hold nothing.
+    /// Makes the next frame draw everything: the commands of a frame were not submitted, so the targets may be
+    /// undefined.
     pub fn forget(&mut self) {
         self.drawn = None;
         self.declared.forget();
     }
 
-    /// Lets the declared passes begin again: images of the frame before and buffers become 0.
+    /// Restarts the declared passes: the next frame clears their images and buffers to 0.
     pub fn restart_passes(&mut self) {
         self.declared.restart();
     }

@@ -21,7 +21,7 @@ pub(super) struct Passes<'a> {
     pub(super) only: Option<Rect>,
 }
 
-/// Draws, sorted by the order that they require.
+/// Draws in the order that blending and depth require.
 #[derive(Default)]
 struct Sorted<'a> {
     /// Opaque and masked, front to back, so that the depth test rejects hidden fragments.
@@ -52,8 +52,8 @@ impl Passes<'_> {
     /// Draws the surfaces that `behind` has not drawn, and the sky.
     fn surfaces(&self, encoder: &mut Encoder, sorted: &Sorted<'_>) {
         let targets = self.targets;
-        // If `behind` has drawn the opaque surfaces, they are not drawn again, unless it drew them as in the final picture
-        // and this mode differs.
+        // Opaque surfaces that `behind` has drawn are not drawn again, unless this mode draws them differently from the
+        // final picture, which `behind` holds.
         let has_opaque = targets.behind.is_some() && !self.request().draws_opaque_twice();
         let clear = (!has_opaque).then_some([0.0; 4]);
         let (resolve_depth, keeps_depth) = (targets.resolved_depth.as_ref(), targets.desc.reads_depth);

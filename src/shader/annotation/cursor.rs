@@ -39,7 +39,7 @@ impl<'a> Cursor<'a> {
         Self { place, raw, at }
     }
 
-    /// Where the annotation stands.
+    /// The location of the annotation.
     pub fn place(&self) -> &'a Place {
         self.place
     }

@@ -1,4 +1,4 @@
-//! Parses `//@pass`, `//@texture` and `//@buffer`: what a tree adds to the making of a picture.
+//! Parses `//@pass` and `//@texture`, with which a shader tree adds passes and their textures to a frame.
 
 use std::ops::Range;
 
@@ -10,13 +10,13 @@ use crate::shader::diagnostic::Diagnostic;
 /// Largest side of a pass's image in pixels, if it is given in pixels. The device may offer less.
 const LARGEST_SIDE: u32 = 16384;
 
-/// The image of the pass that turns the HDR picture into what the display shows. It comes with Specula.
+/// Specula's own pass from the HDR picture to the displayed picture, as `after=` names it.
 pub const TONEMAP: &str = "tonemap";
 
-/// Names that no pass, texture or buffer can have: they name what Specula draws.
+/// Names that no pass or texture can have, since they name Specula's own images and passes.
 pub const RESERVED: [&str; 4] = ["picture", "depth", TONEMAP, "model"];
 
-/// Where an annotation stands. All places are equal, so that moving a line is no change.
+/// The location of an annotation. All locations compare as equal, so that moving a line does not count as a change.
 #[derive(Clone, Debug, Default)]
 pub struct NotePlace {
     /// File as printed.
@@ -70,7 +70,7 @@ impl PassSize {
     }
 }
 
-/// The format of a pass's image: what a texel holds.
+/// The texel format of a pass's image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PassFormat {
@@ -79,7 +79,7 @@ pub enum PassFormat {
     Rgba16f,
     /// Four floats.
     Rgba32f,
-    /// Four numbers 0..1 of 8 bits.
+    /// Four 8-bit numbers, 0..1.
     Rgba8,
     /// Two half floats.
     Rg16f,
@@ -112,9 +112,9 @@ impl PassFormat {
 /// The workgroups of a compute pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Dispatch {
-    /// As many as cover the pass's image with one invocation a pixel.
+    /// As many as cover the pass's image with one invocation per pixel.
     Size,
-    /// So many along x, y and z.
+    /// This many along x, y and z.
     Groups([u32; 3]),
 }
 
@@ -129,17 +129,17 @@ pub struct PassNote {
     pub size: PassSize,
     /// Format of its image.
     pub format: PassFormat,
-    /// Whether its image has mip levels, made after the pass.
+    /// Whether its image has mip levels, which are made after the pass.
     pub mips: bool,
-    /// Whether `before_NAME` is the image of the frame before.
+    /// Whether the image of the previous frame is kept, as `before_NAME`.
     pub keep: bool,
-    /// Whether it is drawn unless the user switches it off.
+    /// Whether it is on until the user switches it off.
     pub on: bool,
-    /// Whether its output takes the place of the picture.
+    /// Whether its output replaces the picture.
     pub to_picture: bool,
-    /// The pass after which it comes, if the images that it reads do not decide that.
+    /// A pass that comes before this pass, besides those whose images it reads.
     pub after: Option<String>,
-    /// Workgroups, of a compute pass.
+    /// The workgroups of a compute pass.
     pub dispatch: Dispatch,
     /// A description of the pass.
     pub doc: String,
@@ -150,14 +150,14 @@ pub struct PassNote {
     pub place: NotePlace,
 }
 
-/// How a texture repeats.
+/// The addressing mode of a texture, for coordinates beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Wrap {
-    /// It repeats.
+    /// The texture repeats.
     #[default]
     Repeat,
-    /// Its edge goes on.
+    /// The texels at the edge continue.
     Clamp,
 }
 
@@ -166,13 +166,13 @@ pub enum Wrap {
 pub struct TextureNote {
     /// Name in GLSL.
     pub name: String,
-    /// The image's file, relative to the file with the annotation or to the tree.
+    /// Path of the image, relative to the file with the annotation or to the tree's root.
     pub image: String,
-    /// The file with the annotation, from the tree's root.
+    /// Path of the file with the annotation, relative to the tree's root.
     pub declared_in: String,
     /// Whether its colors are sRGB-encoded, so that a shader reads linear light.
     pub srgb: bool,
-    /// Beyond its edges.
+    /// Addressing mode.
     pub wrap: Wrap,
     /// Whether it has mip levels.
     pub mips: bool,
@@ -186,7 +186,7 @@ pub fn is_image_extension(extension: &str) -> bool {
     ["png", "jpg", "jpeg", "hdr", "exr"].iter().any(|known| known.eq_ignore_ascii_case(extension))
 }
 
-/// Parses what follows `//@pass`.
+/// Parses the rest of a `//@pass`.
 pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
     let name = name(cursor, "pass")?;
     let label = cursor.string()?.unwrap_or_else(|| name.clone());
@@ -229,7 +229,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
     Ok(note)
 }
 
-/// Parses what follows `//@texture`.
+/// Parses the rest of a `//@texture`.
 pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> {
     let name = name(cursor, "texture")?;
     let Some(image) = cursor.string()? else {
@@ -255,7 +255,7 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> 
     Ok(note)
 }
 
-/// The name after `//@pass` or `//@texture`: an identifier of GLSL.
+/// Parses the name after `//@pass` or `//@texture`: a GLSL identifier.
 fn name(cursor: &mut Cursor<'_>, what: &str) -> Result<String, Box<Diagnostic>> {
     let (bytes, name) = cursor.word();
     let is_first = |c: char| c.is_ascii_lowercase();

@@ -53,7 +53,7 @@ fn units_and_components_of_modes() {
     .modes;
     let rows: Vec<_> = modes.iter().map(|mode| (mode.components, mode.unit.as_str())).collect();
     assert_eq!(rows, [(3, "cd/m^2"), (1, "m")]);
-    // Programs outside rely on the fields of the JSON.
+    // External programs rely on the fields of the JSON.
     let json = serde_json::to_value(&modes[0]).unwrap();
     assert!(json.get("unit").is_none() && json.get("components").is_none(), "{json}");
     refused(
@@ -100,13 +100,13 @@ fn claims_name_choices() {
     let names = |names: &[&str]| Some(names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
     assert_eq!(claims(""), (None, None));
     assert_eq!(claims("conserves=\"A B\""), (names(&["A", "B"]), None));
-    // To claim it of no choice is to have a part in it.
+    // An empty claim is not the same as no claim.
     assert_eq!(claims("reciprocal=B conserves=\"\""), (names(&[]), names(&["B"])));
     let unknown = "m.frag:3:76: error: expected names of the choices before `conserves=`, found `C`";
     refused(&constant("conserves=\"A C\""), unknown);
     let unknown = "m.frag:3:77: error: expected names of the choices before `reciprocal=`, found `a`";
     refused(&constant("reciprocal=a"), unknown);
-    // Without choices there is nothing to claim.
+    // Without choices, no name can be claimed.
     let unknown = "m.frag:3:61: error: expected names of the choices before `conserves=`, found `A`";
     refused("layout(constant_id = 40) const uint C = 0u; //@ui conserves=A", unknown);
 }

@@ -32,7 +32,7 @@ fn expect(text: &str, expected: &str) {
 
 #[test]
 fn rust_and_glsl_agree_on_every_member() {
-    // A struct has offsets only in a block. Those that `interface.glsl` puts into none get one here.
+    // A struct has offsets only in a block. Structs that `interface.glsl` uses in no block get a block here.
     let is_free = |block: &&interface::Block| block.around[0].starts_with("struct ");
     let buffer = |(binding, block): (usize, &interface::Block)| {
         let name = block.name;

@@ -1,4 +1,4 @@
-//! Finds out by name what a pass reads and writes.
+//! Finds the resources that a pass reads and writes, by the names of its declarations.
 
 use super::{Input, PassStage};
 use crate::interface::SET_PASS;
@@ -8,12 +8,12 @@ use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::spirv::reflect::Descriptor;
 
-/// Most bytes of a storage buffer: what every device can bind.
+/// The largest storage buffer in bytes. Every device can bind one of this size.
 const LARGEST_BUFFER: u32 = 128 << 20;
-/// Most bytes of a uniform block: what every device can bind.
+/// The largest uniform block in bytes. Every device can bind one of this size.
 const LARGEST_BLOCK: u32 = 16 << 10;
 
-/// The block in pass.glsl with the size of a pass's image: a `vec2` in pixels.
+/// The block in pass.glsl that holds the size of a pass's image: a `vec2` in pixels.
 const SIZE_BLOCK: &str = "Pass";
 
 /// The names that a pass can read.
@@ -24,10 +24,10 @@ pub struct Names<'a> {
     pub textures: &'a [TextureNote],
 }
 
-/// What is at each binding of a pass.
+/// The resource at each binding of a pass.
 ///
 /// # Errors
-/// A name that nothing has, or a declaration that does not fit what has the name.
+/// A name that no pass or texture has, or a declaration that does not fit the resource of that name.
 pub fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Vec<Input>, Vec<Diagnostic>> {
     let own = stage.reflection.descriptors.iter().filter(|found| found.set == SET_PASS);
     let (mut inputs, mut errors) = (Vec::new(), Vec::new());
@@ -56,7 +56,7 @@ fn is_doubled(stage: &PassStage<'_>, found: &Descriptor) -> bool {
     stage.reflection.descriptors.iter().filter(same).count() > 1
 }
 
-/// A message, and a help.
+/// A message, and a help text that may be empty.
 type Refusal = (String, String);
 
 fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>) -> Result<Input, Refusal> {

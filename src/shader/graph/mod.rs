@@ -1,8 +1,9 @@
-//! The passes that a tree declares with `//@pass`, in the order in which a picture goes through them.
+//! The passes that a tree declares with `//@pass`, in the order in which they are drawn.
 //!
-//! A pass reads an image by its name. `uniform sampler2D glow;` is the image of the pass `glow`, `before_glow` the same image one
-//! frame ago, `picture` the picture as far as it is made, and `depth` the depth of the model. A pass with `to=picture` takes the
-//! picture and gives a new one. The order follows from who reads what, `after=` decides what is left, and names break ties.
+//! A pass reads an image by its name. `uniform sampler2D glow;` is the image of the pass `glow`, `before_glow` the same
+//! image one frame ago, `picture` the picture so far, and `depth` the depth of the model. A pass with `to=picture`
+//! replaces the picture. A pass follows the passes whose images it reads, and the pass that its `after=` names. Names
+//! break ties.
 
 mod inputs;
 mod order;
@@ -22,7 +23,7 @@ use super::source::text::{find_word, lines};
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 
-/// What a pass reads or writes at a binding of `interface::SET_PASS`.
+/// The resource that a pass reads or writes at a binding of `interface::SET_PASS`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Input {
     /// The picture before this pass.
@@ -48,17 +49,17 @@ pub enum Input {
 /// A pass in its place in the [`Graph`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct GraphPass {
-    /// What its annotation says.
+    /// The parsed `//@pass`.
     pub note: PassNote,
-    /// Whether it is a fragment shader over the whole image or a compute shader.
+    /// Whether its stage is a compute shader. Otherwise it is a fragment shader over the whole image.
     pub is_compute: bool,
-    /// Whether it works on what the display shows, after the tone map.
+    /// Whether it runs after the tone map, on the displayed picture.
     pub after_tonemap: bool,
-    /// What is at each of its bindings, from 0 on.
+    /// The resource at each binding, from 0 on.
     pub inputs: Vec<Input>,
-    /// Invocations of a workgroup, of a compute pass.
+    /// The workgroup size of a compute pass.
     pub local_size: [u32; 3],
-    /// Whether its image may change while nothing else does: it reads the time, the frame before, or a buffer.
+    /// Whether its image may change while nothing else does: the pass reads the time, the previous frame, or a buffer.
     pub moves: bool,
 }
 
@@ -91,13 +92,13 @@ pub struct Texture {
     pub path: String,
     /// Whether its colors are sRGB-encoded.
     pub srgb: bool,
-    /// Beyond its edges.
+    /// Addressing mode.
     pub wrap: Wrap,
     /// Whether it has mip levels.
     pub mips: bool,
-    /// The file.
+    /// The content of the file.
     pub bytes: Arc<[u8]>,
-    /// The annotation.
+    /// The parsed `//@texture`.
     pub note: TextureNote,
 }
 
@@ -112,7 +113,7 @@ impl std::fmt::Debug for Texture {
 pub struct Graph {
     /// In the order in which they are drawn. The tone map comes before the first pass with `after_tonemap`.
     pub passes: Vec<Arc<GraphPass>>,
-    /// By name.
+    /// The textures that the passes sample, by name.
     pub textures: BTreeMap<String, Arc<Texture>>,
 }
 
@@ -120,15 +121,15 @@ pub struct Graph {
 pub struct PassStage<'a> {
     /// Vertex, fragment or compute.
     pub kind: StageKind,
-    /// Its module.
+    /// The declarations of its module.
     pub reflection: &'a Reflection,
     /// Its source text.
     pub texts: Texts<'a>,
 }
 
 impl Graph {
-    /// Orders the passes that `annotations` declare. `stages` are those that have compiled, by path; a pass whose stage is not
-    /// among them is left out.
+    /// Orders the passes that `annotations` declare. `stages`: the compiled stages by path. A pass is left out if its
+    /// stage is not among them.
     ///
     /// # Errors
     /// An unknown name, an image of the wrong type, a cycle, a texture that cannot be read: each with its line.
@@ -188,8 +189,9 @@ impl Graph {
         self.passes.iter().find(|pass| pass.name() == name)
     }
 
-    /// The passes to draw, in order: those that the picture needs while `is_on` returns true for them. With `shown`, those that
-    /// the image of that pass needs, switched on or not. A pass that nobody reads costs nothing.
+    /// The passes to draw, in order. Without `shown`: all passes with `to=picture`, and all passes whose images or
+    /// buffers these use. With `shown`: the pass of that name, and what it needs. Passes for which `is_on` returns
+    /// false are left out, except `shown` itself. A pass that nothing uses costs nothing.
     pub fn active(&self, is_on: impl Fn(&GraphPass) -> bool, shown: Option<&str>) -> Vec<Arc<GraphPass>> {
         let last = shown.and_then(|name| self.passes.iter().position(|pass| pass.name() == name));
         let mut needed: BTreeSet<usize> = BTreeSet::new();
@@ -223,7 +225,7 @@ impl Graph {
     }
 }
 
-/// Whether a text has code that reads the time, the number of the frame or the mouse.
+/// Whether the code of a text reads the clock: the time, the frame's number or the mouse.
 pub fn text_reads_clock(text: &str) -> bool {
     const CLOCK: [&str; 4] = ["frame.time_s", "frame.delta_s", "frame.frame_index", "frame.mouse_px"];
     CLOCK.iter().any(|member| text.contains(member))
@@ -236,7 +238,7 @@ fn reads_clock(texts: &Texts<'_>) -> bool {
     files.filter_map(|path| texts.snapshot.read(path).ok()).any(|text| text_reads_clock(&text))
 }
 
-/// A message if what the annotation says does not go together.
+/// A message if the options of an annotation contradict each other, or do not apply to this kind of stage.
 fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
     let is_compute = kind == StageKind::Compute;
     if note.to_picture && is_compute {
@@ -251,7 +253,7 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
     (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
 }
 
-/// Errors of passes whose buffer another pass declares with another size.
+/// An error for each pass that declares a buffer with another size than an earlier pass does.
 fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
     let mut first: BTreeMap<&str, (u32, &GraphPass)> = BTreeMap::new();
     let mut errors = Vec::new();

@@ -1,4 +1,4 @@
-//! The order of passes.
+//! The drawing order of passes.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use crate::message::did_you_mean;
 use crate::shader::annotation::pass::TONEMAP;
 use crate::shader::diagnostic::Diagnostic;
 
-/// The passes in the order in which they are drawn.
+/// Sorts passes into the order in which they are drawn.
 ///
 /// # Errors
-/// An unknown name after `after=`, a cycle, or a pass before the tone map that reads the image of one after it.
+/// An unknown name in `after=`, or a cycle.
 pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnostic>> {
     passes.sort_by(|a, b| a.name().cmp(b.name()));
     let index: BTreeMap<String, usize> =
@@ -19,7 +19,7 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     if !unknown.is_empty() {
         return Err(unknown);
     }
-    // What reads the image of a pass after the tone map comes after the tone map itself.
+    // A pass that reads the image of a pass after the tone map, or follows such a pass, also runs after the tone map.
     let mut changed = true;
     while std::mem::take(&mut changed) {
         for at in 0..passes.len() {
@@ -72,7 +72,7 @@ struct Order<'a> {
 }
 
 impl Order<'_> {
-    /// Puts a pass into the order, after all that it needs. `path` leads here.
+    /// Appends a pass to the order, after all passes that it needs. `path`: the passes that wait for it.
     fn emit(&mut self, at: usize, path: &mut Vec<usize>) -> Result<(), Box<Diagnostic>> {
         match self.state[at] {
             State::Done => return Ok(()),

@@ -1,4 +1,4 @@
-//! What an edit has changed: the functions that differ between two versions of a stage's files.
+//! Finds the functions that an edit has changed, by comparing two versions of a stage's files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use foldhash::HashSet;
 use super::scan::{File, Function, Parts};
 use crate::shader::source::TreePath;
 
-/// The files of a stage; `None` for paths where an include was not found.
+/// The files of a stage by path. `None` stands for an include that was not found.
 pub type Files = BTreeMap<TreePath, Option<Arc<File>>>;
 
-/// The names of functions that were edited or added. `None` if the edit reaches more than these functions: a declaration, a
-/// signature that others call, the order of definitions.
+/// The names of functions that were edited, added or removed. `None` if the edit affects other functions too, because
+/// it changes a declaration, a signature that they call, or the order of definitions.
 pub fn changed_functions(old: &Files, new: &Files) -> Option<BTreeSet<Box<str>>> {
     let (mut changed, mut moved) = (BTreeSet::new(), BTreeSet::new());
     for (path, old) in old {
@@ -23,7 +23,8 @@ pub fn changed_functions(old: &Files, new: &Files) -> Option<BTreeSet<Box<str>>>
             _ => return None,
         }
     }
-    // A new function may hide another, or be the better overload, wherever its name stands. So may the absence of one.
+    // A function that was added or removed may change the meaning of every call of its name: it may hide another
+    // function, or be the better overload.
     if !moved.is_empty() {
         for file in new.values().flatten() {
             let parts = file.parts()?;
@@ -38,7 +39,8 @@ pub fn changed_functions(old: &Files, new: &Files) -> Option<BTreeSet<Box<str>>>
     Some(changed)
 }
 
-/// Adds the names of functions whose code differs to `changed`, and those that only one version has to `moved`.
+/// Adds the names of functions whose code differs to `changed`, and the names of functions that only one version has to
+/// `moved`. `None` if other code differs, or the order of functions.
 fn compare(old: &Parts, new: &Parts, changed: &mut BTreeSet<Box<str>>, moved: &mut BTreeSet<Box<str>>) -> Option<()> {
     if old.rest != new.rest {
         return None;
@@ -55,12 +57,12 @@ fn compare(old: &Parts, new: &Parts, changed: &mut BTreeSet<Box<str>>, moved: &m
     Some(())
 }
 
-/// What tells a function from all others of the file.
+/// Identifies a function in its file: its place and its head.
 fn place(function: &Function) -> (usize, &str) {
     (function.place, &function.head)
 }
 
-/// The places of a file's functions. `None` if two have the same.
+/// The places of a file's functions. `None` if two functions have the same place and head.
 fn places(parts: &Parts) -> Option<HashSet<(usize, &str)>> {
     let places: HashSet<_> = parts.functions.iter().map(place).collect();
     (places.len() == parts.functions.len()).then_some(places)

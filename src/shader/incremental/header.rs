@@ -7,16 +7,16 @@ pub struct Header {
     /// The return type in GLSL.
     pub returns: String,
     pub name: String,
-    /// `None` if they are written in a way that is not known here.
+    /// `None` if a parameter has a form that [`Parameter::parse`] does not know.
     pub parameters: Option<Vec<Parameter>>,
 }
 
 /// The type of a parameter.
 #[derive(Debug)]
 pub struct Parameter {
-    /// With the array sizes behind it.
+    /// The type's name, with the array sizes behind it.
     kind: String,
-    /// The array sizes behind the name.
+    /// The array sizes behind the parameter's name.
     sizes: String,
 }
 
@@ -26,7 +26,7 @@ impl Parameter {
         format!("{} {name}{}", self.kind, self.sizes)
     }
 
-    /// Reads `const in float x[3]`.
+    /// Parses a parameter such as `const in float x[3]`.
     fn parse(tokens: &[Token<'_>]) -> Option<Self> {
         const QUALIFIERS: [&str; 8] = ["const", "in", "out", "inout", "highp", "mediump", "lowp", "restrict"];
         // A local variable cannot have these types.
@@ -55,7 +55,7 @@ impl Parameter {
 }
 
 impl Header {
-    /// Reads `TYPE NAME(PARAMETERS)`. `None` if the tokens are anything else, such as a macro with arguments.
+    /// Parses `TYPE NAME(PARAMETERS)`. `None` if the tokens are anything else, such as a macro with arguments.
     pub fn parse(tokens: &[Token<'_>]) -> Option<Self> {
         let open = tokens.iter().position(|token| token.text == "(")?;
         let (name, returns) = tokens[..open].split_last()?;

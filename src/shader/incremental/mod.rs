@@ -1,11 +1,13 @@
 //! Incremental compilation: an edit compiles only the functions that it changes.
 //!
-//! glslang takes most of its time for the bodies of functions. So each file is split into function definitions and the rest
-//! ([`scan`]), and two versions of a stage's files are compared ([`difference`]). If only functions differ, a thin version of the
-//! files is compiled, which has all declarations but only these functions ([`thin`]), and the linker puts them into the module of
-//! the version before ([`spirv::link`](crate::shader::spirv::link)). The module does the same as one that is compiled as a whole.
+//! glslang spends most of its time on the bodies of functions. So [`scan`] splits each file into function definitions
+//! and the rest, and [`difference`] compares two versions of a stage's files. If only functions differ, [`thin`] writes
+//! a thin version of the files, which has all declarations but only these functions. The compiled functions are linked
+//! into the module of the previous version ([`spirv::link`](crate::shader::spirv::link)). The linked module does the
+//! same as one that is compiled as a whole.
 //!
-//! Whatever is unusual is compiled as a whole, and so is every edit with an error or a warning: messages do not depend on it.
+//! A stage with unusual code is compiled as a whole. So is every edit with an error or a warning, so that messages do
+//! not depend on incremental compilation.
 
 mod difference;
 mod header;
@@ -27,12 +29,12 @@ pub use difference::Files;
 use scan::{File, Function};
 use thin::{CALLER, Selection};
 
-/// The newest version of each file, so that all stages and edits share what scanning has found.
+/// The newest version of each file, so that all stages and edits share one scan of it.
 #[derive(Debug, Default)]
 pub struct FileCache(Mutex<BTreeMap<TreePath, Arc<File>>>);
 
 impl FileCache {
-    /// The files of a stage. `None` if one cannot be read, although it is there.
+    /// The files of a stage. `None` if a file exists but cannot be read.
     pub fn files<'p>(&self, snapshot: &Snapshot<'_>, paths: impl IntoIterator<Item = &'p TreePath>) -> Option<Files> {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut file = |path: &TreePath| match snapshot.read(path) {
@@ -60,8 +62,8 @@ pub enum Rebuilt {
     Linked(Vec<u32>),
 }
 
-/// Compiles what has changed in the files of `stage`: `spirv` is the module of the `old` files. `None` if the stage must be
-/// compiled as a whole.
+/// Compiles the functions that have changed in the files of `stage`. `spirv` is the module of the `old` files. `None`
+/// if the stage must be compiled as a whole.
 pub fn rebuild(
     compiler: &Compiler,
     snapshot: &Snapshot<'_>,
@@ -93,9 +95,9 @@ pub fn rebuild(
     link::link(&base, &thin, &whole, CALLER).map(Rebuilt::Linked)
 }
 
-/// Adds to `whole` the functions that these may call and that the module lacks, since `main` did not reach them before. Returns
-/// the words from which functions may be called: those of `whole`, and those outside of functions, where macros are. `None` if
-/// the stage is not usual.
+/// Adds to `whole` all functions that its functions may call and that the module lacks, since `main` did not reach them
+/// before. Returns the words that may be calls: those in the functions of `whole`, and those outside of functions,
+/// where macros are defined. `None` if a file cannot be split into functions, or if there is not exactly one `main`.
 fn close<'a>(files: &'a Files, whole: &mut BTreeSet<Box<str>>, reached: &BTreeSet<&str>) -> Option<HashSet<&'a str>> {
     let mut functions: HashMap<&str, Vec<&Function>> = HashMap::default();
     let mut words = HashSet::default();

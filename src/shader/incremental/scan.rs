@@ -15,14 +15,15 @@ pub struct File {
     parts: OnceLock<Option<Parts>>,
 }
 
-/// The function definitions of a file, and what is between them. All code is without comments, and each white space is one space.
+/// The function definitions of a file, and the code between them, without comments. Each run of white space is one
+/// space.
 #[derive(Debug)]
 pub struct Parts {
     /// In the order of the file.
     pub functions: Vec<Function>,
     /// The code outside of functions.
     pub rest: String,
-    /// The words of that code, macros and their definitions included.
+    /// The words in `rest`, including macros and their definitions.
     pub rest_words: HashSet<Box<str>>,
 }
 
@@ -32,9 +33,9 @@ pub struct Function {
     pub name: Box<str>,
     /// The return type in GLSL.
     pub returns: Box<str>,
-    /// `None` if they are written in a way that is not known here.
+    /// `None` if a parameter has an unknown form.
     pub parameters: Option<Vec<Parameter>>,
-    /// The byte of the rest of the file before which it stands.
+    /// Byte offset of the function in [`Parts::rest`].
     pub place: usize,
     /// From the return type to the closing parenthesis.
     pub head: String,
@@ -50,8 +51,8 @@ impl File {
         Self { text, parts: OnceLock::new() }
     }
 
-    /// `None` if the file contains anything that makes an edit of one function change another (`precise`, `__LINE__`), or whose
-    /// extent only a preprocessor knows.
+    /// The file's parts. `None` if an edit of one function could change another (`precise`, `__LINE__`), or if only a
+    /// preprocessor can tell where a function ends.
     pub fn parts(&self) -> Option<&Parts> {
         self.parts.get_or_init(|| parts(&self.text)).as_ref()
     }
@@ -61,7 +62,7 @@ fn parts(text: &str) -> Option<Parts> {
     Scanner::default().run(&tokens(text)?)
 }
 
-/// Code without comments, in which each white space is one space.
+/// Code without comments. Each run of white space is one space.
 #[derive(Default)]
 struct Code {
     text: String,
@@ -122,13 +123,14 @@ impl Scanner {
 
     fn rest(&mut self, tokens: &[Token<'_>]) {
         for token in tokens {
-            // With or without a function there, the rest is the same.
+            // A space stands for a function, so that the rest is the same with and without the function.
             let is_spaced = std::mem::take(&mut self.is_behind_function) || token.is_spaced;
             self.rest.push(&Token { is_spaced, ..*token });
         }
     }
 
-    /// Adds a function. Returns false if `before` is no function's header, or if only a preprocessor knows the function's code.
+    /// Adds a function. Returns false if `before` is not the header of a function, or if the function contains
+    /// directives, so that only a preprocessor knows its code.
     fn function(&mut self, before: &[Token<'_>], block: &[Token<'_>]) -> bool {
         let has_directive = block.iter().any(|token| token.kind == Kind::Directive);
         let (Some(header), false) = (Header::parse(before), has_directive) else { return false };
@@ -149,7 +151,7 @@ impl Scanner {
     }
 }
 
-/// The number of tokens up to the brace that closes the first one.
+/// The number of tokens from the opening brace to the matching closing brace, both included. `None` if there is none.
 fn block(tokens: &[Token<'_>]) -> Option<usize> {
     let mut depth = 0_usize;
     for (at, token) in tokens.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Edited stages, compiled incrementally and as a whole: the modules must do the same.
+//! Compiles edited stages incrementally and as a whole. Both modules must do the same.
 
 use std::collections::BTreeMap;
 
@@ -49,7 +49,8 @@ fn incremental(texts: &Texts, stage: &TreePath, base: &Built) -> Option<Built> {
     }
 }
 
-/// What must be equal: all that the driver and the contract see, with the default constants and with others.
+/// The properties that must be equal: all that the driver and the contract see, with the default and with other
+/// constants.
 fn meaning(spirv: &[u32]) -> (Reflection, Vec<u64>) {
     let reflection = Reflection::of(spirv);
     let hashes = [None, Some(0), Some(1), Some(2), Some(u32::MAX)].map(|value| {
@@ -114,7 +115,7 @@ fn edited(kind: usize, stage: StageKind, before: &[Function], function: &Functio
     format!("{{ {statement}{}", &function.body[1..])
 }
 
-/// The texts with an edit of each of these functions, of another kind each.
+/// Edits each of the `chosen` functions, with the next kind of edit each time.
 fn edit_all(texts: &Texts, stage: &TreePath, files: &Files, chosen: &[(TreePath, usize)], first: usize) -> Texts {
     let mut out = texts.clone();
     let kind = StageKind::of(stage).unwrap();
@@ -163,7 +164,7 @@ fn edits_of_all_functions() {
     assert!(edits > 1000, "{edits} edits");
 }
 
-/// Edits of one function at a time, each of another kind.
+/// Edits one function at a time, with the next kind of edit each time.
 #[test]
 fn edits_of_single_functions() {
     let (texts, stage) = (shipped(), TreePath::from("pbr.frag"));
@@ -179,18 +180,18 @@ fn edits_of_single_functions() {
     });
 }
 
-/// Edits of edits, of which the last ones take all others back.
+/// A chain of edits. The last ones revert all earlier ones.
 #[test]
 fn fifty_edits_one_after_the_other() {
     let (shipped, stage) = (shipped(), TreePath::from("pbr.frag"));
     let first = whole(&shipped, &stage).unwrap();
     let all = functions(&first.files);
     let (mut base, mut texts) = (whole(&shipped, &stage).unwrap(), shipped.clone());
-    // Steps through all functions, from a place that has nothing to do with their order.
+    // Chooses functions in an order unrelated to their order in the files.
     for step in 0..50 {
         let chosen = (step * 97 + 13) % all.len();
         let (path, _) = &all[chosen];
-        // Each edit begins with the shipped text of its file, so it takes earlier ones in that file back.
+        // Each edit starts from the shipped text of its file, so it reverts earlier edits in that file.
         let edited = edit_all(&shipped, &stage, &first.files, &all[chosen..=chosen], step);
         texts.insert(path.clone(), edited[path].clone());
         let linked = incremental(&texts, &stage, &base).unwrap_or_else(|| panic!("step {step}: not linked"));
@@ -224,7 +225,7 @@ fn small(from: &str, to: &str) -> Texts {
     Texts::from([("m.frag".into(), SMALL.replacen(from, to, 1))])
 }
 
-/// Edits of the small stage: what is replaced by what.
+/// Edits of the small stage: a text, and its replacement.
 #[test]
 fn declarations_are_added_and_removed() {
     let stage = TreePath::from("m.frag");
@@ -273,7 +274,7 @@ fn other_edits_are_compiled_as_a_whole() {
         ("vec4 sum(", "float square(int a) { return 1.0; } vec4 sum("),
         // The first call of a function, hidden in a macro
         ("return a; }", "return a * TWICE(a.x); }"),
-        // What reaches other functions
+        // Words and directives that affect other functions
         ("return a * a;", "precise float b = a * a; return b;"),
         ("return a * a;", "return a * a * __LINE__;"),
         ("return a * a;", "\n#if 1\n return a;\n#endif\n"),

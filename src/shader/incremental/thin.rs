@@ -5,19 +5,21 @@ use std::collections::BTreeSet;
 use super::difference::Files;
 use super::scan::{Function, Parts};
 
-/// The name of a function that calls those to compile. glslang drops what `main` does not reach.
+/// The name of a generated function that calls the functions to compile. glslang drops functions that `main` does not
+/// reach.
 pub const CALLER: &str = "specula_caller";
 
 /// A selection of a stage's functions.
 pub struct Selection<'a> {
-    /// These are kept with all their overloads.
+    /// The functions that keep their bodies, with all overloads.
     pub whole: &'a BTreeSet<Box<str>>,
-    /// The caller's definition, on one line; empty if nothing is to be called.
+    /// The definition of [`CALLER`], on one line. Empty if it would call nothing.
     caller: String,
 }
 
 impl<'a> Selection<'a> {
-    /// Selects `whole`, and lets `main` call those that are in `called`. `None` if one cannot be called from there.
+    /// Selects `whole`, and lets `main` call its functions that are in `called`. `None` if such a call cannot be
+    /// written.
     pub fn new(files: &Files, whole: &'a BTreeSet<Box<str>>, called: &BTreeSet<&str>) -> Option<Self> {
         let mut lines = String::new();
         let mut number = 0;
@@ -38,7 +40,8 @@ impl<'a> Selection<'a> {
         Some(Self { whole, caller })
     }
 
-    /// The code of a file with the selected functions. Functions that the code may call have a stub: those that `names` contains.
+    /// The code of a file with the selected functions. Of the other functions, `main` and those whose name `names`
+    /// accepts become stubs, since the code may call them.
     pub fn thin(&self, parts: &Parts, names: impl Fn(&str) -> bool) -> String {
         let mut out = String::with_capacity(parts.rest.len() * 2);
         let mut end = 0;

@@ -1,7 +1,7 @@
 //! The tokens of a GLSL file before preprocessing.
 
-/// Words that make an edit of one function change the code of others, so that functions cannot be compiled apart: line numbers
-/// move, and `precise` reaches the operands of other assignments.
+/// Words through which an edit of one function changes the code of others, so that functions cannot be compiled
+/// separately: line numbers shift, and `precise` affects the operands of other assignments.
 const FAR_REACHING: [&str; 3] = ["__LINE__", "__FILE__", "precise"];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub struct Token<'a> {
     pub is_spaced: bool,
 }
 
-/// The tokens of a file. `None` if the code of a function cannot be known from its own text.
+/// Splits a file into tokens. `None` if a function's code depends on more than its own text.
 pub fn tokens(text: &str) -> Option<Vec<Token<'_>>> {
     let bytes = text.as_bytes();
     let (mut out, mut at, mut is_spaced, mut starts_line) = (Vec::new(), 0, false, true);
@@ -67,8 +67,8 @@ fn is_word(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
-/// Bytes of the comment at the start of `text`, without the line break that ends it. `None` if it does not end, or goes on in a
-/// next line by a backslash.
+/// Length in bytes of the comment at the start of `text`, without the line break that ends it. `None` if the comment
+/// does not end, or if a backslash continues it on the next line.
 fn comment(text: &[u8]) -> Option<usize> {
     if text[1] == b'*' {
         return text[2..].windows(2).position(|pair| pair == b"*/").map(|end| end + 4);
@@ -77,7 +77,7 @@ fn comment(text: &[u8]) -> Option<usize> {
     (!text[..end].trim_ascii_end().ends_with(b"\\")).then_some(end)
 }
 
-/// Bytes of the directive at the start of `text`, without the line break that ends it.
+/// Length in bytes of the directive at the start of `text`, without the line break that ends it.
 fn directive(text: &[u8]) -> Option<usize> {
     let mut at = 0;
     while let Some(byte) = text.get(at) {

@@ -27,7 +27,7 @@ impl Blocks {
         Ok(())
     }
 
-    /// The block at this binding of a pass, which has this place in `PipelineRequest::passes`.
+    /// The block at `binding` of a pass. `pass`: its index in `PipelineRequest::passes`.
     pub(super) fn get(&self, pass: usize, binding: usize) -> Option<&Arc<Buffer>> {
         self.0.get(&(pass, binding))
     }

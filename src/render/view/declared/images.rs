@@ -10,7 +10,7 @@ use crate::scene::mips;
 use crate::shader::GraphPass;
 use crate::shader::graph::Input;
 
-/// What determines the images of a pass.
+/// The properties of a pass that determine its images.
 #[derive(Clone, Copy, PartialEq)]
 struct PassDesc {
     size: (u32, u32),
@@ -24,17 +24,17 @@ struct PassDesc {
 #[derive(Clone)]
 struct PassImages {
     desc: PassDesc,
-    /// One, or two if the frame before is kept.
+    /// One image, or two if the image of the previous frame is kept.
     images: Vec<Arc<Image>>,
-    /// What is drawn to before mip levels are made of it.
+    /// The image that the pass draws to, if mip levels are made from it.
     first_level: Option<Arc<Image>>,
-    /// Which of two images the last frame drew.
+    /// Index of the image that was drawn last.
     newest: usize,
-    /// Whether this frame has drawn it.
+    /// Whether this frame has drawn the pass.
     is_drawn: bool,
 }
 
-/// What decides whether all images can stay.
+/// The needs of a frame. If they are unchanged, all images and buffers are kept.
 #[derive(Clone, Default, PartialEq)]
 struct Key {
     size: (u32, u32),
@@ -49,11 +49,11 @@ pub(super) struct Images {
     key: Key,
     passes: BTreeMap<String, PassImages>,
     buffers: BTreeMap<String, Arc<Buffer>>,
-    /// Two images for the HDR picture between passes.
+    /// The images for the HDR picture between passes, at most two.
     pictures: Vec<Arc<Image>>,
-    /// Two images for what the display shows, between passes after the tone map.
+    /// Two images for the displayed picture between passes after the tone map. Empty if there are no such passes.
     pub(super) displays: Vec<Arc<Image>>,
-    /// The image of a pass that is shown, scaled to the picture.
+    /// The image of the shown pass, scaled to the size of the picture.
     shown: Option<Arc<Image>>,
     /// Images and buffers that were never drawn to.
     fresh: (Vec<Arc<Image>>, Vec<Arc<Buffer>>),
@@ -73,7 +73,7 @@ pub(super) fn blank(gpu: &Arc<Gpu>) -> Result<Arc<Image>, GpuError> {
 }
 
 impl Images {
-    /// The images for `frame`, which share those that fit; `None` if all of them fit.
+    /// The images for `frame`. Those of `self` that fit are reused. `None` if the needs are the same as before.
     pub(super) fn next(&self, gpu: &Arc<Gpu>, frame: &BoundFrame) -> Result<Option<Self>, GpuError> {
         let request = &frame.state.pipelines;
         let key = Key {
@@ -99,7 +99,7 @@ impl Images {
             };
             next.buffers.insert(name.to_owned(), buffer);
         }
-        // What lasts from frame to frame outlives a look at another mode, and a switch.
+        // Kept images and buffers survive while the user looks at another mode, or switches their pass off.
         let graph = &frame.state.shaders.graph;
         for (name, images) in self.passes.iter().filter(|(name, _)| graph.pass(name).is_some_and(|p| p.note.keep)) {
             next.passes.entry(name.clone()).or_insert_with(|| images.clone());
@@ -131,7 +131,7 @@ impl Images {
             Ok(images)
         };
         next.pictures = take("picture of a pass", next.key.picture, makers(false).min(2), &self.pictures)?;
-        // The tone map draws to the first.
+        // The tone map draws to the first image.
         let displays = if request.passes.iter().any(|pass| pass.after_tonemap) { 2 } else { 0 };
         next.displays = take("display of a pass", Swapchain::FORMAT, displays, &self.displays)?;
         if request.shown_pass.is_some() {
@@ -186,13 +186,13 @@ impl Images {
         Ok(buffer)
     }
 
-    /// Lets everything become 0 in the next frame.
+    /// Makes the next frame clear everything to 0.
     pub(super) fn restart(&mut self) {
         let images = self.passes.values().flat_map(|pass| &pass.images).cloned();
         self.fresh = (images.collect(), self.buffers.values().cloned().collect());
     }
 
-    /// Begins a frame: what was never drawn to becomes 0.
+    /// Begins a frame: clears images and buffers that were never drawn to.
     pub(super) fn begin_frame(&mut self, encoder: &mut Encoder) {
         let (images, buffers) = std::mem::take(&mut self.fresh);
         for image in &images {
@@ -213,12 +213,12 @@ impl Images {
         pass.images.get((pass.newest + 1) % pass.images.len())
     }
 
-    /// What the pass draws to before mip levels are made of it.
+    /// The image that the pass draws to, if mip levels are made from it.
     pub(super) fn first_level(&self, name: &str) -> Option<&Arc<Image>> {
         self.passes.get(name)?.first_level.as_ref()
     }
 
-    /// Notes that the pass has drawn its image.
+    /// Records that the pass has drawn its image.
     pub(super) fn finished(&mut self, name: &str) {
         if let Some(pass) = self.passes.get_mut(name) {
             pass.newest = (pass.newest + 1) % pass.images.len();
@@ -244,13 +244,13 @@ impl Images {
         self.buffers.get(name)
     }
 
-    /// The image that a pass gives a new picture in, which is not the one that it reads.
+    /// The image for the new picture of a pass that reads the image `read`.
     pub(super) fn other_picture(&self, after_tonemap: bool, read: &Arc<Image>) -> Option<&Arc<Image>> {
         let images = if after_tonemap { &self.displays } else { &self.pictures };
         images.iter().find(|image| !Arc::ptr_eq(image, read))
     }
 
-    /// The image that holds a shown pass, scaled to the picture.
+    /// The image of the shown pass, scaled to the size of the picture.
     pub(super) fn shown(&self) -> Option<&Arc<Image>> {
         self.shown.as_ref()
     }

@@ -1,4 +1,4 @@
-//! Descriptor sets, found by what they point to.
+//! A cache of descriptor sets, by the objects that they point to.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ pub(super) type Key = Vec<usize>;
 pub(super) struct Sets(Vec<(Key, Arc<DescriptorSet>)>);
 
 impl Sets {
-    /// The set of `key`. `make` makes it if it is new; then all others go if there are `most` of them.
+    /// The set of `key`, which `make` creates if the cache lacks it. A cache with `most` sets is cleared before that.
     pub(super) fn get(
         &mut self,
         key: Key,
@@ -30,7 +30,7 @@ impl Sets {
         Ok(set)
     }
 
-    /// Drops all sets, which keep alive what they point to.
+    /// Drops all sets, and with them their references to the objects that they point to.
     pub(super) fn clear(&mut self) {
         self.0.clear();
     }

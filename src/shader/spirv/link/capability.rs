@@ -10,10 +10,10 @@ const SAMPLE_RATE_SHADING: u32 = 35;
 const IMAGE_QUERY: u32 = 50;
 const DERIVATIVE_CONTROL: u32 = 51;
 const INTERPOLATION_FUNCTION: u32 = 52;
-/// Those that depend on what functions do, and that can be told from the linked module.
+/// The capabilities that depend on the code of functions, and that [`needed`] finds in the linked module.
 const KNOWN: [u32; 5] = [GEOMETRY, SAMPLE_RATE_SHADING, IMAGE_QUERY, DERIVATIVE_CONTROL, INTERPOLATION_FUNCTION];
 
-/// Decoration and its values: built-in variables.
+/// The decoration of built-in variables, and its values.
 const BUILT_IN: u32 = 11;
 const PRIMITIVE_ID: u32 = 7;
 const SAMPLE_ID: u32 = 18;
@@ -34,8 +34,8 @@ fn needed(i: &[u32]) -> Option<u32> {
     }
 }
 
-/// The capabilities of a module with these decorations and functions, which come from two modules with the capabilities `a` and
-/// `b`. `None` if only glslang can tell.
+/// The capabilities of a linked module. `a`, `b`: the capabilities of its two sources. `instructions`: its decorations
+/// and functions. `None` if only glslang can tell.
 pub fn capabilities<'a>(a: &[u32], b: &[u32], instructions: impl Iterator<Item = &'a [u32]>) -> Option<Vec<u32>> {
     let others = |list: &[u32]| list.iter().copied().filter(|c| !KNOWN.contains(c)).collect::<BTreeSet<u32>>();
     let mut all = others(a);

@@ -1,4 +1,4 @@
-//! Finds the declarations of one module in another, and adds those that it lacks.
+//! Finds the declarations of one module in another module, and adds the missing ones there.
 
 use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 
@@ -11,35 +11,36 @@ use crate::shader::spirv::specialize::{Id, Instruction, opcode};
 const SPEC_ID: u32 = 1;
 const BUILT_IN: u32 = 11;
 
-/// What makes two declarations the same: the instruction, the names and the decorations, each without the target.
+/// Identifies a declaration: its instruction, its names and its decorations, each without the declared id.
 type Key = Vec<u32>;
 
-/// Adds to a module what functions of another need.
+/// Adds to a module the declarations that functions of another module need.
 pub struct Importer<'a> {
     from: &'a Parts<'a>,
     /// The place of each global instruction of `from`, by the id that it defines.
     defined: HashMap<Id, usize>,
-    /// New ids by ids of `from`; 0 if there is none yet.
+    /// New ids by ids of `from`. 0 stands for an id that has no new id yet.
     map: Vec<Id>,
     keys: HashMap<Key, Id>,
-    /// Pointers that are declared before their targets are: by the target's name.
+    /// Pointers that are declared before their targets, by the target's name.
     forward: HashMap<String, Id>,
     /// Targets of the pointers in `forward`, by pointer.
     targets: HashMap<Id, Id>,
-    /// Structs of the new module that one of `from` was found to be.
+    /// Structs of the new module that a struct of `from` was matched with.
     structs: HashSet<Id>,
     next: Id,
-    /// What the module lacks.
+    /// Added declarations.
     pub globals: Vec<Instruction>,
-    /// Names and decorations of what was added.
+    /// Names of added ids.
     pub names: Vec<Instruction>,
+    /// Decorations of added ids.
     pub decorations: Vec<Instruction>,
-    /// Variables that were added.
+    /// Added variables.
     pub variables: Vec<Id>,
 }
 
 impl<'a> Importer<'a> {
-    /// From a module to another. `None` if one of them cannot be read.
+    /// Imports from one module into another. `None` if either cannot be read.
     pub fn new(from: &'a Parts<'a>, to: &'a Parts<'a>) -> Option<Self> {
         let mut this = Self {
             from,
@@ -93,19 +94,19 @@ impl<'a> Importer<'a> {
         self.next - 1
     }
 
-    /// The id that is given next.
+    /// The id that [`Self::fresh`] returns next.
     pub fn next_id(&self) -> Id {
         self.next
     }
 
-    /// Lets an id of the module stand for one of the other.
+    /// Maps an id of `from` to an id of the new module.
     pub fn set(&mut self, from: Id, to: Id) -> Option<()> {
         *self.map.get_mut(from as usize)? = to;
         Some(())
     }
 
-    /// The id that stands for one of the other module, whose declaration is added if the module lacks it. `None` if it must not
-    /// be added.
+    /// The new module's id for an id of `from`. Adds the declaration if the module lacks it. `None` if the declaration
+    /// must not be added.
     pub fn id(&mut self, id: Id) -> Option<Id> {
         match *self.map.get(id as usize)? {
             0 => self.declare(id),
@@ -113,7 +114,7 @@ impl<'a> Importer<'a> {
         }
     }
 
-    /// Checks that pointers which were taken for the same by name have the same targets.
+    /// Whether pointers that were matched by the names of their targets have the same targets.
     pub fn pointers_agree(&mut self) -> Option<bool> {
         for (pointer, target) in forward_pointers(self.from)? {
             let pointer = self.id(pointer)?;
@@ -130,7 +131,7 @@ impl<'a> Importer<'a> {
         let key = key(self.from, i, id, |operand| self.id(operand))?;
         let code = opcode(i);
         if let Some(known) = self.keys.get(&key).copied() {
-            // Two structs that only their use tells from each other
+            // Two structs of `from` match the same struct; only their uses differ.
             if code == op::TYPE_STRUCT && !self.structs.insert(known) {
                 return None;
             }
@@ -139,7 +140,7 @@ impl<'a> Importer<'a> {
         }
         let decorations = self.from.decorations.of(id);
         let has = |kind: u32| decorations.iter().any(|i| opcode(i) == op::DECORATE && i.get(2) == Some(&kind));
-        // Every other variable is declared in the text, and so is every specialization constant.
+        // The text declares all other variables and all specialization constants, so the module has them already.
         if (code == op::VARIABLE && !has(BUILT_IN) && !self.has_built_in_members(i[1])) || has(SPEC_ID) {
             return None;
         }
@@ -160,21 +161,22 @@ impl<'a> Importer<'a> {
         Some(new)
     }
 
-    /// Whether a pointer of the other module leads to a block such as `gl_PerVertex`.
+    /// Whether a pointer of `from` points to a block with built-in members, such as `gl_PerVertex`.
     fn has_built_in_members(&self, pointer: Id) -> bool {
         let target = self.defined.get(&pointer).and_then(|at| self.from.globals[*at].get(3).copied());
         let mut decorations = self.from.decorations.of(target.unwrap_or(0)).iter();
         decorations.any(|i| opcode(i) == op::MEMBER_DECORATE && i.get(3) == Some(&BUILT_IN))
     }
 
-    /// Copies names and decorations.
+    /// Copies the names and decorations of an id of `from` to a new id.
     pub fn describe(&mut self, from: Id, to: Id) {
         let retarget = |i: &&[u32]| [&[i[0], to], &i[2..]].concat();
         self.names.extend(self.from.names.of(from).iter().map(retarget));
         self.decorations.extend(self.from.decorations.of(from).iter().map(retarget));
     }
 
-    /// Copies the names and decorations of ids whose functions were imported: `locals` are the new ids, by id; 0 for others.
+    /// Copies the names and decorations of ids in imported functions. `locals`: new ids by id of `from`, 0 for all
+    /// others.
     pub fn describe_locals(&mut self, locals: &[Id]) {
         for (about, out) in [(&self.from.names, &mut self.names), (&self.from.decorations, &mut self.decorations)] {
             let retarget = |i: &'a [u32]| match locals.get(i[1] as usize) {
@@ -186,7 +188,7 @@ impl<'a> Importer<'a> {
     }
 }
 
-/// The key of a declaration, with its operands as `map` gives them.
+/// The key of a declaration. `map` translates the ids among its operands.
 fn key(parts: &Parts<'_>, i: &[u32], result: Id, mut map: impl FnMut(Id) -> Option<Id>) -> Option<Key> {
     let mut key = Vec::with_capacity(i.len() + 16);
     key.push(i[0]);
@@ -223,7 +225,7 @@ fn name_of(parts: &Parts<'_>, id: Id) -> Option<String> {
     parts.names.of(id).iter().find(is_name).map(|i| text(&i[2..]))
 }
 
-/// A header with another bound.
+/// The header of a module, with another bound on ids.
 pub fn header(parts: &Parts<'_>, bound: Id) -> Vec<u32> {
     let mut header = parts.header.to_vec();
     header[BOUND] = bound;

@@ -1,11 +1,13 @@
 //! Links edited functions into a module.
 //!
-//! The edited functions come from a thin module: the same declarations, but of the other functions only stubs. The new module
-//! has the declarations of the thin one, and from the module before all functions that were not edited, with the types,
-//! constants and built-in variables that these need. So nothing of the old text stays, however many edits follow.
+//! The edited functions come from a thin module, which has all declarations of the new text, but only stubs of the
+//! other functions. The new module takes its declarations from the thin module. From the previous module it takes all
+//! functions that were not edited, with the types, constants and built-in variables that these functions need. So
+//! nothing of the old text remains, however many edits follow.
 //!
-//! Functions are known by glslang's names, which contain the types of their parameters. Everything else is found by what it
-//! is: its instruction, its names and its decorations. Where that is ambiguous, linking fails, and the stage is compiled whole.
+//! Functions are matched by glslang's names, which contain the types of their parameters. All other declarations are
+//! matched by their instruction, names and decorations. If a match is ambiguous, linking fails, and the stage is
+//! compiled as a whole.
 
 mod capability;
 mod import;
@@ -25,19 +27,19 @@ use parts::{Function, Parts, plain_name};
 pub struct Base<'a>(Parts<'a>);
 
 impl<'a> Base<'a> {
-    /// `None` if the module cannot be linked.
+    /// Parses a module. `None` if it cannot be linked.
     pub fn parse(words: &'a [u32]) -> Option<Self> {
         Parts::parse(words).map(Self)
     }
 
-    /// The names in GLSL of its functions.
+    /// The names of the module's functions in GLSL.
     pub fn function_names(&self) -> BTreeSet<&str> {
         self.0.functions.iter().map(Function::plain_name).collect()
     }
 }
 
-/// The module `base` with the functions `edited` (names in GLSL) of the module `thin`, in which `caller` calls them. `None` if
-/// that is not certain to be what compiling the whole text gives.
+/// Links the functions `edited` (names in GLSL) of the module `thin` into the module `base`. `caller` is the function
+/// of `thin` that calls them. `None` if the result might differ from compiling the whole text.
 pub fn link(Base(base): &Base<'_>, thin: &[u32], edited: &BTreeSet<Box<str>>, caller: &str) -> Option<Vec<u32>> {
     let thin = Parts::parse(thin)?;
     if !same_head(base, &thin) {
@@ -45,7 +47,8 @@ pub fn link(Base(base): &Base<'_>, thin: &[u32], edited: &BTreeSet<Box<str>>, ca
     }
     let functions = select(base, &thin, edited, caller)?;
     let mut importer = Importer::new(base, &thin)?;
-    // In place of a function stands the edited one, or its stub, if the thin module has one.
+    // A function gets the id that its edited version or its stub has in the thin module, or a new id if there is
+    // neither.
     let (base_names, thin_names) = (base.by_name()?, thin.by_name()?);
     for (function, _) in &functions {
         let Some(old) = base_names.get(function.name.as_str()) else { continue };
@@ -88,7 +91,7 @@ fn same_head(base: &Parts<'_>, thin: &Parts<'_>) -> bool {
     head(base) == head(thin) && modes(base) == modes(thin)
 }
 
-/// The functions of the new module, and whether each is an edited one, without those that are not called anymore.
+/// The functions of the new module, and whether each was edited. Leaves out functions that nothing calls anymore.
 fn select<'a>(
     base: &'a Parts<'a>,
     thin: &'a Parts<'a>,
@@ -99,7 +102,7 @@ fn select<'a>(
     let (base_names, thin_names) = (base.by_name()?, thin.by_name()?);
     let caller = thin.functions.iter().find(|f| f.plain_name() == caller).map(|f| f.id);
     let (base_ids, thin_ids) = (ids(base), ids(thin));
-    // glslang drops a function that nothing calls, so it calls only what is there.
+    // glslang drops functions that nothing calls, so the code that remains calls only functions of the module.
     let code_of = |name: &str| if is_edited(name) { thin_names.get(name) } else { base_names.get(name) };
     let calls = |name: &str, id: Id| {
         let ids = if is_edited(name) { &thin_ids } else { &base_ids };
@@ -128,7 +131,7 @@ fn select<'a>(
     Some(out)
 }
 
-/// A function of the new module, without the call of `caller` that the thin text has put into it.
+/// A function of the new module, without the call of `caller` that the thin text contains.
 fn copy<'a>(function: &Function<'a>, is_edited: bool, caller: Option<Id>) -> (Function<'a>, bool) {
     let is_own = |i: &&[u32]| !is_edited || opcode(i) != op::FUNCTION_CALL || i.get(3).copied() != caller;
     let code = function.code.iter().copied().filter(is_own).collect();
@@ -139,7 +142,7 @@ fn ids<'a>(parts: &'a Parts<'_>) -> HashMap<Id, &'a str> {
     parts.functions.iter().map(|function| (function.id, function.name.as_str())).collect()
 }
 
-/// Adds the functions that `name` reaches. `None` if one is missing, or calls itself through others, which glslang refuses.
+/// Adds the functions that `name` reaches. `None` if one is missing, or is recursive, which glslang refuses.
 fn reach<'a>(
     name: &'a str,
     reached: &mut HashSet<&'a str>,
@@ -160,7 +163,7 @@ fn reach<'a>(
     Some(())
 }
 
-/// Copies a function of the module before. Its results get new ids, which are written to `locals`.
+/// Copies a function of the previous module. Its results get new ids, which are written to `locals`.
 fn import_function(
     importer: &mut Importer<'_>,
     function: &Function<'_>,
@@ -196,7 +199,7 @@ fn result(i: &[u32]) -> Option<Option<Id>> {
     }
 }
 
-/// Writes the module: the declarations of `thin`, what was imported, and the code.
+/// Writes the module: the declarations of `thin`, the imported declarations, and the code.
 fn write(
     thin: &Parts<'_>,
     functions: &[(Function<'_>, bool)],
@@ -204,7 +207,7 @@ fn write(
     capabilities: Vec<u32>,
     code: Vec<u32>,
 ) -> Option<Vec<u32>> {
-    // What the thin module says about stubs and about functions that are not called anymore.
+    // Names and decorations in stubs, and of functions that nothing calls anymore, are dropped.
     let kept: HashSet<Id> = functions.iter().filter(|(_, is_edited)| *is_edited).map(|(f, _)| f.id).collect();
     let replaced: HashSet<&str> = functions.iter().filter(|(_, is_edited)| !is_edited).map(|(f, _)| &*f.name).collect();
     let mut dropped = HashSet::new();

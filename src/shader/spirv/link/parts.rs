@@ -38,7 +38,7 @@ pub fn plain_name(name: &str) -> &str {
     name.split('(').next().unwrap_or_default()
 }
 
-/// Instructions about ids, ordered by these.
+/// Instructions about ids, such as names and decorations, sorted by id.
 #[derive(Default)]
 pub struct ByTarget<'a>(Vec<&'a [u32]>);
 
@@ -48,14 +48,14 @@ impl<'a> ByTarget<'a> {
         is_sound.then(|| self.0.sort_by_key(|i| i[1]))
     }
 
-    /// Those about an id, in the order of the module.
+    /// The instructions about an id, in the order of the module.
     pub fn of(&self, id: Id) -> &[&'a [u32]] {
         let start = self.0.partition_point(|i| i[1] < id);
         let count = self.0[start..].iter().take_while(|i| i[1] == id).count();
         &self.0[start..start + count]
     }
 
-    /// All of them.
+    /// All instructions, by id.
     pub fn all(&self) -> impl Iterator<Item = &'a [u32]> {
         self.0.iter().copied()
     }
@@ -70,7 +70,7 @@ pub struct Parts<'a> {
     pub head: Vec<&'a [u32]>,
     pub entry: &'a [u32],
     pub modes: Vec<&'a [u32]>,
-    /// Sources and their extensions.
+    /// Sources, their extensions, and the tools that processed them.
     pub sources: Vec<&'a [u32]>,
     /// OpName and OpMemberName.
     pub names: ByTarget<'a>,
@@ -81,7 +81,7 @@ pub struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// `None` if the module is not valid, or has instructions that glslang does not emit for Specula's stages.
+    /// Splits a module. `None` if it is not valid, or has instructions that glslang does not emit for Specula's stages.
     pub fn parse(words: &'a [u32]) -> Option<Self> {
         let all = instructions(words)?;
         let (globals, code) = all.split_at(first_function(&all));
@@ -104,7 +104,7 @@ impl<'a> Parts<'a> {
                 EXTENSION | op::EXT_INST_IMPORT | MEMORY_MODEL => parts.head.push(i),
                 op::ENTRY_POINT if parts.entry.is_empty() && i.len() > 3 => parts.entry = i,
                 op::EXECUTION_MODE => parts.modes.push(i),
-                // Sources, their extensions and what processed them
+                // OpSourceContinued, OpSource, OpSourceExtension, OpModuleProcessed
                 2..=4 | 330 => parts.sources.push(i),
                 op::NAME | op::MEMBER_NAME => parts.names.0.push(i),
                 op::DECORATE | op::MEMBER_DECORATE => parts.decorations.0.push(i),
@@ -124,7 +124,7 @@ impl<'a> Parts<'a> {
             let name = parts.names.of(id).first().map(|i| text(&i[2..]))?;
             parts.functions.push(Function { name, id, code: function.to_vec() });
         }
-        // Entry point and functions refer to each other.
+        // The linker allocates tables of this many ids, so a bound far beyond the module's size is refused.
         (!parts.entry.is_empty() && parts.bound <= words.len() * 8).then_some(parts)
     }
 
@@ -133,7 +133,7 @@ impl<'a> Parts<'a> {
         self.entry[2]
     }
 
-    /// The functions by name. `None` if two have the same.
+    /// The functions by name. `None` if two functions have the same name.
     pub fn by_name(&self) -> Option<HashMap<&str, &Function<'a>>> {
         let map: HashMap<&str, &Function<'a>> = self.functions.iter().map(|f| (f.name.as_str(), f)).collect();
         (map.len() == self.functions.len()).then_some(map)
