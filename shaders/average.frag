@@ -4,8 +4,8 @@
 // One frame of an accumulating mode. The blend unit mixes its color into the mean of all frames with weight 1 / n: the running
 // mean (Welford 1962) m_n = m_(n-1) + (x_n - m_(n-1)) / n. Of alpha it keeps the largest, so that a flag of one frame stays.
 
-layout(set = SET_PASS, binding = BINDING_SCENE_COLOR) uniform sampler2D scene_color;
+uniform sampler2D picture;
 
 layout(location = 0) out vec4 out_color;
 
-void main() { out_color = texelFetch(scene_color, ivec2(gl_FragCoord.xy), 0); }
+void main() { out_color = texelFetch(picture, ivec2(gl_FragCoord.xy), 0); }

@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
 
-const uint INTERFACE_VERSION = 7u;
+const uint INTERFACE_VERSION = 8u;
 const int SET_FRAME = 0;
 const int SET_MATERIAL = 1;
 const int SET_PASS = 2;
@@ -34,8 +34,6 @@ const int BINDING_TRACED_TEXTURES = 18;
 const int BINDING_ENVIRONMENT_CELLS = 19;
 const int BINDING_LOOPS = 20;
 const int BINDING_MATERIAL = 0;
-const int BINDING_SCENE_COLOR = 0;
-const int BINDING_BEHIND = 1;
 const int BINDING_TASK = 0;
 const int BINDING_SOURCE = 1;
 const int BINDING_SOURCE_CUBE = 2;

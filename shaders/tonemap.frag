@@ -8,7 +8,7 @@
 // From scene color to the picture: exposure, tone map, background, encoding. The target stores numbers as they are
 // (UNORM), so the sRGB curve is applied here. Alpha leaves straight, not premultiplied.
 
-layout(set = SET_PASS, binding = BINDING_SCENE_COLOR) uniform sampler2D scene_color;
+uniform sampler2D picture;
 
 layout(location = 0) out vec4 out_color;
 
@@ -23,7 +23,7 @@ vec3 display_value(vec3 value) {
 }
 
 void main() {
-    vec4 scene = texelFetch(scene_color, ivec2(gl_FragCoord.xy - frame.viewport_origin_px), 0);
+    vec4 scene = texelFetch(picture, ivec2(gl_FragCoord.xy - frame.viewport_origin_px), 0);
     // The image of a pass may have anything in alpha.
     bool is_pass = TONEMAP == TONEMAP_OFF && frame.mode >= PASS_MODES;
     float coverage = is_pass ? 1.0 : coverage_of(scene.a);

@@ -19,13 +19,13 @@ pub use print::glsl;
 pub use textures::*;
 
 /// Version of the contract. It increases whenever a shader tree for the previous version would misread memory.
-pub const VERSION: u32 = 7;
+pub const VERSION: u32 = 8;
 
 /// Set 0: bound once per frame.
 pub const SET_FRAME: u32 = 0;
 /// Set 1: bound once per material.
 pub const SET_MATERIAL: u32 = 1;
-/// Set 2: the images that a pass reads.
+/// Set 2: the images and buffers that a stage declares by name. It has no bindings in the contract.
 pub const SET_PASS: u32 = 2;
 /// Set 3: the inputs and outputs of a compute task.
 pub const SET_TASK: u32 = 3;
@@ -155,8 +155,6 @@ const OTHERS: &[Binding] = &[
     binding(SET_FRAME, 19, "BINDING_ENVIRONMENT_CELLS", BindingKind::StorageBuffer, 0),
     binding(LOOPS[0].0, LOOPS[0].1, "BINDING_LOOPS", BindingKind::StorageBuffer, 0),
     binding(SET_MATERIAL, 0, "BINDING_MATERIAL", BindingKind::UniformBuffer, size_of::<Material>()),
-    binding(SET_PASS, 0, "BINDING_SCENE_COLOR", BindingKind::Sampler2D, 0),
-    binding(SET_PASS, 1, "BINDING_BEHIND", BindingKind::Sampler2D, 0),
     binding(SET_TASK, BINDING_TASK, "BINDING_TASK", BindingKind::UniformBuffer, size_of::<Task>()),
     binding(SET_TASK, BINDING_SOURCE, "BINDING_SOURCE", BindingKind::Sampler2D, 0),
     binding(SET_TASK, BINDING_SOURCE_CUBE, "BINDING_SOURCE_CUBE", BindingKind::SamplerCube, 0),

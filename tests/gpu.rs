@@ -7,11 +7,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use specula::gpu::{
-    Attachments, Buffer, DescriptorSet, Encoder, Frames, Gpu, GpuError, GpuOptions, Image, ImageDesc, Memory, Pipeline,
-    PipelineDesc, PrimitiveClass, Raster, Rect, Sampler, SamplerDesc, SetLayouts, SetWriter, ShaderModule, Submission,
-    Use, fault, one_shot, vk,
+    Attachments, Buffer, DescriptorSet, Encoder, Frames, Gpu, GpuError, GpuOptions, Image, ImageDesc, Memory,
+    PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster, Rect, Sampler, SamplerDesc, SetLayouts,
+    SetWriter, ShaderModule, Submission, Use, fault, one_shot, vk,
 };
-use specula::interface::SET_PASS;
+use specula::interface::SET_FRAME;
 use support::process::{PATIENCE, finish, specula};
 use support::{assert_validated, gpu};
 
@@ -82,10 +82,10 @@ fn validation_messages_name_descriptor_sets() {
     let layouts = SetLayouts::new(&gpu).unwrap();
     let unsampled = image(&gpu, "unsampled", vk::ImageUsageFlags::COLOR_ATTACHMENT);
     let sampler = Sampler::new(&gpu, &SamplerDesc::NEAREST).unwrap();
-    let writer = || SetWriter::default().texture(0, &unsampled, &sampler);
-    DescriptorSet::new(&layouts, SET_PASS, writer()).unwrap();
-    assert_message(&gpu, &["pass set"]);
-    DescriptorSet::new(&layouts, SET_PASS, writer().named("wrong set")).unwrap();
+    let writer = || SetWriter::default().texture(7, &unsampled, &sampler);
+    DescriptorSet::new(&layouts, SET_FRAME, writer()).unwrap();
+    assert_message(&gpu, &["frame set"]);
+    DescriptorSet::new(&layouts, SET_FRAME, writer().named("wrong set")).unwrap();
     assert_message(&gpu, &["wrong set"]);
 }
 
@@ -110,7 +110,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
         raster: Raster::Solid,
         samples: 1,
         class: PrimitiveClass::Triangles,
-        layout: None,
+        layout: PassLayout::new(&gpu, &layouts, PassBindings::new(), false).unwrap(),
     };
     let pipeline = Pipeline::new(&gpu, &layouts, &desc).unwrap();
     let target = image(&gpu, "target", vk::ImageUsageFlags::COLOR_ATTACHMENT);

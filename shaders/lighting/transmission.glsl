@@ -16,7 +16,7 @@
 
 // The opaque scene with mip levels, as common/pixel.glsl stores it. A level is a mean of many pixels, from which flags and
 // coverage cannot be told apart, so a texel with a flag counts as covered.
-layout(set = SET_PASS, binding = BINDING_BEHIND) uniform sampler2D behind;
+uniform sampler2D behind;
 
 // Transmittance after `path` meters: exp(-sigma path), sigma = -log(color) / distance (Beer-Lambert;
 // KHR_materials_volume). 1e-6 avoids log(0) = -infinity, which a path of 0 would turn into NaN. Models that give no

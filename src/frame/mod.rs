@@ -228,12 +228,12 @@ impl FrameState {
 }
 
 /// The uniform blocks of declared passes, by the place of the pass in [`PipelineRequest::passes`] and the binding.
-pub(crate) type PassBlocks = BTreeMap<(usize, usize), Vec<u8>>;
+pub(crate) type PassBlocks = BTreeMap<(usize, u32), Vec<u8>>;
 
 fn pass_blocks(settings: &Settings, shaders: &ShaderSet, pipelines: &PipelineRequest, size: (u32, u32)) -> PassBlocks {
     let mut blocks = PassBlocks::new();
     for (index, pass) in pipelines.passes.iter().enumerate() {
-        for (binding, input) in pass.inputs.iter().enumerate() {
+        for (binding, input) in &pass.inputs {
             let block = match input {
                 Input::Parameters(bytes, members) => {
                     values::block(&settings.shader, &shaders.parameters, members, *bytes)
@@ -245,7 +245,7 @@ fn pass_blocks(settings: &Settings, shaders: &ShaderSet, pipelines: &PipelineReq
                 }
                 _ => continue,
             };
-            blocks.insert((index, binding), block);
+            blocks.insert((index, *binding), block);
         }
     }
     blocks

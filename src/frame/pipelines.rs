@@ -12,6 +12,7 @@ use crate::interface::{
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::annotation::pass::PassFormat;
+use crate::shader::graph::{FULL_SCREEN, Graph, Inputs, MODEL, Part};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, ModeStage, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
@@ -108,19 +109,21 @@ pub(crate) enum Pass {
     Average,
     /// HDR to picture: `fullscreen.vert`, `tonemap.frag`.
     Tonemap,
-    /// A declared pass over a whole image: `fullscreen.vert`, and its own stage.
+    /// A declared pass over a whole image: `fullscreen.vert` or its own vertex stage, and its own stage.
     FullScreen(Arc<GraphPass>),
+    /// A declared pass that draws the model: `pbr.vert` or its own vertex stage, and its own stage.
+    ModelPass(Arc<GraphPass>, PrimitiveClass),
 }
 
-/// The vertex stage of declared passes.
-pub(crate) const FULL_SCREEN: &str = "fullscreen.vert";
+/// The stages of a picture that every debug mode has, too.
+const SHARED_STAGES: [&str; 2] = ["tonemap.frag", "average.frag"];
 
 impl Pass {
     /// Paths of the vertex and fragment stages.
     pub(crate) fn stages(&self) -> [&str; 2] {
         match self {
-            Self::FullScreen(pass) => [FULL_SCREEN, &pass.note.stage],
-            Self::Model { fragment, .. } => ["pbr.vert", fragment.path()],
+            Self::FullScreen(pass) | Self::ModelPass(pass, _) => [pass.vertex_stage(), &pass.note.stage],
+            Self::Model { fragment, .. } => [MODEL, fragment.path()],
             Self::Sky => ["sky.vert", "sky.frag"],
             Self::Average => [FULL_SCREEN, "average.frag"],
             Self::Tonemap => [FULL_SCREEN, "tonemap.frag"],
@@ -134,13 +137,20 @@ impl PipelineRequest {
         let mode = find_mode(shaders, &settings.mode);
         let shown_pass = mode.and_then(|mode| mode.pass.clone());
         let shows_light = mode.is_some_and(|m| m.tonemap) || shown_pass.is_some();
-        let is_on = |pass: &GraphPass| settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on);
-        let passes = if shows_light { shaders.graph.active(is_on, shown_pass.as_deref()) } else { Vec::new() };
+        let stage = mode.map(|m| m.stage).unwrap_or_default();
+        let constants = values::constants(&settings.shader, &shaders.constants);
+        let is_on = |pass: &GraphPass| is_on(pass, settings, shaders, &constants);
+        let mut readers = vec![stage.path()];
+        readers.extend(SHARED_STAGES);
+        // Transmissive surfaces may show the picture behind them in a debug mode.
+        readers.extend(shows_light.then_some("sky.frag"));
+        readers.extend(mode.is_some_and(|m| m.through).then_some(ModeStage::Picture.path()));
+        let passes = shaders.graph.active(&readers, shows_light, is_on, shown_pass.as_deref());
         let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
         Self {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
-            constants: values::constants(&settings.shader, &shaders.constants),
+            constants,
             tonemap: if mode.is_some_and(|m| m.tonemap) { settings.view.tonemap as u32 } else { TONEMAP_OFF },
             encode: mode.map_or(Encode::Color, |m| m.encode).id(),
             target,
@@ -149,7 +159,7 @@ impl PipelineRequest {
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
             sky: settings.environment.is_shown(&settings.view) && shows_light,
             accumulates: mode.is_some_and(|m| m.accumulate),
-            stage: mode.map(|m| m.stage).unwrap_or_default(),
+            stage,
             traces: mode.is_some_and(|m| m.traces),
             through: mode.is_some_and(|m| m.through),
             passes,
@@ -256,18 +266,38 @@ impl PipelineRequest {
         })
     }
 
-    /// The pipeline of a declared pass; `None` for a compute pass.
-    pub(crate) fn pass_key(&self, pass: &Arc<GraphPass>) -> Option<PipelineKey> {
-        (!pass.is_compute).then(|| PipelineKey {
+    /// The pipelines of a declared pass: one for each material if it draws the model, none for a compute pass.
+    pub(crate) fn pass_keys(&self, pass: &Arc<GraphPass>) -> Vec<PipelineKey> {
+        if pass.note.model.is_some() {
+            return self.materials.iter().map(|material| self.model_pass_key(pass, *material)).collect();
+        }
+        let key = (!pass.is_compute).then(|| PipelineKey {
             pass: Pass::FullScreen(pass.clone()),
             format: match pass.note.to_picture {
-                true if pass.after_tonemap => Swapchain::FORMAT,
+                true if pass.part == Part::Display => Swapchain::FORMAT,
                 true => self.picture_format(),
                 false => pass_format(pass.note.format),
             },
             samples: 1,
             specialization: self.constants.clone(),
-        })
+        });
+        key.into_iter().collect()
+    }
+
+    /// The pipeline with which a declared pass draws a material of the model.
+    pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
+        let mut specialization = vec![
+            (SPEC_ALPHA_MODE, material.alpha),
+            (SPEC_FEATURES, material.features | self.shared_features),
+            (SPEC_LIGHT_COUNT, self.light_count),
+        ];
+        specialization.extend_from_slice(&self.constants);
+        PipelineKey {
+            pass: Pass::ModelPass(pass.clone(), material.class),
+            format: pass_format(pass.note.format),
+            samples: 1,
+            specialization,
+        }
     }
 
     /// Format of the HDR picture before the tone map.
@@ -278,7 +308,7 @@ impl PipelineRequest {
     /// The stages of the pipelines.
     pub(crate) fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading.
-        let model = ["pbr.vert", self.stage.path()].map(str::to_owned);
+        let model = [MODEL, self.stage.path()].map(str::to_owned);
         let computes = self.passes.iter().filter(|pass| pass.is_compute).map(|pass| pass.note.stage.clone());
         self.keys().flat_map(|key| key.pass.stages().map(str::to_owned)).chain(model).chain(computes).collect()
     }
@@ -288,14 +318,21 @@ impl PipelineRequest {
         !shaders.pending.is_empty() && self.stages().iter().any(|path| shaders.pending.contains(path))
     }
 
+    /// The pipelines of the model, the sky and the mean.
+    pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
+        let model = self.materials.iter().flat_map(|m| [self.model_key(*m), self.behind_key(*m)]);
+        model.chain(self.sky_key()).chain(self.average_key())
+    }
+
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
-        self.materials
-            .iter()
-            .flat_map(|m| [self.model_key(*m), self.behind_key(*m)])
-            .chain([self.tonemap_key()])
-            .chain(self.sky_key())
-            .chain(self.average_key())
-            .chain(self.passes.iter().filter_map(|pass| self.pass_key(pass)))
+        let passes = self.passes.iter().flat_map(|pass| self.pass_keys(pass));
+        self.model_keys().chain([self.tonemap_key()]).chain(passes)
+    }
+
+    /// The inputs of the stages that come with Specula, as far as this request draws them.
+    pub(crate) fn readers<'a>(&self, graph: &'a Graph) -> impl Iterator<Item = &'a Inputs> {
+        let stages = self.stages();
+        graph.readers.iter().filter(move |(path, _)| stages.contains(*path)).map(|(_, inputs)| inputs)
     }
 }
 
@@ -332,6 +369,13 @@ fn shared_features(settings: &Settings) -> u32 {
         features |= interface::FEATURE_RECT_LIGHTS;
     }
     features
+}
+
+/// Whether the user has a pass switched on: the pass itself, and the constant that its annotation names.
+fn is_on(pass: &GraphPass, settings: &Settings, shaders: &ShaderSet, constants: &Specialization) -> bool {
+    let is_wanted = settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on);
+    let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == pass.note.when.as_ref());
+    is_wanted && switch.is_none_or(|switch| constants.iter().any(|(id, value)| *id == switch.id && *value != 0))
 }
 
 /// The mode with this slug, or the tree's first mode.

@@ -25,7 +25,7 @@ pub use heap::{return_freed_memory, return_large_blocks};
 pub use resources::buffer::{Buffer, Memory};
 pub use resources::descriptor::{DescriptorSet, SetLayouts, SetWriter};
 pub use resources::image::{Image, ImageDesc};
-pub use resources::pass_layout::{PassBinding, PassLayout, PassResource};
+pub use resources::pass_layout::{PassBinding, PassBindings, PassLayout, PassResource};
 pub use resources::pipeline::{
     ComputePipeline, Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization,
 };

@@ -2,18 +2,18 @@
 
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use rayon::prelude::*;
 
 use crate::frame::{Pass, PipelineKey, PipelineRequest};
 use crate::gpu::{
-    ComputePipeline, Gpu, GpuError, PassBinding, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster,
-    SetLayouts, ShaderModule, Specialization,
+    ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass,
+    Raster, SetLayouts, ShaderModule, Specialization,
 };
 use crate::pipeline::bounds::shader_module;
 use crate::pipeline::textures::PassTextures;
-use crate::shader::graph::Input;
+use crate::shader::graph::{Input, Inputs};
 use crate::shader::{GraphPass, ShaderSet, Stage};
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -91,6 +91,9 @@ impl<K, T> Default for Recent<K, T> {
     }
 }
 
+/// Layouts by their bindings, and whether they have a material's set. All generations share them.
+type PassLayouts = Arc<Mutex<HashMap<(PassBindings, bool), Weak<PassLayout>>>>;
+
 /// Compiled shaders, and the pipelines of the newest requests.
 pub struct PipelineSet {
     pub(crate) gpu: Arc<Gpu>,
@@ -98,6 +101,8 @@ pub struct PipelineSet {
     /// The shaders of this generation, with their modes and parameters.
     pub shaders: Arc<ShaderSet>,
     textures: Arc<PassTextures>,
+    /// The layouts of the pipelines, shared by all that have the same bindings.
+    pass_layouts: PassLayouts,
     graphics: Mutex<Recent<PipelineKey, Pipeline>>,
     computes: Mutex<Recent<(String, Specialization), ComputePipeline>>,
     requests: AtomicU64,
@@ -125,6 +130,7 @@ impl PipelineSet {
             layouts: layouts.clone(),
             shaders,
             textures,
+            pass_layouts: before.map(|set| set.pass_layouts.clone()).unwrap_or_default(),
             graphics: Mutex::default(),
             computes: Mutex::default(),
             requests: AtomicU64::default(),
@@ -240,31 +246,40 @@ impl PipelineSet {
 
     /// A compute pipeline, created at its first use.
     pub(crate) fn compute(&self, path: &str, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
-        self.compute_with(path, constants, || Ok(None))
+        self.compute_with(path, constants, |_| Ok(None))
     }
 
     /// The pipeline of a compute pass, created at its first use.
     fn compute_pass(&self, pass: &GraphPass, constants: &Specialization) -> Result<Arc<ComputePipeline>, GpuError> {
-        self.compute_with(&pass.note.stage, constants, || self.pass_layout(pass).map(Some))
+        let layout = |module: &ShaderModule| self.layout(&pass.inputs, &[module], false).map(Some);
+        self.compute_with(&pass.note.stage, constants, layout).map_err(|error| of_pass(pass, error))
     }
 
-    fn pass_layout(&self, pass: &GraphPass) -> Result<Arc<PassLayout>, GpuError> {
-        let bindings = pass.inputs.iter().map(|input| match input {
-            Input::Picture | Input::Depth | Input::Image(_) | Input::Before(_) | Input::Texture(_) => {
-                PassBinding::Texture
-            }
-            Input::Output => PassBinding::Storage,
-            Input::Buffer(..) => PassBinding::Buffer,
-            Input::Parameters(..) | Input::Size => PassBinding::Uniform,
-        });
-        PassLayout::new(&self.gpu, &self.layouts, bindings.collect())
+    /// The layout for these inputs, as far as the modules read them.
+    fn layout(
+        &self,
+        inputs: &Inputs,
+        modules: &[&ShaderModule],
+        draws_model: bool,
+    ) -> Result<Arc<PassLayout>, GpuError> {
+        let used = inputs.iter().filter(|(binding, _)| modules.iter().any(|module| module.reads(**binding)));
+        let bindings: PassBindings = used.map(|(binding, input)| (*binding, kind_of(input))).collect();
+        let mut known = lock(&self.pass_layouts);
+        let key = (bindings, draws_model);
+        if let Some(layout) = known.get(&key).and_then(Weak::upgrade) {
+            return Ok(layout);
+        }
+        known.retain(|_, layout| layout.strong_count() > 0);
+        let layout = PassLayout::new(&self.gpu, &self.layouts, key.0.clone(), draws_model)?;
+        known.insert(key, Arc::downgrade(&layout));
+        Ok(layout)
     }
 
     fn compute_with(
         &self,
         path: &str,
         constants: &Specialization,
-        layout: impl FnOnce() -> Result<Option<Arc<PassLayout>>, GpuError>,
+        layout: impl FnOnce(&ShaderModule) -> Result<Option<Arc<PassLayout>>, GpuError>,
     ) -> Result<Arc<ComputePipeline>, GpuError> {
         let key = (path.to_owned(), constants.clone());
         let number = self.requests.load(Ordering::SeqCst);
@@ -273,7 +288,7 @@ impl PipelineSet {
             return Ok(pipeline.clone());
         }
         let module = self.module(path, constants)?;
-        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module, layout()?)?;
+        let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module, layout(&module)?)?;
         lock(&self.computes).insert(key, pipeline.clone(), number);
         Ok(pipeline)
     }
@@ -286,14 +301,23 @@ impl PipelineSet {
             Pass::Sky => (true, Raster::Solid, PrimitiveClass::Triangles),
             Pass::Average => (false, Raster::Averaged, PrimitiveClass::Triangles),
             Pass::Tonemap | Pass::FullScreen(_) => (false, Raster::Solid, PrimitiveClass::Triangles),
+            Pass::ModelPass(_, class) => (true, Raster::Solid, *class),
         };
-        let layout = match &key.pass {
-            Pass::FullScreen(pass) => Some(self.pass_layout(pass)?),
-            _ => None,
+        let nothing = Inputs::new();
+        let inputs = match &key.pass {
+            Pass::FullScreen(pass) | Pass::ModelPass(pass, _) => &pass.inputs,
+            _ => self.shaders.graph.readers.get(fragment).unwrap_or(&nothing),
         };
+        let (vertex, fragment) = (module(vertex)?, module(fragment)?);
+        let draws_model = matches!(key.pass, Pass::Model { .. } | Pass::ModelPass(..));
+        let layout = self.layout(inputs, &[&vertex, &fragment], draws_model);
+        let layout = layout.map_err(|error| match &key.pass {
+            Pass::FullScreen(pass) | Pass::ModelPass(pass, _) => of_pass(pass, error),
+            _ => error,
+        })?;
         let desc = PipelineDesc {
-            vertex: &*module(vertex)?,
-            fragment: &*module(fragment)?,
+            vertex: &vertex,
+            fragment: &fragment,
             color: key.format,
             depth,
             raster,
@@ -302,5 +326,24 @@ impl PipelineSet {
             layout,
         };
         Pipeline::new(&self.gpu, &self.layouts, &desc)
+    }
+}
+
+/// Names the pass in an error about what it reads.
+fn of_pass(pass: &GraphPass, error: GpuError) -> GpuError {
+    match error {
+        GpuError::Texture(message) => GpuError::Texture(format!("the pass {} is too large: {message}", pass.name())),
+        other => other,
+    }
+}
+
+fn kind_of(input: &Input) -> PassBinding {
+    match input {
+        Input::Picture | Input::Behind | Input::Depth | Input::Image(_) | Input::Before(_) | Input::Texture(_) => {
+            PassBinding::Texture
+        }
+        Input::Output => PassBinding::Storage,
+        Input::Buffer(..) => PassBinding::Buffer,
+        Input::Parameters(..) | Input::Size => PassBinding::Uniform,
     }
 }

@@ -321,9 +321,9 @@ impl Encoder {
     }
 
     /// Draws `count` indices, beginning with index number `first`.
-    pub fn draw_indexed(&mut self, count: u32, first: u32) {
+    pub fn draw_indexed(&mut self, count: u32, first: u32, instances: u32) {
         // SAFETY: this encoder records the command buffer; the loader has checked that the indices are in range.
-        unsafe { self.gpu.device.cmd_draw_indexed(self.raw, count, 1, first, 0, 0) };
+        unsafe { self.gpu.device.cmd_draw_indexed(self.raw, count, instances, first, 0, 0) };
     }
 
     /// SYNC: makes the writes of earlier copies visible to all later commands, and to the CPU after the fence.

@@ -139,6 +139,12 @@ impl Gpu {
         self.properties.limits.max_image_dimension2_d
     }
 
+    /// The number of sampled textures that one stage can have.
+    pub fn max_textures(&self) -> usize {
+        let limits = &self.properties.limits;
+        limits.max_per_stage_descriptor_samplers.min(limits.max_per_stage_descriptor_sampled_images) as usize
+    }
+
     /// Nanoseconds of one timestamp tick; `None` when the queue has no timestamps.
     pub fn timestamp_period(&self) -> Option<f32> {
         (self.timestamp_bits > 0).then_some(self.properties.limits.timestamp_period)

@@ -1,5 +1,6 @@
 //! The pipeline layout of a declared pass. Its set `interface::SET_PASS` has the bindings that the stage declares.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use ash::vk;
@@ -10,10 +11,10 @@ use super::image::Image;
 use super::sampler::Sampler;
 use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError};
-use crate::interface;
+use crate::interface::{self, BindingKind};
 
 /// The kind of a descriptor of a pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PassBinding {
     /// `sampler2D`
     Texture,
@@ -56,29 +57,46 @@ impl PassResource<'_> {
     }
 }
 
-/// A pipeline layout with the frame's set, the set of tasks, and the pass's own set. The other sets are empty.
+/// A pipeline layout: the sets of the contract, and a set `interface::SET_PASS` with what the stages declare by name.
 pub struct PassLayout {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
-    bindings: Vec<PassBinding>,
+    bindings: PassBindings,
     empty: vk::DescriptorSetLayout,
     own: vk::DescriptorSetLayout,
     pub(in crate::gpu) pipeline: vk::PipelineLayout,
 }
 
+/// The kinds of descriptors of a [`PassLayout`], by binding.
+pub type PassBindings = BTreeMap<u32, PassBinding>;
+
 impl PassLayout {
-    /// Creates the layout of a pass with these bindings, from 0 on.
+    /// Creates the layout of a pass with these bindings. `draws_model`: it has the set of a material too.
     ///
     /// # Errors
-    /// The device is out of memory.
-    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, bindings: Vec<PassBinding>) -> Result<Arc<Self>, GpuError> {
+    /// The device is out of memory, or its stages have fewer textures.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        bindings: PassBindings,
+        draws_model: bool,
+    ) -> Result<Arc<Self>, GpuError> {
+        let own = bindings.values().filter(|kind| **kind == PassBinding::Texture).count();
+        let (given, most) = (textures_of_contract(draws_model), gpu.max_textures());
+        if own + given > most {
+            let message = format!(
+                "it reads {own} images and textures by name, and {given} come with Specula; this device has {most} for a stage"
+            );
+            return Err(GpuError::Texture(message));
+        }
         let null = vk::DescriptorSetLayout::null();
         let pipeline = vk::PipelineLayout::null();
         let mut this = Self { gpu: gpu.clone(), layouts: layouts.clone(), bindings, empty: null, own: null, pipeline };
-        let own: Vec<_> = (0..)
-            .zip(&this.bindings)
+        let own: Vec<_> = this
+            .bindings
+            .iter()
             .map(|(binding, kind)| {
-                let layout = vk::DescriptorSetLayoutBinding::default().binding(binding);
+                let layout = vk::DescriptorSetLayoutBinding::default().binding(*binding);
                 layout.descriptor_type(kind.vulkan()).descriptor_count(1).stage_flags(STAGES)
             })
             .collect();
@@ -89,12 +107,13 @@ impl PassLayout {
         };
         this.own = set_layout(&own)?;
         gpu.name(this.own, "set of a pass");
-        this.empty = set_layout(&[])?;
-        let mut sets = [this.empty; 4];
-        sets[interface::SET_FRAME as usize] = layouts.sets[interface::SET_FRAME as usize];
+        let mut sets = layouts.sets.clone();
+        if !draws_model {
+            // The textures of a material count among those of a stage, whether the stage reads them or not.
+            this.empty = set_layout(&[])?;
+            sets[interface::SET_MATERIAL as usize] = this.empty;
+        }
         sets[interface::SET_PASS as usize] = this.own;
-        // Compute stages report endless loops through this set.
-        sets[interface::SET_TASK as usize] = layouts.sets[interface::SET_TASK as usize];
         let ranges = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&ranges);
         // SAFETY: the set layouts are live.
@@ -104,6 +123,16 @@ impl PassLayout {
         Ok(Arc::new(this))
     }
 
+    /// Whether the layout has no descriptors of its own, so that no set needs to be bound.
+    pub fn is_empty(&self) -> bool {
+        self.bindings.is_empty()
+    }
+
+    /// The bindings of its own set.
+    pub fn bindings(&self) -> impl Iterator<Item = u32> {
+        self.bindings.keys().copied()
+    }
+
     /// Creates the pass's own set, with a resource for each binding.
     ///
     /// # Errors
@@ -111,7 +140,7 @@ impl PassLayout {
     pub fn set(self: &Arc<Self>, name: &str, resources: &[PassResource<'_>]) -> Result<Arc<DescriptorSet>, GpuError> {
         let sizes: Vec<_> = self
             .bindings
-            .iter()
+            .values()
             .map(|kind| vk::DescriptorPoolSize { ty: kind.vulkan(), descriptor_count: 1 })
             .collect();
         let kept: Vec<Arc<dyn std::any::Any + Send + Sync>> = resources
@@ -146,10 +175,12 @@ impl PassLayout {
             }
         }
         let (mut images, mut buffers) = (images.iter(), buffers.iter());
-        let writes: Vec<_> = (0..)
-            .zip(self.bindings.iter().zip(resources))
-            .filter_map(|(binding, (kind, resource))| {
-                let write = vk::WriteDescriptorSet::default().dst_set(set.raw).dst_binding(binding);
+        let writes: Vec<_> = self
+            .bindings
+            .iter()
+            .zip(resources)
+            .filter_map(|((binding, kind), resource)| {
+                let write = vk::WriteDescriptorSet::default().dst_set(set.raw).dst_binding(*binding);
                 let write = write.descriptor_type(kind.vulkan()).descriptor_count(1);
                 Some(match resource {
                     PassResource::Texture(..) | PassResource::Storage(_) => write.image_info(images.next()?),
@@ -161,6 +192,15 @@ impl PassLayout {
         unsafe { self.gpu.device.update_descriptor_sets(&writes, &[]) };
         Ok(Arc::new(set))
     }
+}
+
+/// The textures of the contract that a fragment stage sees.
+fn textures_of_contract(draws_model: bool) -> usize {
+    let is_texture = |kind: BindingKind| {
+        matches!(kind, BindingKind::Sampler2D | BindingKind::Sampler2DArray | BindingKind::SamplerCube)
+    };
+    let is_seen = |set: u32| set == interface::SET_FRAME || (draws_model && set == interface::SET_MATERIAL);
+    interface::BINDINGS.iter().filter(|binding| is_seen(binding.set) && is_texture(binding.kind)).count()
 }
 
 impl Drop for PassLayout {

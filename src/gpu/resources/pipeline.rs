@@ -1,5 +1,6 @@
 //! Shader modules and pipelines.
 
+use std::collections::BTreeSet;
 use std::ffi::CStr;
 use std::sync::Arc;
 
@@ -11,6 +12,8 @@ use super::pass_layout::PassLayout;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError, fault};
+use crate::interface::SET_PASS;
+use crate::shader::spirv::bindings::used_bindings;
 
 const MAIN: &CStr = c"main";
 
@@ -20,6 +23,8 @@ pub struct ShaderModule {
     raw: vk::ShaderModule,
     name: String,
     names_loops: bool,
+    /// Bindings in `interface::SET_PASS` that its functions read or write.
+    pass_bindings: BTreeSet<u32>,
 }
 
 impl ShaderModule {
@@ -34,7 +39,13 @@ impl ShaderModule {
         let raw = unsafe { gpu.device.create_shader_module(&info, None) };
         let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
         gpu.name(raw, name);
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned(), names_loops }))
+        let pass_bindings = used_bindings(spirv, SET_PASS);
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned(), names_loops, pass_bindings }))
+    }
+
+    /// Whether it uses this binding of `interface::SET_PASS`.
+    pub fn reads(&self, binding: u32) -> bool {
+        self.pass_bindings.contains(&binding)
     }
 }
 
@@ -95,8 +106,8 @@ pub struct PipelineDesc<'a> {
     pub samples: u32,
     /// Class of primitives.
     pub class: PrimitiveClass,
-    /// The layout of a pass that the shader tree declares; `None` for the layout of the contract.
-    pub layout: Option<Arc<PassLayout>>,
+    /// The layout, with what the stages read by name.
+    pub layout: Arc<PassLayout>,
 }
 
 impl PipelineDesc<'_> {
@@ -110,9 +121,8 @@ impl PipelineDesc<'_> {
 /// A graphics pipeline. Viewport, scissor, cull mode, front face and topology are dynamic.
 pub struct Pipeline {
     gpu: Arc<Gpu>,
-    _layouts: Arc<SetLayouts>,
-    /// The layout of a declared pass.
-    pub layout: Option<Arc<PassLayout>>,
+    /// Its layout.
+    pub layout: Arc<PassLayout>,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
@@ -184,7 +194,7 @@ impl Pipeline {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(desc.layout.as_ref().map_or(layouts.pipeline, |layout| layout.pipeline))
+            .layout(desc.layout.pipeline)
             .push_next(&mut rendering);
         let name = desc.name();
         let _watched = Watched::begin(|| format!("compiling the pipeline `{name}`"));
@@ -196,7 +206,7 @@ impl Pipeline {
         gpu.name(raw, &name);
         let names_loops = desc.vertex.names_loops || desc.fragment.names_loops;
         let loops = names_loops.then(|| layouts.blank.loops.clone());
-        Ok(Arc::new(Self { gpu: gpu.clone(), _layouts: layouts.clone(), layout: desc.layout.clone(), loops, raw }))
+        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), loops, raw }))
     }
 }
 

@@ -6,18 +6,20 @@ mod sets;
 
 use std::sync::Arc;
 
+use super::passes::ModelDraws;
 use crate::frame::PipelineKey;
 use crate::gpu::{
     Attachments, DescriptorSet, Encoder, Gpu, GpuError, Image, PassLayout, PassResource, Sampler, SetLayouts,
     SetWriter, Use,
 };
-use crate::interface::{SET_PASS, SET_TASK};
+use crate::interface::SET_TASK;
 use crate::render::resources::BoundFrame;
 use crate::shader::GraphPass;
-use crate::shader::annotation::pass::Dispatch;
-use crate::shader::graph::Input;
+use crate::shader::annotation::pass::{Dispatch, Instances};
+use crate::shader::graph::{Input, Inputs, Part};
 pub(super) use blocks::Blocks;
 use images::Images;
+pub(super) use sets::PassSets;
 use sets::Sets;
 
 /// Draws the declared passes of a view, and keeps their images, buffers and descriptor sets between frames.
@@ -51,6 +53,8 @@ pub(super) struct Drawn<'a> {
 /// Number of cached sets per pass at which the cache is cleared: the sets of two frame slots with two images each, and
 /// spares.
 const SETS_KEPT: usize = 8;
+/// Number of stages that come with Specula and read images, in one frame: model, `behind`, sky, mean and tone map.
+const BUILT_IN_SETS: usize = 5;
 
 impl DeclaredPasses {
     pub(super) fn new(
@@ -96,17 +100,23 @@ impl DeclaredPasses {
         self.picture.as_ref()
     }
 
-    /// Draws the passes before the tone map. `picture` is in [`Use::Sampled`].
+    /// Draws the passes whose images the model reads.
+    pub(super) fn before_model(&mut self, encoder: &mut Encoder, drawn: &Drawn<'_>) -> Result<(), GpuError> {
+        self.images.begin_frame(encoder);
+        let nothing = self.blank.clone();
+        self.run(encoder, drawn, &nothing, Part::BeforeModel).map(|_| ())
+    }
+
+    /// Draws the passes between the model and the tone map. `picture` is in [`Use::Sampled`].
     pub(super) fn before_tonemap(
         &mut self,
         encoder: &mut Encoder,
         drawn: &Drawn<'_>,
         picture: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        self.images.begin_frame(encoder);
-        let last = self.run(encoder, drawn, picture, false)?;
+        let last = self.run(encoder, drawn, picture, Part::Light)?;
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
-        let shown = shown_image(drawn.frame).filter(|pass| !pass.after_tonemap);
+        let shown = shown_image(drawn.frame).filter(|pass| pass.part != Part::Display);
         // The tone map reads an image of the picture's size.
         if let Some(pass) = shown
             && let (Some(from), Some(to)) = (self.images.current(pass.name()), self.images.shown())
@@ -119,11 +129,11 @@ impl DeclaredPasses {
 
     /// Whether passes come after the tone map.
     pub(super) fn has_display_passes(frame: &BoundFrame) -> bool {
-        frame.state.pipelines.passes.iter().any(|pass| pass.after_tonemap)
+        frame.state.pipelines.passes.iter().any(|pass| pass.part == Part::Display)
     }
 
-    /// Lets `tone_map` draw to an intermediate image, and draws the passes after the tone map. Returns the image for
-    /// the display, in [`Use::Sampled`]. It is the image of the previous frame unless the picture was `redrawn`.
+    /// Lets `tone_map` draw to an image of its own, and draws the passes after it. Returns the image for the display, in
+    /// [`Use::Sampled`]: the same as before unless the picture was `redrawn`.
     pub(super) fn on_display(
         &mut self,
         encoder: &mut Encoder,
@@ -138,10 +148,11 @@ impl DeclaredPasses {
         encoder.transition(&first, Use::Undefined, Use::Color);
         encoder.pass("tone map", |encoder| tone_map(encoder, &first));
         encoder.transition(&first, Use::Color, Use::Sampled);
-        let mut last = self.run(encoder, drawn, &first, true)?;
-        let shown = shown_image(drawn.frame).filter(|pass| pass.after_tonemap);
+        let mut last = self.run(encoder, drawn, &first, Part::Display)?;
+        let shown = shown_image(drawn.frame).filter(|pass| pass.part == Part::Display);
         if let Some(pass) = shown
-            && let (Some(from), Some(to)) = (self.images.current(pass.name()), self.images.other_picture(true, &last))
+            && let Some(from) = self.images.current(pass.name())
+            && let Some(to) = self.images.other_picture(Part::Display, &last)
         {
             scale(encoder, from, to);
             last = to.clone();
@@ -150,45 +161,59 @@ impl DeclaredPasses {
         Ok(Some(last))
     }
 
-    /// Discards the results of the passes, since the frame's commands were not submitted.
+    /// Forgets the drawn pictures: the frame's commands were not submitted.
     pub(super) fn forget(&mut self) {
         self.restart();
         (self.picture, self.display) = (None, None);
     }
 
-    /// Drops the cached sets, which would keep the replaced targets alive.
+    /// Drops the cached sets, which keep images alive that were replaced.
     pub(super) fn targets_replaced(&mut self) {
         self.sets.clear();
         self.picture = None;
     }
 
-    /// The set with which the tone map reads `picture`.
-    pub(super) fn tonemap_set(&mut self, picture: &Arc<Image>) -> Result<Arc<DescriptorSet>, GpuError> {
-        let writer = SetWriter::default().texture(0, picture, &self.nearest);
-        let make = || DescriptorSet::new(&self.layouts, SET_PASS, writer);
-        self.sets.get(vec![Arc::as_ptr(picture) as usize], SETS_KEPT, make)
+    /// The sets of the stages that come with Specula, for the pipelines of `keys`. Images of passes are read as they are now.
+    pub(super) fn built_in_sets(
+        &mut self,
+        drawn: &Drawn<'_>,
+        given: &Given<'_>,
+        keys: impl Iterator<Item = PipelineKey>,
+    ) -> Result<PassSets, GpuError> {
+        let readers = &drawn.frame.state.shaders.graph.readers;
+        let mut sets = PassSets::default();
+        for key in keys {
+            let [_, fragment] = key.pass.stages();
+            let (Some(pipeline), Some(inputs)) = (drawn.frame.pipelines.get(&key), readers.get(fragment)) else {
+                continue;
+            };
+            let reads = Reads { name: fragment, inputs, given, index: None };
+            sets.insert(&pipeline.layout, self.set(&pipeline.layout, drawn, &reads)?);
+        }
+        Ok(sets)
     }
 
-    /// Draws the passes before or after the tone map, starting with `picture`. Returns the last picture.
+    /// Draws the passes of one part of the frame, from this picture. Returns the last picture.
     fn run(
         &mut self,
         encoder: &mut Encoder,
         drawn: &Drawn<'_>,
         picture: &Arc<Image>,
-        after_tonemap: bool,
+        part: Part,
     ) -> Result<Arc<Image>, GpuError> {
         let mut picture = picture.clone();
         let request = &drawn.frame.state.pipelines;
-        for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.after_tonemap == after_tonemap) {
+        for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.part == part) {
             let target = match pass.note.to_picture {
-                true => self.images.other_picture(after_tonemap, &picture).cloned(),
+                true => self.images.other_picture(part, &picture).cloned(),
                 false => self.images.target(pass.name()).cloned(),
             };
             let Some(target) = target else { continue };
-            let key = request.pass_key(pass);
-            encoder.pass(&pass.note.name, |encoder| match key {
-                Some(key) => self.draw(encoder, drawn, (index, pass, &key), &picture, &target),
-                None => self.dispatch(encoder, drawn, (index, pass), &picture, &target),
+            let given = Given { picture: Some(&picture), depth: drawn.depth, target: Some(&target), behind: None };
+            let reads = Reads { name: pass.name(), inputs: &pass.inputs, given: &given, index: Some(index) };
+            encoder.pass(&pass.note.name, |encoder| match pass.is_compute {
+                true => self.dispatch(encoder, drawn, pass, &reads, &target),
+                false => self.draw(encoder, drawn, pass, &reads, &target),
             })?;
             match pass.note.to_picture {
                 true => picture = target,
@@ -202,27 +227,49 @@ impl DeclaredPasses {
         &mut self,
         encoder: &mut Encoder,
         drawn: &Drawn<'_>,
-        (index, pass, key): (usize, &Arc<GraphPass>, &PipelineKey),
-        picture: &Arc<Image>,
+        pass: &Arc<GraphPass>,
+        reads: &Reads<'_>,
         target: &Arc<Image>,
     ) -> Result<(), GpuError> {
-        let Some(pipeline) = drawn.frame.pipelines.get(key) else { return Ok(()) };
-        let Some(layout) = &pipeline.layout else { return Ok(()) };
-        let set = self.set(layout, drawn, (index, pass), picture, target)?;
+        let request = &drawn.frame.state.pipelines;
+        let mut sets = PassSets::default();
+        let keys = request.pass_keys(pass);
+        for pipeline in keys.iter().filter_map(|key| drawn.frame.pipelines.get(key)) {
+            sets.insert(&pipeline.layout, self.set(&pipeline.layout, drawn, reads)?);
+        }
         if uses_buffers(pass) {
             encoder.buffers_done();
         }
         let level = self.images.first_level(pass.name()).cloned();
         let color = level.as_ref().unwrap_or(target);
         encoder.transition(color, Use::Undefined, Use::Color);
-        encoder.begin_rendering(&Attachments::of(color));
-        encoder.bind_pipeline(pipeline);
-        encoder.bind_set(&self.layouts, drawn.frame_set);
-        encoder.bind_pass_set(layout, &set);
-        encoder.draw(3);
+        match pass.note.model {
+            Some(instances) => {
+                let Some(depth) = self.images.depth(pass.name()) else { return Ok(()) };
+                encoder.transition(depth, Use::Undefined, Use::Depth);
+                let attachments = Attachments { clear: Some([0.0; 4]), depth: Some(depth), ..Attachments::of(color) };
+                encoder.begin_rendering(&attachments);
+                encoder.bind_set(&self.layouts, drawn.frame_set);
+                let instances = match instances {
+                    Instances::Count(count) => count,
+                    Instances::Lights => drawn.frame.state.lights.len() as u32,
+                };
+                let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances };
+                let draws = drawn.frame.scene.iter().flat_map(|scene| &scene.draws);
+                model.draw(encoder, draws, |material| request.model_pass_key(pass, material));
+            }
+            None => {
+                encoder.begin_rendering(&Attachments::of(color));
+                if let Some(pipeline) = keys.first().and_then(|key| drawn.frame.pipelines.get(key)) {
+                    encoder.bind_set(&self.layouts, drawn.frame_set);
+                    sets.bind(encoder, pipeline);
+                    encoder.draw(3);
+                }
+            }
+        }
         encoder.end_rendering();
         match &level {
-            // An attachment has one level. So the pass draws to a separate image, from which all levels are made.
+            // An attachment has one level, so the pass draws to an image of its own, from which the levels are made.
             Some(level) => {
                 encoder.transition(level, Use::Color, Use::CopyFrom);
                 encoder.transition(target, Use::Undefined, Use::CopyTo);
@@ -238,13 +285,13 @@ impl DeclaredPasses {
         &mut self,
         encoder: &mut Encoder,
         drawn: &Drawn<'_>,
-        (index, pass): (usize, &Arc<GraphPass>),
-        picture: &Arc<Image>,
+        pass: &Arc<GraphPass>,
+        reads: &Reads<'_>,
         target: &Arc<Image>,
     ) -> Result<(), GpuError> {
         let Some(pipeline) = drawn.frame.pipelines.compute(&pass.note.stage) else { return Ok(()) };
         let Some(layout) = &pipeline.layout else { return Ok(()) };
-        let set = self.set(layout, drawn, (index, pass), picture, target)?;
+        let set = self.set(layout, drawn, reads)?;
         if uses_buffers(pass) {
             encoder.buffers_done();
         }
@@ -255,73 +302,100 @@ impl DeclaredPasses {
                 [target.desc().width.div_ceil(x), target.desc().height.div_ceil(y), 1]
             }
         };
-        let writes_image = pass.inputs.contains(&Input::Output);
+        let writes_image = pass.inputs.values().any(|input| *input == Input::Output);
         if writes_image {
             encoder.transition(target, Use::Sampled, Use::Storage);
         }
-        encoder.dispatch(pipeline, &[drawn.frame_set, &set, &self.task_set], groups);
+        let sets: Vec<_> = [Some(drawn.frame_set), set.as_ref(), Some(&self.task_set)].into_iter().flatten().collect();
+        encoder.dispatch(pipeline, &sets, groups);
         if writes_image {
             encoder.transition(target, Use::Storage, Use::Sampled);
         }
         Ok(())
     }
 
-    /// The pass's own set, for its current inputs.
+    /// The set for what a stage reads by name, as it is now. `None` if the layout has none.
     fn set(
         &mut self,
         layout: &Arc<PassLayout>,
         drawn: &Drawn<'_>,
-        (index, pass): (usize, &Arc<GraphPass>),
-        picture: &Arc<Image>,
-        target: &Arc<Image>,
-    ) -> Result<Arc<DescriptorSet>, GpuError> {
+        reads: &Reads<'_>,
+    ) -> Result<Option<Arc<DescriptorSet>>, GpuError> {
+        if layout.is_empty() {
+            return Ok(None);
+        }
         let mut sets = std::mem::take(&mut self.sets);
-        let set = self.resources(drawn, (index, pass), picture, target).and_then(|resources| {
+        let set = self.resources(layout, drawn, reads).and_then(|resources| {
             let ids = resources.iter().map(PassResource::id);
             let key = std::iter::once(Arc::as_ptr(layout) as usize).chain(ids).collect();
-            let most = SETS_KEPT * drawn.frame.state.pipelines.passes.len();
-            sets.get(key, most, || layout.set(&pass.note.name, &resources))
+            let most = SETS_KEPT * (drawn.frame.state.pipelines.passes.len() + BUILT_IN_SETS);
+            sets.get(key, most, || layout.set(reads.name, &resources))
         });
         self.sets = sets;
-        set
+        set.map(Some)
     }
 
-    /// The inputs of a pass, by binding.
+    /// The resources of a layout, in the order of its bindings.
     fn resources<'a>(
         &'a self,
+        layout: &PassLayout,
         drawn: &'a Drawn<'_>,
-        (index, pass): (usize, &GraphPass),
-        picture: &'a Arc<Image>,
-        target: &'a Arc<Image>,
+        reads: &'a Reads<'_>,
     ) -> Result<Vec<PassResource<'a>>, GpuError> {
         let textures = drawn.frame.pipelines.textures();
-        // Does not happen: `Images` has a buffer for each name, and `Blocks` has one for each block.
-        let missing = || GpuError::NoStage(pass.note.stage.clone());
-        let resource = |(binding, input): (usize, &Input)| {
-            Ok(match input {
-                Input::Picture => self.sampled(picture),
-                Input::Depth => PassResource::Texture(drawn.depth.unwrap_or(&self.blank), &self.nearest),
+        let given = reads.given;
+        // The graph has a buffer and a block for each of these inputs.
+        let missing = || GpuError::NoStage(reads.name.to_owned());
+        let resource = |binding: u32| {
+            Ok(match reads.inputs.get(&binding).ok_or_else(missing)? {
+                Input::Picture => self.sampled(given.picture.unwrap_or(&self.blank)),
+                Input::Behind => PassResource::Texture(given.behind.unwrap_or(&self.blank), &self.linear),
+                Input::Depth => PassResource::Texture(given.depth.unwrap_or(&self.blank), &self.nearest),
                 Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&self.blank)),
                 Input::Before(name) => self.sampled(self.images.before(name).unwrap_or(&self.blank)),
                 Input::Texture(name) => {
                     let (image, sampler) = textures.get(name).unwrap_or((&self.blank, &self.linear));
                     PassResource::Texture(image, sampler)
                 }
-                Input::Output => PassResource::Storage(target),
+                Input::Output => PassResource::Storage(given.target.ok_or_else(missing)?),
                 Input::Buffer(name, _) => PassResource::Buffer(self.images.buffer(name).ok_or_else(missing)?),
                 Input::Parameters(..) | Input::Size => {
-                    PassResource::Buffer(drawn.blocks.get(index, binding).ok_or_else(missing)?)
+                    let block = reads.index.and_then(|index| drawn.blocks.get(index, binding));
+                    PassResource::Buffer(block.ok_or_else(missing)?)
                 }
             })
         };
-        pass.inputs.iter().enumerate().map(resource).collect()
+        layout.bindings().map(resource).collect()
     }
 
-    /// An image for passes to read. Its texels are interpolated if the device supports that for the format.
+    /// An image as passes read it: with blended texels, if the device can blend them.
     fn sampled<'a>(&'a self, image: &'a Arc<Image>) -> PassResource<'a> {
         let blends = self.gpu.blends_texels(image.desc().format);
         PassResource::Texture(image, if blends { &self.linear } else { &self.nearest })
     }
+}
+
+/// What a stage reads by name.
+struct Reads<'a> {
+    /// Name of the pass, or path of the stage.
+    name: &'a str,
+    inputs: &'a Inputs,
+    given: &'a Given<'a>,
+    /// The place of the pass in `PipelineRequest::passes`.
+    index: Option<usize>,
+}
+
+/// The images that a stage reads besides those of passes.
+#[derive(Default)]
+pub(super) struct Given<'a> {
+    /// The picture so far.
+    pub(super) picture: Option<&'a Arc<Image>>,
+    /// The opaque surfaces, with mip levels.
+    pub(super) behind: Option<&'a Arc<Image>>,
+    /// The model's depth.
+    pub(super) depth: Option<&'a Arc<Image>>,
+    /// The image that a compute pass writes.
+    pub(super) target: Option<&'a Arc<Image>>,
 }
 
 /// The pass whose own image the frame shows, if it shows one.
@@ -341,5 +415,5 @@ fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
 }
 
 fn uses_buffers(pass: &GraphPass) -> bool {
-    pass.inputs.iter().any(|input| matches!(input, Input::Buffer(..)))
+    pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
 }

@@ -14,7 +14,7 @@ use capture::{PixelReadback, Readback};
 use targets::{TargetDesc, Targets};
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
-use declared::{Blocks, DeclaredPasses, Drawn};
+use declared::{Blocks, DeclaredPasses, Drawn, Given};
 
 use super::resources::BoundFrame;
 use crate::frame::TargetFormat;
@@ -67,7 +67,6 @@ struct InFlight {
 pub struct View {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,
-    nearest: Arc<Sampler>,
     shared: SharedImages,
     in_flight: Vec<InFlight>,
     targets: Option<Targets>,
@@ -100,7 +99,6 @@ impl View {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             declared: DeclaredPasses::new(gpu, layouts, &shared.linear, &nearest)?,
-            nearest,
             shared,
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
@@ -122,11 +120,10 @@ impl View {
             format: request.target,
             transmission: frame.state.scene.as_ref().is_some_and(|scene| scene.is_transmissive()),
             accumulates: request.accumulates,
-            reads_depth: request.passes.iter().any(|pass| pass.inputs.contains(&Input::Depth)),
+            reads_depth: request.passes.iter().any(|pass| pass.inputs.values().any(|input| *input == Input::Depth)),
         };
         if self.targets.as_ref().is_none_or(|targets| targets.desc != desc) {
-            let samplers = (&self.nearest, &self.shared.linear);
-            self.targets = Some(Targets::new(&self.gpu, &self.layouts, desc, samplers)?);
+            self.targets = Some(Targets::new(&self.gpu, desc)?);
             self.drawn = None;
             self.declared.targets_replaced();
         }
@@ -186,8 +183,15 @@ impl View {
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
         encoder.bind_set(&self.layouts, &set);
 
-        // The model to the HDR target.
-        let passes = passes::Passes { layouts: &self.layouts, targets, frame, only };
+        // The passes that the model reads, and the model to the HDR target.
+        let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
+        let drawn = Drawn { frame, frame_set: &set, blocks, depth };
+        if redrawn {
+            self.declared.before_model(encoder, &drawn)?;
+        }
+        let given = Given { picture: Some(&targets.color), behind: targets.behind.as_ref(), ..Given::default() };
+        let sets = self.declared.built_in_sets(&drawn, &given, frame.state.pipelines.model_keys())?;
+        let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only };
         if redrawn {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
@@ -195,8 +199,6 @@ impl View {
         }
 
         // The declared passes before the tone map.
-        let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
-        let drawn = Drawn { frame, frame_set: &set, blocks, depth };
         if redrawn {
             self.declared.before_tonemap(encoder, &drawn, targets.picture())?;
         }
@@ -207,16 +209,17 @@ impl View {
         in_flight.pixel.record(encoder, &picture, self.probe, self.picture);
 
         // The HDR picture to the display: exposure, tone map, sRGB.
-        let picture_set = self.declared.tonemap_set(&picture)?;
+        let given = Given { picture: Some(&picture), ..Given::default() };
+        let keys = std::iter::once(frame.state.pipelines.tonemap_key());
+        let sets = self.declared.built_in_sets(&drawn, &given, keys)?;
         if !has_display_passes {
             encoder.transition(output.image, output.before, Use::Color);
-            encoder.pass("tone map", |encoder| passes.tone_map(encoder, &picture_set, output.image, rect));
+            encoder.pass("tone map", |encoder| passes.tone_map(encoder, &sets, output.image, rect));
             return Ok(());
         }
 
         // The display to the output, through the declared passes after the tone map.
-        let tone_map =
-            |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &picture_set, display, rect);
+        let tone_map = |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &sets, display, rect);
         let display = self.declared.on_display(encoder, &drawn, redrawn, tone_map)?;
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);

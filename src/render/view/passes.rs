@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::Output;
+use super::declared::PassSets;
 use super::targets::Targets;
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
-use crate::gpu::{Attachments, DescriptorSet, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
+use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
 use crate::render::resources::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
@@ -17,6 +18,8 @@ pub(super) struct Passes<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) targets: &'a Targets,
     pub(super) frame: &'a BoundFrame,
+    /// What the stages of the model, the sky and the mean read by name.
+    pub(super) sets: &'a PassSets,
     /// The part of the picture to shade; `None` is all of it.
     pub(super) only: Option<Rect>,
 }
@@ -64,7 +67,6 @@ impl Passes<'_> {
         if let Some(only) = self.only {
             encoder.set_scissor(only);
         }
-        encoder.bind_set(self.layouts, &targets.model_set);
         if !has_opaque {
             self.draw(encoder, &sorted.opaque, PipelineRequest::model_key);
         }
@@ -83,7 +85,6 @@ impl Passes<'_> {
         let targets = self.targets;
         encoder.transition(behind, Use::Undefined, Use::Sampled);
         encoder.begin_rendering(&Attachments { goes_on: true, ..self.hdr() });
-        encoder.bind_set(self.layouts, &targets.model_set);
         self.draw(encoder, opaque, PipelineRequest::behind_key);
         encoder.end_rendering();
         encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
@@ -100,7 +101,7 @@ impl Passes<'_> {
     /// Draws the environment where nothing covers it, if it is visible.
     fn sky(&self, encoder: &mut Encoder) {
         let Some(pipeline) = self.request().sky_key().and_then(|key| self.pipeline(&key)) else { return };
-        encoder.bind_pipeline(pipeline);
+        self.sets.bind(encoder, pipeline);
         let (list, both, front) =
             (vk::PrimitiveTopology::TRIANGLE_LIST, vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE);
         encoder.set_raster(list, both, front);
@@ -121,23 +122,21 @@ impl Passes<'_> {
         if let Some(only) = self.only {
             encoder.set_scissor(only);
         }
-        encoder.bind_pipeline(pipeline);
+        self.sets.bind(encoder, pipeline);
         encoder.set_weight(1.0 / (index as f32 + 1.0));
-        encoder.bind_set(self.layouts, &self.targets.color_set);
         encoder.draw(3);
         encoder.end_rendering();
         encoder.transition(mean, Use::Color, Use::Sampled);
     }
 
-    /// Tone maps the picture in `set` to `rect` of `output`. The rest of `output` becomes black.
-    pub(super) fn tone_map(&self, encoder: &mut Encoder, set: &Arc<DescriptorSet>, output: &Arc<Image>, rect: Rect) {
+    /// Tone maps the picture in `sets` to `rect` of `output`. The rest of `output` becomes black.
+    pub(super) fn tone_map(&self, encoder: &mut Encoder, sets: &PassSets, output: &Arc<Image>, rect: Rect) {
         encoder.begin_rendering(&cleared(output));
         if let Some(pipeline) = self.pipeline(&self.request().tonemap_key()) {
             encoder.set_viewport(rect);
             // After a resize, the previous picture may be larger than its output.
             encoder.set_scissor(self.only.unwrap_or(within(rect, whole(output))));
-            encoder.bind_pipeline(pipeline);
-            encoder.bind_set(self.layouts, set);
+            sets.bind(encoder, pipeline);
             encoder.draw(3);
         }
         encoder.end_rendering();
@@ -167,12 +166,34 @@ impl Passes<'_> {
         draws: &[&GpuDraw],
         key: fn(&PipelineRequest, MaterialVariant) -> PipelineKey,
     ) {
+        let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances: 1 };
+        model.draw(encoder, draws.iter().copied(), |material| key(self.request(), material));
+    }
+}
+
+/// Draws of a frame's model.
+pub(super) struct ModelDraws<'a> {
+    pub(super) layouts: &'a Arc<SetLayouts>,
+    pub(super) frame: &'a BoundFrame,
+    pub(super) sets: &'a PassSets,
+    /// How often each is drawn.
+    pub(super) instances: u32,
+}
+
+impl ModelDraws<'_> {
+    /// Draws with the pipelines that `key` selects by material.
+    pub(super) fn draw<'d>(
+        &self,
+        encoder: &mut Encoder,
+        draws: impl IntoIterator<Item = &'d GpuDraw>,
+        key: impl Fn(MaterialVariant) -> PipelineKey,
+    ) {
         let Some(scene) = &self.frame.scene else { return };
         encoder.keep(&scene.vertices);
         encoder.bind_indices(&scene.indices);
         for draw in draws {
-            if let Some(pipeline) = self.pipeline(&key(self.request(), draw.variant)) {
-                encoder.bind_pipeline(pipeline);
+            if let Some(pipeline) = self.frame.pipelines.get(&key(draw.variant)) {
+                self.sets.bind(encoder, pipeline);
                 self.draw_one(encoder, draw);
             }
         }
@@ -189,7 +210,7 @@ impl Passes<'_> {
         };
         for cull in passes {
             encoder.set_raster(draw.topology, *cull, draw.front);
-            encoder.draw_indexed(draw.index_count, draw.first_index);
+            encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
         }
     }
 }

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use crate::frame::TargetFormat;
-use crate::gpu::{DescriptorSet, Gpu, GpuError, Image, ImageDesc, Sampler, SetLayouts, SetWriter, vk};
-use crate::interface::SET_PASS;
+use crate::gpu::{Gpu, GpuError, Image, ImageDesc, vk};
 use crate::scene::mips;
 
 /// The properties of a picture that determine its targets.
@@ -37,19 +36,10 @@ pub(super) struct Targets {
     pub(super) behind: Option<Arc<Image>>,
     /// Mean of the frames so far.
     pub(super) mean: Option<Arc<Image>>,
-    /// Set of the model pass: [`Self::behind`].
-    pub(super) model_set: Arc<DescriptorSet>,
-    /// Set of the accumulation pass: the newest frame.
-    pub(super) color_set: Arc<DescriptorSet>,
 }
 
 impl Targets {
-    pub(super) fn new(
-        gpu: &Arc<Gpu>,
-        layouts: &Arc<SetLayouts>,
-        desc: TargetDesc,
-        (nearest, linear): (&Arc<Sampler>, &Arc<Sampler>),
-    ) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Arc<Gpu>, desc: TargetDesc) -> Result<Self, GpuError> {
         use vk::ImageUsageFlags as Usage;
         let TargetDesc { size: (width, height), format: TargetFormat { color: format, samples }, .. } = desc;
         let image = |name: &str, desc: ImageDesc| Image::new(gpu, name, desc);
@@ -78,20 +68,7 @@ impl Targets {
             true => Some(image("mean", ImageDesc::new(width, height, vk::Format::R32G32B32A32_SFLOAT, drawn))?),
             false => None,
         };
-        let scene =
-            |image: &Arc<Image>| DescriptorSet::new(layouts, SET_PASS, SetWriter::default().texture(0, image, nearest));
-        let seen = behind.iter().fold(SetWriter::default(), |writer, behind| writer.texture(1, behind, linear));
-        Ok(Self {
-            desc,
-            model_set: DescriptorSet::new(layouts, SET_PASS, seen)?,
-            color_set: scene(&color)?,
-            color,
-            multisampled,
-            depth,
-            resolved_depth,
-            behind,
-            mean,
-        })
+        Ok(Self { desc, color, multisampled, depth, resolved_depth, behind, mean })
     }
 
     /// The depth that passes read.

@@ -118,6 +118,15 @@ pub enum Dispatch {
     Groups([u32; 3]),
 }
 
+/// How often a pass draws the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+pub enum Instances {
+    /// A fixed number of times.
+    Count(u32),
+    /// Once for each light of the frame.
+    Lights,
+}
+
 /// A declared pass.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct PassNote {
@@ -141,6 +150,10 @@ pub struct PassNote {
     pub after: Option<String>,
     /// The workgroups of a compute pass.
     pub dispatch: Dispatch,
+    /// How often it draws the model; `None` if it covers its image with one triangle.
+    pub model: Option<Instances>,
+    /// The author's constant that switches the pass on. It also tells the stages that read its image.
+    pub when: Option<String>,
     /// A description of the pass.
     pub doc: String,
     /// Path of its stage in the tree.
@@ -201,6 +214,8 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
         to_picture: false,
         after: None,
         dispatch: Dispatch::Size,
+        model: None,
+        when: None,
         doc: String::new(),
         stage: String::new(),
         place: NotePlace::of(cursor.place()),
@@ -215,13 +230,19 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             "format" => note.format = format(cursor)?,
             "after" => note.after = Some(cursor.value(key)?.1),
             "dispatch" => note.dispatch = dispatch(cursor)?,
+            "when" => note.when = Some(cursor.value(key)?.1),
+            "instances" => note.model = Some(instances(cursor)?),
+            "draw" => match cursor.value(key)? {
+                (_, what) if what == "model" => note.model = note.model.or(Some(Instances::Count(1))),
+                (bytes, other) => return Err(cursor.error(bytes, format!("expected draw=model, found `{other}`"))),
+            },
             "doc" => note.doc = cursor.value(key)?.1,
             "to" => match cursor.value(key)? {
                 (_, to) if to == "picture" => note.to_picture = true,
                 (bytes, other) => return Err(cursor.error(bytes, format!("expected to=picture, found `{other}`"))),
             },
             other => {
-                let known = "to=picture, after=, size=, format=, dispatch=, mips, keep, off or doc=";
+                let known = "to=picture, after=, size=, format=, draw=model, instances=, dispatch=, when=, mips, keep, off or doc=";
                 return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
             }
         }
@@ -323,4 +344,17 @@ fn dispatch(cursor: &mut Cursor<'_>) -> Result<Dispatch, Box<Diagnostic>> {
             Err(cursor.error(bytes, message))
         }
     }
+}
+
+fn instances(cursor: &mut Cursor<'_>) -> Result<Instances, Box<Diagnostic>> {
+    const MOST: u32 = 1024;
+    let (bytes, value) = cursor.value("instances")?;
+    if value == "lights" {
+        return Ok(Instances::Lights);
+    }
+    let count = value.parse().ok().filter(|count| (1..=MOST).contains(count));
+    count.map(Instances::Count).ok_or_else(|| {
+        let message = format!("expected instances=lights, or instances=1 to instances={MOST}, found `{value}`");
+        cursor.error(bytes, message)
+    })
 }

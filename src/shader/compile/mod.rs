@@ -86,9 +86,9 @@ impl Compiler {
     /// use of each stage kind, in 100 to 200 ms.
     pub fn warm(&self) {
         let trivial = "#version 460\nvoid main() {}\n";
-        for kind in [ShaderKind::Fragment, ShaderKind::Vertex] {
-            if let Ok(options) = options(trivial) {
-                let _ = self.shaderc.compile_into_spirv(trivial, kind, "warm", "main", Some(&options));
+        for kind in [StageKind::Fragment, StageKind::Vertex] {
+            if let Ok(options) = options(kind, trivial) {
+                let _ = self.shaderc.compile_into_spirv(trivial, kind.shaderc(), "warm", "main", Some(&options));
             }
         }
     }
@@ -124,11 +124,12 @@ impl Compiler {
     fn run_file(&self, snapshot: &Snapshot<'_>, stage: &TreePath, with_lines: bool) -> Option<(Vec<u32>, String)> {
         let text = snapshot.read(stage).ok()?;
         let includes = Includes::new(snapshot, stage.clone());
-        let mut options = options(&text).ok()?;
+        let kind = StageKind::of(stage)?;
+        let mut options = options(kind, &text).ok()?;
         if with_lines {
             options.set_generate_debug_info();
         }
-        self.run(options, &includes, stage, &text, StageKind::of(stage)?).ok()
+        self.run(options, &includes, stage, &text, kind).ok()
     }
 
     /// Compiles a library as if a stage of this kind included nothing else, so the library must include what it uses.
@@ -157,7 +158,7 @@ impl Compiler {
     fn compile_text(&self, snapshot: &Snapshot<'_>, path: &TreePath, text: &str, kind: StageKind) -> Compiled {
         let start = Instant::now();
         let includes = Includes::new(snapshot, path.clone());
-        let outcome = options(text).and_then(|options| self.run(options, &includes, path, text, kind));
+        let outcome = options(kind, text).and_then(|options| self.run(options, &includes, path, text, kind));
         let ms = start.elapsed().as_secs_f64() * 1e3;
         let dependencies = includes.into_dependencies();
         let (result, text) = match outcome {
@@ -192,7 +193,7 @@ impl Compiler {
         match self.shaderc.compile_into_spirv(text, kind.shaderc(), path.as_str(), "main", Some(&options)) {
             Ok(artifact) => {
                 let mut words = artifact.as_binary().to_vec();
-                if declares_pass(text) {
+                if reads_by_name(kind, text) {
                     assign_set(&mut words, SET_PASS, &includes.unbound());
                 }
                 Ok((words, artifact.get_warning_messages()))
@@ -213,19 +214,24 @@ fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>, quick: bool) 
     files.iter().filter_map(check).collect()
 }
 
-/// Whether the text of a stage declares a pass. Such a stage declares images and buffers by name alone.
+/// Whether a stage declares images and buffers by name alone: all fragment stages, and compute passes.
+pub fn reads_by_name(kind: StageKind, text: &str) -> bool {
+    kind == StageKind::Fragment || declares_pass(text)
+}
+
+/// Whether the text of a stage declares a pass.
 pub fn declares_pass(text: &str) -> bool {
     text.contains("//@pass")
         && lines(text).iter().any(|line| line.annotation.is_some_and(|at| line.raw[at..].starts_with("//@pass")))
 }
 
 /// Compile options for a stage: unoptimized, which is five times faster and keeps the names that reflection needs.
-fn options<'a>(stage: &str) -> Result<CompileOptions<'a>, String> {
+fn options<'a>(kind: StageKind, stage: &str) -> Result<CompileOptions<'a>, String> {
     let mut options = CompileOptions::new().map_err(|error| error.to_string())?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
     options.set_target_spirv(SpirvVersion::V1_5);
     options.set_optimization_level(OptimizationLevel::Zero);
-    if declares_pass(stage) {
+    if reads_by_name(kind, stage) {
         options.set_auto_bind_uniforms(true);
     }
     Ok(options)

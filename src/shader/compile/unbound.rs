@@ -6,6 +6,9 @@ use crate::shader::source::text::{is_word, lines, tokens};
 
 /// The names of uniforms, and of uniform and buffer blocks, that are declared without `layout(binding = ...)`. Knows no macros.
 pub fn unbound(text: &str) -> BTreeSet<String> {
+    if !text.contains("uniform") && !text.contains("buffer") {
+        return BTreeSet::new();
+    }
     let lines = lines(text);
     let code: Vec<&str> =
         lines.iter().map(|line| line.code.as_str()).filter(|c| !c.trim_start().starts_with('#')).collect();

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::interface::{self, BindingKind, block};
 
-use crate::shader::compile::{StageKind, declares_pass};
+use crate::shader::compile::{StageKind, reads_by_name};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -68,9 +68,11 @@ impl Texts<'_> {
 pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     // What a pass declares by name is for `graph` to find, also in the libraries that passes include.
-    let is_library = StageKind::of(texts.stage).is_none();
-    let is_pass = is_library || texts.snapshot.read(texts.stage).is_ok_and(|text| declares_pass(&text));
-    for descriptor in reflection.descriptors.iter().filter(|found| !is_pass || found.set != interface::SET_PASS) {
+    let by_name = match StageKind::of(texts.stage) {
+        None => true,
+        Some(kind) => texts.snapshot.read(texts.stage).is_ok_and(|text| reads_by_name(kind, &text)),
+    };
+    for descriptor in reflection.descriptors.iter().filter(|found| !by_name || found.set != interface::SET_PASS) {
         out.extend(check_descriptor(descriptor, texts));
     }
     if let Some(block) = &reflection.push_constants {

@@ -1,6 +1,6 @@
 //! Finds the resources that a pass reads and writes, by the names of its declarations.
 
-use super::{Input, PassStage};
+use super::{Input, Inputs, PassStage};
 use crate::interface::SET_PASS;
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::{PassFormat, PassNote, TextureNote};
@@ -24,23 +24,75 @@ pub struct Names<'a> {
     pub textures: &'a [TextureNote],
 }
 
-/// The resource at each binding of a pass.
+/// The stages that come with Specula and read images by name, each with the images that Specula gives it.
+const BUILT_IN: [(&str, &[(&str, Input)]); 6] = [
+    ("pbr.frag", &[("behind", Input::Behind)]),
+    ("debug.frag", &[("behind", Input::Behind)]),
+    ("paths.frag", &[("behind", Input::Behind)]),
+    ("sky.frag", &[]),
+    ("average.frag", &[("picture", Input::Picture)]),
+    ("tonemap.frag", &[("picture", Input::Picture)]),
+];
+
+/// Whether a stage comes with Specula and reads images by name.
+pub fn is_built_in(path: &str) -> bool {
+    BUILT_IN.iter().any(|(stage, _)| *stage == path)
+}
+
+/// The inputs of a stage that comes with Specula.
 ///
 /// # Errors
-/// A name that no pass or texture has, or a declaration that does not fit the resource of that name.
-pub fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Vec<Input>, Vec<Diagnostic>> {
-    let own = stage.reflection.descriptors.iter().filter(|found| found.set == SET_PASS);
-    let (mut inputs, mut errors) = (Vec::new(), Vec::new());
-    for (index, found) in own.enumerate() {
-        let found_input = match found.binding as usize == index && !is_doubled(stage, found) {
-            true => input(note, stage.kind, found, names),
-            false => {
+/// As [`inputs`].
+pub fn built_in(path: &str, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
+    let given = BUILT_IN.iter().find(|(stage, _)| *stage == path).map_or(&[][..], |(_, given)| given);
+    inputs_by(stage, |found| {
+        let Descriptor { name, glsl, .. } = found;
+        match glsl.as_str() {
+            "sampler2D" => match given.iter().find(|(known, _)| known == name) {
+                Some((_, input)) => Ok(input.clone()),
+                None => {
+                    let given: Vec<&str> = given.iter().map(|(name, _)| *name).collect();
+                    image(name, names).unwrap_or_else(|| Err(unknown(name, &given, names)))
+                }
+            },
+            "buffer block" => buffer(found),
+            "uniform block" => {
+                let message = format!("the uniform block `{name}` has no binding");
+                Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))
+            }
+            other => Err((
+                format!("a stage cannot have {other} `{name}` by name"),
+                "it can have a sampler2D or a buffer".into(),
+            )),
+        }
+    })
+}
+
+/// The inputs of a declared pass.
+///
+/// # Errors
+/// A name that nothing has, or a declaration that does not fit what has the name.
+pub fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
+    inputs_by(stage, |found| input(note, stage.kind, found, names))
+}
+
+fn inputs_by(
+    stage: &PassStage<'_>,
+    input: impl Fn(&Descriptor) -> Result<Input, Refusal>,
+) -> Result<Inputs, Vec<Diagnostic>> {
+    let (mut inputs, mut errors) = (Inputs::new(), Vec::new());
+    for found in stage.reflection.descriptors.iter().filter(|found| found.set == SET_PASS) {
+        let found_input = match is_doubled(stage, found) {
+            false => input(found),
+            true => {
                 let message = format!("`{}` has a binding of its own", found.name);
-                Err((message, "leave out layout(set, binding): a pass declares what it reads by name alone".into()))
+                Err((message, "leave out layout(set, binding): images and buffers are found by their names".into()))
             }
         };
         match found_input {
-            Ok(input) => inputs.push(input),
+            Ok(input) => {
+                inputs.insert(found.binding, input);
+            }
             Err((message, help)) => {
                 let error = stage.texts.error(&[found.name.as_str(), "uniform"], message);
                 errors.push(if help.is_empty() { error } else { error.with_help(help) });
@@ -93,17 +145,6 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
 }
 
 fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refusal> {
-    let is_pass = |name: &str| names.passes.iter().find(|pass| pass.name == name);
-    if let Some(before) = name.strip_prefix("before_") {
-        return match is_pass(before) {
-            Some(pass) if pass.keep => Ok(Input::Before(before.to_owned())),
-            Some(pass) => {
-                let message = format!("the image of `{before}` one frame ago is not kept");
-                Err((message, format!("write `keep` in its //@pass ({}:{})", pass.place.file, pass.place.line)))
-            }
-            None => Err(unknown(name, names)),
-        };
-    }
     match name {
         "picture" => Ok(Input::Picture),
         "depth" => Ok(Input::Depth),
@@ -111,19 +152,40 @@ fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refu
             let message = format!("a pass cannot read the image that it draws, `{name}`");
             Err((message, format!("write `keep` in its //@pass and read `before_{name}`, the image one frame ago")))
         }
-        name if is_pass(name).is_some_and(|pass| pass.to_picture) => {
-            let message = format!("`{name}` gives what it draws to the picture, so it has no image of its own");
-            Err((message, format!("read `picture`, with after={name} in the //@pass of `{}`", note.name)))
-        }
-        name if is_pass(name).is_some() => Ok(Input::Image(name.to_owned())),
-        name if names.textures.iter().any(|texture| texture.name == name) => Ok(Input::Texture(name.to_owned())),
-        _ => Err(unknown(name, names)),
+        name => image(name, names).unwrap_or_else(|| Err(unknown(name, &["picture", "depth"], names))),
     }
 }
 
-fn unknown(name: &str, names: &Names<'_>) -> Refusal {
-    let mut known: Vec<String> = vec!["picture".into(), "depth".into()];
-    known.extend(names.passes.iter().map(|pass| pass.name.clone()));
+/// The image of a pass, of now or one frame ago, or a texture. `None` if nothing has this name.
+fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
+    let find = |name: &str| names.passes.iter().find(|pass| pass.name == name);
+    if let Some(pass) = name.strip_prefix("before_").and_then(find) {
+        let before = &pass.name;
+        return Some(match pass.keep {
+            true => Ok(Input::Before(before.clone())),
+            false => {
+                let message = format!("the image of `{before}` one frame ago is not kept");
+                Err((message, format!("write `keep` in its //@pass ({}:{})", pass.place.file, pass.place.line)))
+            }
+        });
+    }
+    match find(name) {
+        Some(pass) if pass.to_picture => {
+            let message = format!("`{name}` gives what it draws to the picture, so it has no image of its own");
+            Some(Err((message, format!("read `picture` in a pass with after={name}"))))
+        }
+        Some(_) => Some(Ok(Input::Image(name.to_owned()))),
+        None => {
+            let is_texture = names.textures.iter().any(|texture| texture.name == name);
+            is_texture.then(|| Ok(Input::Texture(name.to_owned())))
+        }
+    }
+}
+
+/// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.
+fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
+    let mut known: Vec<String> = given.iter().map(|name| (*name).to_owned()).collect();
+    known.extend(names.passes.iter().filter(|pass| !pass.to_picture).map(|pass| pass.name.clone()));
     known.extend(names.passes.iter().filter(|pass| pass.keep).map(|pass| format!("before_{}", pass.name)));
     known.extend(names.textures.iter().map(|texture| texture.name.clone()));
     let hint = did_you_mean(name, known.iter().map(String::as_str));

@@ -22,12 +22,15 @@ use super::source::snapshot::Snapshot;
 use super::source::text::{find_word, lines};
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
+use crate::message::did_you_mean;
 
 /// The resource that a pass reads or writes at a binding of `interface::SET_PASS`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Input {
     /// The picture before this pass.
     Picture,
+    /// The opaque surfaces, which transmissive surfaces look up.
+    Behind,
     /// Depth of the model: 1 near, 0 at infinity or where there is nothing.
     Depth,
     /// The image of another pass.
@@ -46,6 +49,27 @@ pub enum Input {
     Parameters(u32, Vec<(u32, String)>),
 }
 
+/// The vertex stage of stages that cover an image.
+pub const FULL_SCREEN: &str = "fullscreen.vert";
+/// The vertex stage of the model.
+pub const MODEL: &str = "pbr.vert";
+
+/// Inputs by their binding in `interface::SET_PASS`.
+pub type Inputs = BTreeMap<u32, Input>;
+
+/// The part of a frame in which a pass is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Part {
+    /// Before the model, which reads its image.
+    BeforeModel,
+    /// Between the model and the tone map: the picture is linear light.
+    #[default]
+    Light,
+    /// After the tone map: the picture is as the display shows it.
+    Display,
+}
+
 /// A pass in its place in the [`Graph`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct GraphPass {
@@ -53,11 +77,13 @@ pub struct GraphPass {
     pub note: PassNote,
     /// Whether its stage is a compute shader. Otherwise it is a fragment shader over the whole image.
     pub is_compute: bool,
-    /// Whether it runs after the tone map, on the displayed picture.
-    pub after_tonemap: bool,
-    /// The resource at each binding, from 0 on.
-    pub inputs: Vec<Input>,
-    /// The workgroup size of a compute pass.
+    /// The vertex stage of its own, if it has one.
+    pub vertex: Option<String>,
+    /// When it is drawn.
+    pub part: Part,
+    /// What it reads and writes.
+    pub inputs: Inputs,
+    /// Invocations of a workgroup, of a compute pass.
     pub local_size: [u32; 3],
     /// Whether its image may change while nothing else does: the pass reads the time, the previous frame, or a buffer.
     pub moves: bool,
@@ -69,9 +95,15 @@ impl GraphPass {
         &self.note.name
     }
 
+    /// The vertex stage of a pass that is no compute pass.
+    pub fn vertex_stage(&self) -> &str {
+        let default = if self.note.model.is_some() { MODEL } else { FULL_SCREEN };
+        self.vertex.as_deref().unwrap_or(default)
+    }
+
     /// Whether its own uniform block has a member of this name.
     pub fn has_parameter(&self, name: &str) -> bool {
-        self.inputs.iter().any(|input| match input {
+        self.inputs.values().any(|input| match input {
             Input::Parameters(_, members) => members.iter().any(|(_, member)| member == name),
             _ => false,
         })
@@ -111,9 +143,11 @@ impl std::fmt::Debug for Texture {
 /// The declared passes in order, and their textures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Graph {
-    /// In the order in which they are drawn. The tone map comes before the first pass with `after_tonemap`.
+    /// In the order in which they are drawn.
     pub passes: Vec<Arc<GraphPass>>,
-    /// The textures that the passes sample, by name.
+    /// What the stages read that come with Specula, by path.
+    pub readers: BTreeMap<String, Inputs>,
+    /// By name.
     pub textures: BTreeMap<String, Arc<Texture>>,
 }
 
@@ -144,17 +178,26 @@ impl Graph {
         let mut passes = Vec::new();
         for note in notes {
             let stage = &stages[&note.stage];
+            let vertex = vertex_of(&note.stage);
+            let has_vertex = snapshot.read(&TreePath::from(vertex.as_str())).is_ok();
+            // It is still to be compiled.
+            if has_vertex && !stages.contains_key(&vertex) {
+                continue;
+            }
+            errors.extend(unknown_switch(note, annotations));
             if let Some(message) = contradiction(note, stage.kind) {
                 errors.push(note.place.error(message));
                 continue;
             }
             match inputs::inputs(note, stage, &names) {
                 Ok(inputs) => passes.push(GraphPass {
-                    moves: inputs.iter().any(|input| matches!(input, Input::Before(_) | Input::Buffer(..)))
-                        || reads_clock(&stage.texts),
+                    moves: inputs.values().any(|input| matches!(input, Input::Before(_) | Input::Buffer(..)))
+                        || reads_clock(&stage.texts)
+                        || (has_vertex && reads_clock(&stages[&vertex].texts)),
                     note: note.clone(),
                     is_compute: stage.kind == StageKind::Compute,
-                    after_tonemap: false,
+                    vertex: has_vertex.then_some(vertex),
+                    part: Part::default(),
                     inputs,
                     local_size: stage.reflection.local_size,
                 }),
@@ -162,7 +205,17 @@ impl Graph {
             }
         }
         errors.extend(different_buffers(&passes));
-        let used: BTreeSet<&str> = passes.iter().flat_map(|pass| &pass.inputs).filter_map(texture_name).collect();
+        let mut readers = BTreeMap::new();
+        for (path, stage) in stages.iter().filter(|(path, _)| inputs::is_built_in(path)) {
+            match inputs::built_in(path, stage, &names) {
+                Ok(inputs) => {
+                    readers.insert(path.clone(), inputs);
+                }
+                Err(found) => errors.extend(found),
+            }
+        }
+        let inputs = passes.iter().map(|pass| &pass.inputs).chain(readers.values());
+        let used: BTreeSet<&str> = inputs.flat_map(BTreeMap::values).filter_map(texture_name).collect();
         let mut textures = BTreeMap::new();
         for note in annotations.textures.iter().filter(|note| used.contains(note.name.as_str())) {
             match read_texture(note, snapshot) {
@@ -175,8 +228,8 @@ impl Graph {
         if !errors.is_empty() {
             return Err(errors);
         }
-        let passes = order::ordered(passes)?.into_iter().map(Arc::new).collect();
-        Ok(Self { passes, textures })
+        let passes = order::ordered(passes, &readers)?.into_iter().map(Arc::new).collect();
+        Ok(Self { passes, readers, textures })
     }
 
     /// The paths of the image files, which are watched with the tree.
@@ -189,35 +242,48 @@ impl Graph {
         self.passes.iter().find(|pass| pass.name() == name)
     }
 
-    /// The passes to draw, in order. Without `shown`: all passes with `to=picture`, and all passes whose images or
-    /// buffers these use. With `shown`: the pass of that name, and what it needs. Passes for which `is_on` returns
-    /// false are left out, except `shown` itself. A pass that nothing uses costs nothing.
-    pub fn active(&self, is_on: impl Fn(&GraphPass) -> bool, shown: Option<&str>) -> Vec<Arc<GraphPass>> {
+    /// The passes to draw, in order: those whose images or buffers `stages` read, with `is_picture` those that change the
+    /// picture, and what these need. With `shown`: the pass of that name, and what it needs. Passes for which `is_on`
+    /// returns false are left out, except `shown` itself. A pass that nothing uses costs nothing.
+    pub fn active(
+        &self,
+        stages: &[&str],
+        is_picture: bool,
+        is_on: impl Fn(&GraphPass) -> bool,
+        shown: Option<&str>,
+    ) -> Vec<Arc<GraphPass>> {
         let last = shown.and_then(|name| self.passes.iter().position(|pass| pass.name() == name));
         let mut needed: BTreeSet<usize> = BTreeSet::new();
         let mut open: Vec<usize> = (0..self.passes.len())
             .filter(|index| match last {
                 Some(last) => *index == last || (*index < last && self.makes_picture(*index, &is_on)),
-                None => self.makes_picture(*index, &is_on),
+                None => is_picture && self.makes_picture(*index, &is_on),
             })
             .collect();
+        for input in stages.iter().filter_map(|stage| self.readers.get(*stage)).flat_map(BTreeMap::values) {
+            open.extend(self.makers(input).filter(|index| is_on(&self.passes[*index])));
+        }
         while let Some(index) = open.pop() {
             if !needed.insert(index) {
                 continue;
             }
-            for input in &self.passes[index].inputs {
-                let shares = |pass: &GraphPass| match input {
-                    Input::Image(name) | Input::Before(name) => pass.name() == name,
-                    Input::Buffer(name, _) => {
-                        pass.inputs.iter().any(|other| matches!(other, Input::Buffer(other, _) if other == name))
-                    }
-                    _ => false,
-                };
-                let found = self.passes.iter().enumerate().filter(|(_, pass)| shares(pass) && is_on(pass));
-                open.extend(found.map(|(index, _)| index));
+            for input in self.passes[index].inputs.values() {
+                open.extend(self.makers(input).filter(|index| is_on(&self.passes[*index])));
             }
         }
         needed.into_iter().map(|index| self.passes[index].clone()).collect()
+    }
+
+    /// The passes that write an input.
+    fn makers(&self, input: &Input) -> impl Iterator<Item = usize> {
+        let shares = move |pass: &GraphPass| match input {
+            Input::Image(name) | Input::Before(name) => pass.name() == name,
+            Input::Buffer(name, _) => {
+                pass.inputs.values().any(|other| matches!(other, Input::Buffer(other, _) if other == name))
+            }
+            _ => false,
+        };
+        self.passes.iter().enumerate().filter(move |(_, pass)| shares(pass)).map(|(index, _)| index)
     }
 
     fn makes_picture(&self, index: usize, is_on: impl Fn(&GraphPass) -> bool) -> bool {
@@ -250,15 +316,41 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
             "the picture has its own size and format, so size=, format=, mips and keep do not go with to=picture",
         );
     }
+    if note.model.is_some() && is_compute {
+        return Some("a compute pass cannot draw the model; draw=model is for .frag files");
+    }
+    if note.model.is_some() && note.to_picture {
+        return Some("a pass with draw=model draws to an image of its own; read that in a pass with to=picture");
+    }
     (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
 }
 
-/// An error for each pass that declares a buffer with another size than an earlier pass does.
+/// The path of the vertex stage that the stage of a pass may have beside it.
+pub fn vertex_of(stage: &str) -> String {
+    format!("{}.vert", stage.rsplit_once('.').map_or(stage, |(stem, _)| stem))
+}
+
+/// An error if the constant after `when=` does not exist.
+fn unknown_switch(note: &PassNote, annotations: &Annotations) -> Option<Diagnostic> {
+    let name = note.when.as_deref()?;
+    let mut known = annotations.constants.iter().map(|constant| constant.name.as_str());
+    if known.clone().any(|constant| constant == name) {
+        return None;
+    }
+    let hint = did_you_mean(name, known.by_ref());
+    let error = note.place.error(format!("no constant with //@ui is named `{name}`.{hint}"));
+    Some(
+        error
+            .with_help("declare it: layout(constant_id = USER_CONSTANTS + 30) const bool NAME = true; //@ui \"Label\""),
+    )
+}
+
+/// Errors of passes whose buffer another pass declares with another size.
 fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
     let mut first: BTreeMap<&str, (u32, &GraphPass)> = BTreeMap::new();
     let mut errors = Vec::new();
     for pass in passes {
-        for input in &pass.inputs {
+        for input in pass.inputs.values() {
             let Input::Buffer(name, bytes) = input else { continue };
             let (size, other) = *first.entry(name).or_insert((*bytes, pass));
             if size != *bytes {

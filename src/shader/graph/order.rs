@@ -2,16 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use super::{GraphPass, Input};
+use super::{GraphPass, Input, Inputs, Part};
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::TONEMAP;
 use crate::shader::diagnostic::Diagnostic;
 
-/// Sorts passes into the order in which they are drawn.
+/// The passes in the order in which they are drawn. `readers` are the stages that come with Specula, by path.
 ///
 /// # Errors
-/// An unknown name in `after=`, or a cycle.
-pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnostic>> {
+/// An unknown name after `after=`, a cycle, or an image that is read before it is drawn.
+pub fn ordered(
+    mut passes: Vec<GraphPass>,
+    readers: &BTreeMap<String, Inputs>,
+) -> Result<Vec<GraphPass>, Vec<Diagnostic>> {
     passes.sort_by(|a, b| a.name().cmp(b.name()));
     let index: BTreeMap<String, usize> =
         passes.iter().enumerate().map(|(index, pass)| (pass.name().to_owned(), index)).collect();
@@ -19,22 +22,11 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     if !unknown.is_empty() {
         return Err(unknown);
     }
-    // A pass that reads the image of a pass after the tone map, or follows such a pass, also runs after the tone map.
-    let mut changed = true;
-    while std::mem::take(&mut changed) {
-        for at in 0..passes.len() {
-            let follows = |name: &str| name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].after_tonemap);
-            let reads = passes[at].inputs.iter().any(|input| matches!(input, Input::Image(name) if follows(name)));
-            let after = passes[at].note.after.as_deref().is_some_and(follows);
-            if (reads || after) && !passes[at].after_tonemap {
-                passes[at].after_tonemap = true;
-                changed = true;
-            }
-        }
-    }
+    put_on_display(&mut passes, &index);
+    put_before_model(&mut passes, &index, readers)?;
     let mut order = Order { passes: &passes, index: &index, state: vec![State::New; passes.len()], done: Vec::new() };
-    for after_tonemap in [false, true] {
-        let in_part = |at: &usize| passes[*at].after_tonemap == after_tonemap;
+    for part in [Part::BeforeModel, Part::Light, Part::Display] {
+        let in_part = |at: &usize| passes[*at].part == part;
         let (makers, others): (Vec<usize>, Vec<usize>) =
             (0..passes.len()).filter(in_part).partition(|at| passes[*at].note.to_picture);
         for at in makers.into_iter().chain(others) {
@@ -44,6 +36,70 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     let done = order.done;
     let mut passes: Vec<Option<GraphPass>> = passes.into_iter().map(Some).collect();
     Ok(done.into_iter().filter_map(|at| passes[at].take()).collect())
+}
+
+/// A pass that follows the tone map, or reads the image of a pass that does, is drawn after the tone map itself.
+fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
+    let mut changed = true;
+    while std::mem::take(&mut changed) {
+        for at in 0..passes.len() {
+            let follows =
+                |name: &str| name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].part == Part::Display);
+            let reads = images(&passes[at].inputs).any(follows);
+            let after = passes[at].note.after.as_deref().is_some_and(follows);
+            if (reads || after) && passes[at].part != Part::Display {
+                passes[at].part = Part::Display;
+                changed = true;
+            }
+        }
+    }
+}
+
+/// The passes whose images the model's stages read are drawn before the model, and so are those that they read in turn.
+fn put_before_model(
+    passes: &mut [GraphPass],
+    index: &BTreeMap<String, usize>,
+    readers: &BTreeMap<String, Inputs>,
+) -> Result<(), Vec<Diagnostic>> {
+    let mut errors = Vec::new();
+    for (path, inputs) in readers {
+        let is_model = !AFTER_MODEL.contains(&path.as_str());
+        let mut open: Vec<usize> = images(inputs).filter_map(|name| index.get(name).copied()).collect();
+        while let Some(at) = open.pop() {
+            let pass = &mut passes[at];
+            let refusal = if pass.part == Part::Display {
+                Some("it comes after the tone map")
+            } else if is_model && pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth)) {
+                Some("the model is drawn after it, so there is no `picture` and no `depth` yet")
+            } else {
+                None
+            };
+            if let Some(reason) = refusal {
+                let error = pass
+                    .note
+                    .place
+                    .error(format!("{path} needs the image of the pass `{}`, but {reason}", pass.name()));
+                errors.push(error.with_help("a pass with draw=model can draw depth and normals before the model"));
+                continue;
+            }
+            if is_model && pass.part != Part::BeforeModel {
+                pass.part = Part::BeforeModel;
+                open.extend(images(&pass.inputs).filter_map(|name| index.get(name).copied()));
+            }
+        }
+    }
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// The stages that come with Specula and run after the model.
+const AFTER_MODEL: [&str; 2] = ["average.frag", "tonemap.frag"];
+
+/// The names of the images that are read as they are in this frame.
+fn images(inputs: &Inputs) -> impl Iterator<Item = &str> {
+    inputs.values().filter_map(|input| match input {
+        Input::Image(name) => Some(name.as_str()),
+        _ => None,
+    })
 }
 
 fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Diagnostic> {
@@ -81,18 +137,8 @@ impl Order<'_> {
         }
         path.push(at);
         let pass = &self.passes[at];
-        let read = pass.inputs.iter().filter_map(|input| match input {
-            Input::Image(name) => Some(name.as_str()),
-            _ => None,
-        });
-        let needs: Vec<usize> = pass
-            .note
-            .after
-            .as_deref()
-            .into_iter()
-            .chain(read)
-            .filter_map(|name| self.index.get(name).copied())
-            .collect();
+        let needs = pass.note.after.as_deref().into_iter().chain(images(&pass.inputs));
+        let needs: Vec<usize> = needs.filter_map(|name| self.index.get(name).copied()).collect();
         for need in needs {
             self.emit(need, path)?;
         }

@@ -20,7 +20,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use foldhash::{HashMap, HashSet};
 
-use crate::shader::compile::{Compiler, declares_pass};
+use crate::shader::compile::Compiler;
 use crate::shader::source::snapshot::{Read, Snapshot};
 use crate::shader::source::{SourceError, TreePath};
 use crate::shader::spirv::link;
@@ -74,10 +74,6 @@ pub fn rebuild(
     let mut whole = difference::changed_functions(old, new)?;
     if whole.is_empty() {
         return Some(Rebuilt::Same);
-    }
-    // glslang gives bindings to what a pass declares by name, in an order that needs the whole text.
-    if snapshot.read(stage).is_ok_and(|text| declares_pass(&text)) {
-        return None;
     }
     let base = link::Base::parse(spirv)?;
     let reached = base.function_names();

@@ -10,7 +10,7 @@ use crate::shader::annotation::{self, Annotations};
 use crate::shader::compile::include::files_of;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
-use crate::shader::graph::{Graph, PassStage, text_reads_clock};
+use crate::shader::graph::{Graph, GraphPass, PassStage, text_reads_clock};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
@@ -77,7 +77,12 @@ impl Library {
             let texts = stage.texts(snapshot);
             (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts })
         });
-        let graph = Graph::new(&annotations, &declared.collect(), snapshot)?;
+        let declared: BTreeMap<String, PassStage<'_>> = declared.collect();
+        let graph = Graph::new(&annotations, &declared, snapshot)?;
+        let errors: Vec<Diagnostic> = graph.passes.iter().flat_map(|pass| unlike_vertex(pass, &declared)).collect();
+        if !errors.is_empty() {
+            return Err(errors);
+        }
         annotations.modes.extend(modes_of(&graph));
         Ok(Linked { annotations, graph, warnings: unique(warnings) })
     }
@@ -126,4 +131,13 @@ impl Library {
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }
+}
+
+/// Errors of a pass whose vertex stage does not write what its fragment stage reads.
+fn unlike_vertex(pass: &GraphPass, stages: &BTreeMap<String, PassStage<'_>>) -> Vec<Diagnostic> {
+    let vertex = stages.get(pass.vertex_stage());
+    let (Some(vertex), Some(fragment), false) = (vertex, stages.get(&pass.note.stage), pass.is_compute) else {
+        return Vec::new();
+    };
+    contract::check_pair((vertex.reflection, vertex.texts), (fragment.reflection, fragment.texts))
 }

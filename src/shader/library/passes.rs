@@ -8,7 +8,7 @@ use crate::interface;
 use crate::shader::annotation::{self, Mode, ModeStage};
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::graph::Graph;
+use crate::shader::graph::{Graph, Part, vertex_of};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
 
@@ -46,6 +46,28 @@ impl Library {
                 _ => {}
             }
         }
+        self.find_vertex_stages(snapshot);
+    }
+
+    /// Adds the vertex stages that lie beside the stages of passes, and removes those whose pass is gone.
+    fn find_vertex_stages(&mut self, snapshot: &Snapshot<'_>) {
+        let passes = self.slots.iter().skip(self.fixed).filter(|slot| is_kind(&slot.path, StageKind::Fragment));
+        let beside = passes.map(|slot| TreePath::from(vertex_of(slot.path.as_str()).as_str()));
+        let found: BTreeSet<TreePath> =
+            beside.filter(|path| snapshot.read(path) != Err(SourceError::Missing)).collect();
+        let known = self.slots.len();
+        let fixed: BTreeSet<TreePath> = self.slots.iter().take(self.fixed).map(|slot| slot.path.clone()).collect();
+        self.slots.retain(|slot| {
+            let is_own = is_kind(&slot.path, StageKind::Vertex) && !fixed.contains(&slot.path);
+            !is_own || found.contains(&slot.path)
+        });
+        self.relink |= self.slots.len() != known;
+        for path in found {
+            if self.slots.iter().all(|slot| slot.path != path) {
+                self.slots.push(Slot::new(path));
+                self.relink = true;
+            }
+        }
     }
 
     /// The passes that are off unless the user switches them on.
@@ -65,6 +87,10 @@ impl Library {
     }
 }
 
+fn is_kind(path: &TreePath, kind: StageKind) -> bool {
+    StageKind::of(path) == Some(kind)
+}
+
 /// A debug mode for the image of each pass.
 pub(super) fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
     (interface::PASS_MODES..).zip(&graph.passes).map(|(id, pass)| Mode {
@@ -74,7 +100,7 @@ pub(super) fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
         group: "Passes".to_owned(),
         components: 3,
         // A pass that changes the picture is shown like the picture.
-        tonemap: pass.note.to_picture || pass.after_tonemap,
+        tonemap: pass.note.to_picture || pass.part == Part::Display,
         stage: ModeStage::Picture,
         pass: Some(pass.name().to_owned()),
         doc: pass.note.doc.clone(),

@@ -9,7 +9,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Memory, vk};
 /// The uniform blocks of a frame's declared passes. Each frame slot has its own, so that the CPU never writes what a frame in
 /// flight reads.
 #[derive(Default)]
-pub(in crate::render::view) struct Blocks(BTreeMap<(usize, usize), Arc<Buffer>>);
+pub(in crate::render::view) struct Blocks(BTreeMap<(usize, u32), Arc<Buffer>>);
 
 impl Blocks {
     /// Writes the blocks of a frame. SYNC: after the slot's fence.
@@ -27,8 +27,8 @@ impl Blocks {
         Ok(())
     }
 
-    /// The block at `binding` of a pass. `pass`: its index in `PipelineRequest::passes`.
-    pub(super) fn get(&self, pass: usize, binding: usize) -> Option<&Arc<Buffer>> {
+    /// The block at this binding of a pass, which has this place in `PipelineRequest::passes`.
+    pub(super) fn get(&self, pass: usize, binding: u32) -> Option<&Arc<Buffer>> {
         self.0.get(&(pass, binding))
     }
 }

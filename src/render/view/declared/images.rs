@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapc
 use crate::render::resources::BoundFrame;
 use crate::scene::mips;
 use crate::shader::GraphPass;
-use crate::shader::graph::Input;
+use crate::shader::graph::{Input, Part};
 
 /// The properties of a pass that determine its images.
 #[derive(Clone, Copy, PartialEq)]
@@ -18,6 +18,7 @@ struct PassDesc {
     mips: u32,
     is_written: bool,
     keeps: bool,
+    has_depth: bool,
 }
 
 /// The images of a pass.
@@ -28,7 +29,9 @@ struct PassImages {
     images: Vec<Arc<Image>>,
     /// The image that the pass draws to, if mip levels are made from it.
     first_level: Option<Arc<Image>>,
-    /// Index of the image that was drawn last.
+    /// The depth of the model, if the pass draws it.
+    depth: Option<Arc<Image>>,
+    /// Which of two images the last frame drew.
     newest: usize,
     /// Whether this frame has drawn the pass.
     is_drawn: bool,
@@ -90,7 +93,9 @@ impl Images {
             let images = next.images_of(gpu, pass, self.passes.get(pass.name()))?;
             next.passes.insert(pass.name().to_owned(), images);
         }
-        for (name, bytes) in request.passes.iter().flat_map(|pass| &pass.inputs).filter_map(buffer_of) {
+        let readers = request.readers(&frame.state.shaders.graph);
+        let inputs = request.passes.iter().map(|pass| &pass.inputs).chain(readers);
+        for (name, bytes) in inputs.flat_map(|inputs| inputs.values()).filter_map(buffer_of) {
             let known = next.buffers.get(name).or(self.buffers.get(name));
             let known = known.filter(|buffer| buffer.size() == u64::from(bytes).max(1));
             let buffer = match known {
@@ -105,16 +110,14 @@ impl Images {
             next.passes.entry(name.clone()).or_insert_with(|| images.clone());
         }
         for (name, buffer) in &self.buffers {
-            let declared = graph.passes.iter().flat_map(|pass| &pass.inputs).filter_map(buffer_of);
+            let declared = graph.passes.iter().flat_map(|pass| pass.inputs.values()).filter_map(buffer_of);
             let size =
                 u64::from(declared.filter(|(other, _)| other == name).map(|(_, bytes)| bytes).max().unwrap_or(0));
             if buffer.size() == size {
                 next.buffers.entry(name.clone()).or_insert_with(|| buffer.clone());
             }
         }
-        let makers = |after: bool| {
-            request.passes.iter().filter(|pass| pass.note.to_picture && pass.after_tonemap == after).count()
-        };
+        let makers = request.passes.iter().filter(|pass| pass.note.to_picture && pass.part == Part::Light).count();
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let (width, height) = frame.state.size;
@@ -130,9 +133,9 @@ impl Images {
             }
             Ok(images)
         };
-        next.pictures = take("picture of a pass", next.key.picture, makers(false).min(2), &self.pictures)?;
-        // The tone map draws to the first image.
-        let displays = if request.passes.iter().any(|pass| pass.after_tonemap) { 2 } else { 0 };
+        next.pictures = take("picture of a pass", next.key.picture, makers.min(2), &self.pictures)?;
+        // The tone map draws to the first.
+        let displays = if request.passes.iter().any(|pass| pass.part == Part::Display) { 2 } else { 0 };
         next.displays = take("display of a pass", Swapchain::FORMAT, displays, &self.displays)?;
         if request.shown_pass.is_some() {
             let known: Vec<_> = self.shown.iter().cloned().collect();
@@ -153,8 +156,9 @@ impl Images {
             size,
             format: pass_format(pass.note.format),
             mips: if pass.note.mips { mips::count(size.0, size.1) } else { 1 },
-            is_written: pass.inputs.contains(&Input::Output),
+            is_written: pass.inputs.values().any(|input| *input == Input::Output),
             keeps: pass.note.keep,
+            has_depth: pass.note.model.is_some(),
         };
         if let Some(known) = known.filter(|known| known.desc == desc) {
             return Ok(known.clone());
@@ -176,7 +180,14 @@ impl Images {
         let images = (0..if desc.keeps { 2 } else { 1 }).map(|_| image(desc.mips)).collect::<Result<Vec<_>, _>>()?;
         let first_level = if desc.mips > 1 { Some(image(1)?) } else { None };
         self.fresh.0.extend(images.iter().cloned());
-        Ok(PassImages { desc, images, first_level, newest: 0, is_drawn: false })
+        let depth = match desc.has_depth {
+            true => {
+                let (format, usage) = (vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT);
+                Some(Image::new(gpu, "depth of a pass", ImageDesc::new(size.0, size.1, format, usage))?)
+            }
+            false => None,
+        };
+        Ok(PassImages { desc, images, first_level, depth, newest: 0, is_drawn: false })
     }
 
     fn new_buffer(&mut self, gpu: &Arc<Gpu>, name: &str, bytes: u32) -> Result<Arc<Buffer>, GpuError> {
@@ -213,7 +224,12 @@ impl Images {
         pass.images.get((pass.newest + 1) % pass.images.len())
     }
 
-    /// The image that the pass draws to, if mip levels are made from it.
+    /// The depth target of a pass that draws the model.
+    pub(super) fn depth(&self, name: &str) -> Option<&Arc<Image>> {
+        self.passes.get(name)?.depth.as_ref()
+    }
+
+    /// What the pass draws to before mip levels are made of it.
     pub(super) fn first_level(&self, name: &str) -> Option<&Arc<Image>> {
         self.passes.get(name)?.first_level.as_ref()
     }
@@ -244,9 +260,9 @@ impl Images {
         self.buffers.get(name)
     }
 
-    /// The image for the new picture of a pass that reads the image `read`.
-    pub(super) fn other_picture(&self, after_tonemap: bool, read: &Arc<Image>) -> Option<&Arc<Image>> {
-        let images = if after_tonemap { &self.displays } else { &self.pictures };
+    /// The image that a pass gives a new picture in, which is not the one that it reads.
+    pub(super) fn other_picture(&self, part: Part, read: &Arc<Image>) -> Option<&Arc<Image>> {
+        let images = if part == Part::Display { &self.displays } else { &self.pictures };
         images.iter().find(|image| !Arc::ptr_eq(image, read))
     }
 
