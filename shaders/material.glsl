@@ -148,7 +148,7 @@ void read_transmission(Fragment f, inout Surface s) {
     }
 }
 
-// `v`: towards the eye, world space, unit. complete_surface (brdf/multiscatter.glsl) fills in the rest.
+// `v`: towards the eye, world space, unit. complete_surface (brdf/energy/multiscatter.glsl) fills in the rest.
 Surface make_surface(Fragment f, vec3 v) {
     vec4 base_color = texture(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR));
     vec4 metallic_roughness = texture(metallic_roughness_texture, texture_uv(f, TEXTURE_METALLIC_ROUGHNESS));

@@ -1,6 +1,6 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/multiscatter.glsl"
+#include "brdf/energy/multiscatter.glsl"
 #include "common/fragment.glsl"
 #include "common/pixel.glsl"
 #include "lighting/radiance.glsl"

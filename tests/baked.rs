@@ -8,7 +8,7 @@ use specula::scene::environment::direction_from_uv;
 use specula::scene::{Environment, EnvironmentFile};
 use support::{Session, assert_validated, glb, load, ready, settings};
 
-/// The level of roughness 1. Each level is 2^(1/4) times as rough as the one before (ibl/levels.glsl).
+/// The level of roughness 1. Each level is 2^(1/4) times as rough as the one before (ibl/maps/levels.glsl).
 const LAST: f64 = SPECULAR_LEVELS as f64;
 /// Replaces a lookup by one at the center of the nearest texel, like [`texel`].
 const AT_TEXEL: &str = "vec2 place = floor(place_in_tile(p, tile)) + 0.5;";

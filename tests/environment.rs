@@ -297,7 +297,7 @@ fn random_paths_find_the_sun() {
     assert!(bias.abs() < 0.02 && off < 0.3, "off by {off}, all in all by {bias}");
 }
 
-/// Baked radiance is packed on the device, three mantissas of 9 bits with one exponent (ibl/shared_exponent.glsl).
+/// Baked radiance is packed on the device, three mantissas of 9 bits with one exponent (ibl/maps/shared_exponent.glsl).
 #[test]
 fn packed_radiance_is_within_a_511th_of_its_largest_channel() {
     let chosen = settings(&["environment.name=furnace", "lights.source=none", "view.msaa=1"]);

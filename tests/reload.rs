@@ -90,7 +90,7 @@ fn an_edit_compiles_only_the_stages_that_use_it() {
         ("lighting/environment.glsl", "textureLod(environment_cube, ", "textureLod(environment_cube, -", SKY),
         // An annotation is no code.
         ("brdf/models.glsl", "\"Normal distribution\"", "\"Distribution\"", &[]),
-        ("ibl/half.glsl", "65504.0", "65503.0", ROUNDING),
+        ("ibl/maps/half.glsl", "65504.0", "65503.0", ROUNDING),
         (
             "user/vertex.glsl",
             VERTEX_HOOK,

@@ -127,7 +127,8 @@ fn an_edit_of_sheen_reaches_lamps_table_and_prefiltered_light() {
     let (prefiltered, table) = mean_light(&mut session);
     // Half of the light, gathered from around the normal.
     let charlie = "return d_charlie(n_dot_h, alpha)";
-    let reload = session.edit("brdf/sheen.glsl", charlie, "return 0.5 * pow(n_dot_l, 4.0) * d_charlie(n_dot_h, alpha)");
+    let reload =
+        session.edit("brdf/layers/sheen.glsl", charlie, "return 0.5 * pow(n_dot_l, 4.0) * d_charlie(n_dot_h, alpha)");
     ready(&reload);
     assert_eq!(
         stages(&reload),

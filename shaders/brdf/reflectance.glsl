@@ -4,7 +4,7 @@
 
 #include "interface.glsl"
 #include "brdf/fresnel.glsl"
-#include "brdf/iridescence.glsl"
+#include "brdf/layers/iridescence.glsl"
 #include "brdf/models.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
@@ -14,7 +14,7 @@ const vec3 EDGE_TINT = vec3(0.5);
 
 const bool HAS_FILM = (FEATURES & FEATURE_IRIDESCENCE) != 0u;
 
-// Whether the tables take F by its samples (brdf/dfg.glsl), since it is not f_schlick.
+// Whether the tables take F by its samples (brdf/energy/dfg.glsl), since it is not f_schlick.
 const bool DIELECTRIC_IS_SAMPLED = FRESNEL_DIELECTRIC != SCHLICK_DIELECTRIC || HAS_FILM;
 const bool METAL_IS_SAMPLED = FRESNEL_METAL != SCHLICK_METAL || HAS_FILM;
 const bool F_IS_SAMPLED = DIELECTRIC_IS_SAMPLED || METAL_IS_SAMPLED;

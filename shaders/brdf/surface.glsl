@@ -2,7 +2,7 @@
 #ifndef BRDF_SURFACE_GLSL
 #define BRDF_SURFACE_GLSL
 
-#include "brdf/dfg.glsl"
+#include "brdf/energy/dfg.glsl"
 
 struct Surface {
     vec3 position_ws;
@@ -17,7 +17,7 @@ struct Surface {
     float f90;                 // of the dielectric: reflectance at grazing incidence
     float ior;                 // of the dielectric
 
-    // complete_surface (brdf/multiscatter.glsl) computes these from the members above.
+    // complete_surface (brdf/energy/multiscatter.glsl) computes these from the members above.
     vec3 dielectric_average;   // cosine-weighted F of the boundary, 2 integral F(c) c dc, if it were all dielectric
     vec3 metal_average;        // the same if it were all metal
     Dfg dfg;                   // of the specular lobe towards the eye

@@ -1,9 +1,9 @@
 #version 460
 #include "interface.glsl"
 #include "common/math.glsl"
-#include "ibl/cube_map.glsl"
-#include "ibl/find_small_lights.glsl"
-#include "ibl/half.glsl"
+#include "ibl/maps/cube_map.glsl"
+#include "ibl/maps/half.glsl"
+#include "ibl/small_lights/find.glsl"
 
 // Converts an equirectangular image to level 0 of a cube map. One invocation per texel; z is the face.
 //

@@ -1,16 +1,16 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/dfg.glsl"
+#include "brdf/energy/dfg.glsl"
 #include "brdf/fresnel.glsl"
 #include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "ibl/half.glsl"
+#include "ibl/maps/half.glsl"
 
-// Integrates the moments of the specular lobe (brdf/dfg.glsl) with the D, V and F of the selected models, so that the
-// tables follow an edit of them. One workgroup per row (roughness 0 to 1), one invocation per column.
+// Integrates the moments of the specular lobe (brdf/energy/dfg.glsl) with the D, V and F of the selected models, so
+// that the tables follow an edit of them. One workgroup per row (roughness 0 to 1), one invocation per column.
 
 layout(local_size_x = 128) in;
 layout(set = SET_TASK, binding = BINDING_TARGET, rgba16f) writeonly uniform image2DArray target;

@@ -1,15 +1,15 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/dfg.glsl"
 #include "brdf/diffuse.glsl"
+#include "brdf/energy/dfg.glsl"
 #include "brdf/surface.glsl"
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "ibl/half.glsl"
+#include "ibl/maps/half.glsl"
 
-// Integrates the selected diffuse model, for brdf/energy.glsl: albedo = integral of f_diffuse NoL dl, for three base
-// colors at once, one per channel; and how the half vectors of that light are distributed. Columns are sqrt(NoV)
+// Integrates the selected diffuse model, for brdf/energy/albedo.glsl: albedo = integral of f_diffuse NoL dl, for three
+// base colors at once, one per channel; and how the half vectors of that light are distributed. Columns are sqrt(NoV)
 // and rows roughness, each 0 in the first and 1 in the last.
 
 layout(local_size_x = 8, local_size_y = 8) in;

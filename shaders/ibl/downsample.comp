@@ -1,15 +1,15 @@
 #version 460
 #include "interface.glsl"
 #include "common/math.glsl"
-#include "ibl/cube_map.glsl"
-#include "ibl/find_small_lights.glsl"
-#include "ibl/half.glsl"
+#include "ibl/maps/cube_map.glsl"
+#include "ibl/maps/half.glsl"
+#include "ibl/small_lights/find.glsl"
 
 // Computes one level of the cube map from the level above. Its four texels are weighted by solid angle, so a level
 // keeps the light of the one above, and a texel is the mean radiance of the area it covers. (A corner texel covers a
 // fifth of the solid angle of a center texel, so an unweighted mean would move light.)
 //
-// From level 0 to 1 small lights are removed (ibl/small_lights.glsl). With the last level their list is complete.
+// From level 0 to 1 small lights are removed (ibl/small_lights/list.glsl). With the last level their list is complete.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = SET_TASK, binding = BINDING_LEVEL_ABOVE, rgba16f) readonly uniform image2DArray level_above;

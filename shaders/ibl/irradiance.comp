@@ -1,10 +1,10 @@
 #version 460
 #include "interface.glsl"
 #include "common/math.glsl"
-#include "ibl/cube_map.glsl"
-#include "ibl/listed_lights.glsl"
-#include "ibl/octahedral.glsl"
-#include "ibl/shared_exponent.glsl"
+#include "ibl/maps/cube_map.glsl"
+#include "ibl/maps/octahedral.glsl"
+#include "ibl/maps/shared_exponent.glsl"
+#include "ibl/small_lights/add.glsl"
 
 // Diffuse light from the environment: the radiance that a white Lambertian surface with the normal n reflects,
 //

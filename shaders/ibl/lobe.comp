@@ -1,8 +1,8 @@
 #version 460
 #include "interface.glsl"
 #include "common/math.glsl"
-#include "ibl/filter.glsl"
-#include "ibl/lobe.glsl"
+#include "ibl/sampling/filter.glsl"
+#include "ibl/sampling/lobe.glsl"
 
 // Chooses the samples of the two lobes of a pair of levels, K = D V NoL with n = v (the split sum of Karis 2013), for the
 // selected D and V. One workgroup.

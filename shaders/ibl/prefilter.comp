@@ -2,12 +2,12 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "ibl/filter.glsl"
-#include "ibl/levels.glsl"
-#include "ibl/listed_lights.glsl"
-#include "ibl/lobe.glsl"
-#include "ibl/octahedral.glsl"
-#include "ibl/shared_exponent.glsl"
+#include "ibl/maps/levels.glsl"
+#include "ibl/maps/octahedral.glsl"
+#include "ibl/maps/shared_exponent.glsl"
+#include "ibl/sampling/filter.glsl"
+#include "ibl/sampling/lobe.glsl"
+#include "ibl/small_lights/add.glsl"
 
 // Prefilters a pair of levels for the specular lobe, an odd one and the even one after it, which have the same size: the
 // mean of radiance weighted by K = D V NoL with n = v (Karis 2013). Both read the same samples, with weights of their own;

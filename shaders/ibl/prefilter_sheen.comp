@@ -1,16 +1,16 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/sheen.glsl"
+#include "brdf/layers/sheen.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "ibl/cube_map.glsl"
-#include "ibl/filter.glsl"
-#include "ibl/half.glsl"
-#include "ibl/levels.glsl"
-#include "ibl/listed_lights.glsl"
+#include "ibl/maps/cube_map.glsl"
+#include "ibl/maps/half.glsl"
+#include "ibl/maps/levels.glsl"
+#include "ibl/sampling/filter.glsl"
+#include "ibl/small_lights/add.glsl"
 
 // Prefilters one level for sheen: the mean of radiance weighted by K = f NoL of the selected sheen, with N = V = R
-// (Karis 2013, as ibl/prefilter.comp does for GGX). K is brdf/sheen.glsl's, so it follows an edit there.
+// (Karis 2013, as ibl/prefilter.comp does for GGX). K is brdf/layers/sheen.glsl's, so it follows an edit there.
 //
 // Smooth sheen is a ring near the horizon, rough sheen is as wide as a cosine. So half of the samples have the density
 // (p + 1) / 2 pi (1 - NoL)^p, p = 1 / (2 alpha), of which (1 - NoL)^(p + 1) is uniform, and half are uniform in NoL. The

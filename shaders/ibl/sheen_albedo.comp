@@ -1,14 +1,14 @@
 #version 460
 #include "interface.glsl"
-#include "brdf/dfg.glsl"
-#include "brdf/sheen.glsl"
+#include "brdf/energy/dfg.glsl"
+#include "brdf/layers/sheen.glsl"
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "ibl/half.glsl"
+#include "ibl/maps/half.glsl"
 
-// Directional albedo of the selected sheen, for brdf/energy.glsl: E = integral of f NoL dl. Columns are sqrt(NoV) and
-// rows roughness, each 0 in the first and 1 in the last. The samples cover the whole hemisphere, since
+// Directional albedo of the selected sheen, for brdf/energy/albedo.glsl: E = integral of f NoL dl. Columns are
+// sqrt(NoV) and rows roughness, each 0 in the first and 1 in the last. The samples cover the whole hemisphere, since
 // most of Charlie's distribution lies below it. They are a lattice with the cosine 3 u^2 - 2 u^3, weighted by its
 // derivative, as in ibl/dfg.comp.
 //

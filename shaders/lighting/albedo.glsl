@@ -9,13 +9,13 @@
 #define LIGHTING_ALBEDO_GLSL
 
 #include "interface.glsl"
-#include "brdf/energy.glsl"
+#include "brdf/energy/albedo.glsl"
+#include "brdf/energy/multiscatter.glsl"
 #include "brdf/fresnel.glsl"
+#include "brdf/layers/transmission.glsl"
 #include "brdf/models.glsl"
-#include "brdf/multiscatter.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
-#include "brdf/transmission.glsl"
 #include "common/math.glsl"
 
 struct Albedo {
@@ -75,7 +75,7 @@ Albedo directional_albedo(Surface s, vec3 v) {
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
         // The transmitted lobe has the facet angles of the specular lobe, so F is that lobe's mean: its albedo over its
         // albedo for F = 1. 1e-3: a D of 0. Without multiple scattering, light between the facets is lost, as for lamps
-        // (brdf/transmission.glsl).
+        // (brdf/layers/transmission.glsl).
         float fresnel = max_component(single_dielectric) / max(s.dfg.e, 1e-3);
         float passes = base * (1.0 - s.metallic) * s.transmission;
         if (MULTI_SCATTER == SINGLE_SCATTER) passes *= dfg_at(n_dot_v, transmission_roughness(s.roughness, s.ior)).e;

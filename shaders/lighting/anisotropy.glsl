@@ -2,7 +2,7 @@
 #ifndef LIGHTING_ANISOTROPY_GLSL
 #define LIGHTING_ANISOTROPY_GLSL
 
-#include "brdf/energy.glsl"
+#include "brdf/energy/albedo.glsl"
 #include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"
 #include "brdf/visibility.glsl"

@@ -4,10 +4,10 @@
 #define LIGHTING_ENVIRONMENT_GLSL
 
 #include "interface.glsl"
-#include "brdf/dfg_table.glsl"
-#include "ibl/levels.glsl"
-#include "ibl/lobe_weight.glsl"
-#include "ibl/octahedral.glsl"
+#include "brdf/energy/dfg_table.glsl"
+#include "ibl/maps/levels.glsl"
+#include "ibl/maps/octahedral.glsl"
+#include "ibl/sampling/lobe_weight.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_ENVIRONMENT) uniform samplerCube environment_cube;
 layout(set = SET_FRAME, binding = BINDING_PREFILTERED) uniform sampler2D prefiltered_levels;
@@ -50,8 +50,8 @@ vec3 prefiltered_at(vec2 p, Tile tile) {
 }
 
 // The sun's part of that mean, exact for every roughness: intensity K over the integral of K, where K is the lobe's weight
-// (ibl/lobe_weight.glsl). The levels from 1 on do not have the sun (ibl/small_lights.glsl). d: of any length,
-// in the map.
+// (ibl/sampling/lobe_weight.glsl). The levels from 1 on do not have the sun (ibl/small_lights/list.glsl). d: of any
+// length, in the map.
 vec3 sun_radiance(vec3 d, float roughness) {
     vec3 chord = frame.sun_direction - normalize(d);
     float weight = lobe_weight_of_light(0.25 * dot(chord, chord), lobe_alpha(roughness), frame.sun_variance);
@@ -59,7 +59,8 @@ vec3 sun_radiance(vec3 d, float roughness) {
 }
 
 // The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
-// (Karis 2013). It is interpolated between an even and an odd level (ibl/levels.glsl). Level 0 shows the sun itself.
+// (Karis 2013). It is interpolated between an even and an odd level (ibl/maps/levels.glsl). Level 0 shows the
+// sun itself.
 vec3 prefiltered_radiance(vec3 r, float roughness) {
     if (!HAS_ENVIRONMENT) return frame.ambient;
     float level = specular_level(roughness);

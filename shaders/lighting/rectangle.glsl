@@ -3,9 +3,9 @@
 #define LIGHTING_RECTANGLE_GLSL
 
 #include "interface.glsl"
-#include "brdf/energy.glsl"
+#include "brdf/energy/albedo.glsl"
+#include "brdf/layers/transmission.glsl"
 #include "brdf/surface.glsl"
-#include "brdf/transmission.glsl"
 #include "lighting/albedo.glsl"
 #include "lighting/anisotropy.glsl"
 #include "lighting/area.glsl"

@@ -9,8 +9,8 @@
 #define LIGHTING_TRANSMISSION_GLSL
 
 #include "interface.glsl"
+#include "brdf/layers/transmission.glsl"
 #include "brdf/surface.glsl"
-#include "brdf/transmission.glsl"
 #include "common/math.glsl"
 #include "lighting/environment.glsl"
 

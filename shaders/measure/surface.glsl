@@ -3,8 +3,8 @@
 #define MEASURE_SURFACE_GLSL
 
 #include "interface.glsl"
+#include "brdf/energy/multiscatter.glsl"
 #include "brdf/evaluate.glsl"
-#include "brdf/multiscatter.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"

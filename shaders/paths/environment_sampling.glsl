@@ -7,7 +7,7 @@
 #define PATHS_ENVIRONMENT_SAMPLING_GLSL
 
 #include "interface.glsl"
-#include "ibl/cube_map.glsl"
+#include "ibl/maps/cube_map.glsl"
 #include "lighting/environment.glsl"
 #include "paths/lobe_sampling.glsl"
 

@@ -4,11 +4,11 @@
 #define PATHS_EXACT_LOOKUPS_GLSL
 
 #include "interface.glsl"
-#include "brdf/energy.glsl"
+#include "brdf/energy/albedo.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "ibl/lobe_weight.glsl"
+#include "ibl/sampling/lobe_weight.glsl"
 #include "lighting/albedo.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/image_based.glsl"

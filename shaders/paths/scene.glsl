@@ -8,7 +8,7 @@
 #define PATHS_SCENE_GLSL
 
 #include "interface.glsl"
-#include "brdf/multiscatter.glsl"
+#include "brdf/energy/multiscatter.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"

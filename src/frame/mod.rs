@@ -108,7 +108,7 @@ pub struct FrameState {
 }
 
 /// A source so small that lighting evaluates it instead of looking it up; all zeros: none. It has the layout of `SmallLight`
-/// in ibl/small_lights.glsl.
+/// in ibl/small_lights/list.glsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub(crate) struct Sun {

@@ -111,7 +111,7 @@ constants! {
 
     /// Side of the octahedral map of irradiance in texels, with its border. Irradiance varies as slowly as the cosine.
     IRRADIANCE_SIDE = 68;
-    /// The last level of prefiltered radiance, roughness 1 (ibl/levels.glsl).
+    /// The last level of prefiltered radiance, roughness 1 (ibl/maps/levels.glsl).
     SPECULAR_LEVELS = 16;
     /// Side of level 0, a mirror, in texels, with its border.
     MIRROR_SIDE = 640;

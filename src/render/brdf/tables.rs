@@ -22,7 +22,7 @@ struct Table {
     flags: Option<(u32, usize, &'static [&'static str])>,
 }
 
-/// In the order of [`TABLE_STAGES`]; brdf/dfg.glsl has the same sizes.
+/// In the order of [`TABLE_STAGES`]; brdf/energy/dfg.glsl has the same sizes.
 const TABLES: [Table; 3] = [
     Table {
         side: 128,
@@ -62,9 +62,9 @@ impl Table {
 
 /// All tables, in [`Use::Sampled`].
 pub struct Tables {
-    /// Moments of the specular lobe: see brdf/dfg.glsl.
+    /// Moments of the specular lobe: see brdf/energy/dfg.glsl.
     pub(crate) dfg: Arc<Image>,
-    /// The two of them that lamps need (`dfg_towards_lamp` in brdf/energy.glsl).
+    /// The two of them that lamps need (`dfg_towards_lamp` in brdf/energy/albedo.glsl).
     pub(crate) lamp_dfg: Arc<Image>,
     /// Albedo of the diffuse lobe.
     pub(crate) diffuse_albedo: Arc<Image>,
@@ -141,11 +141,11 @@ pub fn wrong_values(function: &str) -> String {
     format!("{function} returns NaN, infinite, negative or huge values, which count as 0 in light from all directions")
 }
 
-/// The slices of the DFG table with fine rows: `DFG_MEAN` and `DFG_LOBE` of brdf/dfg.glsl.
+/// The slices of the DFG table with fine rows: `DFG_MEAN` and `DFG_LOBE` of brdf/energy/dfg.glsl.
 const FINE_SLICES: [usize; 2] = [2, 4];
 
 /// The DFG table with its slices that do not depend on a cosine interpolated between their rows: `fine_texel` of
-/// brdf/dfg.glsl.
+/// brdf/energy/dfg.glsl.
 fn with_fine_rows(dfg: &Table, texels: &[u8]) -> Vec<u8> {
     let mut halves: Vec<half::f16> =
         bytemuck::pod_collect_to_vec::<u8, u16>(texels).into_iter().map(half::f16::from_bits).collect();

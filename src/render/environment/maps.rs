@@ -9,8 +9,8 @@ use crate::render::compute;
 
 /// Format of the cube maps.
 pub(super) const HALF: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
-/// Format of the octahedral maps: three mantissas of 9 bits with one exponent (ibl/shared_exponent.glsl). A software device reads
-/// it in two thirds of the time of four half floats.
+/// Format of the octahedral maps: three mantissas of 9 bits with one exponent (ibl/maps/shared_exponent.glsl). A
+/// software device reads it in two thirds of the time of four half floats.
 pub(super) const SHARED_EXPONENT: vk::Format = vk::Format::E5B9G9R9_UFLOAT_PACK32;
 
 /// An environment on the device; all images in [`Use::Sampled`](crate::gpu::Use::Sampled).
@@ -26,13 +26,13 @@ pub struct GpuEnvironment {
 /// The part of an environment that depends on its map alone; images in [`Use::Sampled`](crate::gpu::Use::Sampled).
 pub(crate) struct Radiance {
     pub(crate) cube: Arc<Image>,
-    /// An octahedral map (ibl/octahedral.glsl).
+    /// An octahedral map (ibl/maps/octahedral.glsl).
     pub(crate) irradiance: Arc<Image>,
     /// The images hold radiance times this factor.
     pub(crate) scale: f32,
     /// The sun that the specular levels leave out.
     pub(super) sun: Sun,
-    /// The list of ibl/small_lights.glsl. `None` in an environment that is never prefiltered.
+    /// The list of ibl/small_lights/list.glsl. `None` in an environment that is never prefiltered.
     pub(super) small_lights: Option<Arc<Buffer>>,
     /// Fingerprint of the map.
     pub(super) map: u128,
@@ -40,7 +40,7 @@ pub(crate) struct Radiance {
 
 /// The levels of the specular lobe, in [`Use::Sampled`](crate::gpu::Use::Sampled).
 pub(crate) struct Prefiltered {
-    /// Octahedral maps of all levels, side by side (ibl/levels.glsl).
+    /// Octahedral maps of all levels, side by side (ibl/maps/levels.glsl).
     pub(crate) levels: Arc<Image>,
     /// Whether D or V returned values that are no densities. They count as 0.
     pub(super) wrong: bool,

@@ -26,17 +26,17 @@ fn declared_size(set: &PipelineSet, stage: &str, binding: u32) -> u64 {
     found.and_then(|descriptor| descriptor.block.as_ref()).map_or(0, |block| u64::from(block.size)).max(16)
 }
 
-/// Bytes of the list of ibl/small_lights.glsl.
+/// Bytes of the list of ibl/small_lights/list.glsl.
 pub(crate) fn small_lights_size(set: &PipelineSet) -> u64 {
     declared_size(set, DOWNSAMPLE, BINDING_RESULTS)
 }
 
-/// The first member of the list of ibl/small_lights.glsl.
+/// The first member of the list of ibl/small_lights/list.glsl.
 pub(crate) fn sun_of(list: &[u8]) -> Sun {
     list.get(..size_of::<Sun>()).map_or_else(Sun::default, bytemuck::pod_read_unaligned)
 }
 
-/// The buffer of ibl/small_lights.glsl with these bytes; zeros for a new bake.
+/// The buffer of ibl/small_lights/list.glsl with these bytes; zeros for a new bake.
 pub(crate) fn small_lights(gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<Arc<Buffer>, GpuError> {
     use vk::BufferUsageFlags as Usage;
     let size = bytes.len() as u64;
@@ -52,8 +52,8 @@ pub(crate) fn small_lights(gpu: &Arc<Gpu>, bytes: &[u8]) -> Result<Arc<Buffer>, 
     Ok(results)
 }
 
-/// Texels to a side that cover a tile of a pair of specular levels (`specular_tile` in ibl/levels.glsl), whose corner may lie
-/// within a texel. Pair 0 is the mirror.
+/// Texels to a side that cover a tile of a pair of specular levels (`specular_tile` in ibl/maps/levels.glsl), whose
+/// corner may lie within a texel. Pair 0 is the mirror.
 fn specular_side(pair: u32) -> u32 {
     if pair == 0 {
         return MIRROR_SIDE;
@@ -61,7 +61,7 @@ fn specular_side(pair: u32) -> u32 {
     (SPECULAR_SIDE as f32 * 0.75_f32.powf(pair as f32 - 1.0)).ceil() as u32 + 1
 }
 
-/// The samples of every pair of specular levels: ibl/lobe.glsl.
+/// The samples of every pair of specular levels: ibl/sampling/lobe.glsl.
 pub(crate) struct Lobes<'a> {
     /// A buffer for each pair. That of the mirror stays empty.
     pub(crate) buffers: Vec<Arc<Buffer>>,
@@ -87,7 +87,7 @@ pub(crate) struct Passes<'a> {
     pub(crate) gpu: &'a Arc<Gpu>,
     pub(crate) layouts: &'a Arc<SetLayouts>,
     pub(crate) set: &'a PipelineSet,
-    /// `cube` lists them, all other passes read the list: ibl/small_lights.glsl.
+    /// `cube` lists them, all other passes read the list: ibl/small_lights/list.glsl.
     pub(crate) small_lights: &'a Arc<Buffer>,
 }
 
@@ -230,7 +230,7 @@ impl Passes<'_> {
             transfer::fill_from(encoder, texels, to);
             Ok(())
         })?;
-        // The first word of a buffer, `wrong` in ibl/lobe.glsl. The mirror has no lobe.
+        // The first word of a buffer, `wrong` in ibl/sampling/lobe.glsl. The mirror has no lobe.
         let flags: Vec<_> = lobes.buffers.iter().skip(1).map(|buffer| (buffer, 4)).collect();
         Ok(transfer::read(self.gpu, &[], &flags)?.iter().any(|byte| *byte != 0))
     }

@@ -85,7 +85,7 @@ fn center(texel: isize, side: isize) -> f32 {
     (texel as f32 + 0.5) * 2.0 / side as f32 - 1.0
 }
 
-/// `cube_position` of shaders/ibl/cube_map.glsl.
+/// `cube_position` of shaders/ibl/maps/cube_map.glsl.
 fn direction(face: usize, st: Vec2) -> Vec3 {
     match face {
         0 => Vec3::new(1.0, -st.y, -st.x),

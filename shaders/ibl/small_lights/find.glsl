@@ -1,10 +1,10 @@
 // The list of small lights, for the stages that make it.
-#ifndef IBL_FIND_SMALL_LIGHTS_GLSL
-#define IBL_FIND_SMALL_LIGHTS_GLSL
+#ifndef IBL_SMALL_LIGHTS_FIND_GLSL
+#define IBL_SMALL_LIGHTS_FIND_GLSL
 
 #include "interface.glsl"
 #include "common/math.glsl"
-#include "ibl/small_lights.glsl"
+#include "ibl/small_lights/list.glsl"
 
 layout(set = SET_TASK, binding = BINDING_RESULTS, scalar) buffer Results { SmallLightList found; };
 

@@ -1,7 +1,7 @@
 // Geometry of a cube map: faces +X -X +Y -Y +Z -Z, each spanning -1..1 (Vulkan 1.3, table "Cube map face and coordinate
 // selection").
-#ifndef IBL_CUBE_MAP_GLSL
-#define IBL_CUBE_MAP_GLSL
+#ifndef IBL_MAPS_CUBE_MAP_GLSL
+#define IBL_MAPS_CUBE_MAP_GLSL
 
 // A point on a face. st runs right and down as seen from inside. Not unit: the largest component is 1, which is all
 // that a cube lookup needs.

@@ -2,8 +2,8 @@
 // level whose texels match the sample's solid angle. Together the samples cover the lobe without gaps, so there is no
 // noise and there are no fireflies. All texels use the same samples around their axis; on a software device,
 // recomputing them is faster than a table in shared memory.
-#ifndef IBL_FILTER_GLSL
-#define IBL_FILTER_GLSL
+#ifndef IBL_SAMPLING_FILTER_GLSL
+#define IBL_SAMPLING_FILTER_GLSL
 
 #include "interface.glsl"
 #include "common/math.glsl"

@@ -1,12 +1,12 @@
 // Directional albedo of the lobes: tables over NoV and roughness, which ibl/*.comp bake with the functions that lamps
 // use. So an edit of D, V, F or the diffuse model reaches light from all directions too, as soon as the tables follow.
-#ifndef BRDF_ENERGY_GLSL
-#define BRDF_ENERGY_GLSL
+#ifndef BRDF_ENERGY_ALBEDO_GLSL
+#define BRDF_ENERGY_ALBEDO_GLSL
 
 #include "interface.glsl"
-#include "brdf/dfg.glsl"
-#include "brdf/dfg_table.glsl"
 #include "brdf/diffuse.glsl"
+#include "brdf/energy/dfg.glsl"
+#include "brdf/energy/dfg_table.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"

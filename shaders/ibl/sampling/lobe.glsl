@@ -1,12 +1,13 @@
 // The directions in which the prefilter samples the two lobes of a pair of levels, 2 pair - 1 and 2 pair, whose maps have
-// the same size (ibl/levels.glsl): ibl/lobe.comp chooses them for the selected models, ibl/prefilter.comp reads them.
-#ifndef IBL_LOBE_GLSL
-#define IBL_LOBE_GLSL
+// the same size (ibl/maps/levels.glsl). ibl/lobe.comp chooses them for the selected models; ibl/prefilter.comp reads
+// them.
+#ifndef IBL_SAMPLING_LOBE_GLSL
+#define IBL_SAMPLING_LOBE_GLSL
 
 #include "interface.glsl"
 #include "brdf/surface.glsl"
-#include "ibl/levels.glsl"
-#include "ibl/lobe_weight.glsl"
+#include "ibl/maps/levels.glsl"
+#include "ibl/sampling/lobe_weight.glsl"
 
 const uint LARGEST_LOBE = 512u;
 

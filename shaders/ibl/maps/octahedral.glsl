@@ -2,8 +2,8 @@
 // corners (Engelhardt & Dachsbacher 2008; Cigolle et al. 2014, "A Survey of Efficient Representations for Independent
 // Unit Vectors"). A lookup reads a plain image, without choosing a face first, and all levels of roughness fit into one image
 // with any sizes.
-#ifndef IBL_OCTAHEDRAL_GLSL
-#define IBL_OCTAHEDRAL_GLSL
+#ifndef IBL_MAPS_OCTAHEDRAL_GLSL
+#define IBL_MAPS_OCTAHEDRAL_GLSL
 
 #include "interface.glsl"
 

@@ -1,9 +1,9 @@
 // Light that leaves the surface after more than one reflection between its facets. F D V has only the first reflection,
 // so without this term a rough white metal loses about half of the light.
-#ifndef BRDF_MULTISCATTER_GLSL
-#define BRDF_MULTISCATTER_GLSL
+#ifndef BRDF_ENERGY_MULTISCATTER_GLSL
+#define BRDF_ENERGY_MULTISCATTER_GLSL
 
-#include "brdf/energy.glsl"
+#include "brdf/energy/albedo.glsl"
 #include "brdf/models.glsl"
 #include "brdf/reflectance.glsl"
 #include "brdf/surface.glsl"

@@ -2,8 +2,8 @@
 //
 // f_sheen is the whole lobe of white sheen. Lamps, the albedo table (ibl/sheen_albedo.comp) and the prefiltered
 // environment (ibl/prefilter_sheen.comp) all call it, so an edit here reaches every light.
-#ifndef BRDF_SHEEN_GLSL
-#define BRDF_SHEEN_GLSL
+#ifndef BRDF_LAYERS_SHEEN_GLSL
+#define BRDF_LAYERS_SHEEN_GLSL
 
 #include "interface.glsl"
 #include "common/math.glsl"

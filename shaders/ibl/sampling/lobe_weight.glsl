@@ -1,6 +1,6 @@
 // The weight of the split sum's first factor, the mean radiance of a lobe.
-#ifndef IBL_LOBE_WEIGHT_GLSL
-#define IBL_LOBE_WEIGHT_GLSL
+#ifndef IBL_SAMPLING_LOBE_WEIGHT_GLSL
+#define IBL_SAMPLING_LOBE_WEIGHT_GLSL
 
 #include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"

@@ -1,9 +1,9 @@
 // Maps roughness to the prefiltered levels and each level to its place, for both the bake and the lookup.
-#ifndef IBL_LEVELS_GLSL
-#define IBL_LEVELS_GLSL
+#ifndef IBL_MAPS_LEVELS_GLSL
+#define IBL_MAPS_LEVELS_GLSL
 
 #include "interface.glsl"
-#include "ibl/octahedral.glsl"
+#include "ibl/maps/octahedral.glsl"
 
 // The specular lobe. Level 0 is a mirror, and level SPECULAR_LEVELS has roughness 1. Each level is 2^(1/4) times as rough
 // as the one before.

@@ -1,8 +1,8 @@
 // Radiance in 32 bits a texel: E5B9G9R9, three mantissas of 9 bits with one exponent (Vulkan 1.3, section "RGB to shared
 // exponent"). A channel is off by at most 1/511 of the largest. Shaders cannot write this format, so a task writes words to a
 // buffer, which is then copied to the image.
-#ifndef IBL_SHARED_EXPONENT_GLSL
-#define IBL_SHARED_EXPONENT_GLSL
+#ifndef IBL_MAPS_SHARED_EXPONENT_GLSL
+#define IBL_MAPS_SHARED_EXPONENT_GLSL
 
 #include "interface.glsl"
 #include "common/math.glsl"

@@ -1,9 +1,10 @@
-// Lookups in the DFG table that depend on the selected D and V alone. brdf/energy.glsl adds those that depend on F.
-#ifndef BRDF_DFG_TABLE_GLSL
-#define BRDF_DFG_TABLE_GLSL
+// Lookups in the DFG table that depend on the selected D and V alone. Those that depend on F are in
+// brdf/energy/albedo.glsl.
+#ifndef BRDF_ENERGY_DFG_TABLE_GLSL
+#define BRDF_ENERGY_DFG_TABLE_GLSL
 
 #include "interface.glsl"
-#include "brdf/dfg.glsl"
+#include "brdf/energy/dfg.glsl"
 
 layout(set = SET_FRAME, binding = BINDING_DFG) uniform sampler2D dfg_table;
 

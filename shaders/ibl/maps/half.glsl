@@ -1,6 +1,6 @@
 // Rounding to half floats.
-#ifndef IBL_HALF_GLSL
-#define IBL_HALF_GLSL
+#ifndef IBL_MAPS_HALF_GLSL
+#define IBL_MAPS_HALF_GLSL
 
 const float LARGEST_HALF = 65504.0;
 

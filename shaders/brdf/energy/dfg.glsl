@@ -1,5 +1,5 @@
 // The moments of the specular lobe that lighting needs, for one direction or as a mean over directions. ibl/dfg.comp
-// integrates them with the D, V and F that lamps use; brdf/energy.glsl looks them up.
+// integrates them with the D, V and F that lamps use; brdf/energy/albedo.glsl looks them up.
 //
 // With c = VoH and integrals over all l, the lobe's albedo towards v is the integral of F(c) D V NoL dl. It splits in
 // two ways:
@@ -8,8 +8,8 @@
 //                  a D V NoL, and B that of b D V NoL. Exact for any f_schlick that is linear in f0 and f90.
 //   any other F    known at five cosines c_j and interpolated between them: the albedo is the sum of F(c_j) W_j, with
 //                  W_j the integral of L_j(c) D V NoL, and L_j the interpolating functions below.
-#ifndef BRDF_DFG_GLSL
-#define BRDF_DFG_GLSL
+#ifndef BRDF_ENERGY_DFG_GLSL
+#define BRDF_ENERGY_DFG_GLSL
 
 struct Dfg {
     float a;                   // A

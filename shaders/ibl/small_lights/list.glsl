@@ -7,8 +7,8 @@
 // Where FEATURE_SUN is set, the brightest of these sources, if it is as small as a sun, is not in the list: the prefiltered
 // levels leave it out, and lighting/environment.glsl adds it at each lookup. For a sun, a level would need texels much smaller
 // than its lobe.
-#ifndef IBL_SMALL_LIGHTS_GLSL
-#define IBL_SMALL_LIGHTS_GLSL
+#ifndef IBL_SMALL_LIGHTS_LIST_GLSL
+#define IBL_SMALL_LIGHTS_LIST_GLSL
 
 #include "interface.glsl"
 

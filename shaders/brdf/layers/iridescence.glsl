@@ -1,7 +1,7 @@
 // Thin-film interference, as on soap or oil: reflections from the film's two faces interfere, so the color depends on
 // the angle. The result replaces F (KHR_materials_iridescence, after Belcour & Barla 2017).
-#ifndef BRDF_IRIDESCENCE_GLSL
-#define BRDF_IRIDESCENCE_GLSL
+#ifndef BRDF_LAYERS_IRIDESCENCE_GLSL
+#define BRDF_LAYERS_IRIDESCENCE_GLSL
 
 #include "brdf/fresnel.glsl"
 #include "common/math.glsl"

@@ -1,8 +1,8 @@
 // Transmission through the surface: l and v are on opposite sides.
-#ifndef BRDF_TRANSMISSION_GLSL
-#define BRDF_TRANSMISSION_GLSL
+#ifndef BRDF_LAYERS_TRANSMISSION_GLSL
+#define BRDF_LAYERS_TRANSMISSION_GLSL
 
-#include "brdf/energy.glsl"
+#include "brdf/energy/albedo.glsl"
 #include "brdf/models.glsl"
 #include "brdf/ndf.glsl"
 #include "brdf/surface.glsl"
