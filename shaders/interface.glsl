@@ -157,6 +157,8 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     vec4 background;                   // Linear RGB behind the model, and its alpha.
     vec3 scene_center_ws;              // Center of the model's bounds, world space.
     float scene_radius;                // Radius of the model's bounds, meters.
+    vec3 scene_min_ws;                 // Smallest corner of the model's bounds, world space.
+    vec3 scene_max_ws;                 // Largest corner of the model's bounds, world space.
     vec2 viewport_px;                  // Width and height of the picture, pixels.
     vec2 viewport_origin_px;           // Upper left corner of the picture in the output image, pixels.
     float near;                        // Near plane distance, meters.

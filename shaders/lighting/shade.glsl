@@ -10,6 +10,7 @@
 #include "lighting/lobes.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/rectangle.glsl"
+#include "lighting/shadow.glsl"
 #include "lighting/transmission.glsl"
 
 // Radiance towards the eye, by source.
@@ -64,7 +65,8 @@ Lit shade(Surface s, vec3 v, LightRange range) {
         // For BRDF terms a rectangle counts as a point light at its center.
         bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && light.kind == LIGHT_RECT;
         if (has_size) {
-            add(lit.area, rectangle_light(s, v, albedo, light), vec3(1.0));
+            vec3 to_center = safe_normalize(light.position_ws.xyz - s.position_ws, s.n);
+            add(lit.area, rectangle_light(s, v, albedo, light), vec3(shadow_visibility(i, s.position_ws, s.n, to_center)));
             continue;
         }
         // L = f E |NoL|, with E the irradiance on a plane perpendicular to l. Below the horizon f is 0, unless the surface
@@ -75,7 +77,8 @@ Lit shade(Surface s, vec3 v, LightRange range) {
         lit.last = evaluate_brdf(s, illumination.l, v);
         Lobes lobes = lobes_of(lit.last);
         add(lit.lobes, lobes, vec3(1.0));
-        add(lit.punctual, lobes, illumination.irradiance * abs(n_dot_l));
+        float visible = shadow_visibility(i, s.position_ws, s.n, illumination.l);
+        add(lit.punctual, lobes, illumination.irradiance * (abs(n_dot_l) * visible));
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {
         cross_volume(s, lit.punctual);

@@ -149,6 +149,8 @@ impl FrameState {
             background: settings.view.background_linear().unwrap_or_default(),
             scene_center_ws: bounds.center().to_array(),
             scene_radius: bounds.radius(),
+            scene_min_ws: bounds.min.to_array(),
+            scene_max_ws: bounds.max.to_array(),
             viewport_px: [size.0 as f32, size.1 as f32],
             near: camera.near,
             far: camera.far,

@@ -110,6 +110,10 @@ blocks! {
         scene_center_ws: vec3,
         /// Radius of the model's bounds, meters.
         scene_radius: float,
+        /// Smallest corner of the model's bounds, world space.
+        scene_min_ws: vec3,
+        /// Largest corner of the model's bounds, world space.
+        scene_max_ws: vec3,
         /// Width and height of the picture, pixels.
         viewport_px: vec2,
         /// Upper left corner of the picture in the output image, pixels.

@@ -1,0 +1,24 @@
+//@pass shadow_map "Shadow map" draw=model instances=lights size=2048x2048 format=r32f when=SHADOWS doc="Depth of what is nearest to each light; a tile for each"
+#version 460
+#include "interface.glsl"
+#include "common/fragment.glsl"
+#include "common/math.glsl"
+#include "material.glsl"
+#include "user.glsl"
+
+layout(location = 0) in Fragment fragment;
+layout(location = 7) in vec3 tile;
+layout(location = 0) out vec4 color;
+
+void main() {
+    // Light passes through what is transparent.
+    if (ALPHA_MODE == ALPHA_BLEND || (FEATURES & FEATURE_TRANSMISSION) != 0u) discard;
+    if (ALPHA_MODE == ALPHA_MASK) {
+        Surface surface = make_surface(fragment, safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0)));
+        user_surface(surface);
+        if (surface.coverage < material.alpha_cutoff) discard;
+    }
+    // A light inside the model sees parts of it beyond its tile.
+    if (any(greaterThan(abs(tile.xy), vec2(1.0)))) discard;
+    color = vec4(tile.z, 0.0, 0.0, 1.0);
+}

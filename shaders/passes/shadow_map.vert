@@ -1,0 +1,33 @@
+#version 460
+#include "interface.glsl"
+#include "common/fragment.glsl"
+#include "common/math.glsl"
+#include "lighting/shadow_view.glsl"
+#include "user/vertex.glsl"
+
+// The model as each light sees it, in the light's tile. Instance i belongs to light i.
+
+layout(location = 0) out Fragment fragment;
+layout(location = 7) out vec3 tile;  // xy: position in the tile, -1..1; z: depth, linear
+
+void main() {
+    Vertex vertex = draw.vertices.at[gl_VertexIndex];
+    user_vertex(vertex);
+    fragment.position_ws = draw.world_from_object * vec4(vertex.position, 1.0);
+    fragment.to_eye_ws = frame.eye_ws - fragment.position_ws;
+    fragment.normal_ws = safe_normalize(draw.normal_ws_from_object * vertex.normal, vec3(0.0));
+    fragment.tangent_ws = vertex.tangent;
+    fragment.uv0 = vertex.uv0;
+    fragment.uv1 = (FEATURES & FEATURE_UV1) != 0u ? vertex.uv1 : vertex.uv0;
+    fragment.color = (FEATURES & FEATURE_VERTEX_COLOR) != 0u ? vertex.color : vec4(1.0);
+
+    uint light = uint(gl_InstanceIndex);
+    ShadowPoint point = shadow_point(lights[light], fragment.position_ws);
+    float size = 1.0 / float(shadow_tiles());
+    vec2 center = 2.0 * shadow_tile(light) + size - 1.0;
+    tile = vec3(point.clip.xy / point.clip.w, point.depth);
+    gl_Position = vec4(point.clip.xy * size + point.clip.w * center, point.clip.zw);
+    gl_PointSize = 1.0;
+    // No tile: behind the far plane.
+    if (light >= MAX_SHADOWS) gl_Position = vec4(0.0, 0.0, -1.0, 1.0);
+}
