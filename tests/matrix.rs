@@ -12,7 +12,27 @@ use support::{Session, assert_validated, glb, load, ready, settings};
 const METAL: f64 = 1.0;
 const DIELECTRIC: f64 = 0.0;
 
-/// A choice, on the material that shows it, and an edit of its function.
+/// Each choice, the material that shows it with the roughness of the fixed part, and an edit of its function: the file
+/// in `brdf/`, a part of its text, and the replacement.
+const TABLE: &str = "\
+NDF=GGX | metal 0.4 | ndf | return a2 / (PI | return 0.5 * a2 / (PI
+NDF=GGX | metal 0.3 | ndf | float a2 = alpha * alpha; | float a2 = alpha;
+NDF=Beckmann | metal 0.5 | ndf | return exp(-dot(slope | return 0.5 * exp(-dot(slope
+MASKING_SHADOWING=HeightCorrelated | metal 0.8 | visibility | return 0.5 / (n_dot_v | return 0.25 / (n_dot_v
+MASKING_SHADOWING=Separable | metal 0.8 | visibility | return 1.0 / ((n_dot_l | return 0.5 / ((n_dot_l
+MASKING_SHADOWING=Schlick | metal 0.8 | visibility | return 0.25 / ((n_dot_l | return 0.125 / ((n_dot_l
+FRESNEL_METAL=Schlick | metal 0.3 | fresnel | return f0 + (f90 - f0) * | return 0.5 * f0 + 0.5 * (f90 - f0) *
+FRESNEL_METAL=Conductor | metal 0.4 | fresnel | return saturate(0.5 * f_s | return saturate(0.25 * f_s
+FRESNEL_METAL=F82 | metal 0.4 | fresnel | return saturate(f_schlick(f0 | return 0.5 * saturate(f_schlick(f0
+FRESNEL_DIELECTRIC=Schlick | dielectric 0.3 | fresnel | (f90 - f0) * pow5(1.0 - c); | (f90 - f0) * (1.0 - c);
+FRESNEL_DIELECTRIC=Exact | dielectric 0.3 | fresnel | return 0.5 * root_s | return root_s
+DIFFUSE=Lambert | dielectric 0.5 | diffuse | return albedo / PI; } | return 0.5 * albedo / PI; }
+DIFFUSE=Burley | dielectric 1.0 | diffuse | return (1.0 + rise * pow5 | return 0.5 * (1.0 + rise * pow5
+DIFFUSE=RenormalizedBurley | dielectric 1.0 | diffuse | return scale * (1.0 + rise | return 0.5 * scale * (1.0 + rise
+DIFFUSE=OrenNayar | dielectric 1.0 | diffuse | return (single + multi) / PI; | return 0.5 * (single + multi) / PI;
+DIFFUSE=CallOfDuty | dielectric 1.0 | diffuse | return (lobe + bump) / PI; | return 0.5 * (lobe + bump) / PI;";
+
+/// A line of the table.
 struct Row {
     choice: &'static str,
     metallic: f64,
@@ -23,71 +43,15 @@ struct Row {
     to: &'static str,
 }
 
-const fn row(
-    choice: &'static str,
-    (metallic, roughness): (f64, f64),
-    file: &'static str,
-    from: &'static str,
-    to: &'static str,
-) -> Row {
-    Row { choice, metallic, roughness, file, from, to }
+impl Row {
+    fn parse(line: &'static str) -> Self {
+        let cells: Vec<&str> = line.split(" | ").collect();
+        let [choice, material, file, from, to] = cells[..] else { panic!("five cells, not `{line}`") };
+        let (material, roughness) = material.split_once(' ').unwrap();
+        let metallic = if material == "metal" { METAL } else { DIELECTRIC };
+        Self { choice, metallic, roughness: roughness.parse().unwrap(), file, from, to }
+    }
 }
-
-const ROWS: [Row; 16] = [
-    row(
-        "NDF=GGX",
-        (METAL, 0.4),
-        "ndf",
-        "return a2 / (PI * spread * spread);",
-        "return 0.5 * a2 / (PI * spread * spread);",
-    ),
-    row("NDF=GGX", (METAL, 0.3), "ndf", "float a2 = alpha * alpha;", "float a2 = alpha;"),
-    row("NDF=Beckmann", (METAL, 0.5), "ndf", "return exp(-dot(slope", "return 0.5 * exp(-dot(slope"),
-    row(
-        "MASKING_SHADOWING=HeightCorrelated",
-        (METAL, 0.8),
-        "visibility",
-        "return 0.5 / (n_dot_v",
-        "return 0.25 / (n_dot_v",
-    ),
-    row("MASKING_SHADOWING=Separable", (METAL, 0.8), "visibility", "return 1.0 / ((n_dot_l", "return 0.5 / ((n_dot_l"),
-    row("MASKING_SHADOWING=Schlick", (METAL, 0.8), "visibility", "return 0.25 / ((n_dot_l", "return 0.125 / ((n_dot_l"),
-    row("FRESNEL_METAL=Schlick", (METAL, 0.3), "fresnel", SCHLICK, "return 0.5 * (f0 + (f90 - f0) * pow5(1.0 - c)); }"),
-    row("FRESNEL_METAL=Conductor", (METAL, 0.4), "fresnel", "return saturate(0.5 * f_s", "return saturate(0.25 * f_s"),
-    row(
-        "FRESNEL_METAL=F82",
-        (METAL, 0.4),
-        "fresnel",
-        "return saturate(f_schlick(f0",
-        "return 0.5 * saturate(f_schlick(f0",
-    ),
-    row("FRESNEL_DIELECTRIC=Schlick", (DIELECTRIC, 0.3), "fresnel", SCHLICK, "return f0 + (f90 - f0) * (1.0 - c); }"),
-    row("FRESNEL_DIELECTRIC=Exact", (DIELECTRIC, 0.3), "fresnel", "return 0.5 * root_s", "return root_s"),
-    row("DIFFUSE=Lambert", (DIELECTRIC, 0.5), "diffuse", "return albedo / PI; }", "return 0.5 * albedo / PI; }"),
-    row("DIFFUSE=Burley", (DIELECTRIC, 1.0), "diffuse", "return (1.0 + rise * pow5", "return 0.5 * (1.0 + rise * pow5"),
-    row(
-        "DIFFUSE=RenormalizedBurley",
-        (DIELECTRIC, 1.0),
-        "diffuse",
-        "return scale * (1.0 + rise",
-        "return 0.5 * scale * (1.0 + rise",
-    ),
-    row(
-        "DIFFUSE=OrenNayar",
-        (DIELECTRIC, 1.0),
-        "diffuse",
-        "return (single + multi) / PI;",
-        "return 0.5 * (single + multi) / PI;",
-    ),
-    row(
-        "DIFFUSE=CallOfDuty",
-        (DIELECTRIC, 1.0),
-        "diffuse",
-        "return (lobe + bump) / PI;",
-        "return 0.5 * (lobe + bump) / PI;",
-    ),
-];
-const SCHLICK: &str = "return f0 + (f90 - f0) * pow5(1.0 - c); }";
 
 /// Side of the squares in which light is compared, pixels: the noise of the paths is small in their sums.
 const SQUARE: usize = 8;
@@ -170,9 +134,10 @@ fn every_choice_and_every_edit_reaches_the_environment() {
         let all = ["studio", "sky", "furnace"].map(|name| [0.2, 0.5, 1.0].map(|r| (name, r)));
         all.into_iter().flatten().collect()
     };
-    let unedited: Vec<_> = ROWS.iter().map(|row| row.light(&mut session, &places_of(row))).collect();
+    let rows: Vec<Row> = TABLE.lines().map(Row::parse).collect();
+    let unedited: Vec<_> = rows.iter().map(|row| row.light(&mut session, &places_of(row))).collect();
     let mut edited: Option<(String, String)> = None;
-    for (row, before) in ROWS.iter().zip(unedited) {
+    for (row, before) in rows.iter().zip(unedited) {
         // One reload takes the last edit back and makes the next.
         if let Some((file, text)) = edited.take() {
             session.tree.write(&file, &text);

@@ -8,6 +8,7 @@ mod window {
     mod faults;
     mod losses;
     mod panels;
+    mod passes;
     mod pictures;
 }
 

@@ -53,9 +53,13 @@ impl Playback {
         self.clock.time_s
     }
 
-    /// The clock of the next frame. It reads 0 while nothing is animated, so that a still picture need not be redrawn.
+    /// The time of the next frame. While nothing is animated, the time stands still and the frame gets the clock of the
+    /// start, so that a still picture need not be redrawn.
     pub(super) fn next(&mut self, is_animated: bool) -> Clock {
-        let now = Instant::now();
+        self.next_at(is_animated, Instant::now())
+    }
+
+    fn next_at(&mut self, is_animated: bool, now: Instant) -> Clock {
         let before = self.last.replace(now);
         let step = std::mem::take(&mut self.step);
         if !is_animated || (self.paused && !step) {
@@ -63,9 +67,12 @@ impl Playback {
             // An unchanged clock gives the same picture, which is not drawn again.
             return if is_animated { self.clock } else { Clock::default() };
         }
-        // No time passes before the first frame, nor during a pause.
-        let passed = before.map_or(0.0, |before| (now - before).as_secs_f32() * self.speed);
-        self.clock.delta_s = if step { STEP_S } else { passed };
+        self.clock.delta_s = match before {
+            _ if step => STEP_S,
+            Some(before) => (now - before).as_secs_f32() * self.speed,
+            // The time begins to run, so none has passed: this is the last frame again.
+            None => return self.clock,
+        };
         self.clock.time_s += self.clock.delta_s;
         self.clock.frame_index = self.clock.frame_index.wrapping_add(1);
         self.clock
@@ -86,5 +93,127 @@ impl Playback {
     pub(super) fn release(&mut self) {
         let mouse = &mut self.clock.mouse_px;
         mouse[2] = -mouse[2].abs();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    /// A playback whose frames are a quarter of a second apart, which floats hold exactly.
+    struct Frames {
+        playback: Playback,
+        now: Instant,
+    }
+
+    impl Frames {
+        fn new() -> Self {
+            Self { playback: Playback::default(), now: Instant::now() }
+        }
+
+        fn next(&mut self, is_animated: bool) -> Clock {
+            self.now += Duration::from_millis(250);
+            self.playback.next_at(is_animated, self.now)
+        }
+
+        /// Time and index of the next frame of an animated picture.
+        fn animated(&mut self) -> (f32, u32) {
+            let clock = self.next(true);
+            (clock.time_s, clock.frame_index)
+        }
+    }
+
+    #[test]
+    fn the_first_frame_has_index_0_at_0_s() {
+        let mut frames = Frames::new();
+        assert_eq!(frames.next(true), Clock::default());
+        assert_eq!(frames.animated(), (0.25, 1));
+        let third = frames.next(true);
+        assert_eq!((third.time_s, third.delta_s, third.frame_index), (0.5, 0.25, 2));
+    }
+
+    #[test]
+    fn a_pause_keeps_the_time_and_does_not_count_when_it_ends() {
+        let mut frames = Frames::new();
+        frames.animated();
+        let last = frames.next(true);
+        frames.playback.paused = true;
+        assert!(!frames.playback.runs());
+        for _ in 0..10 {
+            assert_eq!(frames.next(true), last, "the same clock, so the picture is not drawn again");
+        }
+        frames.playback.paused = false;
+        assert_eq!(frames.next(true), last);
+        assert_eq!(frames.animated(), (0.5, 2));
+    }
+
+    #[test]
+    fn a_step_goes_on_by_one_sixtieth_and_pauses() {
+        let mut frames = Frames::new();
+        frames.animated();
+        frames.playback.speed = 4.0;
+        frames.playback.step();
+        assert!(frames.playback.runs(), "the step is still to be drawn");
+        let stepped = frames.next(true);
+        assert_eq!((stepped.time_s, stepped.delta_s, stepped.frame_index), (STEP_S, STEP_S, 1));
+        assert!(frames.playback.paused && !frames.playback.runs());
+        assert_eq!(frames.next(true), stepped);
+        frames.playback.step();
+        assert_eq!(frames.animated(), (2.0 * STEP_S, 2));
+    }
+
+    #[test]
+    fn a_restart_begins_at_the_first_frame_once_and_keeps_the_mouse() {
+        for paused in [false, true] {
+            let mut frames = Frames::new();
+            frames.playback.press([3.0, 4.0]);
+            frames.animated();
+            frames.animated();
+            frames.playback.paused = paused;
+            frames.playback.restart();
+            let first = Clock { mouse_px: [3.0, 4.0, 3.0, 4.0], ..Clock::default() };
+            assert_eq!(frames.next(true), first);
+            assert!(frames.playback.take_restart(), "passes begin again");
+            assert!(!frames.playback.take_restart(), "they begin again once");
+            assert_eq!(frames.animated().0, if paused { 0.0 } else { 0.25 });
+        }
+    }
+
+    #[test]
+    fn the_speed_scales_the_time_from_the_next_frame_on() {
+        let mut frames = Frames::new();
+        frames.animated();
+        frames.animated();
+        frames.playback.speed = 2.0;
+        assert_eq!(frames.animated(), (0.75, 2));
+        frames.playback.speed = 0.0;
+        assert_eq!(frames.animated(), (0.75, 3));
+    }
+
+    /// A reload may take the animation away and bring it back.
+    #[test]
+    fn time_without_an_animation_does_not_count() {
+        for paused in [false, true] {
+            let mut frames = Frames::new();
+            frames.animated();
+            let last = frames.next(true);
+            frames.playback.paused = paused;
+            assert_eq!(frames.next(false), Clock::default(), "a still picture has one clock");
+            assert_eq!(frames.next(false), Clock::default());
+            assert_eq!(frames.next(true), last);
+            assert_eq!(frames.animated().0, if paused { 0.25 } else { 0.5 });
+        }
+    }
+
+    #[test]
+    fn the_mouse_keeps_where_it_was_pressed() {
+        let mut frames = Frames::new();
+        frames.playback.press([1.0, 2.0]);
+        frames.playback.drag([5.0, 6.0]);
+        assert_eq!(frames.next(true).mouse_px, [5.0, 6.0, 1.0, 2.0]);
+        frames.playback.release();
+        assert_eq!(frames.next(true).mouse_px, [5.0, 6.0, -1.0, 2.0], "not down");
     }
 }

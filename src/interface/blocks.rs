@@ -41,7 +41,7 @@ pub fn block(name: &str) -> Option<&'static Block> {
 }
 
 /// GLSL's types as Rust writes them in scalar layout. Matrices are arrays of columns.
-#[allow(non_camel_case_types)]
+#[expect(non_camel_case_types, reason = "these are the names in GLSL")]
 mod types {
     pub type float = f32;
     pub type uint = u32;

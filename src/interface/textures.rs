@@ -14,7 +14,7 @@ pub struct Texture {
 macro_rules! textures {
     ($(#[doc = $doc:literal] $name:ident, $binding:literal;)+) => {
         // Counts the textures in the order of their declaration.
-        #[allow(non_camel_case_types)]
+        #[expect(non_camel_case_types, reason = "the variants are named like the constants that they number")]
         enum Index { $($name,)+ }
 
         $(

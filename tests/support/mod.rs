@@ -1,8 +1,7 @@
 //! Shared by the integration tests: one device and compiler per test binary, shader trees that can be edited, models
 //! made in code, and the program as a child process.
 
-// Every test binary has its own copy of this module and uses a part of it.
-#![allow(dead_code)]
+#![expect(dead_code, reason = "every test binary has its own copy of this module and uses a part of it")]
 
 pub mod glb;
 pub mod hdr;

@@ -60,15 +60,38 @@ pub(super) fn find(function: &Function, constants: &HashMap<Id, u32>, extended: 
     let rounds: Vec<Option<u64>> = loops
         .iter()
         .map(|(of, continues)| {
-            let inner: HashSet<usize> = loops
+            let inner = loops
                 .iter()
                 .filter(|(other, _)| other.header != of.header && of.members.contains(&other.header))
                 .flat_map(|(other, _)| other.members.iter().copied())
                 .collect();
-            values.rounds(of, *continues, &inner, &next)
+            values.rounds(&Rounds { of, continues: *continues, inner, next: &next })
         })
         .collect();
     loops.into_iter().zip(rounds).map(|((found, _), rounds)| Loop { rounds, ..found }).collect()
+}
+
+/// The ways through one round of a loop.
+struct Rounds<'a, F> {
+    of: &'a Loop,
+    /// The block that leads back to the header.
+    continues: usize,
+    /// The blocks of the loops inside it.
+    inner: HashSet<usize>,
+    /// The successors of a block.
+    next: &'a F,
+}
+
+impl<N: Iterator<Item = usize>, F: Fn(usize) -> N> Rounds<'_, F> {
+    /// Whether every round passes a block: without it, the continue block cannot be reached.
+    fn pass(&self, block: usize) -> bool {
+        let (mut seen, mut open) = (HashSet::from_iter([self.of.header]), vec![self.of.header]);
+        while let Some(index) = open.pop().filter(|_| block != self.continues) {
+            let ways = (self.next)(index).filter(|to| *to != block && *to != self.of.merge && seen.insert(*to));
+            open.extend(ways.collect::<Vec<_>>());
+        }
+        !seen.contains(&self.continues)
+    }
 }
 
 /// A store to a variable: its block, its place there, and the stored value.
@@ -120,16 +143,11 @@ impl<'a> Values<'a> {
         Self { function, constants, extended, made_by, stores }
     }
 
-    /// The largest number of rounds of a loop. `inner` are the blocks of the loops inside it.
-    fn rounds<N: Iterator<Item = usize>>(
-        &self,
-        of: &Loop,
-        continues: usize,
-        inner: &HashSet<usize>,
-        next: &impl Fn(usize) -> N,
-    ) -> Option<u64> {
+    /// The largest number of rounds of a loop.
+    fn rounds<N: Iterator<Item = usize>>(&self, rounds: &Rounds<'_, impl Fn(usize) -> N>) -> Option<u64> {
+        let of = rounds.of;
         // The loop goes on only if the condition in the block behind the header holds.
-        let mut test = next(of.header).next()?;
+        let mut test = (rounds.next)(of.header).next()?;
         // `a && b` is a selection around b.
         while let (Some(end), None) = self.function.blocks[test].structure() {
             test = (0..self.function.blocks.len()).find(|at| self.function.blocks[*at].label == end)?;
@@ -148,7 +166,7 @@ impl<'a> Values<'a> {
         let limits = conditions.into_iter().filter_map(|condition| {
             let mut variables = HashSet::new();
             self.variables(condition, of, DEPTH, &mut variables);
-            variables.into_iter().filter_map(|v| self.counted(v, condition, on, of, continues, inner, next)).min()
+            variables.into_iter().filter_map(|v| self.counted(v, condition, on, rounds)).min()
         });
         limits.min().filter(|rounds| *rounds <= MOST)
     }
@@ -185,30 +203,18 @@ impl<'a> Values<'a> {
     }
 
     /// The number of rounds of a loop whose condition depends on `variable`, if one store per round changes it.
-    #[allow(clippy::too_many_arguments)]
     fn counted<N: Iterator<Item = usize>>(
         &self,
         variable: Id,
         condition: Id,
         on: bool,
-        of: &Loop,
-        continues: usize,
-        inner: &HashSet<usize>,
-        next: &impl Fn(usize) -> N,
+        rounds: &Rounds<'_, impl Fn(usize) -> N>,
     ) -> Option<u64> {
+        let of = rounds.of;
         let stores = self.stores.get(&variable)?;
         let mut within = stores.iter().filter(|store| of.members.contains(&store.block));
-        let step = within.next().filter(|store| !inner.contains(&store.block))?;
-        if within.next().is_some() {
-            return None;
-        }
-        // Every round passes the store: without its block, the continue block cannot be reached.
-        let (mut seen, mut open) = (HashSet::from_iter([of.header]), vec![of.header]);
-        while let Some(index) = open.pop().filter(|_| step.block != continues) {
-            let ways = next(index).filter(|to| *to != step.block && *to != of.merge && seen.insert(*to));
-            open.extend(ways.collect::<Vec<_>>());
-        }
-        if seen.contains(&continues) {
+        let step = within.next().filter(|store| !rounds.inner.contains(&store.block))?;
+        if within.next().is_some() || !rounds.pass(step.block) {
             return None;
         }
         let first = of.before.and_then(|before| {

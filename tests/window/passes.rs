@@ -1,0 +1,51 @@
+//! Passes that the tree declares, edited while the window is open.
+
+use serde_json::{Value, json};
+
+use crate::support::Tree;
+use crate::support::window::Viewer;
+
+const PASS: &str = "passes/swap.frag";
+const TEXT: &str = "//@pass swap to=picture\n#version 460\n#include \"pass.glsl\"\nuniform sampler2D picture;\n\
+    void main() { color = texture(picture, uv).gbra; }\n";
+
+/// Waits until a good reload is on screen with all of its stages. If no stage is left for later, `settled` comes first.
+#[track_caller]
+fn shown(viewer: &mut Viewer) -> Value {
+    let (mut reload, mut settled) = (Value::Null, Value::Null);
+    viewer.running.until("reload and settled", |event| {
+        match event["event"].as_str() {
+            Some("reload") if event["ok"] == true => reload = event.clone(),
+            Some("settled") => settled = event.clone(),
+            _ => {}
+        }
+        reload.is_object() && reload["generation"] == settled["generation"]
+    });
+    reload
+}
+
+#[test]
+fn a_pass_file_comes_breaks_and_goes() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--set", "material.enabled=true"]);
+    viewer.running.event("ready");
+    let plain = viewer.screenshot();
+
+    viewer.tree.write(PASS, TEXT);
+    let reload = shown(&mut viewer);
+    assert_eq!(reload["stages"], json!([PASS]), "{reload}");
+    let swapped = viewer.screenshot();
+    assert!(swapped != plain, "the new pass does not show");
+
+    viewer.tree.write(PASS, &TEXT.replace("picture, uv", "picture, uw"));
+    let diagnostic = viewer.running.event("diagnostic");
+    assert!(diagnostic["message"].as_str().is_some_and(|message| message.contains("uw")), "{diagnostic}");
+    assert!(diagnostic["file"].as_str().is_some_and(|file| file.ends_with(PASS)), "{diagnostic}");
+    assert_eq!(diagnostic["line"], 5, "{diagnostic}");
+    viewer.running.reload(false);
+    assert!(viewer.screenshot() == swapped, "a broken edit changed the picture");
+
+    std::fs::remove_file(viewer.tree.path(PASS)).unwrap();
+    shown(&mut viewer);
+    assert!(viewer.screenshot() == plain, "the deleted pass still shows");
+    viewer.quit();
+}
