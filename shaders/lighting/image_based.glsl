@@ -13,6 +13,7 @@
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "lighting/albedo.glsl"
+#include "lighting/ambient_occlusion.glsl"
 #include "lighting/anisotropy.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/lobes.glsl"
@@ -52,23 +53,25 @@ float specular_occlusion(float n_dot_v, float occlusion, float roughness) {
 
 Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
     float n_dot_v = n_dot_v_of(s.n, v);
-    vec3 irradiance = irradiance_over_pi(s.n) * s.occlusion;
+    float visibility = s.occlusion * screen_visibility(s.position_ws);
+    vec3 irradiance = irradiance_over_pi(s.n) * visibility;
+    if (AMBIENT_OCCLUSION) irradiance *= with_bounces(visibility, s.base_color) / max(visibility, 1e-6);
 
     Lobes light = no_light();
     light.diffuse = albedo.diffuse * irradiance;
     light.multiple = albedo.multiple * irradiance;
     light.specular = albedo.specular * specular_radiance(s, v);
-    light.specular *= specular_occlusion(n_dot_v, s.occlusion, s.roughness);
+    light.specular *= specular_occlusion(n_dot_v, visibility, s.roughness);
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
         vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
         light.clearcoat = albedo.clearcoat * prefiltered_radiance(direction, s.clearcoat_roughness);
-        light.clearcoat *= specular_occlusion(n_dot_v_of(s.clearcoat_n, v), s.occlusion, s.clearcoat_roughness);
+        light.clearcoat *= specular_occlusion(n_dot_v_of(s.clearcoat_n, v), visibility, s.clearcoat_roughness);
     }
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
-        light.sheen = albedo.sheen * prefiltered_sheen(reflect(-v, s.n), s.sheen_roughness) * s.occlusion;
+        light.sheen = albedo.sheen * prefiltered_sheen(reflect(-v, s.n), s.sheen_roughness) * visibility;
     }
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
-        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n) * s.occlusion;
+        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n) * visibility;
     }
     return light;
 }

@@ -8,41 +8,56 @@
 // Lights with a tile. Others throw no shadow.
 const uint MAX_SHADOWS = 16u;
 
-// Tiles in a row of the shadow map, and rows.
-uint shadow_tiles() { return uint(ceil(sqrt(float(clamp(frame.light_count, 1u, MAX_SHADOWS))))); }
+// Side of the shadow map, pixels: the size in passes/shadow_map.frag. textureSize takes longer on a software device.
+const float SHADOW_MAP_PX = 2048.0;
 
-struct ShadowPoint {
-    vec4 clip;                 // in the light's tile: clip space, depth reversed
-    float depth;               // 1 nearest to the light .. 0 behind the model, linear in meters along the light's axis
-    float meters_per_depth;    // meters from depth 0 to depth 1
-    float tile_m;              // width of the tile at this distance, meters
+// Tiles in a row of the shadow map, and rows.
+uint shadow_tiles() {
+    uint lights = LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count;
+    return lights <= 1u ? 1u : lights <= 4u ? 2u : lights <= 9u ? 3u : 4u;
+}
+
+// How a light sees the sphere around the model: a directional light by a parallel projection, another by a perspective one
+// towards the sphere's center. A light inside the sphere sees at most 143 degrees of it: tangent = 3.
+struct ShadowView {
+    mat3 axes;                 // columns: right, up, and away from the light; world space
+    vec3 origin_ws;            // the light, or the sphere's center if parallel
+    bool is_parallel;
+    float half_width;          // of the tile: meters if parallel, otherwise at 1 m
+    float near_m;              // distance along the axis where depth is 1
+    float meters_per_depth;    // meters from depth 1 to depth 0
 };
 
-// A light sees the sphere around the model. A directional light sees it by a parallel projection, another by a
-// perspective one towards the sphere's center. A light inside the sphere sees at most 143 degrees of it: tan = 3.
-ShadowPoint shadow_point(Light light, vec3 position_ws) {
+ShadowView shadow_view(Light light) {
+    ShadowView view;
     float radius = 1.02 * frame.scene_radius;
-    vec3 offset = frame.scene_center_ws - light.position_ws.xyz;
-    float center_m = length(offset);
-    bool is_parallel = light.position_ws.w == 0.0;
-    mat3 axes = basis_around(is_parallel ? -light.position_ws.xyz : offset / max(center_m, 1e-6));
-    ShadowPoint point;
-    if (is_parallel) {
-        vec3 seen = (position_ws - frame.scene_center_ws) * axes / radius;
-        point.depth = 0.5 - 0.5 * seen.z;
-        point.clip = vec4(seen.xy, point.depth, 1.0);
-        point.meters_per_depth = point.tile_m = 2.0 * radius;
+    view.is_parallel = light.position_ws.w == 0.0;
+    if (view.is_parallel) {
+        view.axes = basis_around(-light.position_ws.xyz);
+        view.origin_ws = frame.scene_center_ws;
+        view.half_width = radius;
+        view.near_m = -radius;
+        view.meters_per_depth = 2.0 * radius;
     } else {
-        vec3 seen = (position_ws - light.position_ws.xyz) * axes;
-        float tangent = min(radius * inversesqrt(max(center_m * center_m - radius * radius, 1e-6)), 3.0);
-        float near = max(center_m - radius, 0.02 * radius);
-        point.meters_per_depth = center_m + radius - near;
-        point.depth = 1.0 - (seen.z - near) / point.meters_per_depth;
-        point.clip = vec4(seen.xy / tangent, near, seen.z);
-        point.tile_m = 2.0 * max(seen.z, 0.0) * tangent;
+        vec3 offset = frame.scene_center_ws - light.position_ws.xyz;
+        float center_m = max(length(offset), 1e-6);
+        view.axes = basis_around(offset / center_m);
+        view.origin_ws = light.position_ws.xyz;
+        view.half_width = min(radius * inversesqrt(max(center_m * center_m - radius * radius, 1e-6)), 3.0);
+        view.near_m = max(center_m - radius, 0.02 * radius);
+        view.meters_per_depth = center_m + radius - view.near_m;
     }
-    return point;
+    return view;
 }
+
+// A point in the view: right, up and away from the origin, meters.
+vec3 seen_from(ShadowView view, vec3 position_ws) { return (position_ws - view.origin_ws) * view.axes; }
+
+// Half of the tile's width at a point, meters.
+float half_width_at(ShadowView view, vec3 seen) { return view.is_parallel ? view.half_width : view.half_width * seen.z; }
+
+// Depth of a point: 1 nearest to the light .. 0 behind the model, linear in meters along the axis.
+float shadow_depth(ShadowView view, vec3 seen) { return 1.0 - (seen.z - view.near_m) / view.meters_per_depth; }
 
 // Lower left corner of the light's tile in the map, 0..1.
 vec2 shadow_tile(uint light) { return vec2(light % shadow_tiles(), light / shadow_tiles()) / float(shadow_tiles()); }

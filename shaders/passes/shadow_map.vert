@@ -22,11 +22,14 @@ void main() {
     fragment.color = (FEATURES & FEATURE_VERTEX_COLOR) != 0u ? vertex.color : vec4(1.0);
 
     uint light = uint(gl_InstanceIndex);
-    ShadowPoint point = shadow_point(lights[light], fragment.position_ws);
+    ShadowView view = shadow_view(lights[light]);
+    vec3 seen = seen_from(view, fragment.position_ws);
+    float depth = shadow_depth(view, seen);
+    tile = vec3(seen.xy / half_width_at(view, seen), depth);
+    float w = view.is_parallel ? 1.0 : seen.z;
     float size = 1.0 / float(shadow_tiles());
     vec2 center = 2.0 * shadow_tile(light) + size - 1.0;
-    tile = vec3(point.clip.xy / point.clip.w, point.depth);
-    gl_Position = vec4(point.clip.xy * size + point.clip.w * center, point.clip.zw);
+    gl_Position = vec4(seen.xy / view.half_width * size + w * center, view.is_parallel ? depth : view.near_m, w);
     gl_PointSize = 1.0;
     // No tile: behind the far plane.
     if (light >= MAX_SHADOWS) gl_Position = vec4(0.0, 0.0, -1.0, 1.0);

@@ -279,9 +279,15 @@ impl PipelineRequest {
                 false => pass_format(pass.note.format),
             },
             samples: 1,
-            specialization: self.constants.clone(),
+            specialization: self.pass_constants(),
         });
         key.into_iter().collect()
+    }
+
+    /// The specialization of declared passes that cover an image or compute.
+    pub(crate) fn pass_constants(&self) -> Specialization {
+        let shared = [(SPEC_FEATURES, self.shared_features), (SPEC_LIGHT_COUNT, self.light_count)];
+        shared.iter().chain(&self.constants).copied().collect()
     }
 
     /// The pipeline with which a declared pass draws a material of the model.

@@ -200,7 +200,7 @@ impl PipelineSet {
             Ok::<_, GpuError>(())
         })?;
         for pass in request.passes.iter().filter(|pass| pass.is_compute && !self.is_pending_stage(&pass.note.stage)) {
-            self.compute_pass(pass, &request.constants)?;
+            self.compute_pass(pass, &request.pass_constants())?;
         }
         lock(&self.graphics).trim(number);
         lock(&self.computes).trim(number);
@@ -226,8 +226,9 @@ impl PipelineSet {
         let pipelines = pipelines.collect::<Option<_>>()?;
         let stages = request.passes.iter().filter(|pass| pass.is_compute).map(|pass| &pass.note.stage);
         let known = lock(&self.computes);
+        let constants = request.pass_constants();
         let compute = |stage: &String| {
-            let pipeline = known.get(&(stage.clone(), request.constants.clone()))?;
+            let pipeline = known.get(&(stage.clone(), constants.clone()))?;
             Some((stage.clone(), pipeline.clone()))
         };
         let computes = stages.map(compute).collect::<Option<_>>()?;

@@ -113,8 +113,16 @@ pub fn read<'p>(
 
 /// Whether a stage declares a pass that is off unless the user switches it on.
 pub fn is_off(snapshot: &Snapshot<'_>, stage: &TreePath) -> bool {
-    let Ok(text) = snapshot.read(stage) else { return false };
-    parse_file("", &text).0.iter().any(|found| matches!(found, Found::Pass(note) if !note.on))
+    passes_of(snapshot, stage).any(|note| !note.on || note.when.is_some())
+}
+
+/// The passes that a stage declares, without its errors.
+pub fn passes_of(snapshot: &Snapshot<'_>, stage: &TreePath) -> impl Iterator<Item = PassNote> {
+    let found = snapshot.read(stage).map(|text| parse_file("", &text).0).unwrap_or_default();
+    found.into_iter().filter_map(|found| match found {
+        Found::Pass(note) => Some(PassNote { stage: stage.to_string(), ..note }),
+        _ => None,
+    })
 }
 
 /// The first occurrence of each name.

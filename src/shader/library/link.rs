@@ -73,6 +73,10 @@ impl Library {
         let known: BTreeMap<&TreePath, &Stage> = goods.chain(modules.clone()).collect();
         let reflections: Vec<&Reflection> = known.values().map(|stage| &stage.reflection).collect();
         let mut annotations = annotation::read(snapshot, files, &reflections)?;
+        // A pass that has never compiled has a name, which other stages may read already.
+        let unseen =
+            self.slots.iter().skip(self.fixed).filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
+        annotations.passes.extend(unseen.flat_map(|slot| annotation::passes_of(snapshot, &slot.path)));
         let declared = known.into_iter().map(|(path, stage)| {
             let texts = stage.texts(snapshot);
             (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts })

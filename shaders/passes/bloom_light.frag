@@ -1,13 +1,13 @@
-//@pass bloom_source "Bloom: light" size=1/2 mips doc="Exposed light at half size, and its mip levels"
+//@pass bloom_light "Bloom: light" size=1/4 mips doc="Exposed light at a quarter of the size, and its mip levels"
 #version 460
 #include "pass.glsl"
 #include "common/color.glsl"
 
-// The source of the blurs in bloom.frag: exposed light. Each mip level is a wider blur than the one before.
+// The light that bloom_blur.frag blurs. Its mip levels are ever wider means.
 
 uniform sampler2D picture;
 
-// Averages four pixels. The weight 1 / (1 + luminance) keeps a single very bright pixel from flickering as a square
+// Sixteen pixels make one. Weighted by 1 / (1 + luminance), a single very bright pixel does not flicker as a square
 // (Karis 2013, "Real Shading in Unreal Engine 4", tone-mapped average).
 void main() {
     vec2 texel = 0.5 / pass.size_px;

@@ -1,0 +1,39 @@
+// Ambient occlusion of the model by itself. passes/occlusion.frag draws it at half the picture's size.
+#ifndef LIGHTING_AMBIENT_OCCLUSION_GLSL
+#define LIGHTING_AMBIENT_OCCLUSION_GLSL
+
+#include "interface.glsl"
+#include "common/math.glsl"
+
+//@ui "Ambient occlusion"
+layout(constant_id = USER_CONSTANTS + 12) const bool AMBIENT_OCCLUSION = false;
+
+// r: hidden part, 0 open .. 1 hidden; g: meters along the camera's axis. 0 where the pass is off.
+uniform sampler2D occlusion;
+
+// Open part of the hemisphere over a point of the picture, 0..1: the four nearest texels at about its distance.
+float screen_visibility(vec3 position_ws) {
+    if (!AMBIENT_OCCLUSION) return 1.0;
+    float distance_m = -(frame.view_from_world * vec4(position_ws, 1.0)).z;
+    vec2 size = ceil(0.5 * frame.viewport_px);
+    vec2 texel = gl_FragCoord.xy / frame.viewport_px * size - 0.5;
+    vec2 f = fract(texel);
+    vec2 corner = (floor(texel) + 1.0) / size;
+    vec4 hidden = textureGather(occlusion, corner, 0);
+    vec4 apart = abs(textureGather(occlusion, corner, 1) / distance_m - 1.0);
+    // A gather holds (0, 1), (1, 1), (1, 0), (0, 0). 1e-4: if no texel is of this surface, all count.
+    vec4 weight = vec4((1.0 - f.x) * f.y, f.x * f.y, f.x * (1.0 - f.y), (1.0 - f.x) * (1.0 - f.y));
+    weight *= max(1.0 - 50.0 * apart, 1e-4);
+    return 1.0 - dot(hidden, weight) / dot(weight, vec4(1.0));
+}
+
+// Visibility for light that is reflected between the surfaces too, for albedo `a` (Jimenez et al. 2016, eq. 10, a fit).
+// Open: 1. Bright surfaces are hidden less.
+vec3 with_bounces(float visibility, vec3 a) {
+    vec3 x = 2.0404 * a - 0.3324;
+    vec3 y = -4.7951 * a + 0.6417;
+    vec3 z = 2.7552 * a + 0.6903;
+    return max(vec3(visibility), ((visibility * x + y) * visibility + z) * visibility);
+}
+
+#endif

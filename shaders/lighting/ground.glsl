@@ -1,0 +1,16 @@
+// The ground: a horizontal plane through the lowest point of the model.
+#ifndef LIGHTING_GROUND_GLSL
+#define LIGHTING_GROUND_GLSL
+
+#include "interface.glsl"
+
+// Height of the ground, world space, meters.
+float ground_height() { return frame.scene_min_ws.y; }
+
+// Side of the square that has images of its own, meters.
+float ground_width() { return 4.0 * frame.scene_radius; }
+
+// Place in these images, 0..1 within the square.
+vec2 ground_uv(vec3 position_ws) { return 0.5 + (position_ws.xz - frame.scene_center_ws.xz) / ground_width(); }
+
+#endif

@@ -1,0 +1,32 @@
+//@pass ground_sky "Ground: sky" size=128x128 format=r16f doc="Part of the sky that the ground sees, weighted by the cosine"
+#version 460
+#include "pass.glsl"
+#include "common/math.glsl"
+#include "lighting/ground.glsl"
+
+// In each direction of the compass the model hides the sky above some angle: that of the lowest surface over the ground, as if the
+// model were solid above it. Below that angle t the sky lights the ground with the integral of 2 sin cos from 0 to t, sin^2 t.
+
+uniform sampler2D ground_blockers;
+
+const int DIRECTIONS = 24;
+const int STEPS = 6;
+
+void main() {
+    float sky = 0.0;
+    for (int i = 0; i < DIRECTIONS; ++i) {
+        float angle = 2.0 * PI * (float(i) + 0.5) / float(DIRECTIONS);
+        vec2 direction = vec2(cos(angle), sin(angle));
+        float open = 1.0;
+        for (int step = 0; step < STEPS; ++step) {
+            // Distances grow, as near blockers hide the most: 0.4 % to 36 % of the ground.
+            float far = 0.36 * pow((float(step) + 0.6) / (float(STEPS) - 0.4), 2.0);
+            float blocker = texelFetch(ground_blockers, ivec2((uv + far * direction) * pass.size_px), 0).r;
+            if (blocker <= 0.0) continue;
+            float height = max(1.0 - blocker, 0.0);
+            open = min(open, height * height / (height * height + far * far));
+        }
+        sky += open;
+    }
+    color = vec4(sky / float(DIRECTIONS), 0.0, 0.0, 1.0);
+}

@@ -1,0 +1,25 @@
+//@pass occlusion "Ambient occlusion" size=1/2 format=rg32f when=AMBIENT_OCCLUSION doc="Hidden part of the sky: 0 open, 1 hidden"
+#version 460
+#include "pass.glsl"
+#include "common/math.glsl"
+
+// Averages the 4 x 4 pattern of occlusion_raw.frag over the pixels of the same surface. r: hidden part; g: distance.
+
+uniform sampler2D occlusion_raw;
+
+void main() {
+    vec2 here = texelFetch(occlusion_raw, ivec2(gl_FragCoord.xy), 0).rg;
+    color = vec4(here, 0.0, 0.0);
+    if (here.g <= 0.0) return;
+    vec2 sum = vec2(0.0);
+    for (int y = 0; y < 2; ++y) {
+        for (int x = 0; x < 2; ++x) {
+            vec2 corner = uv + (vec2(2 * x, 2 * y) - 0.5) / pass.size_px;
+            vec4 hidden = textureGather(occlusion_raw, corner, 0);
+            vec4 apart = abs(textureGather(occlusion_raw, corner, 1) / here.g - 1.0);
+            vec4 weight = vec4(lessThan(apart, vec4(0.02)));
+            sum += vec2(dot(hidden, weight), dot(weight, vec4(1.0)));
+        }
+    }
+    color.r = saturate(sum.y > 0.0 ? sum.x / sum.y : here.r);
+}
