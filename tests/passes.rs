@@ -286,19 +286,26 @@ fn errors_have_their_line_and_the_picture_stays() {
         assert!(told.iter().any(|line| line.contains(expected)), "{text}\nsays\n{}\nnot\n{expected}", told.join("\n"));
         assert_same(&before, &session.render(), expected);
     }
-    let own_binding = "uniform sampler2D picture; layout(set = 2, binding = 1) uniform sampler2D glow;";
     let own_image = "layout(rgba16f) uniform writeonly image2D show;";
-    for (uniforms, body, expected) in [
-        (own_binding, "color = texture(glow, uv) + texture(picture, uv);", "error: `glow` has a binding of its own"),
-        (
-            own_image,
-            "imageStore(show, ivec2(0), vec4(1.0)); color = vec4(1.0);",
-            "a fragment shader cannot write the image",
-        ),
-    ] {
+    for (uniforms, body, expected) in [(
+        own_image,
+        "imageStore(show, ivec2(0), vec4(1.0)); color = vec4(1.0);",
+        "a fragment shader cannot write the image",
+    )] {
         let told = lines(failed(&session.save("passes/show.frag", &pass("show", uniforms, body))));
         assert!(told.iter().any(|line| line.contains(expected)), "{uniforms}: {}", told.join("\n"));
     }
+    // Bindings follow the names. One that is given may have the place of another.
+    let told = (0..4).flat_map(|binding| {
+        let given = format!("uniform sampler2D picture; layout(set = 2, binding = {binding}) uniform sampler2D glow;");
+        let text = pass("show", &given, "color = texture(glow, uv) + texture(picture, uv);");
+        match session.save("passes/show.frag", &text).outcome {
+            specula::pipeline::Outcome::Failed(diagnostics) => lines(&diagnostics),
+            _ => Vec::new(),
+        }
+    });
+    let told: Vec<String> = told.collect();
+    assert!(told.iter().any(|line| line.contains("error: `glow` has a binding of its own")), "{told:#?}");
     // Two passes that share a buffer agree on its size.
     let shares = |name: &str, count: u32| {
         pass(name, &format!("readonly buffer B {{ float b[{count}]; }};"), "color = vec4(b[1]);")
@@ -424,6 +431,7 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
         let name = format!("p{index}");
         let to_picture = random.below(3) == 0;
         let is_compute = !to_picture && random.below(4) == 0;
+        let draws_model = !to_picture && !is_compute && random.below(4) == 0;
         let mut annotation = name.clone();
         // Every device can write the first four formats from a compute shader.
         let formats = ["rgba16f", "rgba32f", "rgba8", "r32f", "rg16f", "r16f", "rg32f"];
@@ -440,6 +448,9 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
             } else if !is_compute && random.below(2) == 0 {
                 annotation += " mips";
             }
+        }
+        if draws_model {
+            annotation += [" draw=model", " instances=2", " draw=model instances=lights"][random.below(3) as usize];
         }
         annotation += ["", "", " off"][random.below(3) as usize];
         let mut reads: Vec<String> = Vec::new();
@@ -470,6 +481,12 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
                  imageStore({name}, texel, vec4(0.1){sum});\n}}\n"
             );
             files.push((format!("passes/{name}.comp"), text));
+        } else if draws_model {
+            let text = format!(
+                "//@pass {annotation}\n#version 460\nlayout(location = 0) out vec4 color;\n{uniforms}\
+                 void main() {{\n    vec2 at = gl_FragCoord.xy / 64.0;\n    color = vec4(0.1){sum};\n}}\n"
+            );
+            files.push((format!("passes/{name}.frag"), text));
         } else {
             let body = format!("    vec2 at = uv;\n    color = vec4(0.1){sum};");
             files.push((format!("passes/{name}.frag"), pass(&annotation, &uniforms, &body)));

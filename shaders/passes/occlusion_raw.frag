@@ -11,7 +11,7 @@
 uniform sampler2D geometry;
 
 uniform OcclusionRaw {
-    float occlusion_radius;    //@ui "Occlusion radius" 0.02..1 = 0.25
+    float occlusion_radius;    //@ui "Occlusion radius" 0.02..2 = 0.5
 };
 
 const int SLICES = 1;

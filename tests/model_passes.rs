@@ -1,0 +1,286 @@
+//! Passes that draw the model, and passes whose images the model reads: shadows, ambient occlusion, the ground.
+
+mod support;
+
+use specula::render::Capture;
+use specula::shader::{Library, Source, check};
+use support::{
+    SIZE, Session, assert_differ, assert_same, assert_validated, compiler, failed, glb, lines, load, ready, settings,
+    stages,
+};
+
+/// A pass that draws the model with `body`; `fragment` is the point of the surface.
+fn model_pass(annotation: &str, body: &str) -> String {
+    format!(
+        "//@pass {annotation} draw=model\n#version 460\n#include \"interface.glsl\"\n#include \"common/fragment.glsl\"\n\
+         layout(location = 0) in Fragment fragment;\nlayout(location = 0) out vec4 color;\n\
+         void main() {{\n    {body}\n}}\n"
+    )
+}
+
+/// A pass that shows an image instead of the picture.
+fn show(image: &str) -> String {
+    format!(
+        "//@pass show to=picture\n#version 460\n#include \"pass.glsl\"\nuniform sampler2D {image};\n\
+         void main() {{ color = vec4(texture({image}, uv).rgb, 1.0); }}\n"
+    )
+}
+
+/// A vertex stage that draws instance i of three shifted by i - 1 widths of the model.
+const SHIFTED: &str = "#version 460\n#include \"interface.glsl\"\n#include \"common/fragment.glsl\"\n\
+    layout(location = 0) out Fragment fragment;\n\
+    void main() {\n    Vertex vertex = draw.vertices.at[gl_VertexIndex];\n    \
+    fragment.position_ws = draw.world_from_object * vec4(vertex.position, 1.0);\n    \
+    fragment.normal_ws = vec3(0.0, 0.0, float(gl_InstanceIndex));\n    \
+    vec4 clip = frame.clip_from_world * vec4(0.2 * fragment.position_ws, 1.0);\n    \
+    gl_Position = clip + vec4(0.6 * (float(gl_InstanceIndex) - 1.0) * clip.w, 0.0, 0.0, 0.0);\n}\n";
+
+/// A gray sphere, one sample a pixel, on nothing.
+fn sphere() -> Session {
+    let plain = ["view.msaa=1", "view.background=none", "environment.name=none"];
+    Session::new(load(&glb::model(&glb::sphere(16, 32), &glb::gray())), settings(&plain))
+}
+
+fn at(capture: &Capture, x: f32) -> [f32; 4] {
+    capture.raw_at((SIZE.0 as f32 * x) as u32, SIZE.1 / 2).unwrap()
+}
+
+fn passes_check(session: &Session) {
+    let stages = specula::frame::stages::stages();
+    let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &stages);
+    let found = check::check(&mut library);
+    assert!(found.is_empty(), "{}", lines(&found).join("\n"));
+}
+
+#[test]
+fn a_pass_draws_the_model() {
+    let mut session = sphere();
+    let before = session.render();
+    let normals = model_pass("normals format=rgba32f", "color = vec4(normalize(fragment.normal_ws), 1.0);");
+    ready(&session.save("passes/normals.frag", &normals));
+    let reload = session.save("passes/show.frag", &show("normals"));
+    ready(&reload);
+    assert_eq!(stages(&reload), ["passes/show.frag"]);
+    let shown = session.render();
+    let found = at(&shown, 0.5);
+    let expected = at(&session.mode("geometric-normal"), 0.5);
+    session.headless.settings_mut().mode = "final".to_owned();
+    for axis in 0..3 {
+        assert!((found[axis] - expected[axis]).abs() < 0.01, "{found:?} is not {expected:?}");
+    }
+    assert_eq!(at(&shown, 0.02)[..3], [0.0; 3], "beside the model there is nothing");
+    passes_check(&session);
+    let image = session.mode("pass:normals");
+    assert!((at(&image, 0.5)[2] - found[2]).abs() < 1e-2, "the image is a debug mode");
+    std::fs::remove_file(session.tree.path("passes/show.frag")).unwrap();
+    ready(&session.changed(&["passes/show.frag"]));
+    session.headless.settings_mut().mode = "final".to_owned();
+    assert_same(&before, &session.render(), "nobody reads it");
+    assert_validated();
+}
+
+#[test]
+fn a_pass_has_a_vertex_stage_of_its_own_and_instances() {
+    let mut session = sphere();
+    let (copies, body) = ("copies format=rgba32f instances=3", "color = vec4(1.0, fragment.normal_ws.z, 0.0, 1.0);");
+    ready(&session.save("passes/copies.frag", &model_pass(copies, body)));
+    ready(&session.save("passes/show.frag", &show("copies")));
+    let whole = session.render();
+    ready(&session.save("passes/copies.vert", SHIFTED));
+    let shifted = session.render();
+    assert_differ(&whole, &shifted, "the vertex stage");
+    for (x, instance) in [(0.2, 0.0), (0.5, 1.0), (0.8, 2.0)] {
+        assert_eq!(at(&shifted, x)[..2], [1.0, instance], "at {x}");
+    }
+    passes_check(&session);
+    // A broken vertex stage costs nothing, and names its line.
+    let broken = SHIFTED.replace("vec4 clip", "vec4 clap");
+    let told = lines(failed(&session.save("passes/copies.vert", &broken))).join("\n");
+    assert!(told.contains("copies.vert:"), "{told}");
+    assert_same(&shifted, &session.render(), "broken");
+    session.save("passes/copies.vert", SHIFTED);
+    // It must write what the fragment stage reads.
+    let extra = "layout(location = 9) in vec4 extra;\nlayout(location = 0) out";
+    let reads_more = model_pass(copies, "color = extra;").replace("layout(location = 0) out", extra);
+    let told = lines(failed(&session.save("passes/copies.frag", &reads_more))).join("\n");
+    assert!(told.contains("extra"), "{told}");
+    session.save("passes/copies.frag", &model_pass(copies, body));
+    std::fs::remove_file(session.tree.path("passes/copies.vert")).unwrap();
+    ready(&session.changed(&["passes/copies.vert"]));
+    assert_same(&whole, &session.render(), "without the vertex stage");
+    assert_validated();
+}
+
+#[test]
+fn the_model_reads_passes_textures_and_buffers_by_name() {
+    let mut session = sphere();
+    let before = session.render();
+    let glow = "//@pass glow size=4x4 format=rgba32f when=GLOWS\n#version 460\n#include \"pass.glsl\"\n\
+        void main() { color = vec4(0.0, 7.0, 0.0, 1.0); }\n";
+    let told = lines(failed(&session.save("passes/glow.frag", glow))).join("\n");
+    assert!(told.contains("glow.frag:1:1: error: no constant with //@ui is named `GLOWS`"), "{told}");
+    let user = session.tree.read("user.glsl");
+    let lit = user.replace(
+        "// A light before it shines",
+        "//@ui \"Glows\"\nlayout(constant_id = USER_CONSTANTS + 20) const bool GLOWS = true;\nuniform sampler2D glow;\n// A light",
+    );
+    let lit = lit.replace(
+        "    return radiance;",
+        "    if (GLOWS) radiance += texture(glow, vec2(0.5)).rgb;\n    return radiance;",
+    );
+    ready(&session.save("user.glsl", &lit));
+    let shown = session.render();
+    let (plain, found) = (at(&before, 0.5), at(&shown, 0.5));
+    assert!((found[1] - plain[1] - 7.0).abs() < 0.01 && (found[0] - plain[0]).abs() < 1e-3, "{plain:?} {found:?}");
+    passes_check(&session);
+    // An edit of the pass reaches the model, and compiles the pass alone.
+    let reload = session.save("passes/glow.frag", &glow.replace("7.0", "3.0"));
+    ready(&reload);
+    assert_eq!(stages(&reload), ["passes/glow.frag"]);
+    assert!((at(&session.render(), 0.5)[1] - plain[1] - 3.0).abs() < 0.01);
+    // Off by its constant, or by its switch.
+    session.set("GLOWS=false");
+    assert_same(&before, &session.render(), "off by the constant");
+    session.set("GLOWS=true");
+    session.set("passes.glow=false");
+    assert_same(&before, &session.render(), "an image of a pass that is off reads as 0");
+    session.headless.settings_mut().passes.clear();
+    // What the model reads cannot read the picture, which comes later.
+    let told = lines(failed(&session.save(
+        "passes/glow.frag",
+        &glow.replace("void main", "uniform sampler2D picture;\nvoid main").replace("7.0", "texture(picture, uv).g"),
+    )));
+    let expected = "glow.frag:1:1: error: pbr.frag needs the image of the pass `glow`, but the model is drawn after it";
+    assert!(told.iter().any(|line| line.contains(expected)), "{told:#?}");
+    let told =
+        lines(failed(&session.save(
+            "user.glsl",
+            &lit.replace("sampler2D glow", "sampler2D glwo").replace("texture(glow", "texture(glwo"),
+        )));
+    assert!(
+        told.iter().any(|line| line.contains("error: no pass or texture is named `glwo`. Did you mean `glow`?")),
+        "{told:#?}"
+    );
+    // A texture of one's own in the material.
+    session.save("user.glsl", &lit);
+    ready(&session.save("passes/glow.frag", glow));
+    let paint = image::RgbImage::from_pixel(2, 2, image::Rgb([0, 0, 255]));
+    paint.save(session.tree.path("paint.png")).unwrap();
+    let painted = lit.replace("uniform sampler2D glow;", "//@texture paint \"paint.png\"\nuniform sampler2D paint;");
+    ready(&session.save("user.glsl", &painted.replace("texture(glow, vec2(0.5))", "9.0 * texture(paint, vec2(0.5))")));
+    let found = at(&session.render(), 0.5);
+    assert!((found[2] - plain[2] - 9.0).abs() < 0.02, "{plain:?} {found:?}");
+    assert_validated();
+}
+
+#[test]
+fn contradictions_have_their_line() {
+    let mut session = sphere();
+    let before = session.render();
+    let text = model_pass("mine", "color = vec4(1.0);");
+    for (file, text, expected) in [
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=teapot"),
+            "mine.frag:1:19: error: expected draw=model, found `teapot`",
+        ),
+        ("passes/mine.frag", text.replace("draw=model", "instances=0"), "expected instances=lights, or instances=1 to"),
+        (
+            "passes/mine.frag",
+            text.replace("mine draw", "mine to=picture draw"),
+            "a pass with draw=model draws to an image of its own",
+        ),
+        (
+            "passes/mine.comp",
+            "//@pass mine draw=model\n#version 460\nlayout(local_size_x = 1) in;\nvoid main() {}\n".into(),
+            "a compute pass cannot draw the model",
+        ),
+    ] {
+        let told = lines(failed(&session.save(file, &text))).join("\n");
+        assert!(told.contains(expected), "{told}\nis not\n{expected}");
+        assert_same(&before, &session.render(), expected);
+        std::fs::remove_file(session.tree.path(file)).unwrap();
+        session.changed(&[file]);
+    }
+    assert_validated();
+}
+
+/// A sphere over a slab, matte, so that nothing but what is tested decides their light.
+fn stage(more: &[&str]) -> Session {
+    let matte = serde_json::json!({"pbrMetallicRoughness": {
+        "baseColorFactor": [0.3, 0.3, 0.3, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}});
+    let slab = glb::cuboid([-2.0, -1.4, -2.0], [2.0, -1.1, 2.0], true);
+    let model = load(&glb::scene(&[(glb::sphere(24, 48), matte.clone()), (slab, matte)]));
+    let plain = ["view.msaa=1", "view.background=none", "view.frames=48", "lights.ambient_strength=0"];
+    Session::new(model, settings(&[&plain[..], more].concat()))
+}
+
+/// Root of the mean square of the differences over the pixels that the model covers.
+fn error(a: &Capture, b: &Capture) -> f64 {
+    let mut sum = (0.0, 0.0);
+    for y in 0..SIZE.1 {
+        for x in 0..SIZE.0 {
+            let (a, b) = (a.raw_at(x, y).unwrap(), b.raw_at(x, y).unwrap());
+            if a[3] > 0.0 {
+                sum = (sum.0 + f64::from(a[1] - b[1]).powi(2), sum.1 + 1.0);
+            }
+        }
+    }
+    (sum.0 / f64::max(sum.1, 1.0)).sqrt()
+}
+
+#[test]
+fn shadows_are_those_of_random_paths() {
+    let mut session = stage(&["environment.name=none", "view.bounces=0"]);
+    let truth = session.mode("path-traced");
+    let open = session.mode("final");
+    session.set("SHADOWS=true");
+    let hard = session.mode("final");
+    session.set("SHADOW_EDGES=Soft");
+    session.set("shadow_softness=0.001");
+    let soft = session.mode("final");
+    let (open, hard, soft) = (error(&truth, &open), error(&truth, &hard), error(&truth, &soft));
+    println!("without shadows {open:.4}, hard {hard:.4}, soft {soft:.4}");
+    assert!(hard < 0.35 * open, "{hard} of {open}");
+    assert!(soft < 0.35 * open, "{soft} of {open}");
+    assert_validated();
+}
+
+#[test]
+fn ambient_occlusion_is_nearer_to_random_paths() {
+    let mut session = stage(&["environment.name=furnace", "lights.source=none", "view.bounces=4"]);
+    let truth = session.mode("path-traced");
+    let open = session.mode("final");
+    session.set("AMBIENT_OCCLUSION=true");
+    session.set("occlusion_radius=1");
+    let occluded = session.mode("final");
+    let (without, with) = (error(&truth, &open), error(&truth, &occluded));
+    println!("without occlusion {without:.4}, with {with:.4}");
+    assert!(with < 0.5 * without, "{with} of {without}");
+    // The upper half of the sphere sees the whole sky.
+    let top = |capture: &Capture| capture.raw_at(SIZE.0 / 2, SIZE.1 * 3 / 10).unwrap()[1];
+    assert!((top(&occluded) / top(&open) - 1.0).abs() < 0.03, "{} of {}", top(&occluded), top(&open));
+    assert_validated();
+}
+
+#[test]
+fn the_ground_is_dark_under_the_model_alone() {
+    let mut session = stage(&["environment.name=studio", "lights.source=none", "view.background=#ffffff"]);
+    let plain = session.render();
+    session.set("passes.ground=true");
+    let ground = session.render();
+    let dark = |x: u32, y: u32| {
+        let pixel = |capture: &Capture| f32::from(capture.rgba8[((y * SIZE.0 + x) * 4) as usize]);
+        pixel(&ground) / pixel(&plain).max(1.0)
+    };
+    // Above the horizon nothing changes, and shadow only takes light away.
+    assert_eq!(dark(SIZE.0 / 2, 1), 1.0);
+    let all: Vec<f32> = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y))).map(|(x, y)| dark(x, y)).collect();
+    assert!(all.iter().all(|part| *part <= 1.01), "{:?}", all.iter().copied().fold(0.0, f32::max));
+    assert!(all.iter().any(|part| *part < 0.8), "{:?}", all.iter().copied().fold(1.0, f32::min));
+    session.set("lights.source=orbit");
+    let lit = session.render();
+    session.set("SHADOWS=true");
+    assert_differ(&lit, &session.render(), "the lights' shadows");
+    assert_validated();
+}
