@@ -234,9 +234,9 @@ fn shadows_are_those_of_random_paths() {
     let mut session = stage(&["environment.name=none", "view.bounces=0"]);
     let truth = session.mode("path-traced");
     let open = session.mode("final");
-    session.set("SHADOWS=true");
+    session.set("SHADOWS=Hard");
     let hard = session.mode("final");
-    session.set("SHADOW_EDGES=Soft");
+    session.set("SHADOWS=Soft");
     session.set("shadow_softness=0.001");
     let soft = session.mode("final");
     let (open, hard, soft) = (error(&truth, &open), error(&truth, &hard), error(&truth, &soft));
@@ -280,7 +280,7 @@ fn the_ground_is_dark_under_the_model_alone() {
     assert!(all.iter().any(|part| *part < 0.8), "{:?}", all.iter().copied().fold(1.0, f32::min));
     session.set("lights.source=orbit");
     let lit = session.render();
-    session.set("SHADOWS=true");
+    session.set("SHADOWS=Hard");
     assert_differ(&lit, &session.render(), "the lights' shadows");
     assert_validated();
 }

@@ -49,7 +49,7 @@ fn values_are_those_of_the_raw_picture() {
 fn nan_and_missing_data_are_told_apart() {
     let directory = tempfile::tempdir().unwrap();
     let tree = directory.path().join("tree");
-    specula::shader::embedded::write_to(&tree).unwrap();
+    specula::shader::embedded::write_to(&tree, None).unwrap();
     let user = std::fs::read_to_string(tree.join("user.glsl")).unwrap();
     let nan = user.replace("radiance += rim_color", "radiance += sqrt(-1.0 - rim_strength) * rim_color");
     assert_ne!(user, nan);

@@ -122,7 +122,8 @@ fn what_is_on_screen_compiles_first() {
     assert_differ(&before, &after, "another NDF, of which the modes are not compiled yet");
     let rest = session.headless.finish().expect("stages are left");
     ready(&rest);
-    assert_eq!((stages(&rest), rest.pipelines), (vec!["debug.frag", "paths.frag", "sky.frag"], 0));
+    let compiled: Vec<&str> = stages(&rest).into_iter().filter(|stage| !stage.starts_with("passes/")).collect();
+    assert_eq!((compiled, rest.pipelines), (vec!["debug.frag", "paths.frag", "sky.frag"], 0));
     assert_same(&after, &session.render(), "after the rest was compiled");
     assert!(session.headless.finish().is_none());
 

@@ -248,7 +248,7 @@ fn the_tree_may_go_away_and_come_back() {
     watched.shows(90, "an edit after the tree came back");
     // A branch switch that replaces the whole folder.
     let other = watched.tree.beside("other");
-    specula::shader::source::embedded::write_to(&other).unwrap();
+    specula::shader::source::embedded::write_to(&other, None).unwrap();
     fs::write(other.join(USER), watched.text(120)).unwrap();
     fs::rename(watched.tree.root(), &away).unwrap();
     fs::rename(&other, watched.tree.root()).unwrap();
@@ -328,7 +328,7 @@ fn a_swapped_link_to_the_tree_is_another_tree() {
         command.args(["--env", "none"]);
     });
     let v2 = watched.tree.beside("v2");
-    specula::shader::source::embedded::write_to(&v2).unwrap();
+    specula::shader::source::embedded::write_to(&v2, None).unwrap();
     fs::write(v2.join(USER), watched.text(130)).unwrap();
     symlink("v2", watched.tree.beside("new")).unwrap();
     fs::rename(watched.tree.beside("new"), watched.tree.root()).unwrap();

@@ -6,7 +6,7 @@
 #include "common/math.glsl"
 
 //@ui "Ambient occlusion"
-layout(constant_id = USER_CONSTANTS + 12) const bool AMBIENT_OCCLUSION = false;
+layout(constant_id = USER_CONSTANTS + 11) const bool AMBIENT_OCCLUSION = false;
 
 // r: hidden part, 0 open .. 1 hidden; g: meters along the camera's axis. 0 where the pass is off.
 uniform sampler2D occlusion;

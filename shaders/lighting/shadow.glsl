@@ -8,13 +8,11 @@
 #include "lighting/shadow_view.glsl"
 #include "user/params.glsl"
 
-//@ui "Shadows"
-layout(constant_id = USER_CONSTANTS + 10) const bool SHADOWS = false;
-
-const uint HARD_SHADOWS = 0u;
-const uint SOFT_SHADOWS = 1u;
-//@ui "Shadow edges" choice Hard=0 Soft=1
-layout(constant_id = USER_CONSTANTS + 11) const uint SHADOW_EDGES = HARD_SHADOWS;
+const uint NO_SHADOWS = 0u;
+const uint HARD_SHADOWS = 1u;
+const uint SOFT_SHADOWS = 2u;
+//@ui "Shadows" choice Off=0 Hard=1 Soft=2
+layout(constant_id = USER_CONSTANTS + 10) const uint SHADOWS = NO_SHADOWS;
 
 // Depth of what is nearest to each light. 0: nothing, as where the pass is off.
 uniform sampler2D shadow_map;
@@ -67,7 +65,7 @@ float soft_visibility(vec2 uv, vec2 low, vec2 high, float depth, float meters_pe
 // Part of light `i` that reaches a point with this normal, 0..1. The point is moved along the normal, by what a texel of the map
 // spans on the surface, so that the surface does not hide itself. `l`: unit, towards the light.
 float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
-    if (!SHADOWS || i >= MAX_SHADOWS) return 1.0;
+    if (SHADOWS == NO_SHADOWS || i >= MAX_SHADOWS) return 1.0;
     Light light = lights[i];
     ShadowView view = shadow_view(light);
     vec3 seen = seen_from(view, position_ws);
@@ -81,7 +79,7 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     vec2 low = shadow_tile(i);
     vec2 uv = low + tile_size * in_tile;
     float depth = shadow_depth(view, seen) + 0.5 * texel_m / view.meters_per_depth;
-    if (SHADOW_EDGES == SOFT_SHADOWS) {
+    if (SHADOWS == SOFT_SHADOWS) {
         float to_light_m = view.is_parallel ? 1.0 : length(seen);
         float size_m = light.kind == LIGHT_RECT ? length(light.half_x_ws + light.half_y_ws) : shadow_softness * to_light_m;
         float per_meter = 0.5 * tile_size / half_width_at(view, seen);

@@ -7,7 +7,7 @@
 #include "user.glsl"
 
 layout(location = 0) in Fragment fragment;
-layout(location = 7) in vec3 tile;
+layout(location = 12) in vec3 tile;
 layout(location = 0) out vec4 color;
 
 void main() {

@@ -8,7 +8,7 @@
 // The model as each light sees it, in the light's tile. Instance i belongs to light i.
 
 layout(location = 0) out Fragment fragment;
-layout(location = 7) out vec3 tile;  // xy: position in the tile, -1..1; z: depth, linear
+layout(location = 12) out vec3 tile;  // beyond those of Fragment; xy: position in the tile, -1..1; z: depth, linear
 
 void main() {
     Vertex vertex = draw.vertices.at[gl_VertexIndex];

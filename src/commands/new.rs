@@ -5,19 +5,26 @@ use std::path::PathBuf;
 use specula::shader::embedded;
 
 use super::Failure;
+use super::common::example;
 
 /// Options of `new`.
 #[derive(clap::Args)]
 pub struct Args {
     /// Folder to create; it must be new or empty
     dir: PathBuf,
+
+    /// Example to begin with: fur, hatching, life, raymarch, reaction, swarm or toy
+    #[arg(long, value_name = "NAME")]
+    template: Option<String>,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let written = embedded::write_to(&args.dir)
+    let example = args.template.as_deref().map(example).transpose()?;
+    let written = embedded::write_to(&args.dir, example)
         .map_err(|e| Failure::Input(format!("cannot write the shader tree to {}: {e}", args.dir.display())))?;
     out!("wrote {} files to {}", written.len(), args.dir.display());
-    out!("Next: run specula --shaders {}, then edit user.glsl or brdf/ndf.glsl and save.", args.dir.display());
+    let first = example.map_or("user.glsl or brdf/ndf.glsl", |_| "a file in passes/");
+    out!("Next: run specula --shaders {}, then edit {first} and save.", args.dir.display());
     Ok(())
 }

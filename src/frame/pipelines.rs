@@ -112,7 +112,7 @@ pub(crate) enum Pass {
     /// A declared pass over a whole image: `fullscreen.vert` or its own vertex stage, and its own stage.
     FullScreen(Arc<GraphPass>),
     /// A declared pass that draws the model: `pbr.vert` or its own vertex stage, and its own stage.
-    ModelPass(Arc<GraphPass>, PrimitiveClass),
+    DeclaredModel(Arc<GraphPass>, PrimitiveClass),
 }
 
 /// The stages of a picture that every debug mode has, too.
@@ -122,7 +122,7 @@ impl Pass {
     /// Paths of the vertex and fragment stages.
     pub(crate) fn stages(&self) -> [&str; 2] {
         match self {
-            Self::FullScreen(pass) | Self::ModelPass(pass, _) => [pass.vertex_stage(), &pass.note.stage],
+            Self::FullScreen(pass) | Self::DeclaredModel(pass, _) => [pass.vertex_stage(), &pass.note.stage],
             Self::Model { fragment, .. } => [MODEL, fragment.path()],
             Self::Sky => ["sky.vert", "sky.frag"],
             Self::Average => [FULL_SCREEN, "average.frag"],
@@ -139,7 +139,10 @@ impl PipelineRequest {
         let shows_light = mode.is_some_and(|m| m.tonemap) || shown_pass.is_some();
         let stage = mode.map(|m| m.stage).unwrap_or_default();
         let constants = values::constants(&settings.shader, &shaders.constants);
-        let is_on = |pass: &GraphPass| is_on(pass, settings, shaders, &constants);
+        // An image that is looked at needs what it reads, although the model needs none of it.
+        let is_on = |pass: &GraphPass| {
+            is_wanted(pass, settings) && (shown_pass.is_some() || is_switched_on(pass, shaders, &constants))
+        };
         let mut readers = vec![stage.path()];
         readers.extend(SHARED_STAGES);
         // Transmissive surfaces may show the picture behind them in a debug mode.
@@ -299,7 +302,7 @@ impl PipelineRequest {
         ];
         specialization.extend_from_slice(&self.constants);
         PipelineKey {
-            pass: Pass::ModelPass(pass.clone(), material.class),
+            pass: Pass::DeclaredModel(pass.clone(), material.class),
             format: pass_format(pass.note.format),
             samples: 1,
             specialization,
@@ -377,11 +380,15 @@ fn shared_features(settings: &Settings) -> u32 {
     features
 }
 
-/// Whether the user has a pass switched on: the pass itself, and the constant that its annotation names.
-fn is_on(pass: &GraphPass, settings: &Settings, shaders: &ShaderSet, constants: &Specialization) -> bool {
-    let is_wanted = settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on);
+/// Whether the user wants a pass.
+fn is_wanted(pass: &GraphPass, settings: &Settings) -> bool {
+    settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on)
+}
+
+/// Whether the constant is set that the annotation of the pass names.
+fn is_switched_on(pass: &GraphPass, shaders: &ShaderSet, constants: &Specialization) -> bool {
     let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == pass.note.when.as_ref());
-    is_wanted && switch.is_none_or(|switch| constants.iter().any(|(id, value)| *id == switch.id && *value != 0))
+    switch.is_none_or(|switch| constants.iter().any(|(id, value)| *id == switch.id && *value != 0))
 }
 
 /// The mode with this slug, or the tree's first mode.

@@ -302,18 +302,18 @@ impl PipelineSet {
             Pass::Sky => (true, Raster::Solid, PrimitiveClass::Triangles),
             Pass::Average => (false, Raster::Averaged, PrimitiveClass::Triangles),
             Pass::Tonemap | Pass::FullScreen(_) => (false, Raster::Solid, PrimitiveClass::Triangles),
-            Pass::ModelPass(_, class) => (true, Raster::Solid, *class),
+            Pass::DeclaredModel(_, class) => (true, Raster::Solid, *class),
         };
         let nothing = Inputs::new();
         let inputs = match &key.pass {
-            Pass::FullScreen(pass) | Pass::ModelPass(pass, _) => &pass.inputs,
+            Pass::FullScreen(pass) | Pass::DeclaredModel(pass, _) => &pass.inputs,
             _ => self.shaders.graph.readers.get(fragment).unwrap_or(&nothing),
         };
         let (vertex, fragment) = (module(vertex)?, module(fragment)?);
-        let draws_model = matches!(key.pass, Pass::Model { .. } | Pass::ModelPass(..));
+        let draws_model = matches!(key.pass, Pass::Model { .. } | Pass::DeclaredModel(..));
         let layout = self.layout(inputs, &[&vertex, &fragment], draws_model);
         let layout = layout.map_err(|error| match &key.pass {
-            Pass::FullScreen(pass) | Pass::ModelPass(pass, _) => of_pass(pass, error),
+            Pass::FullScreen(pass) | Pass::DeclaredModel(pass, _) => of_pass(pass, error),
             _ => error,
         })?;
         let desc = PipelineDesc {

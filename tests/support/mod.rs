@@ -57,7 +57,7 @@ impl Tree {
     /// The tree that the program embeds.
     pub fn new() -> Self {
         let tree = Self { directory: tempfile::tempdir().unwrap() };
-        embedded::write_to(&tree.root()).unwrap();
+        embedded::write_to(&tree.root(), None).unwrap();
         tree
     }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use egui::{Slider, Ui};
 
+use super::passes::switches;
 use super::{color, row, section};
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
@@ -19,13 +20,15 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<Strin
     section(ui, "Parameters", true, |ui| {
         // Those of passes stand below the switch of their pass.
         for parameter in shaders.parameters.iter().filter(|parameter| parameter.offset.is_some()) {
-            show_parameter(ui, parameter, values);
-        }
-        for constant in &shaders.constants {
-            let value = values.get(&constant.name);
-            if let Some(new) = row(ui, &constant.label, &constant.name, |ui| edit_constant(ui, constant, value)) {
-                values.insert(constant.name.clone(), new);
+            let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == parameter.when.as_ref());
+            if switch.is_none_or(|switch| is_true(switch, values)) {
+                show_parameter(ui, parameter, values);
             }
+        }
+        // A switch of passes stands with them.
+        let is_switch = |constant: &&Constant| switches(shaders).any(|switch| switch.id == constant.id);
+        for constant in shaders.constants.iter().filter(|constant| !is_switch(constant)) {
+            show_constant(ui, constant, values);
         }
         let set = !values.is_empty();
         let button = ui.add_enabled(set, egui::Button::new("Defaults"));
@@ -33,6 +36,20 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<Strin
             values.clear();
         }
     });
+}
+
+/// Shows the row of a constant.
+pub(super) fn show_constant(ui: &mut Ui, constant: &Constant, values: &mut BTreeMap<String, ShaderValue>) {
+    let value = values.get(&constant.name);
+    if let Some(new) = row(ui, &constant.label, &constant.name, |ui| edit_constant(ui, constant, value)) {
+        values.insert(constant.name.clone(), new);
+    }
+}
+
+/// Whether a constant is not 0.
+pub(super) fn is_true(constant: &Constant, values: &BTreeMap<String, ShaderValue>) -> bool {
+    let value = values.get(&constant.name).and_then(|value| number(value, &constant.choices));
+    value.map_or(constant.default != 0, |value| value != 0.0)
 }
 
 /// Shows the row of a parameter.

@@ -1,12 +1,14 @@
 //! The panel Passes: a switch for each pass that the tree declares, and the clock of animated shaders.
 
+use std::sync::Arc;
+
 use egui::{RichText, Ui};
 
-use super::parameters::show_parameter;
+use super::parameters::{is_true, show_constant, show_parameter};
 use super::{QUIET, section};
 use crate::app::playback::Playback;
 use crate::settings::Settings;
-use crate::shader::{Parameter, ShaderSet};
+use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
 
 /// Shows the panel. `is_animated`: something on screen reads the time.
 pub(super) fn show(
@@ -20,21 +22,22 @@ pub(super) fn show(
         return;
     }
     section(ui, "Passes", true, |ui| {
-        for pass in &shaders.graph.passes {
-            let is_own = |parameter: &&Parameter| parameter.offset.is_none() && pass.has_parameter(&parameter.name);
-            let own: Vec<&Parameter> = shaders.parameters.iter().filter(is_own).collect();
-            let name = pass.name();
-            let mut on = settings.passes.get(name).copied().unwrap_or(pass.note.on);
-            let doc = format!("{}\n\n--set passes.{name}={}\n{}", pass.note.doc, !on, pass.note.stage);
-            if ui.checkbox(&mut on, &pass.note.label).on_hover_text(doc.trim_start()).changed() {
-                match on == pass.note.on {
-                    true => settings.passes.remove(name),
-                    false => settings.passes.insert(name.to_owned(), on),
-                };
+        for switch in switches(shaders) {
+            show_constant(ui, switch, &mut settings.shader);
+            if is_true(switch, &settings.shader) {
+                let passes = shaders.graph.passes.iter().filter(|pass| pass.note.when.as_ref() == Some(&switch.name));
+                passes.for_each(|pass| show_parameters(ui, shaders, pass, settings));
             }
-            if on {
-                own.into_iter().for_each(|parameter| show_parameter(ui, parameter, &mut settings.shader));
-            }
+        }
+        let graph = &shaders.graph;
+        let wanted = |pass: &GraphPass| settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on);
+        let active = graph.active(&[], true, wanted, None);
+        // A pass whose readers are all off is off with them.
+        let is_shown = |pass: &&Arc<GraphPass>| {
+            pass.note.when.is_none() && (!graph.is_read(pass.name()) || !wanted(pass) || active.contains(pass))
+        };
+        for pass in graph.passes.iter().filter(is_shown).cloned().collect::<Vec<_>>() {
+            show_pass(ui, shaders, &pass, settings);
         }
         if is_animated {
             ui.horizontal(|ui| {
@@ -54,4 +57,35 @@ pub(super) fn show(
             });
         }
     });
+}
+
+/// The constants that switch passes, in the order of their ids.
+pub(super) fn switches(shaders: &ShaderSet) -> impl Iterator<Item = &Constant> {
+    let is_switch =
+        |constant: &&Constant| shaders.graph.passes.iter().any(|pass| pass.note.when.as_ref() == Some(&constant.name));
+    shaders.constants.iter().filter(is_switch)
+}
+
+/// Shows a switch of the pass, and its parameters while it is on.
+fn show_pass(ui: &mut Ui, shaders: &ShaderSet, pass: &GraphPass, settings: &mut Settings) {
+    let name = pass.name();
+    let mut on = settings.passes.get(name).copied().unwrap_or(pass.note.on);
+    let doc = format!("{}\n\n--set passes.{name}={}\n{}", pass.note.doc, !on, pass.note.stage);
+    if ui.checkbox(&mut on, &pass.note.label).on_hover_text(doc.trim_start()).changed() {
+        match on == pass.note.on {
+            true => settings.passes.remove(name),
+            false => settings.passes.insert(name.to_owned(), on),
+        };
+    }
+    if on {
+        show_parameters(ui, shaders, pass, settings);
+    }
+}
+
+/// Shows the parameters in the pass's own uniform block.
+fn show_parameters(ui: &mut Ui, shaders: &ShaderSet, pass: &GraphPass, settings: &mut Settings) {
+    let is_own = |parameter: &&Parameter| parameter.offset.is_none() && pass.has_parameter(&parameter.name);
+    for parameter in shaders.parameters.iter().filter(is_own) {
+        show_parameter(ui, parameter, &mut settings.shader);
+    }
 }

@@ -13,6 +13,7 @@ use specula::message::{self, did_you_mean};
 use specula::picture;
 use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
+use specula::shader::embedded::Example;
 use specula::shader::{Compiler, ShaderSet, Source, is_specula_tree};
 
 use super::Failure;
@@ -25,7 +26,7 @@ pub const TIMEOUT_S: u32 = 60;
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Common {
-    /// Shader tree [default: ./shaders when it is Specula's, else the built-in one]
+    /// Shader tree, or an example as examples:fur [default: ./shaders when it is Specula's, else the built-in one]
     #[arg(long, value_name = "DIR")]
     pub shaders: Option<PathBuf>,
     /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
@@ -198,8 +199,21 @@ fn warn_once(message: &str) {
     }
 }
 
-/// The shader tree in a folder. Without a folder, the tree in ./shaders or else the built-in one.
+/// The example of this name.
+pub fn example(name: &str) -> Result<Example, Failure> {
+    Example::named(name).ok_or_else(|| {
+        let names = Example::names();
+        let hint = did_you_mean(name, names.iter().copied());
+        Failure::Input(format!("there is no example `{name}`.{hint} There are {}", names.join(", ")))
+    })
+}
+
+/// The shader tree in a folder, or the example NAME in `examples:NAME`. Without a folder, the tree in ./shaders or else the
+/// built-in one.
 pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
+    if let Some(name) = directory.and_then(Path::to_str).and_then(|name| name.strip_prefix("examples:")) {
+        return Ok(Source::Embedded(Some(example(name)?)));
+    }
     match directory {
         Some(directory) if is_specula_tree(directory) => disk(directory),
         Some(directory) if !directory.exists() => Err(Failure::Input(format!(

@@ -63,7 +63,12 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     if is_supervised {
         watchdog::end_after(Duration::from_secs(args.common.timeout.into()), end_of_device);
     }
-    let source = state.source(work.tree.clone().map_or_else(Source::embedded, Source::Disk), good.clone());
+    let source = match &work.tree {
+        Some(tree) => Source::Disk(tree.clone()),
+        None if source.root().is_none() => source,
+        None => Source::embedded(),
+    };
+    let source = state.source(source, good.clone());
     let options = AppOptions {
         source,
         compiler: compiler()?,

@@ -26,6 +26,7 @@ mod value;
 
 use std::collections::BTreeMap;
 
+use crate::message::did_you_mean;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
@@ -108,7 +109,19 @@ pub fn read<'p>(
         let note = format!("the other is at {}:{}", pair[0].file, pair[0].line);
         errors.push(Diagnostic::error(&pair[1].file, message).on_line(pair[1].line, None).with_note(note));
     }
+    errors.extend(out.parameters.iter().filter_map(|parameter| unknown_switch(parameter, &out.constants)));
     if errors.is_empty() { Ok(out) } else { Err(errors) }
+}
+
+/// An error if the constant after `when=` does not exist.
+fn unknown_switch(parameter: &Parameter, constants: &[Constant]) -> Option<Diagnostic> {
+    let name = parameter.when.as_deref()?;
+    let mut known = constants.iter().map(|constant| constant.name.as_str());
+    if known.clone().any(|constant| constant == name) {
+        return None;
+    }
+    let message = format!("no constant with //@ui is named `{name}`.{}", did_you_mean(name, known.by_ref()));
+    Some(Diagnostic::error(&parameter.file, message).on_line(parameter.line, None))
 }
 
 /// Whether a stage declares a pass that is off unless the user switches it on.

@@ -99,6 +99,9 @@ pub struct Parameter {
     pub color: bool,
     /// Named values; empty for free choice.
     pub choices: Vec<(String, i64)>,
+    /// The constant without which it changes nothing: the window shows it only while that is not 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub when: Option<String>,
     /// File as printed.
     #[serde(skip)]
     pub file: String,

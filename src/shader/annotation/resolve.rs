@@ -9,7 +9,7 @@ use crate::shader::spirv::reflect::{Reflection, Scalar};
 
 /// Combines a `//@ui` with its declaration in the compiled modules.
 pub(super) fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(), Box<Diagnostic>> {
-    let Ui { name, label, range, choices, conserves, reciprocal, color, default, declared, place } = ui;
+    let Ui { name, label, range, choices, conserves, reciprocal, color, when, default, declared, place } = ui;
     let (file, line) = (place.file.clone(), place.line);
     match declared {
         Declared::Constant(_) => {
@@ -49,7 +49,19 @@ pub(super) fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) ->
                 Some((_, first)) if outside_of_choices(&choices, 0.0).is_some() => vec![*first as f64],
                 _ => vec![0.0; kind.components()],
             });
-            out.parameters.push(Parameter { name, label, offset, kind, range, default, color, choices, file, line });
+            out.parameters.push(Parameter {
+                name,
+                label,
+                offset,
+                kind,
+                range,
+                default,
+                color,
+                choices,
+                when,
+                file,
+                line,
+            });
         }
     }
     Ok(())

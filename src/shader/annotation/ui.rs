@@ -33,6 +33,8 @@ pub struct Ui {
     pub reciprocal: Option<Vec<String>>,
     /// `color`
     pub color: bool,
+    /// `when=NAME`
+    pub when: Option<String>,
     /// `= ...`, one number per component.
     pub default: Option<Vec<f64>>,
     /// The annotated declaration.
@@ -55,6 +57,7 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
         conserves: None,
         reciprocal: None,
         color: false,
+        when: None,
         default: None,
         declared,
         place,
@@ -78,6 +81,11 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
         if let Some(claim) = claim(cursor) {
             let names = Some(claimed(cursor, &ui.choices)?);
             *(if claim == "conserves" { &mut ui.conserves } else { &mut ui.reciprocal }) = names;
+            continue;
+        }
+        if matches!(declared, Declared::Member(_)) && cursor.peek_text("when=") {
+            let (_, key) = cursor.key();
+            ui.when = Some(cursor.value(key)?.1);
             continue;
         }
         let (bytes, word) = cursor.word();

@@ -137,7 +137,7 @@ impl Compiler {
         // The wrapper has no text of the user. `rename` below keeps its name out of messages.
         let wrapper = TreePath::from("(library)");
         // A library may be for passes, which declare uniforms by name.
-        let text = format!("#version 460 //@pass\n#include \"{library}\"\nvoid main() {{}}\n");
+        let text = format!("#version 460 //@pass\n#define LIBRARY_ALONE\n#include \"{library}\"\nvoid main() {{}}\n");
         let mut compiled = self.compile_text(snapshot, &wrapper, &text, kind);
         compiled.dependencies.remove(&wrapper);
         // An error of the whole library is reported under the library's name.

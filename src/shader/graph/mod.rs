@@ -242,6 +242,12 @@ impl Graph {
         self.passes.iter().find(|pass| pass.name() == name)
     }
 
+    /// Whether another pass reads the image of the pass with this name.
+    pub fn is_read(&self, name: &str) -> bool {
+        let inputs = self.passes.iter().flat_map(|pass| pass.inputs.values());
+        inputs.into_iter().any(|input| matches!(input, Input::Image(read) if read == name))
+    }
+
     /// The passes to draw, in order: those whose images or buffers `stages` read, with `is_picture` those that change the
     /// picture, and what these need. With `shown`: the pass of that name, and what it needs. Passes for which `is_on`
     /// returns false are left out, except `shown` itself. A pass that nothing uses costs nothing.

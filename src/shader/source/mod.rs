@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use embedded::Example;
 use held::Held;
 
 /// Maximum size of a file in bytes. No shader is longer, and shaderc would hold several copies.
@@ -138,8 +139,8 @@ pub enum Source {
     Disk(PathBuf),
     /// A directory, some of whose files are held back: see [`Source::held`].
     Held(Arc<Held>),
-    /// The tree inside the binary.
-    Embedded,
+    /// The tree inside the binary, or that of an example.
+    Embedded(Option<Example>),
     /// Text in memory.
     Memory(BTreeMap<TreePath, String>),
 }
@@ -147,7 +148,7 @@ pub enum Source {
 impl Source {
     /// The tree that was compiled into the binary.
     pub fn embedded() -> Self {
-        Self::Embedded
+        Self::Embedded(None)
     }
 
     /// A tree in memory, from `(path, text)` pairs.
@@ -163,17 +164,18 @@ impl Source {
                 Some(text) => Ok(text.clone()),
                 None => read_file(&held.root().join(path.as_str())),
             },
-            Self::Embedded => check_text(embedded::read(path).ok_or(SourceError::Missing)?.to_vec()),
+            Self::Embedded(example) => check_text(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
             Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
         }
     }
 
     /// The bytes of a file, of an image for example.
     pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
-        match (self, self.root()) {
-            (_, Some(root)) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
-            (Self::Memory(files), None) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
-            (_, None) => Ok(embedded::read(path).ok_or(SourceError::Missing)?.to_vec()),
+        match self {
+            Self::Disk(root) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
+            Self::Held(held) => read_bytes(&held.root().join(path.as_str()), MAX_IMAGE_BYTES),
+            Self::Memory(files) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
+            Self::Embedded(example) => Ok(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
         }
     }
 
@@ -182,7 +184,7 @@ impl Source {
         match (self, self.root()) {
             (_, Some(root)) if root == Path::new(".") => path.to_string(),
             (_, Some(root)) => root.join(path.as_str()).display().to_string(),
-            (Self::Embedded, None) => format!("embedded:{path}"),
+            (Self::Embedded(_), None) => format!("embedded:{path}"),
             (_, None) => path.to_string(),
         }
     }
@@ -201,7 +203,8 @@ impl Source {
                 out
             }
             (Self::Memory(files), None) => files.keys().cloned().collect(),
-            (_, None) => embedded::list(),
+            (Self::Embedded(example), None) => embedded::list(*example),
+            (Self::Disk(_) | Self::Held(_), None) => Vec::new(),
         }
     }
 
@@ -210,13 +213,16 @@ impl Source {
         match self {
             Self::Disk(root) => Some(root),
             Self::Held(held) => Some(held.root()),
-            Self::Embedded | Self::Memory(_) => None,
+            Self::Embedded(_) | Self::Memory(_) => None,
         }
     }
 
     /// The name of the tree in messages: its folder, or that it is built in.
     pub fn name(&self) -> String {
-        self.root().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string())
+        match self {
+            Self::Embedded(Some(example)) => format!("examples:{}", example.name()),
+            _ => self.root().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string()),
+        }
     }
 }
 

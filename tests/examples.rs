@@ -1,0 +1,56 @@
+//! The examples: each compiles without a message, changes the picture, and is drawn the same at each run.
+
+mod support;
+
+use specula::headless::{Headless, Sequence};
+use specula::shader::embedded::Example;
+use specula::shader::{Library, Source, check};
+use support::process::run;
+use support::{SIZE, assert_differ, assert_same, assert_validated, compiler, gpu, lines, model, settings};
+
+fn draw(example: Option<Example>, frames: u32) -> specula::render::Capture {
+    let ball = model("shader-ball");
+    let opened = Headless::new(gpu(), compiler(), Source::Embedded(example), ball, settings(&["view.msaa=1"]), SIZE);
+    let Ok((mut headless, _)) = opened else { panic!("an example does not open") };
+    headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0 });
+    support::render(&mut headless, "final")
+}
+
+#[test]
+fn examples_change_the_picture_and_repeat_themselves() {
+    let plain = draw(None, 1);
+    let names = Example::names();
+    assert_eq!(names, ["fur", "hatching", "life", "raymarch", "reaction", "swarm", "toy"]);
+    for name in names {
+        let example = Example::named(name);
+        let first = draw(example, 8);
+        assert_differ(&plain, &first, name);
+        assert_same(&first, &draw(example, 8), name);
+        assert!(first.raw_at(SIZE.0 / 2, SIZE.1 / 2).unwrap().iter().all(|v| v.is_finite()), "{name}");
+    }
+    assert_validated();
+}
+
+#[test]
+fn examples_pass_check() {
+    for name in Example::names() {
+        let stages = specula::frame::stages::stages();
+        let mut library = Library::new(Source::Embedded(Example::named(name)), compiler().clone(), &stages);
+        let found = check::check(&mut library);
+        assert!(found.is_empty(), "{name}: {}", lines(&found).join("\n"));
+    }
+}
+
+#[test]
+fn examples_are_found_by_name_on_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let new = run(folder.path(), &["new", "mine", "--template", "life"]);
+    assert!(new.expect(0, &[]).stdout.contains("specula --shaders mine, then edit a file in passes/"), "{new:#?}");
+    assert!(folder.path().join("mine/passes/life.frag").is_file() && folder.path().join("mine/pbr.frag").is_file());
+    let modes = run(folder.path(), &["modes", "--shaders", "examples:life"]);
+    assert!(modes.expect(0, &[]).stdout.contains("pass:life"), "{modes:#?}");
+    let wrong = run(folder.path(), &["modes", "--shaders", "examples:live"]);
+    wrong.expect(1, &["there is no example `live`. Did you mean `life`? There are fur, hatching, life"]);
+    run(folder.path(), &["new", "other", "--template", "live"]).expect(1, &["there is no example `live`."]);
+    assert!(!folder.path().join("other").exists(), "nothing is written");
+}
