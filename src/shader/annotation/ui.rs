@@ -33,7 +33,7 @@ pub struct Ui {
     pub reciprocal: Option<Vec<String>>,
     /// `color`
     pub color: bool,
-    /// `when=NAME`
+    /// `when=NAME`, before the default.
     pub when: Option<String>,
     /// `= ...`, one number per component.
     pub default: Option<Vec<f64>>,
