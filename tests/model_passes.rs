@@ -145,7 +145,7 @@ fn the_model_reads_passes_textures_and_buffers_by_name() {
     session.set("passes.glow=false");
     assert_same(&before, &session.render(), "an image of a pass that is off reads as 0");
     session.headless.settings_mut().passes.clear();
-    // What the model reads cannot read the picture, which comes later.
+    // A pass that the model reads cannot read the picture, which comes later.
     let told = lines(failed(&session.save(
         "passes/glow.frag",
         &glow.replace("void main", "uniform sampler2D picture;\nvoid main").replace("7.0", "texture(picture, uv).g"),

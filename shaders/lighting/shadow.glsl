@@ -43,7 +43,7 @@ float soft_visibility(vec2 uv, vec2 low, vec2 high, float depth, float meters_pe
     const int BLOCKERS = 8;
     const int TAPS = 16;
     float turn = pixel_noise(gl_FragCoord.xy);
-    // What may hide the point lies within the cone towards the light, up to the front of the model.
+    // Blockers lie within the cone towards the light, up to the front of the model.
     float reach = min(angle * (1.0 - depth) * meters_per_depth * per_meter, 0.1 * (high.x - low.x));
     vec2 blockers = vec2(0.0);
     for (int i = 0; i < BLOCKERS; ++i) {

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod images;
+mod reads;
 mod sets;
 
 use std::sync::Arc;
@@ -16,9 +17,11 @@ use crate::interface::SET_TASK;
 use crate::render::resources::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{Dispatch, Instances};
-use crate::shader::graph::{Input, Inputs, Part};
+use crate::shader::graph::{Input, Part};
 pub(super) use blocks::Blocks;
 use images::Images;
+pub(super) use reads::Given;
+use reads::Reads;
 pub(super) use sets::PassSets;
 use sets::Sets;
 
@@ -334,68 +337,6 @@ impl DeclaredPasses {
         self.sets = sets;
         set.map(Some)
     }
-
-    /// The resources of a layout, in the order of its bindings.
-    fn resources<'a>(
-        &'a self,
-        layout: &PassLayout,
-        drawn: &'a Drawn<'_>,
-        reads: &'a Reads<'_>,
-    ) -> Result<Vec<PassResource<'a>>, GpuError> {
-        let textures = drawn.frame.pipelines.textures();
-        let given = reads.given;
-        // The graph has a buffer and a block for each of these inputs.
-        let missing = || GpuError::NoStage(reads.name.to_owned());
-        let resource = |binding: u32| {
-            Ok(match reads.inputs.get(&binding).ok_or_else(missing)? {
-                Input::Picture => self.sampled(given.picture.unwrap_or(&self.blank)),
-                Input::Behind => PassResource::Texture(given.behind.unwrap_or(&self.blank), &self.linear),
-                Input::Depth => PassResource::Texture(given.depth.unwrap_or(&self.blank), &self.nearest),
-                Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&self.blank)),
-                Input::Before(name) => self.sampled(self.images.before(name).unwrap_or(&self.blank)),
-                Input::Texture(name) => {
-                    let (image, sampler) = textures.get(name).unwrap_or((&self.blank, &self.linear));
-                    PassResource::Texture(image, sampler)
-                }
-                Input::Output => PassResource::Storage(given.target.ok_or_else(missing)?),
-                Input::Buffer(name, _) => PassResource::Buffer(self.images.buffer(name).ok_or_else(missing)?),
-                Input::Parameters(..) | Input::Size => {
-                    let block = reads.index.and_then(|index| drawn.blocks.get(index, binding));
-                    PassResource::Buffer(block.ok_or_else(missing)?)
-                }
-            })
-        };
-        layout.bindings().map(resource).collect()
-    }
-
-    /// An image as passes read it: with blended texels, if the device can blend them.
-    fn sampled<'a>(&'a self, image: &'a Arc<Image>) -> PassResource<'a> {
-        let blends = self.gpu.blends_texels(image.desc().format);
-        PassResource::Texture(image, if blends { &self.linear } else { &self.nearest })
-    }
-}
-
-/// What a stage reads by name.
-struct Reads<'a> {
-    /// Name of the pass, or path of the stage.
-    name: &'a str,
-    inputs: &'a Inputs,
-    given: &'a Given<'a>,
-    /// The place of the pass in `PipelineRequest::passes`.
-    index: Option<usize>,
-}
-
-/// The images that a stage reads besides those of passes.
-#[derive(Default)]
-pub(super) struct Given<'a> {
-    /// The picture so far.
-    pub(super) picture: Option<&'a Arc<Image>>,
-    /// The opaque surfaces, with mip levels.
-    pub(super) behind: Option<&'a Arc<Image>>,
-    /// The model's depth.
-    pub(super) depth: Option<&'a Arc<Image>>,
-    /// The image that a compute pass writes.
-    pub(super) target: Option<&'a Arc<Image>>,
 }
 
 /// The pass whose own image the frame shows, if it shows one.

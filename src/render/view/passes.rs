@@ -18,7 +18,7 @@ pub(super) struct Passes<'a> {
     pub(super) layouts: &'a Arc<SetLayouts>,
     pub(super) targets: &'a Targets,
     pub(super) frame: &'a BoundFrame,
-    /// What the stages of the model, the sky and the mean read by name.
+    /// The sets of the stages of model, sky and mean.
     pub(super) sets: &'a PassSets,
     /// The part of the picture to shade; `None` is all of it.
     pub(super) only: Option<Rect>,

@@ -67,7 +67,7 @@ impl Texts<'_> {
 /// Checks one stage against the contract.
 pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
-    // What a pass declares by name is for `graph` to find, also in the libraries that passes include.
+    // `graph` checks what a stage declares by name, and what its libraries declare.
     let by_name = match StageKind::of(texts.stage) {
         None => true,
         Some(kind) => texts.snapshot.read(texts.stage).is_ok_and(|text| reads_by_name(kind, &text)),

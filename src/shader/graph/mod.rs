@@ -7,6 +7,7 @@
 
 mod inputs;
 mod order;
+mod textures;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -14,15 +15,17 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::annotation::Annotations;
-use super::annotation::pass::{Dispatch, PassFormat, PassNote, PassSize, TextureNote, Wrap};
+use super::annotation::pass::{Dispatch, PassFormat, PassNote, PassSize};
 use super::compile::StageKind;
 use super::contract::{INTERFACE_FILE, Texts};
 use super::diagnostic::Diagnostic;
+use super::source::TreePath;
 use super::source::snapshot::Snapshot;
 use super::source::text::{find_word, lines};
-use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::message::did_you_mean;
+pub use textures::Texture;
+use textures::{read_texture, texture_name};
 
 /// The resource that a pass reads or writes at a binding of `interface::SET_PASS`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -81,7 +84,7 @@ pub struct GraphPass {
     pub vertex: Option<String>,
     /// When it is drawn.
     pub part: Part,
-    /// What it reads and writes.
+    /// The images, textures and buffers that it reads and writes.
     pub inputs: Inputs,
     /// Invocations of a workgroup, of a compute pass.
     pub local_size: [u32; 3],
@@ -115,39 +118,14 @@ impl GraphPass {
     }
 }
 
-/// An image file of the tree that passes sample.
-#[derive(Clone, PartialEq, Eq)]
-pub struct Texture {
-    /// Name in GLSL.
-    pub name: String,
-    /// Path in the tree.
-    pub path: String,
-    /// Whether its colors are sRGB-encoded.
-    pub srgb: bool,
-    /// Addressing mode.
-    pub wrap: Wrap,
-    /// Whether it has mip levels.
-    pub mips: bool,
-    /// The content of the file.
-    pub bytes: Arc<[u8]>,
-    /// The parsed `//@texture`.
-    pub note: TextureNote,
-}
-
-impl std::fmt::Debug for Texture {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Texture").field("name", &self.name).field("path", &self.path).finish_non_exhaustive()
-    }
-}
-
 /// The declared passes in order, and their textures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Graph {
     /// In the order in which they are drawn.
     pub passes: Vec<Arc<GraphPass>>,
-    /// What the stages read that come with Specula, by path.
+    /// The inputs of the stages that come with Specula, by path.
     pub readers: BTreeMap<String, Inputs>,
-    /// By name.
+    /// The textures that the stages read, by name.
     pub textures: BTreeMap<String, Arc<Texture>>,
 }
 
@@ -369,42 +347,4 @@ fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
         }
     }
     errors
-}
-
-fn texture_name(input: &Input) -> Option<&str> {
-    match input {
-        Input::Texture(name) => Some(name),
-        _ => None,
-    }
-}
-
-fn read_texture(note: &TextureNote, snapshot: &Snapshot<'_>) -> Result<Texture, Box<Diagnostic>> {
-    let source = snapshot.source();
-    let beside = TreePath::from(note.declared_in.as_str()).sibling(&note.image);
-    let mut candidates: Vec<TreePath> = beside.into_iter().chain(TreePath::parse(&note.image)).collect();
-    candidates.dedup();
-    let refuse = |message: String| Err(Box::new(note.place.error(message)));
-    if candidates.is_empty() {
-        return refuse(format!("\"{}\" leaves the shader tree; images must stay inside its root", note.image));
-    }
-    for path in &candidates {
-        match source.read_bytes(path) {
-            Ok(bytes) => {
-                let TextureNote { name, srgb, wrap, mips, .. } = note.clone();
-                return Ok(Texture {
-                    name,
-                    path: path.to_string(),
-                    srgb,
-                    wrap,
-                    mips,
-                    bytes: bytes.into(),
-                    note: note.clone(),
-                });
-            }
-            Err(SourceError::Missing) => {}
-            Err(error) => return refuse(format!("{} {error}", snapshot.display_path(path))),
-        }
-    }
-    let looked: Vec<String> = candidates.iter().map(|path| snapshot.display_path(path)).collect();
-    refuse(format!("\"{}\" not found; looked for {}", note.image, looked.join(" and ")))
 }

@@ -229,7 +229,7 @@ impl Images {
         self.passes.get(name)?.depth.as_ref()
     }
 
-    /// What the pass draws to before mip levels are made of it.
+    /// The image that the pass draws to, if mip levels are made from it.
     pub(super) fn first_level(&self, name: &str) -> Option<&Arc<Image>> {
         self.passes.get(name)?.first_level.as_ref()
     }

@@ -1,0 +1,10 @@
+//@pass normals "Normals" draw=model format=rgba16f doc="World-space normals of the model"
+#version 460
+#include "interface.glsl"
+#include "common/fragment.glsl"
+#include "common/math.glsl"
+
+layout(location = 0) in Fragment fragment;
+layout(location = 0) out vec4 color;
+
+void main() { color = vec4(safe_normalize(fragment.normal_ws, vec3(0.0)), 1.0); }
