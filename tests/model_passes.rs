@@ -174,6 +174,54 @@ fn the_model_reads_passes_textures_and_buffers_by_name() {
 }
 
 #[test]
+fn the_model_reads_buffers_that_passes_write() {
+    let mut session = sphere();
+    let plain = at(&session.render(), 0.5);
+    let fill = "//@pass fill size=1x1 format=r32f\n#version 460\n#include \"interface.glsl\"\n\
+        layout(local_size_x = 1) in;\nlayout(r32f) uniform writeonly image2D fill;\n\
+        buffer Counts { float counts[4]; };\n\
+        void main() { counts[1] = 5.0; imageStore(fill, ivec2(0), vec4(1.0)); }\n";
+    ready(&session.save("passes/fill.comp", fill));
+    session.render();
+    let user = session.tree.read("user.glsl").replace(
+        "// A light before it shines",
+        "uniform sampler2D fill;\nreadonly buffer Counts { float counts[4]; };\n// A light",
+    );
+    let adds = "    radiance.b += counts[1] * texture(fill, vec2(0.5)).r;\n    return radiance;";
+    let user = user.replace("    return radiance;", adds);
+    ready(&session.save("user.glsl", &user));
+    let found = at(&session.render(), 0.5);
+    assert!((found[2] - plain[2] - 5.0).abs() < 0.02, "{plain:?} {found:?}");
+    let told = lines(failed(&session.save("passes/fill.comp", &fill.replace("counts[4]", "counts[8]")))).join("\n");
+    assert!(
+        told.contains("fill.comp:1:1: error: the buffer `Counts` has 32 bytes here and 16 in `debug.frag`"),
+        "{told}"
+    );
+    assert_validated();
+}
+
+/// Two stages with the same kinds of inputs have sets of their own.
+#[test]
+fn the_sky_reads_its_own_image_in_an_accumulating_mode() {
+    let sky = ["view.msaa=1", "view.background=env", "environment.name=furnace", "view.frames=2"];
+    let mut session = Session::new(load(&glb::model(&glb::sphere(8, 16), &glb::gray())), settings(&sky));
+    let blue = "//@pass blue size=1x1 format=rgba32f\n#version 460\n#include \"pass.glsl\"\n\
+        void main() { color = vec4(0.0, 0.0, 3.0, 1.0); }\n";
+    ready(&session.save("passes/blue.frag", blue));
+    let text = session.tree.read("user/background.glsl");
+    let hook = text.find("vec3 user_background").unwrap();
+    let text = format!(
+        "{}uniform sampler2D blue;\nvec3 user_background(vec3 direction, vec3 radiance) {{ return texture(blue, vec2(0.5)).rgb; }}\n#endif\n",
+        &text[..hook]
+    );
+    ready(&session.save("user/background.glsl", &text));
+    for mode in ["final", "monte-carlo"] {
+        assert_eq!(at(&session.mode(mode), 0.02)[..3], [0.0, 0.0, 3.0], "{mode}");
+    }
+    assert_validated();
+}
+
+#[test]
 fn contradictions_have_their_line() {
     let mut session = sphere();
     let before = session.render();

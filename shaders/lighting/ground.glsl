@@ -10,7 +10,10 @@ float ground_height() { return frame.scene_min_ws.y; }
 // Side of the square that has images of its own, meters.
 float ground_width() { return 4.0 * frame.scene_radius; }
 
-// Place in these images, 0..1 within the square.
-vec2 ground_uv(vec3 position_ws) { return 0.5 + (position_ws.xz - frame.scene_center_ws.xz) / ground_width(); }
+// Place in these images, 0..1 within the square. Seen from below: -z is down, so that front faces stay front faces.
+vec2 ground_uv(vec3 position_ws) {
+    vec2 offset = position_ws.xz - frame.scene_center_ws.xz;
+    return 0.5 + vec2(offset.x, -offset.y) / ground_width();
+}
 
 #endif

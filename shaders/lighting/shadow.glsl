@@ -44,7 +44,7 @@ float soft_visibility(vec2 uv, vec2 low, vec2 high, float depth, float meters_pe
     const int TAPS = 16;
     float turn = pixel_noise(gl_FragCoord.xy);
     // Blockers lie within the cone towards the light, up to the front of the model.
-    float reach = min(angle * (1.0 - depth) * meters_per_depth * per_meter, 0.1 * (high.x - low.x));
+    float reach = clamp(angle * (1.0 - depth) * meters_per_depth * per_meter, 0.0, 0.1 * (high.x - low.x));
     vec2 blockers = vec2(0.0);
     for (int i = 0; i < BLOCKERS; ++i) {
         vec2 at = clamp(uv + reach * disk_sample(i, BLOCKERS, turn), low, high);
@@ -53,7 +53,7 @@ float soft_visibility(vec2 uv, vec2 low, vec2 high, float depth, float meters_pe
     }
     if (blockers.y == 0.0) return 1.0;
     float apart_m = (blockers.x / blockers.y - depth) * meters_per_depth;
-    float radius = clamp(angle * apart_m * per_meter, 1.5 / SHADOW_MAP_PX, max(reach, 1e-6));
+    float radius = max(min(angle * apart_m * per_meter, reach), 1.5 / SHADOW_MAP_PX);
     float lit = 0.0;
     for (int i = 0; i < TAPS; ++i) {
         vec2 at = clamp(uv + radius * disk_sample(i, TAPS, turn), low, high);

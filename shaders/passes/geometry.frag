@@ -4,7 +4,6 @@
 #include "common/fragment.glsl"
 #include "common/math.glsl"
 #include "material.glsl"
-#include "user.glsl"
 
 // rgb: normal, world space, unit, towards the eye. a: meters along the camera's axis; 0 where there is nothing.
 
@@ -15,7 +14,6 @@ void main() {
     if (ALPHA_MODE == ALPHA_BLEND) discard;
     if (ALPHA_MODE == ALPHA_MASK) {
         Surface surface = make_surface(fragment, safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0)));
-        user_surface(surface);
         if (surface.coverage < material.alpha_cutoff) discard;
     }
     // Without normal maps: what hides the sky is the geometry. A mesh without normals has those of its facets.

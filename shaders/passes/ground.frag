@@ -33,7 +33,8 @@ vec3 lit_part_of(vec3 position_ws) {
         whole += irradiance;
         left += irradiance * shadow_visibility(i, position_ws, UP, light.l);
     }
-    return left / max(whole, 1e-12);
+    // Without light there is no shadow.
+    return mix(vec3(1.0), left / max(whole, 1e-12), greaterThan(whole, vec3(1e-12)));
 }
 
 void main() {

@@ -21,7 +21,8 @@ void main() {
         for (int step = 0; step < STEPS; ++step) {
             // Distances grow, as near blockers hide the most: 0.4 % to 36 % of the ground.
             float far = 0.36 * pow((float(step) + 0.6) / (float(STEPS) - 0.4), 2.0);
-            float blocker = texelFetch(ground_blockers, ivec2((uv + far * direction) * pass.size_px), 0).r;
+            vec2 at = clamp(uv + far * direction, 0.0, 1.0) * (pass.size_px - 1.0);
+            float blocker = texelFetch(ground_blockers, ivec2(at + 0.5), 0).r;
             if (blocker <= 0.0) continue;
             float height = max(1.0 - blocker, 0.0);
             open = min(open, height * height / (height * height + far * far));

@@ -51,7 +51,8 @@ void main() {
     Rays rays = rays();
     vec3 position = point_at(rays, uv, here.a);
     vec3 v = normalize(-position);
-    vec3 n = here.xyz;
+    // Points and lines have no normal.
+    vec3 n = dot(here.xyz, here.xyz) > 0.0 ? here.xyz : v;
     float radius_m = occlusion_radius * frame.scene_radius;
     // Radius in the image, 0..1 of its height.
     float radius = min(radius_m / (2.0 * here.a * length(rays.down)), 0.5);
@@ -92,6 +93,7 @@ void main() {
                 horizons[side] = max(horizons[side], cosine);
             }
         }
+        horizons = clamp(horizons, -1.0, 1.0);
         // Angles from v: negative on the first side. They stay within the hemisphere around the normal.
         float low = gamma + max(-acos(horizons.x) - gamma, -0.5 * PI);
         float high = gamma + min(acos(horizons.y) - gamma, 0.5 * PI);

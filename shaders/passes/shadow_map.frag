@@ -4,7 +4,6 @@
 #include "common/fragment.glsl"
 #include "common/math.glsl"
 #include "material.glsl"
-#include "user.glsl"
 
 layout(location = 0) in Fragment fragment;
 layout(location = 12) in vec3 tile;
@@ -15,10 +14,9 @@ void main() {
     if (ALPHA_MODE == ALPHA_BLEND || (FEATURES & FEATURE_TRANSMISSION) != 0u) discard;
     if (ALPHA_MODE == ALPHA_MASK) {
         Surface surface = make_surface(fragment, safe_normalize(fragment.to_eye_ws, vec3(0.0, 0.0, 1.0)));
-        user_surface(surface);
         if (surface.coverage < material.alpha_cutoff) discard;
     }
-    // A light inside the model sees parts of it beyond its tile.
-    if (any(greaterThan(abs(tile.xy), vec2(1.0)))) discard;
+    // A light inside the model sees parts of it beyond its tile. gl_FragCoord.w is 1 / w.
+    if (any(greaterThan(abs(tile.xy) * gl_FragCoord.w, vec2(1.0)))) discard;
     color = vec4(tile.z, 0.0, 0.0, 1.0);
 }

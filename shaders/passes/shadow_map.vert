@@ -8,7 +8,7 @@
 // The model as each light sees it, in the light's tile. Instance i belongs to light i.
 
 layout(location = 0) out Fragment fragment;
-layout(location = 12) out vec3 tile;  // beyond those of Fragment; xy: position in the tile, -1..1; z: depth, linear
+layout(location = 12) out vec3 tile;  // beyond those of Fragment; xy: position in the tile, -w..w; z: depth, linear
 
 void main() {
     Vertex vertex = draw.vertices.at[gl_VertexIndex];
@@ -25,7 +25,7 @@ void main() {
     ShadowView view = shadow_view(lights[light]);
     vec3 seen = seen_from(view, fragment.position_ws);
     float depth = shadow_depth(view, seen);
-    tile = vec3(seen.xy / half_width_at(view, seen), depth);
+    tile = vec3(seen.xy / view.half_width, depth);
     float w = view.is_parallel ? 1.0 : seen.z;
     float size = 1.0 / float(shadow_tiles());
     vec2 center = 2.0 * shadow_tile(light) + size - 1.0;

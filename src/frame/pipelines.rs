@@ -12,7 +12,7 @@ use crate::interface::{
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::annotation::pass::PassFormat;
-use crate::shader::graph::{FULL_SCREEN, Graph, Inputs, MODEL, Part};
+use crate::shader::graph::{FULL_SCREEN, MODEL, Part};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, ModeStage, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
@@ -336,12 +336,6 @@ impl PipelineRequest {
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         let passes = self.passes.iter().flat_map(|pass| self.pass_keys(pass));
         self.model_keys().chain([self.tonemap_key()]).chain(passes)
-    }
-
-    /// The inputs of the stages that come with Specula, as far as this request draws them.
-    pub(crate) fn readers<'a>(&self, graph: &'a Graph) -> impl Iterator<Item = &'a Inputs> {
-        let stages = self.stages();
-        graph.readers.iter().filter(move |(path, _)| stages.contains(*path)).map(|(_, inputs)| inputs)
     }
 }
 

@@ -59,6 +59,9 @@ const SETS_KEPT: usize = 8;
 /// Number of stages that come with Specula and read images, in one frame: model, `behind`, sky, mean and tone map.
 const BUILT_IN_SETS: usize = 5;
 
+/// The lights that a pass with `instances=lights` draws the model for.
+const MOST_LIGHTS: usize = 16;
+
 impl DeclaredPasses {
     pub(super) fn new(
         gpu: &Arc<Gpu>,
@@ -191,7 +194,7 @@ impl DeclaredPasses {
                 continue;
             };
             let reads = Reads { name: fragment, inputs, given, index: None };
-            sets.insert(&pipeline.layout, self.set(&pipeline.layout, drawn, &reads)?);
+            sets.insert(pipeline, self.set(&pipeline.layout, drawn, &reads)?);
         }
         Ok(sets)
     }
@@ -238,7 +241,7 @@ impl DeclaredPasses {
         let mut sets = PassSets::default();
         let keys = request.pass_keys(pass);
         for pipeline in keys.iter().filter_map(|key| drawn.frame.pipelines.get(key)) {
-            sets.insert(&pipeline.layout, self.set(&pipeline.layout, drawn, reads)?);
+            sets.insert(pipeline, self.set(&pipeline.layout, drawn, reads)?);
         }
         if uses_buffers(pass) {
             encoder.buffers_done();
@@ -255,7 +258,7 @@ impl DeclaredPasses {
                 encoder.bind_set(&self.layouts, drawn.frame_set);
                 let instances = match instances {
                     Instances::Count(count) => count,
-                    Instances::Lights => drawn.frame.state.lights.len() as u32,
+                    Instances::Lights => drawn.frame.state.lights.len().min(MOST_LIGHTS) as u32,
                 };
                 let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances };
                 let draws = drawn.frame.scene.iter().flat_map(|scene| &scene.draws);

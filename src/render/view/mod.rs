@@ -186,8 +186,14 @@ impl View {
         // The passes that the model reads, and the model to the HDR target.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
         let drawn = Drawn { frame, frame_set: &set, blocks, depth };
+        let graph = &frame.state.shaders.graph;
+        let shares_buffers = graph.readers.values().flat_map(|inputs| inputs.values());
+        let shares_buffers = shares_buffers.into_iter().any(|input| matches!(input, Input::Buffer(..)));
         if redrawn {
             self.declared.before_model(encoder, &drawn)?;
+            if shares_buffers {
+                encoder.buffers_done();
+            }
         }
         let given = Given { picture: Some(&targets.color), behind: targets.behind.as_ref(), ..Given::default() };
         let sets = self.declared.built_in_sets(&drawn, &given, frame.state.pipelines.model_keys())?;
@@ -201,6 +207,9 @@ impl View {
         // The declared passes before the tone map.
         if redrawn {
             self.declared.before_tonemap(encoder, &drawn, targets.picture())?;
+            if shares_buffers {
+                encoder.buffers_done();
+            }
         }
         self.drawn = Some((frame.clone(), only));
 

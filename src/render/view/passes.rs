@@ -193,6 +193,7 @@ impl ModelDraws<'_> {
         encoder.bind_indices(&scene.indices);
         for draw in draws {
             if let Some(pipeline) = self.frame.pipelines.get(&key(draw.variant)) {
+                encoder.bind_set(self.layouts, &draw.material);
                 self.sets.bind(encoder, pipeline);
                 self.draw_one(encoder, draw);
             }
@@ -200,7 +201,6 @@ impl ModelDraws<'_> {
     }
 
     fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
-        encoder.bind_set(self.layouts, &draw.material);
         encoder.push(self.layouts, &draw.push);
         // A blended double-sided surface is drawn back faces first, since they lie behind.
         let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {

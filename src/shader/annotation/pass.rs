@@ -123,7 +123,7 @@ pub enum Dispatch {
 pub enum Instances {
     /// A fixed number of times.
     Count(u32),
-    /// Once for each light of the frame.
+    /// Once for each light of the frame, at most 16 times.
     Lights,
 }
 

@@ -19,9 +19,9 @@ use super::annotation::pass::{Dispatch, PassFormat, PassNote, PassSize};
 use super::compile::StageKind;
 use super::contract::{INTERFACE_FILE, Texts};
 use super::diagnostic::Diagnostic;
-use super::source::TreePath;
 use super::source::snapshot::Snapshot;
 use super::source::text::{find_word, lines};
+use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::message::did_you_mean;
 pub use textures::Texture;
@@ -157,7 +157,7 @@ impl Graph {
         for note in notes {
             let stage = &stages[&note.stage];
             let vertex = vertex_of(&note.stage);
-            let has_vertex = snapshot.read(&TreePath::from(vertex.as_str())).is_ok();
+            let has_vertex = snapshot.read(&TreePath::from(vertex.as_str())) != Err(SourceError::Missing);
             // It is still to be compiled.
             if has_vertex && !stages.contains_key(&vertex) {
                 continue;
@@ -182,7 +182,6 @@ impl Graph {
                 Err(found) => errors.extend(found),
             }
         }
-        errors.extend(different_buffers(&passes));
         let mut readers = BTreeMap::new();
         for (path, stage) in stages.iter().filter(|(path, _)| inputs::is_built_in(path)) {
             match inputs::built_in(path, stage, &names) {
@@ -192,6 +191,11 @@ impl Graph {
                 Err(found) => errors.extend(found),
             }
         }
+        errors.extend(different_buffers(&passes, &readers));
+        // The model shows how it was one frame ago.
+        let is_before =
+            |name: &str| readers.values().flat_map(BTreeMap::values).any(|i| *i == Input::Before(name.into()));
+        passes.iter_mut().for_each(|pass| pass.moves |= is_before(&pass.note.name));
         let inputs = passes.iter().map(|pass| &pass.inputs).chain(readers.values());
         let used: BTreeSet<&str> = inputs.flat_map(BTreeMap::values).filter_map(texture_name).collect();
         let mut textures = BTreeMap::new();
@@ -329,19 +333,24 @@ fn unknown_switch(note: &PassNote, annotations: &Annotations) -> Option<Diagnost
     )
 }
 
-/// Errors of passes whose buffer another pass declares with another size.
-fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
-    let mut first: BTreeMap<&str, (u32, &GraphPass)> = BTreeMap::new();
+/// Errors of passes whose buffer another pass, or a stage that comes with Specula, declares with another size.
+fn different_buffers(passes: &[GraphPass], readers: &BTreeMap<String, Inputs>) -> Vec<Diagnostic> {
+    let mut first: BTreeMap<&str, (u32, String)> = BTreeMap::new();
+    for (path, inputs) in readers {
+        for input in inputs.values() {
+            if let Input::Buffer(name, bytes) = input {
+                first.entry(name).or_insert_with(|| (*bytes, format!("`{path}`")));
+            }
+        }
+    }
     let mut errors = Vec::new();
     for pass in passes {
         for input in pass.inputs.values() {
             let Input::Buffer(name, bytes) = input else { continue };
-            let (size, other) = *first.entry(name).or_insert((*bytes, pass));
-            if size != *bytes {
-                let message = format!(
-                    "the buffer `{name}` has {bytes} bytes here and {size} in the pass `{}`; both share it",
-                    other.name()
-                );
+            let (size, other) = first.entry(name).or_insert_with(|| (*bytes, format!("the pass `{}`", pass.name())));
+            if *size != *bytes {
+                let message =
+                    format!("the buffer `{name}` has {bytes} bytes here and {size} in {other}; both share it");
                 errors.push(pass.note.place.error(message).with_help("declare it once, in a file that both include"));
             }
         }

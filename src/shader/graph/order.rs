@@ -69,6 +69,8 @@ fn put_before_model(
             let pass = &mut passes[at];
             let refusal = if pass.part == Part::Display {
                 Some("it comes after the tone map")
+            } else if is_model && pass.note.to_picture {
+                Some("the model is drawn after it, so it cannot change the picture")
             } else if is_model && pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth)) {
                 Some("the model is drawn after it, so there is no `picture` and no `depth` yet")
             } else {
@@ -84,7 +86,8 @@ fn put_before_model(
             }
             if is_model && pass.part != Part::BeforeModel {
                 pass.part = Part::BeforeModel;
-                open.extend(images(&pass.inputs).filter_map(|name| index.get(name).copied()));
+                let needs = pass.note.after.as_deref().into_iter().chain(images(&pass.inputs));
+                open.extend(needs.filter_map(|name| index.get(name).copied()));
             }
         }
     }

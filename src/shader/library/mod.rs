@@ -24,6 +24,7 @@ use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{Source, TreePath};
 use link::Linked;
+use passes::fragment_of;
 use slot::{Built, Done, Slot, build};
 
 pub use slot::Stage;
@@ -190,6 +191,8 @@ impl Library {
     /// compiled, and if they are good, the new set appears at once. Its other stages are [`ShaderSet::pending`] until
     /// [`Library::finish`] compiles them.
     pub fn update_first(&mut self, change: &Change, is_first: impl Fn(&TreePath) -> bool) -> Update {
+        // The stages of a pass come together.
+        let is_first = |path: &TreePath| is_first(path) || is_first(&fragment_of(path));
         let start = Instant::now();
         let source = Arc::clone(&self.source);
         let snapshot = Snapshot::new(&source);

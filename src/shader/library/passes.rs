@@ -73,7 +73,7 @@ impl Library {
     /// The passes that are off unless the user switches them on.
     pub(super) fn passes_off(&self, snapshot: &Snapshot<'_>) -> BTreeSet<TreePath> {
         let passes = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
-        passes.filter(|path| annotation::is_off(snapshot, path)).cloned().collect()
+        passes.filter(|path| annotation::is_off(snapshot, &fragment_of(path))).cloned().collect()
     }
 
     /// A warning for each stage in `passes/` that declares no pass.
@@ -84,6 +84,14 @@ impl Library {
             let help = format!("begin it with `//@pass {name} to=picture`");
             Diagnostic::warning(snapshot.display_path(path), message).with_help(help)
         })
+    }
+}
+
+/// The stage that declares the pass of a stage: itself, or the fragment stage beside a vertex stage.
+pub(super) fn fragment_of(path: &TreePath) -> TreePath {
+    match StageKind::of(path) {
+        Some(StageKind::Vertex) => TreePath::from(format!("{}.frag", path.stem()).as_str()),
+        _ => path.clone(),
     }
 }
 

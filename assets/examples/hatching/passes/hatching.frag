@@ -27,7 +27,7 @@ float stroke(float angle, float dark) {
 
 // How much the normals of neighboring pixels differ.
 float edge() {
-    ivec2 at = ivec2(gl_FragCoord.xy);
+    ivec2 at = clamp(ivec2(gl_FragCoord.xy), ivec2(1), textureSize(normals, 0) - 2);
     vec4 x = texelFetch(normals, at + ivec2(1, 0), 0) - texelFetch(normals, at - ivec2(1, 0), 0);
     vec4 y = texelFetch(normals, at + ivec2(0, 1), 0) - texelFetch(normals, at - ivec2(0, 1), 0);
     return smoothstep(0.3, 0.8, length(vec2(length(x), length(y))));

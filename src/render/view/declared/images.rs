@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapc
 use crate::render::resources::BoundFrame;
 use crate::scene::mips;
 use crate::shader::GraphPass;
-use crate::shader::graph::{Input, Part};
+use crate::shader::graph::{Graph, Input, Part};
 
 /// The properties of a pass that determine its images.
 #[derive(Clone, Copy, PartialEq)]
@@ -44,6 +44,8 @@ struct Key {
     picture: vk::Format,
     passes: Vec<Arc<GraphPass>>,
     shown: Option<String>,
+    /// Sizes of all declared buffers in bytes, by name.
+    buffers: BTreeMap<String, u32>,
 }
 
 /// The images and buffers of all declared passes of a frame.
@@ -84,6 +86,7 @@ impl Images {
             picture: request.picture_format(),
             passes: request.passes.clone(),
             shown: request.shown_pass.clone(),
+            buffers: buffers(&frame.state.shaders.graph),
         };
         if key == self.key {
             return Ok(None);
@@ -93,8 +96,7 @@ impl Images {
             let images = next.images_of(gpu, pass, self.passes.get(pass.name()))?;
             next.passes.insert(pass.name().to_owned(), images);
         }
-        let readers = request.readers(&frame.state.shaders.graph);
-        let inputs = request.passes.iter().map(|pass| &pass.inputs).chain(readers);
+        let inputs = request.passes.iter().map(|pass| &pass.inputs).chain(frame.state.shaders.graph.readers.values());
         for (name, bytes) in inputs.flat_map(|inputs| inputs.values()).filter_map(buffer_of) {
             let known = next.buffers.get(name).or(self.buffers.get(name));
             let known = known.filter(|buffer| buffer.size() == u64::from(bytes).max(1));
@@ -110,10 +112,7 @@ impl Images {
             next.passes.entry(name.clone()).or_insert_with(|| images.clone());
         }
         for (name, buffer) in &self.buffers {
-            let declared = graph.passes.iter().flat_map(|pass| pass.inputs.values()).filter_map(buffer_of);
-            let size =
-                u64::from(declared.filter(|(other, _)| other == name).map(|(_, bytes)| bytes).max().unwrap_or(0));
-            if buffer.size() == size {
+            if next.key.buffers.get(name).is_some_and(|bytes| buffer.size() == u64::from(*bytes)) {
                 next.buffers.entry(name.clone()).or_insert_with(|| buffer.clone());
             }
         }
@@ -270,6 +269,16 @@ impl Images {
     pub(super) fn shown(&self) -> Option<&Arc<Image>> {
         self.shown.as_ref()
     }
+}
+
+/// The sizes in bytes of all buffers that a graph declares, by name.
+fn buffers(graph: &Graph) -> BTreeMap<String, u32> {
+    let inputs = graph.passes.iter().map(|pass| &pass.inputs).chain(graph.readers.values());
+    inputs
+        .flat_map(|inputs| inputs.values())
+        .filter_map(buffer_of)
+        .map(|(name, bytes)| (name.to_owned(), bytes))
+        .collect()
 }
 
 fn buffer_of(input: &Input) -> Option<(&str, u32)> {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::gpu::{DescriptorSet, Encoder, GpuError, PassLayout, Pipeline};
+use crate::gpu::{DescriptorSet, Encoder, GpuError, Pipeline};
 
 /// Numbers that identify the objects that a set points to. A set keeps them alive, so no other object gets their numbers.
 pub(super) type Key = Vec<usize>;
@@ -37,20 +37,20 @@ impl Sets {
     }
 }
 
-/// The sets of what pipelines read by name, by their layouts.
+/// The sets of what pipelines read by name, by pipeline.
 #[derive(Default)]
 pub(in crate::render::view) struct PassSets(HashMap<usize, Arc<DescriptorSet>>);
 
 impl PassSets {
-    /// Adds the set of a layout, if it has one.
-    pub(super) fn insert(&mut self, layout: &Arc<PassLayout>, set: Option<Arc<DescriptorSet>>) {
-        self.0.extend(set.map(|set| (Arc::as_ptr(layout) as usize, set)));
+    /// Adds the set of a pipeline, if it has one.
+    pub(super) fn insert(&mut self, pipeline: &Arc<Pipeline>, set: Option<Arc<DescriptorSet>>) {
+        self.0.extend(set.map(|set| (Arc::as_ptr(pipeline) as usize, set)));
     }
 
     /// Binds a pipeline, and the set of what it reads by name.
     pub(in crate::render::view) fn bind(&self, encoder: &mut Encoder, pipeline: &Arc<Pipeline>) {
         encoder.bind_pipeline(pipeline);
-        if let Some(set) = self.0.get(&(Arc::as_ptr(&pipeline.layout) as usize)) {
+        if let Some(set) = self.0.get(&(Arc::as_ptr(pipeline) as usize)) {
             encoder.bind_pass_set(&pipeline.layout, set);
         }
     }
