@@ -82,6 +82,8 @@ pub(super) struct Viewer {
     allow_outside: bool,
     shown: Option<LastComplete>,
     first_frame: Option<FirstFrame>,
+    /// Whether the names in the settings were compared with those that the shaders declare.
+    names_checked: bool,
     /// The shader generation that was last shown with all of its stages and light.
     settled: Option<u64>,
     /// The loop that did not end in the last picture.
@@ -129,6 +131,7 @@ impl Viewer {
             allow_outside: options.allow_outside,
             shown: None,
             first_frame: None,
+            names_checked: false,
             settled: None,
             endless_loop: None,
             compiler: options.compiler,

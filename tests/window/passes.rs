@@ -49,3 +49,17 @@ fn a_pass_file_comes_breaks_and_goes() {
     assert!(viewer.screenshot() == plain, "the deleted pass still shows");
     viewer.quit();
 }
+
+/// A pass that is off compiles after the first picture, so its name is not known at once.
+#[test]
+fn a_pass_that_is_still_compiling_is_no_unknown_name() {
+    let on = ["sphere-grid", "--set", "passes.ground=true", "--set", "film_grain=0.5", "--mode", "pass:film"];
+    let mut viewer = Viewer::open(Tree::new(), &on);
+    viewer.running.event("completed");
+    let stderr = viewer.quit();
+    assert!(!stderr.contains("named") && !stderr.contains("unknown") && !stderr.contains("no mode"), "{stderr}");
+
+    let viewer = Viewer::open(Tree::new(), &["sphere-grid", "--set", "passes.grund=true"]);
+    viewer.running.until_stderr("no pass is named `grund`. Did you mean `ground`?");
+    viewer.quit();
+}

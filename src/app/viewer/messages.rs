@@ -47,6 +47,9 @@ impl Viewer {
                 self.set_diagnostics(set.shaders.warnings.clone());
                 self.session.shaders = Some(set.shaders.clone());
                 self.resources.set_pipelines(set);
+                if !self.names_checked || self.session.mode().is_none() {
+                    self.check_names();
+                }
             }
         }
         emit(self.events, &Event::Completed(CompletedEvent::new(reload, generation)));
@@ -84,9 +87,9 @@ impl Viewer {
                 }
                 let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
                 self.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
-                let is_first = self.session.shaders.replace(set.shaders.clone()).is_none();
+                self.session.shaders = Some(set.shaders.clone());
                 self.resources.set_pipelines(set);
-                self.check_names(is_first);
+                self.check_names();
             }
         }
     }
@@ -108,10 +111,12 @@ impl Viewer {
     }
 
     /// Reports settings and modes that the shaders lack. The settings stay, because the next edit may declare them.
-    /// Unknown names are reported only for the first shaders.
-    fn check_names(&mut self, is_first: bool) {
-        let mut problems = self.session.problems(is_first);
-        if self.session.mode().is_none() {
+    /// Unknown names are reported once, when all stages have compiled: a stage that is pending may declare them.
+    fn check_names(&mut self) {
+        let is_complete = self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty());
+        let mut problems = self.session.problems(is_complete && !self.names_checked);
+        self.names_checked |= is_complete;
+        if is_complete && self.session.mode().is_none() {
             let mode = &self.session.settings.mode;
             problems
                 .push(format!("there is no mode '{mode}', so you see the final picture; `specula modes` lists all"));
