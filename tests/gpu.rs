@@ -2,6 +2,7 @@
 
 mod support;
 
+use std::collections::BTreeSet;
 use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
@@ -96,7 +97,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
     let compiler = shaderc::Compiler::new().unwrap();
     let module = |name: &str, kind, glsl: &str| {
         let spirv = compiler.compile_into_spirv(glsl, kind, name, "main", None).unwrap();
-        ShaderModule::new(&gpu, name, spirv.as_binary(), false).unwrap()
+        ShaderModule::new(&gpu, name, spirv.as_binary(), false, BTreeSet::new()).unwrap()
     };
     let vertex =
         module("one.vert", shaderc::ShaderKind::Vertex, "#version 450\nvoid main() { gl_Position = vec4(1); }");

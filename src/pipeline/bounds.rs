@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::gpu::{Gpu, GpuError, ShaderModule, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::spirv::bindings::used_bindings;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
 use crate::shader::spirv::optimize;
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
@@ -69,7 +70,8 @@ pub(super) fn shader_module(
         words.len(),
         if is_bounded { "has loops that count their rounds" } else { "all loops are counted" }
     );
-    ShaderModule::new(gpu, path, &words, is_bounded && stores)
+    let pass_bindings = used_bindings(&words, interface::SET_PASS);
+    ShaderModule::new(gpu, path, &words, is_bounded && stores, pass_bindings)
 }
 
 /// The diagnostic of a loop that did not end: `words` name it, in one of the stages of `shaders`. Compiles the stage again, for

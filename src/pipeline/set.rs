@@ -263,7 +263,7 @@ impl PipelineSet {
         modules: &[&ShaderModule],
         draws_model: bool,
     ) -> Result<Arc<PassLayout>, GpuError> {
-        let used = inputs.iter().filter(|(binding, _)| modules.iter().any(|module| module.reads(**binding)));
+        let used = inputs.iter().filter(|(binding, _)| modules.iter().any(|module| module.uses(**binding)));
         let bindings: PassBindings = used.map(|(binding, input)| (*binding, kind_of(input))).collect();
         let mut known = lock(&self.pass_layouts);
         let key = (bindings, draws_model);

@@ -12,8 +12,6 @@ use super::pass_layout::PassLayout;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError, fault};
-use crate::interface::SET_PASS;
-use crate::shader::spirv::bindings::used_bindings;
 
 const MAIN: &CStr = c"main";
 
@@ -23,28 +21,33 @@ pub struct ShaderModule {
     raw: vk::ShaderModule,
     name: String,
     names_loops: bool,
-    /// Bindings in `interface::SET_PASS` that its functions read or write.
     pass_bindings: BTreeSet<u32>,
 }
 
 impl ShaderModule {
     /// Creates a module from SPIR-V. `name` is the stage's path, as `pbr.frag`; pipelines are named after their modules.
-    /// `names_loops`: the module writes `interface::LOOPS` when a loop does not end.
+    /// `names_loops`: the module writes `interface::LOOPS` when a loop does not end. `pass_bindings`: the bindings in
+    /// `interface::SET_PASS` that its functions use.
     ///
     /// # Errors
     /// The driver rejects the module or is out of memory.
-    pub fn new(gpu: &Arc<Gpu>, name: &str, spirv: &[u32], names_loops: bool) -> Result<Arc<Self>, GpuError> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        spirv: &[u32],
+        names_loops: bool,
+        pass_bindings: BTreeSet<u32>,
+    ) -> Result<Arc<Self>, GpuError> {
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the words come from shaderc and `shader::spirv`, whose output is valid SPIR-V.
         let raw = unsafe { gpu.device.create_shader_module(&info, None) };
         let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
         gpu.name(raw, name);
-        let pass_bindings = used_bindings(spirv, SET_PASS);
         Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned(), names_loops, pass_bindings }))
     }
 
     /// Whether it uses this binding of `interface::SET_PASS`.
-    pub fn reads(&self, binding: u32) -> bool {
+    pub fn uses(&self, binding: u32) -> bool {
         self.pass_bindings.contains(&binding)
     }
 }
