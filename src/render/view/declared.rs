@@ -110,7 +110,9 @@ impl DeclaredPasses {
     pub(super) fn before_model(&mut self, encoder: &mut Encoder, drawn: &Drawn<'_>) -> Result<(), GpuError> {
         self.images.begin_frame(encoder);
         let nothing = self.blank.clone();
-        self.run(encoder, drawn, &nothing, Part::BeforeModel).map(|_| ())
+        self.run(encoder, drawn, &nothing, Part::BeforeModel)?;
+        finish_buffers(encoder, drawn);
+        Ok(())
     }
 
     /// Draws the passes between the model and the tone map. `picture` is in [`Use::Sampled`].
@@ -121,6 +123,7 @@ impl DeclaredPasses {
         picture: &Arc<Image>,
     ) -> Result<(), GpuError> {
         let last = self.run(encoder, drawn, picture, Part::Light)?;
+        finish_buffers(encoder, drawn);
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
         let shown = shown_image(drawn.frame).filter(|pass| pass.part != Part::Display);
         // The tone map reads an image of the picture's size.
@@ -360,4 +363,12 @@ fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
 
 fn uses_buffers(pass: &GraphPass) -> bool {
     pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
+}
+
+/// SYNC: makes what passes wrote to buffers visible to the stages that come with Specula, if one of them reads a buffer.
+fn finish_buffers(encoder: &mut Encoder, drawn: &Drawn<'_>) {
+    let readers = &drawn.frame.state.shaders.graph.readers;
+    if readers.values().flat_map(|inputs| inputs.values()).any(|input| matches!(input, Input::Buffer(..))) {
+        encoder.buffers_done();
+    }
 }

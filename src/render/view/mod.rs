@@ -146,7 +146,9 @@ impl View {
         output: &Output<'_>,
         redraw: Redraw,
     ) -> Result<(), GpuError> {
-        let Some(targets) = &self.targets else { return Ok(()) };
+        if self.targets.is_none() {
+            return Ok(());
+        }
         let sources = Sources {
             environment: frame.environment.clone(),
             tables: frame.tables.clone(),
@@ -168,32 +170,20 @@ impl View {
             Redraw::IfChanged | Redraw::Always => None,
         };
 
-        // An accumulating mode adds a frame to the mean while the picture is the same, and starts again when it changes.
-        let accumulates = frame.state.pipelines.accumulates;
-        let unchanged = self.drawn.as_ref().is_some_and(|(drawn, part)| *part == only && drawn.is_same(frame));
-        let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
-        let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
-        if redrawn {
-            self.picture += 1;
-            self.sample_index = if unchanged && accumulates { self.sample_index.saturating_add(1) } else { 0 };
-        }
+        let redrawn = self.begins_picture(frame, only, redraw);
+        let Some(targets) = &self.targets else { return Ok(()) };
+        let in_flight = &mut self.in_flight[slot];
 
         // Uniforms and set 0.
         let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), self.sample_index);
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
         encoder.bind_set(&self.layouts, &set);
 
-        // The passes that the model reads, and the model to the HDR target.
+        // The passes that the model reads, the model to the HDR target, and the passes before the tone map.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
         let drawn = Drawn { frame, frame_set: &set, blocks, depth };
-        let graph = &frame.state.shaders.graph;
-        let shares_buffers = graph.readers.values().flat_map(|inputs| inputs.values());
-        let shares_buffers = shares_buffers.into_iter().any(|input| matches!(input, Input::Buffer(..)));
         if redrawn {
             self.declared.before_model(encoder, &drawn)?;
-            if shares_buffers {
-                encoder.buffers_done();
-            }
         }
         let given = Given { picture: Some(&targets.color), behind: targets.behind.as_ref(), ..Given::default() };
         let sets = self.declared.built_in_sets(&drawn, &given, frame.state.pipelines.model_keys())?;
@@ -202,14 +192,7 @@ impl View {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
             passes.accumulate(encoder, self.sample_index);
-        }
-
-        // The declared passes before the tone map.
-        if redrawn {
             self.declared.before_tonemap(encoder, &drawn, targets.picture())?;
-            if shares_buffers {
-                encoder.buffers_done();
-            }
         }
         self.drawn = Some((frame.clone(), only));
 
@@ -236,6 +219,20 @@ impl View {
             passes::copy(encoder, &display, output);
         }
         Ok(())
+    }
+
+    /// Whether this frame draws the model, so that it begins a new picture. An accumulating mode adds a frame to the mean
+    /// while the picture is the same, and starts again when it changes.
+    fn begins_picture(&mut self, frame: &BoundFrame, only: Option<Rect>, redraw: Redraw) -> bool {
+        let accumulates = frame.state.pipelines.accumulates;
+        let unchanged = self.drawn.as_ref().is_some_and(|(drawn, part)| *part == only && drawn.is_same(frame));
+        let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
+        let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
+        if redrawn {
+            self.picture += 1;
+            self.sample_index = if unchanged && accumulates { self.sample_index.saturating_add(1) } else { 0 };
+        }
+        redrawn
     }
 
     /// Makes the next frame draw everything: the commands of a frame were not submitted, so the targets may be
