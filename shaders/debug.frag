@@ -7,8 +7,8 @@
 #include "debug/debug.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
-#include "material.glsl"
-#include "material_antialiasing.glsl"
+#include "material/material.glsl"
+#include "material/antialiasing.glsl"
 #include "user.glsl"
 
 // One fragment of the model in a debug mode: what pbr.frag is for the picture. A stage of its own, so that an edit of the

@@ -5,7 +5,7 @@
 #include "common/pixel.glsl"
 #include "debug/absent.glsl"
 #include "debug/paths.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 #include "user.glsl"
 
 // One fragment of the model in a mode of random paths: what pbr.frag is for the picture.

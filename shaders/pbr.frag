@@ -5,8 +5,8 @@
 #include "common/pixel.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
-#include "material.glsl"
-#include "material_antialiasing.glsl"
+#include "material/material.glsl"
+#include "material/antialiasing.glsl"
 #include "user.glsl"
 
 // One fragment of the model in the picture: scene-referred linear RGB as common/pixel.glsl stores it. debug.frag and

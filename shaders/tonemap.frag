@@ -1,5 +1,6 @@
 #version 460
 #include "interface.glsl"
+#include "common/bloom.glsl"
 #include "common/color.glsl"
 #include "common/pixel.glsl"
 #include "common/tonemap.glsl"
@@ -12,12 +13,9 @@ uniform sampler2D picture;
 
 layout(location = 0) out vec4 out_color;
 
-// The display's color for `value`, 0..1 and still linear if it is a color.
-vec3 display_value(vec3 value) {
-    if (TONEMAP != TONEMAP_OFF) {
-        vec2 uv = (gl_FragCoord.xy - frame.viewport_origin_px) / frame.viewport_px;
-        value = tonemap(user_display(value * frame.exposure, uv), TONEMAP);
-    }
+// The display's color for `value`, 0..1 and still linear if it is a color. Light is exposed. `uv`: 0..1 in the picture.
+vec3 display_value(vec3 value, vec2 uv) {
+    if (TONEMAP != TONEMAP_OFF) value = tonemap(user_display(value, uv), TONEMAP);
     if (ENCODE == ENCODE_VECTOR) value = value * 0.5 + 0.5;
     return saturate(value);
 }
@@ -27,9 +25,15 @@ void main() {
     // The image of a pass may have anything in alpha.
     bool is_pass = TONEMAP == TONEMAP_OFF && frame.mode >= PASS_MODES;
     float coverage = is_pass ? 1.0 : coverage_of(scene.a);
+    vec2 uv = (gl_FragCoord.xy - frame.viewport_origin_px) / frame.viewport_px;
+    vec3 value = scene.rgb;
+    if (TONEMAP != TONEMAP_OFF) {
+        value *= frame.exposure;
+        if (BLOOM) add_bloom(value, coverage, uv);
+    }
     // The curves are not linear, so they want the color of the surface, not the color times how much of it there is. 1e-6:
     // where nothing covers the pixel, the color is 0.
-    vec3 front = display_value(scene.rgb / max(coverage, 1e-6));
+    vec3 front = display_value(value / max(coverage, 1e-6), uv);
 
     // Colors meet in linear light, as they do in a lens. Numbers have no such space: they meet the encoded background.
     vec3 back = ENCODE == ENCODE_COLOR ? frame.background.rgb : srgb_from_linear(frame.background.rgb);

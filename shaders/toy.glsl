@@ -1,31 +1,85 @@
 // Include this in a pass whose shader has Shadertoy's form: `void mainImage(out vec4 fragColor, in vec2 fragCoord)`.
-// Specula's picture has its origin in the upper left corner; fragCoord and iMouse have it in the lower left, as there.
+// `specula FILE.glsl` makes such a pass of any file. With TOY_MAIN it serves files of glslViewer's form, whose main is called
+// Main here.
+//
+// It includes nothing, so that a shader may use any name, as Light or material. Rows count from below, as in OpenGL: Specula's
+// images have their first row on top, so that of a pass with TOY_BUFFER, which only toys read, is upside down.
 #ifndef TOY_GLSL
 #define TOY_GLSL
 
-#include "pass.glsl"
+layout(location = 0) in vec2 toy_uv;
+layout(location = 0) out vec4 toy_color;
 
-#define iResolution vec3(pass.size_px, 1.0)
-#define iTime (frame.time_s)
-#define iTimeDelta (frame.delta_s)
-#define iFrameRate (1.0 / max(frame.delta_s, 1e-6))
-#define iFrame (int(frame.frame_index))
-#define iMouse toy_mouse()
+uniform Pass {
+    vec2 size_px;
+    vec4 mouse_px;
+    float time_s;
+    float delta_s;
+    uint frame_index;
+} toy;
 
-// xy: last place of the mouse while it was down; zw: where it went down, z negative once it is up.
-vec4 toy_mouse() {
-    vec4 mouse = frame.mouse_px;
-    return vec4(mouse.x, frame.viewport_px.y - mouse.y, mouse.z, frame.viewport_px.y - mouse.w);
+vec3 iResolution;              // width and height, pixels; 1
+float iTime;                   // seconds
+float iTimeDelta;              // seconds since the frame before
+float iFrameRate;              // frames a second
+int iFrame;                    // frames before this one
+vec4 iMouse;                   // xy: last place of the mouse while it was down; zw: where it went down, z < 0 once it is up
+vec4 iDate;                    // year, month from 0, day, seconds: the clock starts on January 1, 2000
+float iChannelTime[4];
+const float iSampleRate = 44100.0;
+
+// What glslViewer and the Book of Shaders call them.
+#define u_time iTime
+#define u_delta iTimeDelta
+#define u_frame iFrame
+#define u_date iDate
+#define u_resolution (iResolution.xy)
+#define u_mouse (iMouse.xy)
+#define v_texcoord (toyFragCoord.xy / iResolution.xy)
+#define texture2D texture
+
+// gl_FragCoord and gl_FragColor of the file.
+vec4 toyFragCoord;
+vec4 toyFragColor;
+
+void toy_begin() {
+    iResolution = vec3(toy.size_px, 1.0);
+    iTime = toy.time_s;
+    iTimeDelta = toy.delta_s;
+    iFrameRate = 1.0 / max(toy.delta_s, 1e-6);
+    iFrame = int(toy.frame_index);
+    vec4 mouse = toy.mouse_px;
+    bool was_down = mouse != vec4(0.0);
+    iMouse = was_down ? vec4(mouse.x, toy.size_px.y - mouse.y, mouse.z, toy.size_px.y - mouse.w) : vec4(0.0);
+    iDate = vec4(2000.0, 0.0, 1.0, iTime);
+    iChannelTime = float[4](iTime, iTime, iTime, iTime);
+    toyFragCoord = gl_FragCoord;
+    toyFragColor = vec4(0.0, 0.0, 0.0, 1.0);
+#ifndef TOY_BUFFER
+    toyFragCoord.y = toy.size_px.y - gl_FragCoord.y;
+#endif
+}
+
+void toy_end() {
+    toy_color = toyFragColor;
+#ifndef TOY_BUFFER
+    toy_color.a = 1.0;
+#endif
 }
 
 // `specula check` compiles this file alone, in a stage that has its own main and no mainImage.
 #ifndef LIBRARY_ALONE
+#ifdef TOY_MAIN
+void Main();
+#else
 void mainImage(out vec4 fragColor, in vec2 fragCoord);
+void Main() { mainImage(toyFragColor, toyFragCoord.xy); }
+#endif
 
 void main() {
-    vec4 shown = vec4(0.0, 0.0, 0.0, 1.0);
-    mainImage(shown, vec2(gl_FragCoord.x, pass.size_px.y - gl_FragCoord.y));
-    color = vec4(shown.rgb, 1.0);
+    toy_begin();
+    Main();
+    toy_end();
 }
 #endif
 

@@ -65,7 +65,7 @@ fn as_they_ship_the_hooks_change_nothing() {
             "user_background(normalize(direction), background_radiance(direction))",
             "background_radiance(direction)",
         ),
-        ("tonemap.frag", "user_display(value * frame.exposure, uv)", "value * frame.exposure"),
+        ("tonemap.frag", "user_display(value, uv)", "value"),
         ("lighting/punctual.glsl", "    user_light(light, i, position_ws);\n", ""),
     ] {
         ready(&session.edit(file, call, without));

@@ -100,8 +100,10 @@ fn fault(headless: &mut Headless, slug: &str) -> Option<String> {
 fn every_mode_shows_data_of_the_shader_ball() {
     let elsewhere: Vec<&str> = ELSEWHERE.iter().flat_map(|(_, _, slugs)| *slugs).copied().chain(MEASURED).collect();
     let mut headless = sharp(model("shader-ball"), &[]);
-    let own = slugs(&headless).into_iter().filter(|slug| !elsewhere.contains(&slug.as_str()));
-    let wrong: Vec<String> = own.filter_map(|slug| fault(&mut headless, &slug)).collect();
+    // Images of the depth of field have blur in alpha, not coverage.
+    let is_own = |slug: &String| !elsewhere.contains(&slug.as_str()) && !slug.starts_with("pass:dof_");
+    let wrong: Vec<String> =
+        slugs(&headless).into_iter().filter(is_own).filter_map(|slug| fault(&mut headless, &slug)).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
@@ -400,8 +402,9 @@ fn moved_vertices_are_seen_from_where_they_are() {
     let eye = glam::Vec3::new(2.0, 2.0, 3.4);
     let view = ["environment.name=none", "camera.eye=[2.0, 2.0, 3.4]", "view.msaa=1"];
     let mut session = Session::new(model("shader-ball"), settings(&view));
-    let moved = "    fragment.position_ws += 0.2 * vertex.normal;\n    // Unit length at each vertex";
-    ready(&session.edit("pbr.vert", "    // Unit length at each vertex", moved));
+    let made = "    fragment = fragment_of(vertex);\n";
+    let moved = format!("{made}    fragment.position_ws += 0.2 * vertex.normal;\n");
+    ready(&session.edit("pbr.vert", made, &moved));
     let [positions, normals, found] = ["position", "shading-normal", "n-dot-v"].map(|slug| session.mode(slug).raw);
     let on = (0..positions.len()).filter(|i| positions[*i][3] == 1.0).collect::<Vec<_>>();
     assert!(on.len() > 500, "{}", on.len());

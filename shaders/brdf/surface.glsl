@@ -1,4 +1,4 @@
-// A point on a surface, as shading uses it: textures sampled, factors applied. material.glsl builds it.
+// A point on a surface, as shading uses it: textures sampled, factors applied. material/material.glsl builds it.
 #ifndef BRDF_SURFACE_GLSL
 #define BRDF_SURFACE_GLSL
 

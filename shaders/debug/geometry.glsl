@@ -8,7 +8,7 @@
 #include "common/fragment.glsl"
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 const vec3 GOOD = vec3(0.05, 0.5, 0.1);
 const vec3 BAD = vec3(0.8, 0.06, 0.03);

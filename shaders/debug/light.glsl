@@ -15,7 +15,7 @@
 #include "lighting/punctual.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 // Matte gray, without extensions.
 Surface as_clay(Surface s) {

@@ -11,7 +11,7 @@
 #include "debug/modes.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/shade.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 struct MeasuredLight {
     vec3 radiance;             // towards the eye

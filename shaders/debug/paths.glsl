@@ -13,7 +13,7 @@
 #include "debug/modes.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 #include "paths/exact_lookups.glsl"
 #include "paths/furnace.glsl"
 #include "paths/path.glsl"

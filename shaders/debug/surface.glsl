@@ -8,7 +8,7 @@
 #include "common/fragment.glsl"
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 // True if the material has the extension, or the normal texture, that the mode shows.
 bool has_shown_feature() {

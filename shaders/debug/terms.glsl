@@ -7,7 +7,7 @@
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
 #include "lighting/shade.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 bool shows_lobes() { return MODE >= MODE_DIFFUSE_LOBE && MODE <= MODE_SHEEN_LOBE; }
 bool shows_terms() { return MODE >= MODE_D && MODE <= MODE_SHEEN_LOBE; }

@@ -11,7 +11,7 @@
 #include "debug/surface.glsl"
 #include "lighting/radiance.glsl"
 #include "lighting/shade.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 const vec3 TOO_LOW = vec3(0.05, 0.15, 1.0);
 const vec3 TOO_HIGH = vec3(1.0, 0.06, 0.03);

@@ -13,7 +13,7 @@
 #include "brdf/visibility.glsl"
 #include "common/math.glsl"
 #include "lighting/albedo.glsl"
-#include "lighting/ambient_occlusion.glsl"
+#include "lighting/shadows/ambient_occlusion.glsl"
 #include "lighting/anisotropy.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/lobes.glsl"

@@ -10,7 +10,7 @@
 #include "lighting/lobes.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/rectangle.glsl"
-#include "lighting/shadow.glsl"
+#include "lighting/shadows/shadow.glsl"
 #include "lighting/transmission.glsl"
 
 // Radiance towards the eye, by source.

@@ -1,4 +1,4 @@
-//@pass film "Vignette and grain" to=picture after=tonemap off doc="Darker corners and the noise of a film"
+//@pass film "Vignette and grain" to=picture after=fxaa off doc="Darker corners and the noise of a film"
 #version 460
 #include "pass.glsl"
 #include "common/color.glsl"

@@ -12,6 +12,7 @@ layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {
     float rim_strength;        //@ui "Rim" 0..1 = 0.0
     float rim_power;           //@ui "Rim power" 1..8 = 3.0
     vec3 rim_color;            //@ui "Rim color" color = 1 0.8 0.6
+    float bloom_strength;      //@ui "Bloom strength" 0..1 when=BLOOM = 0.12
     float shadow_softness;     //@ui "Shadow softness" 0..0.5 when=SHADOWS = 0.1
 };
 

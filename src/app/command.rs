@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::file_kind::FileKind;
+use crate::shader::Source;
 
 /// A command to the viewer.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +42,7 @@ pub(super) fn open_as(path: PathBuf) -> Result<Command, String> {
             "{} is no Specula shader tree: it has no interface.glsl. `specula new DIR` writes one",
             path.display()
         )),
+        FileKind::Shader if Source::is_file(&path) => Ok(Command::OpenTree(path)),
         FileKind::Look | FileKind::Shader | FileKind::Other => Err(format!(
             "{}: expected a .gltf or .glb model, an .hdr or .exr environment, a measured .binary or .bin, or a folder with a \
              shader tree",

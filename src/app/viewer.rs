@@ -257,7 +257,7 @@ impl Viewer {
             Command::Quit => self.quit = true,
             Command::Say(text) => self.say(text),
             Command::OpenTree(path) => {
-                let source = Source::Disk(path);
+                let source = Source::open(path);
                 self.source = source.clone();
                 self.watch_tree(&source);
                 self.shader.compiling = true;

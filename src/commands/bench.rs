@@ -52,7 +52,8 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
+pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
+    args.common.take_shader(&mut args.model);
     let gpu = args.common.gpu()?;
     let compiler = compiler()?;
     compiler.warm();

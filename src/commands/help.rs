@@ -97,5 +97,5 @@ fn print_settings(settings: &[Setting]) {
         out!("{path:a$}  {takes:b$}  {default:c$}  {range:d$}  {unit:e$}  {doc}");
     }
     out!("\nThe constants and parameters of the shader tree are set by their names, as --set NDF=Beckmann.");
-    out!("`specula modes` lists them. A pass of the tree is switched by its name, as --set passes.bloom=true.");
+    out!("`specula modes` lists them. A pass of the tree is switched by its name, as --set passes.outline=true.");
 }

@@ -27,7 +27,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let devices = adapters();
     let model = args.common.model(args.model.as_deref())?;
     let source = args.common.source()?;
-    let tree = source.root().map_or_else(|| "built in".to_owned(), |root| root.display().to_string());
+    let tree = source.location().map_or_else(|| "built in".to_owned(), |root| root.display().to_string());
     if args.json {
         let (devices, why_none) = devices.map_or_else(|e| (Vec::new(), Some(e.to_string())), |d| (d, None));
         let value = json!({ "version": env!("CARGO_PKG_VERSION"), "devices": devices, "why_no_device": why_none, "shaders": tree,

@@ -38,6 +38,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(mut args: Args) -> Result<(), Failure> {
+    args.common.take_shader(&mut args.model);
     let slugs = std::mem::take(&mut args.common.mode);
     let (x, y) = args.at;
     let (width, height) = args.common.size;

@@ -167,7 +167,7 @@ impl FrameState {
         };
         Self {
             params: values::params(&settings.shader, &shaders.parameters),
-            pass_blocks: pass_blocks(settings, shaders, &pipelines, size),
+            pass_blocks: pass_blocks(settings, shaders, &pipelines, size, clock),
             tables: TablesKey::new(shaders, &pipelines.constants),
             environment: lit.then(|| {
                 let (name, revision) = (&settings.environment.name, revisions.environment);
@@ -232,7 +232,13 @@ impl FrameState {
 /// The uniform blocks of declared passes, by the place of the pass in [`PipelineRequest::passes`] and the binding.
 pub(crate) type PassBlocks = BTreeMap<(usize, u32), Vec<u8>>;
 
-fn pass_blocks(settings: &Settings, shaders: &ShaderSet, pipelines: &PipelineRequest, size: (u32, u32)) -> PassBlocks {
+fn pass_blocks(
+    settings: &Settings,
+    shaders: &ShaderSet,
+    pipelines: &PipelineRequest,
+    size: (u32, u32),
+    clock: Clock,
+) -> PassBlocks {
     let mut blocks = PassBlocks::new();
     for (index, pass) in pipelines.passes.iter().enumerate() {
         for (binding, input) in &pass.inputs {
@@ -240,15 +246,31 @@ fn pass_blocks(settings: &Settings, shaders: &ShaderSet, pipelines: &PipelineReq
                 Input::Parameters(bytes, members) => {
                     values::block(&settings.shader, &shaders.parameters, members, *bytes)
                 }
-                Input::Size => {
-                    let (width, height) = pass.note.size.pixels(size);
-                    // Uniform blocks have at least 16 bytes.
-                    bytemuck::bytes_of(&[width as f32, height as f32, 0.0, 0.0]).to_vec()
-                }
+                Input::Pass(bytes, members) => properties(pass.note.size.pixels(size), clock, *bytes, members),
                 _ => continue,
             };
             blocks.insert((index, *binding), block);
         }
     }
     blocks
+}
+
+/// The content of a pass's block `Pass`.
+fn properties((width, height): (u32, u32), clock: Clock, bytes: u32, members: &[(u32, String)]) -> Vec<u8> {
+    let mut block = vec![0; bytes as usize];
+    for (offset, name) in members {
+        let value = match name.as_str() {
+            "size_px" => [width as f32, height as f32].map(f32::to_le_bytes).concat(),
+            "mouse_px" => clock.mouse_px.map(f32::to_le_bytes).concat(),
+            "time_s" => clock.time_s.to_le_bytes().to_vec(),
+            "delta_s" => clock.delta_s.to_le_bytes().to_vec(),
+            "frame_index" => clock.frame_index.to_le_bytes().to_vec(),
+            _ => continue,
+        };
+        let at = *offset as usize;
+        if let Some(place) = block.get_mut(at..at + value.len()) {
+            place.copy_from_slice(&value);
+        }
+    }
+    block
 }

@@ -12,7 +12,7 @@ use crate::interface::{
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings, Tonemap};
 use crate::shader::annotation::pass::PassFormat;
-use crate::shader::graph::{FULL_SCREEN, MODEL, Part};
+use crate::shader::graph::{FULL_SCREEN, Input, MODEL, Part};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, ModeStage, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
@@ -85,6 +85,8 @@ pub struct PipelineRequest {
     pub through: bool,
     /// The declared passes to draw, in order.
     pub passes: Vec<Arc<GraphPass>>,
+    /// Whether the model and the environment are in the picture: no pass covers them.
+    pub draws_model: bool,
     /// The pass whose image is shown instead of the picture.
     pub shown_pass: Option<String>,
 }
@@ -140,8 +142,11 @@ impl PipelineRequest {
         let stage = mode.map(|m| m.stage).unwrap_or_default();
         let constants = values::constants(&settings.shader, &shaders.constants);
         // An image that is looked at needs what it reads, although the model needs none of it.
-        let is_on = |pass: &GraphPass| {
-            is_wanted(pass, settings) && (shown_pass.is_some() || is_switched_on(pass, shaders, &constants))
+        let looked_at = shown_pass.as_deref().map(|name| shaders.graph.needed_by(name)).unwrap_or_default();
+        let is_on = |index: usize| {
+            let pass = &shaders.graph.passes[index];
+            let is_used = looked_at.contains(&index) || is_switched_on(pass, shaders, &constants);
+            is_used && pass.is_wanted(&settings.passes)
         };
         let mut readers = vec![stage.path()];
         readers.extend(SHARED_STAGES);
@@ -149,6 +154,8 @@ impl PipelineRequest {
         readers.extend(shows_light.then_some("sky.frag"));
         readers.extend(mode.is_some_and(|m| m.through).then_some(ModeStage::Picture.path()));
         let passes = shaders.graph.active(&readers, shows_light, is_on, shown_pass.as_deref());
+        let reads = |input: &Input| passes.iter().any(|pass| pass.inputs.values().any(|other| other == input));
+        let draws_model = !passes.iter().any(|pass| pass.covers()) || reads(&Input::Picture) || reads(&Input::Depth);
         let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
         Self {
             mode: mode.map_or(0, |m| m.id),
@@ -160,12 +167,13 @@ impl PipelineRequest {
             materials: scene.map(|scene| scene.materials().clone()).unwrap_or_default(),
             shared_features: shared_features(settings),
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
-            sky: settings.environment.is_shown(&settings.view) && shows_light,
+            sky: settings.environment.is_shown(&settings.view) && shows_light && draws_model,
             accumulates: mode.is_some_and(|m| m.accumulate),
             stage,
             traces: mode.is_some_and(|m| m.traces),
             through: mode.is_some_and(|m| m.through),
             passes,
+            draws_model,
             shown_pass,
         }
     }
@@ -183,6 +191,7 @@ impl PipelineRequest {
             traces: mode.traces,
             through: mode.through,
             passes: if mode.tonemap { self.passes.clone() } else { Vec::new() },
+            draws_model: self.draws_model || !mode.tonemap,
             shown_pass: None,
             ..self.clone()
         }
@@ -317,7 +326,7 @@ impl PipelineRequest {
     /// The stages of the pipelines.
     pub(crate) fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading.
-        let model = [MODEL, self.stage.path()].map(str::to_owned);
+        let model = [MODEL, self.stage.path()].map(str::to_owned).into_iter().filter(|_| self.draws_model);
         let computes = self.passes.iter().filter(|pass| pass.is_compute).map(|pass| pass.note.stage.clone());
         self.keys().flat_map(|key| key.pass.stages().map(str::to_owned)).chain(model).chain(computes).collect()
     }
@@ -329,7 +338,8 @@ impl PipelineRequest {
 
     /// The pipelines of the model, the sky and the mean.
     pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let model = self.materials.iter().flat_map(|m| [self.model_key(*m), self.behind_key(*m)]);
+        let materials = self.materials.iter().filter(|_| self.draws_model);
+        let model = materials.flat_map(|m| [self.model_key(*m), self.behind_key(*m)]);
         model.chain(self.sky_key()).chain(self.average_key())
     }
 
@@ -372,11 +382,6 @@ fn shared_features(settings: &Settings) -> u32 {
         features |= interface::FEATURE_RECT_LIGHTS;
     }
     features
-}
-
-/// Whether the user wants a pass.
-fn is_wanted(pass: &GraphPass, settings: &Settings) -> bool {
-    settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on)
 }
 
 /// Whether the constant is set that the annotation of the pass names.

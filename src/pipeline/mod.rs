@@ -1,11 +1,14 @@
 //! Pipelines: one set per shader generation, and the reload that creates the next set.
 
 mod bounds;
+mod cube;
+mod limits;
 mod reload;
 mod set;
 mod textures;
 
 pub use bounds::endless_loop;
+pub use limits::beyond_limits;
 pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;
 pub use set::PipelineSet;

@@ -8,6 +8,7 @@ use crate::shader::{
     Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, StageKind, TreePath, Update,
 };
 
+use super::limits::beyond_limits;
 use super::set::PipelineSet;
 use crate::frame::PipelineRequest;
 use crate::frame::stages::stages;
@@ -163,6 +164,10 @@ impl Reloader {
             return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
         }
         let start = Instant::now();
+        let problems = beyond_limits(&self.gpu, &shaders.graph);
+        if !problems.is_empty() {
+            return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(problems) };
+        }
         let before = self.current.as_deref();
         let request = request(&shaders);
         let built = PipelineSet::new(&self.gpu, &self.layouts, shaders, &request, before);

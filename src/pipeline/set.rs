@@ -345,6 +345,6 @@ fn kind_of(input: &Input) -> PassBinding {
         }
         Input::Output => PassBinding::Storage,
         Input::Buffer(..) => PassBinding::Buffer,
-        Input::Parameters(..) | Input::Size => PassBinding::Uniform,
+        Input::Parameters(..) | Input::Pass(..) => PassBinding::Uniform,
     }
 }

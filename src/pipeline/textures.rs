@@ -1,10 +1,12 @@
 //! The images of a tree's `//@texture` annotations on the device.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use image::DynamicImage;
 
+use super::cube;
 use crate::gpu::{Gpu, GpuError, Image, ImageDesc, Sampler, SamplerDesc, upload_images, vk};
 use crate::scene::mips;
 use crate::shader::Graph;
@@ -51,9 +53,23 @@ impl PassTextures {
     }
 }
 
+/// Whether a texture is a table of colors.
+pub(super) fn is_cube(of: &Texture) -> bool {
+    Path::new(&of.path).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("cube"))
+}
+
+fn decode(of: &Texture) -> Result<DynamicImage, String> {
+    match is_cube(of) {
+        true => cube::decode(&of.bytes),
+        false => image::load_from_memory(&of.bytes).map_err(|error| format!("cannot be read: {error}")),
+    }
+}
+
 fn upload(gpu: &Arc<Gpu>, of: &Arc<Texture>) -> Result<Uploaded, GpuError> {
-    let decoded = image::load_from_memory(&of.bytes);
-    let pixels = decoded.map_err(|error| GpuError::Texture(format!("{}: {error}", of.path)))?;
+    let mut pixels = decode(of).map_err(|error| GpuError::Texture(format!("{} {error}", of.path)))?;
+    if of.note.flip {
+        pixels = pixels.flipv();
+    }
     let (width, height) = (pixels.width(), pixels.height());
     let most = gpu.max_image_size();
     if width > most || height > most {

@@ -40,7 +40,7 @@ pub struct Work {
     pub settings: Settings,
     /// The model's file; `None` is the built-in one.
     pub model: Option<PathBuf>,
-    /// The shader tree's folder; `None` is the tree in the program.
+    /// The shader tree's folder or file; `None` is the tree in the program.
     pub tree: Option<PathBuf>,
 }
 
@@ -169,21 +169,21 @@ impl State {
 
     /// The tree to read: [`Source::held`] if there has been a loss in it.
     pub fn source(&self, tree: Source, good: GoodTexts) -> Source {
-        let (Some(loss), Some(root)) = (&self.loss, tree.root()) else { return tree };
-        if good.tree.as_deref() != Some(root) {
+        let (Some(loss), Some(location)) = (&self.loss, tree.location()) else { return tree };
+        if good.tree.as_deref() != Some(location) {
             return tree;
         }
         let path = |text: &String| TreePath::parse(text);
         let texts = good.texts.iter().filter_map(|(name, text)| Some((path(name)?, text.clone()))).collect();
         let refused = self.refused.iter().filter_map(|(name, hash)| Some((path(name)?, *hash))).collect();
-        Source::held(root.to_owned(), &texts, refused, &format!("{} while this text was in use", loss.cause))
+        Source::held(tree, &texts, refused, &format!("{} while this text was in use", loss.cause))
     }
 }
 
 /// The texts of the shaders that the device has drawn last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GoodTexts {
-    /// The tree's folder.
+    /// The tree's folder or file.
     pub tree: Option<PathBuf>,
     /// Texts by path.
     pub texts: BTreeMap<String, String>,

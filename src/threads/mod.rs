@@ -7,7 +7,7 @@ pub(crate) mod worker;
 
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
@@ -17,7 +17,7 @@ use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
 use crate::render::TraceKey;
-use crate::shader::{Batch, Change, Diagnostic, Source, TreePath, Watcher};
+use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
 use worker::{Worker, WorkerMessage};
@@ -132,16 +132,24 @@ impl Threads {
     /// Watches a shader tree instead of the previous one. Changes go to the worker.
     pub(crate) fn watch_tree(&mut self, source: &Source) -> Result<(), String> {
         self.tree_watcher = None;
-        let Some(root) = source.root().map(Path::to_owned) else { return Ok(()) };
-        let changes = self.worker.changes();
-        let base = root.clone();
+        if source.location().is_none() {
+            return Ok(());
+        }
+        let (changes, tree) = (self.worker.changes(), source.clone());
         let on_batch = move |batch: Batch| {
-            let relative = batch.paths.iter().filter_map(|path| path.strip_prefix(&base).ok());
-            let paths = relative.filter_map(|path| TreePath::parse(&path.to_string_lossy())).collect();
+            let paths = batch.paths.iter().flat_map(|path| tree.changed(path)).collect();
             changes(Change::Paths(paths), batch.first_event);
         };
-        self.tree_watcher = Some(Watcher::new(Some(&root), &[], on_batch).map_err(|error| error.to_string())?);
+        self.tree_watcher =
+            Some(Watcher::new(source.root(), &source.files(), on_batch).map_err(|error| error.to_string())?);
         Ok(())
+    }
+
+    /// Watches the files that the tree has now, after a change.
+    pub(crate) fn follow_tree(&self, source: &Source) {
+        if let Some(watcher) = self.tree_watcher.as_ref().filter(|_| source.root().is_none()) {
+            watcher.set_files(&source.files());
+        }
     }
 
     /// Watches these files instead of the previous ones.

@@ -124,8 +124,8 @@ impl Viewer {
         // Records of the session lie here, so a test can see whether they are removed.
         std::fs::create_dir(tree.beside("runtime")).unwrap();
         command.env("XDG_RUNTIME_DIR", tree.beside("runtime"));
-        command.args(["--shaders", "shaders", "--set", "view.msaa=1"]).env("SPECULA_FAULT", fault);
-        for (option, value) in [("--env", "none"), ("--size", "640x480")] {
+        command.args(["--set", "view.msaa=1"]).env("SPECULA_FAULT", fault);
+        for (option, value) in [("--shaders", "shaders"), ("--env", "none"), ("--size", "640x480")] {
             if !more.contains(&option) {
                 command.args([option, value]);
             }

@@ -27,6 +27,10 @@ fn shown(viewer: &mut Viewer) -> Value {
 #[test]
 fn a_pass_file_comes_breaks_and_goes() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--set", "material.enabled=true"]);
+    // No pass of the tree is on, so none delays the first picture.
+    let first = viewer.running.event("reload");
+    let is_pass = |stage: &Value| stage.as_str().is_some_and(|stage| stage.starts_with("passes/"));
+    assert!(!first["stages"].as_array().unwrap().iter().any(is_pass), "{first}");
     viewer.running.event("ready");
     let plain = viewer.screenshot();
 
@@ -61,5 +65,43 @@ fn a_pass_that_is_still_compiling_is_no_unknown_name() {
 
     let viewer = Viewer::open(Tree::new(), &["sphere-grid", "--set", "passes.grund=true"]);
     viewer.running.until_stderr("no pass is named `grund`. Did you mean `ground`?");
+    viewer.quit();
+}
+
+/// A file of Shadertoy, without a tree: edits, broken edits, and a buffer that comes while the window is open.
+#[test]
+fn a_single_file_is_a_tree() {
+    let tree = Tree::new();
+    let (toy, buffer) = (tree.beside("toy.glsl"), tree.beside("buffer_a.glsl"));
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = 0.5 * texture(iChannel0, p / 64.0); }\n";
+    std::fs::write(&toy, text).unwrap();
+    let path = toy.to_str().unwrap().to_owned();
+    let mut viewer = Viewer::open(tree, &["--shaders", &path]);
+    viewer.running.event("ready");
+    let noise = viewer.screenshot();
+
+    std::fs::write(&toy, text.replace("0.5", "0.9")).unwrap();
+    viewer.running.reload(true);
+    let brighter = viewer.screenshot();
+    assert!(brighter != noise, "the edit does not show");
+
+    std::fs::write(&toy, text.replace("c = 0.5", "d = 0.5")).unwrap();
+    let diagnostic = viewer.running.event("diagnostic");
+    assert!(diagnostic["file"].as_str().is_some_and(|file| file == path), "{diagnostic}");
+    assert_eq!(diagnostic["line"], 1, "{diagnostic}");
+    viewer.running.reload(false);
+    assert!(viewer.screenshot() == brighter, "a broken edit changed the picture");
+
+    std::fs::write(&toy, text).unwrap();
+    viewer.running.reload(true);
+    std::fs::write(&buffer, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, 1.0, 0.0, 1.0); }\n").unwrap();
+    viewer.running.reload(true);
+    let green = viewer.screenshot();
+    assert!(green != noise, "the new buffer does not show");
+
+    // The buffer is followed from now on.
+    std::fs::write(&buffer, "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0, 0.0, 1.0, 1.0); }\n").unwrap();
+    viewer.running.reload(true);
+    assert!(viewer.screenshot() != green, "the edit of the buffer does not show");
     viewer.quit();
 }

@@ -30,11 +30,11 @@ pub(super) fn show(
             }
         }
         let graph = &shaders.graph;
-        let wanted = |pass: &GraphPass| settings.passes.get(pass.name()).copied().unwrap_or(pass.note.on);
-        let active = graph.active(&[], true, wanted, None);
+        let active = graph.active(&[], true, |index| graph.passes[index].is_wanted(&settings.passes), None);
         // A pass whose readers are all off is off with them.
         let is_shown = |pass: &&Arc<GraphPass>| {
-            pass.note.when.is_none() && (!graph.is_read(pass.name()) || !wanted(pass) || active.contains(pass))
+            pass.note.when.is_none()
+                && (!graph.is_read(pass.name()) || !pass.is_wanted(&settings.passes) || active.contains(pass))
         };
         for pass in graph.passes.iter().filter(is_shown).cloned().collect::<Vec<_>>() {
             show_pass(ui, shaders, &pass, settings);
@@ -69,7 +69,7 @@ pub(super) fn switches(shaders: &ShaderSet) -> impl Iterator<Item = &Constant> {
 /// Shows a switch of the pass, and its parameters while it is on.
 fn show_pass(ui: &mut Ui, shaders: &ShaderSet, pass: &GraphPass, settings: &mut Settings) {
     let name = pass.name();
-    let mut on = settings.passes.get(name).copied().unwrap_or(pass.note.on);
+    let mut on = pass.is_wanted(&settings.passes);
     let doc = format!("{}\n\n--set passes.{name}={}\n{}", pass.note.doc, !on, pass.note.stage);
     if ui.checkbox(&mut on, &pass.note.label).on_hover_text(doc.trim_start()).changed() {
         match on == pass.note.on {

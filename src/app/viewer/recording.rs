@@ -14,7 +14,7 @@ impl Viewer {
     /// the attempt's number, unless the frame shows the last complete picture.
     pub(in crate::app) fn record(&self, window: &Window) -> Option<u64> {
         let model = if self.model.loading { &self.model.requested } else { &self.model.path };
-        let tree = self.source.root().map(Path::to_owned);
+        let tree = self.source.location().map(Path::to_owned);
         let work = Work { settings: self.session.settings.clone(), model: model.clone(), tree };
         let geometry =
             || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };

@@ -26,8 +26,8 @@ pub const TIMEOUT_S: u32 = 60;
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Common {
-    /// Shader tree, or an example as examples:fur [default: ./shaders when it is Specula's, else the built-in one]
-    #[arg(long, value_name = "DIR")]
+    /// Shader tree, an example as examples:fur, or a shader of Shadertoy or glslViewer [default: ./shaders when it is Specula's, else the built-in one]
+    #[arg(long, value_name = "DIR|FILE")]
     pub shaders: Option<PathBuf>,
     /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
     #[arg(long, value_name = "NAME|FILE")]
@@ -145,6 +145,13 @@ impl Common {
         Ok(settings)
     }
 
+    /// Takes a shader file that stands where the model may stand for the shader tree.
+    pub fn take_shader(&mut self, model: &mut Option<PathBuf>) {
+        if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {
+            self.shaders = model.take();
+        }
+    }
+
     /// The shader tree.
     pub fn source(&self) -> Result<Source, Failure> {
         source(self.shaders.as_deref())
@@ -215,7 +222,8 @@ pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
         return Ok(Source::Embedded(Some(example(name)?)));
     }
     match directory {
-        Some(directory) if is_specula_tree(directory) => disk(directory),
+        Some(directory) if is_specula_tree(directory) => open(directory),
+        Some(file) if Source::is_file(file) && file.exists() => open(file),
         Some(directory) if !directory.exists() => Err(Failure::Input(format!(
             "{0}: there is no such folder. `specula new {0}` writes a shader tree there",
             directory.display()
@@ -224,7 +232,7 @@ pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
             "{} is not a Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
             directory.display()
         ))),
-        None if is_specula_tree(Path::new("shaders")) => disk(Path::new("shaders")),
+        None if is_specula_tree(Path::new("shaders")) => open(Path::new("shaders")),
         None => Ok(Source::embedded()),
     }
 }
@@ -280,9 +288,9 @@ pub fn check_validation(gpu: &Gpu) -> Result<(), Failure> {
     }
 }
 
-fn disk(directory: &Path) -> Result<Source, Failure> {
-    let absolute = std::path::absolute(directory);
-    absolute.map(Source::Disk).map_err(|e| Failure::Input(format!("{}: {e}", directory.display())))
+fn open(path: &Path) -> Result<Source, Failure> {
+    let absolute = std::path::absolute(path);
+    absolute.map(Source::open).map_err(|e| Failure::Input(format!("{}: {e}", path.display())))
 }
 
 /// Reads a look file. A name or value that no setting has is a usage error; a file that is not TOML is a wrong file.

@@ -55,6 +55,9 @@ fn check_kind(path: &Path) -> Result<(), Failure> {
         FileKind::Measured if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bin")) => {
             format!("{shown} is a measured BRDF; use `--measured {shown}`")
         }
+        FileKind::Shader if !path.exists() => {
+            return Err(Failure::Input(format!("{shown}: there is no such file")));
+        }
         FileKind::Shader => {
             format!("{shown} is a shader; use `--shaders {}`, the folder of its tree", folder.display())
         }

@@ -42,7 +42,8 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
+pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
+    args.common.take_shader(&mut args.model);
     let mut settings = args.common.settings()?;
     let all = settings.mode == "all";
     if all {

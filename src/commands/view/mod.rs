@@ -35,7 +35,8 @@ impl Args {
 }
 
 /// Runs the command: the window if this is the child, else the child.
-pub fn run(args: Args, start: Instant) -> Result<(), Failure> {
+pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
+    args.common.take_shader(&mut args.model);
     match supervisor::session() {
         Some(folder) => {
             supervisor::end_with_parent();
@@ -55,7 +56,8 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         return Err(Failure::Usage(message));
     }
     let source = args.common.source()?;
-    let given = Work { settings: args.common.settings()?, model: args.model, tree: source.root().map(Path::to_owned) };
+    let given =
+        Work { settings: args.common.settings()?, model: args.model, tree: source.location().map(Path::to_owned) };
     let state = folder.as_deref().map(State::read).unwrap_or_default();
     let work = state.work.clone().unwrap_or(given);
     let good = folder.as_deref().map(|folder| GoodTexts::read(folder, work.tree.as_deref())).unwrap_or_default();
@@ -64,8 +66,8 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         watchdog::end_after(Duration::from_secs(args.common.timeout.into()), end_of_device);
     }
     let source = match &work.tree {
-        Some(tree) => Source::Disk(tree.clone()),
-        None if source.root().is_none() => source,
+        Some(tree) => Source::open(tree.clone()),
+        None if source.location().is_none() => source,
         None => Source::embedded(),
     };
     let source = state.source(source, good.clone());

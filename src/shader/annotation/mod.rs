@@ -56,6 +56,17 @@ pub struct Annotations {
     pub textures: Vec<TextureNote>,
 }
 
+impl Annotations {
+    /// A message if no constant has the `name` that stands after `when=`.
+    pub fn unknown_constant(&self, name: &str) -> Option<String> {
+        let mut known = self.constants.iter().map(|constant| constant.name.as_str());
+        if known.clone().any(|constant| constant == name) {
+            return None;
+        }
+        Some(format!("no constant with //@ui is named `{name}`.{}", did_you_mean(name, known.by_ref())))
+    }
+}
+
 /// Reads the annotations of `files`. Ids, defaults and offsets come from the compiled modules.
 ///
 /// # Errors
@@ -109,24 +120,11 @@ pub fn read<'p>(
         let note = format!("the other is at {}:{}", pair[0].file, pair[0].line);
         errors.push(Diagnostic::error(&pair[1].file, message).on_line(pair[1].line, None).with_note(note));
     }
-    errors.extend(out.parameters.iter().filter_map(|parameter| unknown_switch(parameter, &out.constants)));
+    errors.extend(out.parameters.iter().filter_map(|parameter| {
+        let message = out.unknown_constant(parameter.when.as_deref()?)?;
+        Some(Diagnostic::error(&parameter.file, message).on_line(parameter.line, None))
+    }));
     if errors.is_empty() { Ok(out) } else { Err(errors) }
-}
-
-/// An error if the constant after `when=` does not exist.
-fn unknown_switch(parameter: &Parameter, constants: &[Constant]) -> Option<Diagnostic> {
-    let name = parameter.when.as_deref()?;
-    let mut known = constants.iter().map(|constant| constant.name.as_str());
-    if known.clone().any(|constant| constant == name) {
-        return None;
-    }
-    let message = format!("no constant with //@ui is named `{name}`.{}", did_you_mean(name, known.by_ref()));
-    Some(Diagnostic::error(&parameter.file, message).on_line(parameter.line, None))
-}
-
-/// Whether a stage declares a pass that is off unless the user switches it on.
-pub fn is_off(snapshot: &Snapshot<'_>, stage: &TreePath) -> bool {
-    passes_of(snapshot, stage).any(|note| !note.on || note.when.is_some())
 }
 
 /// The passes that a stage declares, without its errors.

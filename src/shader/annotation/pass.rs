@@ -189,6 +189,8 @@ pub struct TextureNote {
     pub wrap: Wrap,
     /// Whether it has mip levels.
     pub mips: bool,
+    /// Whether its first row is at the bottom of the image, as in OpenGL.
+    pub flip: bool,
     /// Location of the annotation.
     #[serde(skip)]
     pub place: NotePlace,
@@ -196,7 +198,7 @@ pub struct TextureNote {
 
 /// Whether a file with this extension may be the image of a `//@texture`.
 pub fn is_image_extension(extension: &str) -> bool {
-    ["png", "jpg", "jpeg", "hdr", "exr"].iter().any(|known| known.eq_ignore_ascii_case(extension))
+    ["png", "jpg", "jpeg", "hdr", "exr", "cube"].iter().any(|known| known.eq_ignore_ascii_case(extension))
 }
 
 /// Parses the rest of a `//@pass`.
@@ -257,8 +259,16 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> 
         return Err(cursor.expected("the image's file in quotes"));
     };
     let place = NotePlace::of(cursor.place());
-    let mut note =
-        TextureNote { name, image, declared_in: String::new(), srgb: true, wrap: Wrap::Repeat, mips: false, place };
+    let mut note = TextureNote {
+        name,
+        image,
+        declared_in: String::new(),
+        srgb: true,
+        wrap: Wrap::Repeat,
+        mips: false,
+        flip: false,
+        place,
+    };
     while !cursor.at_end() {
         let (bytes, word) = cursor.word();
         match word {
@@ -267,8 +277,9 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> 
             "repeat" => note.wrap = Wrap::Repeat,
             "clamp" => note.wrap = Wrap::Clamp,
             "mips" => note.mips = true,
+            "flip" => note.flip = true,
             other => {
-                let message = format!("expected srgb, linear, repeat, clamp or mips, found `{other}`");
+                let message = format!("expected srgb, linear, repeat, clamp, mips or flip, found `{other}`");
                 return Err(cursor.error(bytes, message));
             }
         }

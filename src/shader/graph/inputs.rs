@@ -13,8 +13,11 @@ const LARGEST_BUFFER: u32 = 128 << 20;
 /// The largest uniform block in bytes. Every device can bind one of this size.
 const LARGEST_BLOCK: u32 = 16 << 10;
 
-/// The block in pass.glsl that holds the size of a pass's image: a `vec2` in pixels.
-const SIZE_BLOCK: &str = "Pass";
+/// The block with the properties of a pass's image and the clock, in pass.glsl and toy.glsl.
+const PASS_BLOCK: &str = "Pass";
+/// The members that it may have, and their types in GLSL.
+const PASS_MEMBERS: [(&str, &str); 5] =
+    [("size_px", "vec2"), ("mouse_px", "vec4"), ("time_s", "float"), ("delta_s", "float"), ("frame_index", "uint")];
 
 /// The names that a pass can read.
 pub struct Names<'a> {
@@ -115,7 +118,18 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
         "sampler2D" => sampled(note, name, names),
-        "uniform block" if name == SIZE_BLOCK => Ok(Input::Size),
+        "uniform block" if name == PASS_BLOCK => {
+            let block = found.block.clone().unwrap_or_default();
+            for member in &block.members {
+                if !PASS_MEMBERS.contains(&(member.name.as_str(), member.type_name.as_str())) {
+                    let known: Vec<String> = PASS_MEMBERS.iter().map(|(name, glsl)| format!("{glsl} {name}")).collect();
+                    let message = format!("`{PASS_BLOCK}` has no `{} {}`", member.type_name, member.name);
+                    return Err((message, format!("its members can be {}", known.join(", "))));
+                }
+            }
+            let members = block.members.into_iter().map(|member| (member.offset, member.name)).collect();
+            Ok(Input::Pass(block.size.next_multiple_of(16), members))
+        }
         "uniform block" => {
             let block = found.block.clone().unwrap_or_default();
             if block.size > LARGEST_BLOCK {

@@ -23,7 +23,6 @@ use super::source::snapshot::Snapshot;
 use super::source::text::{find_word, lines};
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
-use crate::message::did_you_mean;
 pub use textures::Texture;
 use textures::{read_texture, texture_name};
 
@@ -46,8 +45,8 @@ pub enum Input {
     Output,
     /// A storage buffer that all passes share by the name of its block, with its size in bytes. It lasts from frame to frame.
     Buffer(String, u32),
-    /// The block `Pass` of pass.glsl.
-    Size,
+    /// The block `Pass` of pass.glsl and toy.glsl: its size in bytes, and its members with their offsets.
+    Pass(u32, Vec<(u32, String)>),
     /// The pass's own uniform block: its size in bytes, and its members with their offsets.
     Parameters(u32, Vec<(u32, String)>),
 }
@@ -56,6 +55,10 @@ pub enum Input {
 pub const FULL_SCREEN: &str = "fullscreen.vert";
 /// The vertex stage of the model.
 pub const MODEL: &str = "pbr.vert";
+
+/// How to get the constant that `when=` names.
+const DECLARE_A_CONSTANT: &str =
+    "declare it: layout(constant_id = USER_CONSTANTS + 30) const bool NAME = true; //@ui \"Label\"";
 
 /// Inputs by their binding in `interface::SET_PASS`.
 pub type Inputs = BTreeMap<u32, Input>;
@@ -112,6 +115,17 @@ impl GraphPass {
         })
     }
 
+    /// Whether it makes a displayed picture without reading the one before.
+    pub fn covers(&self) -> bool {
+        let reads_picture = || self.inputs.values().any(|input| *input == Input::Picture);
+        self.note.to_picture && self.part == Part::Display && !reads_picture()
+    }
+
+    /// Whether the user wants the pass. `switched`: the passes that she switched on or off, by name.
+    pub fn is_wanted(&self, switched: &BTreeMap<String, bool>) -> bool {
+        switched.get(self.name()).copied().unwrap_or(self.note.on)
+    }
+
     /// The slug of the debug mode that shows its image.
     pub fn slug(&self) -> String {
         format!("pass:{}", self.note.name)
@@ -162,14 +176,16 @@ impl Graph {
             if has_vertex && !stages.contains_key(&vertex) {
                 continue;
             }
-            errors.extend(unknown_switch(note, annotations));
+            if let Some(message) = note.when.as_deref().and_then(|name| annotations.unknown_constant(name)) {
+                errors.push(note.place.error(message).with_help(DECLARE_A_CONSTANT));
+            }
             if let Some(message) = contradiction(note, stage.kind) {
                 errors.push(note.place.error(message));
                 continue;
             }
             match inputs::inputs(note, stage, &names) {
                 Ok(inputs) => passes.push(GraphPass {
-                    moves: inputs.values().any(|input| matches!(input, Input::Before(_) | Input::Buffer(..)))
+                    moves: inputs.values().any(moves)
                         || reads_clock(&stage.texts)
                         || (has_vertex && reads_clock(&stages[&vertex].texts)),
                     note: note.clone(),
@@ -231,35 +247,51 @@ impl Graph {
     }
 
     /// The passes to draw, in order: those whose images or buffers `stages` read, with `is_picture` those that change the
-    /// picture, and what these need. With `shown`: the pass of that name, and what it needs. Passes for which `is_on`
-    /// returns false are left out, except `shown` itself. A pass that nothing uses costs nothing.
+    /// picture, and what these need. With `shown`: the pass of that name, and what it needs. Passes for whose
+    /// index `is_on` returns false are left out, except `shown` itself, and so are those whose picture a later one covers. A pass that nothing uses costs nothing.
     pub fn active(
         &self,
         stages: &[&str],
         is_picture: bool,
-        is_on: impl Fn(&GraphPass) -> bool,
+        is_on: impl Fn(usize) -> bool,
         shown: Option<&str>,
     ) -> Vec<Arc<GraphPass>> {
         let last = shown.and_then(|name| self.passes.iter().position(|pass| pass.name() == name));
-        let mut needed: BTreeSet<usize> = BTreeSet::new();
+        let cover = if is_picture && last.is_none() { self.cover(&is_on).unwrap_or(0) } else { 0 };
         let mut open: Vec<usize> = (0..self.passes.len())
             .filter(|index| match last {
                 Some(last) => *index == last || (*index < last && self.makes_picture(*index, &is_on)),
-                None => is_picture && self.makes_picture(*index, &is_on),
+                None => is_picture && *index >= cover && self.makes_picture(*index, &is_on),
             })
             .collect();
         for input in stages.iter().filter_map(|stage| self.readers.get(*stage)).flat_map(BTreeMap::values) {
-            open.extend(self.makers(input).filter(|index| is_on(&self.passes[*index])));
+            open.extend(self.makers(input).filter(|index| is_on(*index)));
         }
-        while let Some(index) = open.pop() {
-            if !needed.insert(index) {
-                continue;
-            }
-            for input in self.passes[index].inputs.values() {
-                open.extend(self.makers(input).filter(|index| is_on(&self.passes[*index])));
-            }
-        }
+        let needed = self.with_inputs(open, is_on);
         needed.into_iter().map(|index| self.passes[index].clone()).collect()
+    }
+
+    /// The last pass that makes a displayed picture without reading the one before.
+    fn cover(&self, is_on: impl Fn(usize) -> bool) -> Option<usize> {
+        (0..self.passes.len()).rev().find(|index| self.passes[*index].covers() && is_on(*index))
+    }
+
+    /// Indices of the pass `name` and of all passes whose images and buffers it needs.
+    pub fn needed_by(&self, name: &str) -> BTreeSet<usize> {
+        let shown = self.passes.iter().position(|pass| pass.name() == name);
+        self.with_inputs(shown.into_iter().collect(), |_| true)
+    }
+
+    /// The passes `open` and those whose images and buffers they need, as far as `is_on`.
+    fn with_inputs(&self, mut open: Vec<usize>, is_on: impl Fn(usize) -> bool) -> BTreeSet<usize> {
+        let mut needed = BTreeSet::new();
+        while let Some(index) = open.pop() {
+            if needed.insert(index) {
+                let inputs = self.passes[index].inputs.values();
+                open.extend(inputs.flat_map(|input| self.makers(input)).filter(|index| is_on(*index)));
+            }
+        }
+        needed
     }
 
     /// The passes that write an input.
@@ -274,8 +306,17 @@ impl Graph {
         self.passes.iter().enumerate().filter(move |(_, pass)| shares(pass)).map(|(index, _)| index)
     }
 
-    fn makes_picture(&self, index: usize, is_on: impl Fn(&GraphPass) -> bool) -> bool {
-        self.passes[index].note.to_picture && is_on(&self.passes[index])
+    fn makes_picture(&self, index: usize, is_on: impl Fn(usize) -> bool) -> bool {
+        self.passes[index].note.to_picture && is_on(index)
+    }
+}
+
+/// Whether an input may change while nothing else does.
+fn moves(input: &Input) -> bool {
+    match input {
+        Input::Before(_) | Input::Buffer(..) => true,
+        Input::Pass(_, members) => members.iter().any(|(_, name)| name != "size_px"),
+        _ => false,
     }
 }
 
@@ -316,21 +357,6 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
 /// The path of the vertex stage that the stage of a pass may have beside it.
 pub fn vertex_of(stage: &str) -> String {
     format!("{}.vert", stage.rsplit_once('.').map_or(stage, |(stem, _)| stem))
-}
-
-/// An error if the constant after `when=` does not exist.
-fn unknown_switch(note: &PassNote, annotations: &Annotations) -> Option<Diagnostic> {
-    let name = note.when.as_deref()?;
-    let mut known = annotations.constants.iter().map(|constant| constant.name.as_str());
-    if known.clone().any(|constant| constant == name) {
-        return None;
-    }
-    let hint = did_you_mean(name, known.by_ref());
-    let error = note.place.error(format!("no constant with //@ui is named `{name}`.{hint}"));
-    Some(
-        error
-            .with_help("declare it: layout(constant_id = USER_CONSTANTS + 30) const bool NAME = true; //@ui \"Label\""),
-    )
 }
 
 /// Errors of passes whose buffer another pass, or a stage that comes with Specula, declares with another size.

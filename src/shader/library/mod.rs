@@ -7,7 +7,7 @@ mod passes;
 mod slot;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -173,13 +173,9 @@ impl Library {
         out
     }
 
-    /// The paths of a watcher that was given [`Source::root`], as a change of this tree.
+    /// The paths of a watcher that was given [`Source::root`] and [`Source::files`], as a change of this tree.
     pub fn change_of<'p>(&self, paths: impl IntoIterator<Item = &'p PathBuf>) -> Change {
-        let tree_path = |path: &Path| {
-            let relative = path.strip_prefix(self.source.root()?).ok()?;
-            TreePath::parse(&relative.to_string_lossy())
-        };
-        Change::Paths(paths.into_iter().filter_map(|path| tree_path(path)).collect())
+        Change::Paths(paths.into_iter().flat_map(|path| self.source.changed(path)).collect())
     }
 
     /// Updates the library from the files, all or nothing: on any error the last good set remains.

@@ -1,6 +1,7 @@
 //! The stages that declare a pass: finds them in the tree, tells which are off, and gives each a debug mode.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::slot::Slot;
 use super::{Change, Library};
@@ -10,6 +11,7 @@ use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::graph::{Graph, Part, vertex_of};
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::{Line, find_word, lines};
 use crate::shader::source::{SourceError, TreePath};
 
 impl Library {
@@ -70,10 +72,44 @@ impl Library {
         }
     }
 
-    /// The passes that are off unless the user switches them on.
+    /// The stages of passes that are off unless the user switches them on, and of passes that only these read.
     pub(super) fn passes_off(&self, snapshot: &Snapshot<'_>) -> BTreeSet<TreePath> {
-        let passes = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
-        passes.filter(|path| annotation::is_off(snapshot, &fragment_of(path))).cloned().collect()
+        let stages = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
+        let (mut off, mut on) = (BTreeSet::new(), Vec::new());
+        for path in stages.clone().map(fragment_of) {
+            for note in annotation::passes_of(snapshot, &path) {
+                match !note.on || note.when.is_some() {
+                    true => drop(off.insert(path.clone())),
+                    false if note.to_picture => {}
+                    false => on.push((path.clone(), note.name)),
+                }
+            }
+        }
+        let texts: Vec<(TreePath, Arc<str>)> = self
+            .source
+            .list()
+            .into_iter()
+            .filter(is_text)
+            .filter_map(|path| {
+                let text = snapshot.read(&path).ok()?;
+                Some((fragment_of(&path), text))
+            })
+            .collect();
+        // Others may share a buffer with a pass that has one.
+        on.retain(|(path, _)| snapshot.read(path).is_ok_and(|text| !text.contains("buffer")));
+        loop {
+            let is_read = |(own, name): &(TreePath, String)| {
+                let others = texts.iter().filter(|(path, _)| path != own && !off.contains(path));
+                others.into_iter().any(|(_, text)| mentions(text, name))
+            };
+            let (read, unread): (Vec<_>, Vec<_>) = on.into_iter().partition(is_read);
+            on = read;
+            if unread.is_empty() {
+                break;
+            }
+            off.extend(unread.into_iter().map(|(path, _)| path));
+        }
+        stages.filter(|path| off.contains(&fragment_of(path))).cloned().collect()
     }
 
     /// A warning for each stage in `passes/` that declares no pass.
@@ -93,6 +129,17 @@ pub(super) fn fragment_of(path: &TreePath) -> TreePath {
         Some(StageKind::Vertex) => TreePath::from(format!("{}.frag", path.stem()).as_str()),
         _ => path.clone(),
     }
+}
+
+fn is_text(path: &TreePath) -> bool {
+    path.extension() == Some("glsl") || StageKind::of(path).is_some()
+}
+
+/// Whether the code of a text names the image of a pass, as it is or as it was one frame ago.
+fn mentions(text: &str, name: &str) -> bool {
+    let names = [name, &format!("before_{name}")];
+    let is_named = |line: &Line<'_>| names.iter().any(|name| find_word(&line.code, name).is_some());
+    text.contains(name) && lines(text).iter().any(is_named)
 }
 
 fn is_kind(path: &TreePath, kind: StageKind) -> bool {

@@ -2,7 +2,6 @@
 //! a tree after the device was lost, so that the text that may have caused the loss does not cause the next.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use xxhash_rust::xxh3::xxh3_64;
@@ -10,10 +9,10 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::{Source, SourceError, TreePath};
 use crate::shader::diagnostic::Diagnostic;
 
-/// A directory and the texts that are read instead of some of its files.
+/// A tree on disk and the texts that are read instead of some of its files.
 #[derive(Debug)]
 pub struct Held {
-    root: PathBuf,
+    tree: Source,
     /// The last good texts of files that differ from them.
     texts: BTreeMap<TreePath, String>,
     /// Hashes of the texts on disk that are refused, see [`text_hash`]. A file without a last good text may be among them.
@@ -23,33 +22,27 @@ pub struct Held {
 }
 
 impl Source {
-    /// The tree in `root`, in which each file that differs from its text in `good` has that text. [`Source::released`] goes on to
+    /// The `tree`, in which each file that differs from its text in `good` has that text. [`Source::released`] goes on to
     /// the files on disk, but for the refused ones, by path and [`text_hash`]. `cause` says why, after "FILE: error: ".
-    pub fn held(
-        root: PathBuf,
-        good: &BTreeMap<TreePath, String>,
-        refused: BTreeMap<TreePath, u64>,
-        cause: &str,
-    ) -> Self {
-        let disk = Self::Disk(root.clone());
-        let differs = |(path, text): &(&TreePath, &String)| disk.read(path).as_ref() != Ok(*text);
+    pub fn held(tree: Self, good: &BTreeMap<TreePath, String>, refused: BTreeMap<TreePath, u64>, cause: &str) -> Self {
+        let differs = |(path, text): &(&TreePath, &String)| tree.read(path).as_ref() != Ok(*text);
         let texts = good.iter().filter(differs).map(|(path, text)| (path.clone(), text.clone())).collect();
-        Self::Held(Arc::new(Held { root, texts, refused, cause: cause.to_owned() }))
+        Self::Held(Arc::new(Held { tree, texts, refused, cause: cause.to_owned() }))
     }
 
     /// The tree with fewer files held back, and the paths whose texts this changes. `None` if nothing is to be released. All
     /// refused texts are released together as soon as one of them changes, since only together they are known to be good or bad.
     pub fn released(&self) -> Option<(Self, BTreeSet<TreePath>)> {
         let Self::Held(held) = self else { return None };
-        let disk = Self::Disk(held.root.clone());
+        let disk = &held.tree;
         let still = held.refused.iter().all(|(path, hash)| text_hash(&disk.read(path)) == *hash);
         let refused = if still { held.refused.clone() } else { BTreeMap::new() };
         let (kept, released): (BTreeMap<_, _>, BTreeMap<_, _>) =
             held.texts.clone().into_iter().partition(|(path, _)| refused.contains_key(path));
         if refused.is_empty() {
-            return Some((disk, released.into_keys().chain(held.refused.keys().cloned()).collect()));
+            return Some((disk.clone(), released.into_keys().chain(held.refused.keys().cloned()).collect()));
         }
-        let next = Held { root: held.root.clone(), texts: kept, refused, cause: held.cause.clone() };
+        let next = Held { tree: disk.clone(), texts: kept, refused, cause: held.cause.clone() };
         (!released.is_empty()).then(|| (Self::Held(Arc::new(next)), released.into_keys().collect()))
     }
 
@@ -67,8 +60,8 @@ impl Source {
 }
 
 impl Held {
-    pub(super) fn root(&self) -> &PathBuf {
-        &self.root
+    pub(super) fn tree(&self) -> &Source {
+        &self.tree
     }
 
     pub(super) fn text(&self, path: &TreePath) -> Option<&String> {
@@ -99,7 +92,7 @@ mod tests {
         let hash = text_hash(&Ok("new".to_owned()));
         // `c` is a new file, which has no last good text.
         let refused = BTreeMap::from([(a.clone(), hash), (c.clone(), hash)]);
-        let held = Source::held(directory.path().to_owned(), &BTreeMap::from(good), refused, "lost");
+        let held = Source::held(Source::Disk(directory.path().to_owned()), &BTreeMap::from(good), refused, "lost");
         let read = |source: &Source| paths.each_ref().map(|path| source.read(path).unwrap());
         assert_eq!(read(&held), ["old a", "old b", "new", "new"]);
 

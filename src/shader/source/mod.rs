@@ -5,6 +5,7 @@ pub mod embedded;
 pub mod held;
 pub mod snapshot;
 pub(super) mod text;
+mod toy;
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -17,6 +18,7 @@ use serde::Serialize;
 
 use embedded::Example;
 use held::Held;
+use toy::Toy;
 
 /// Maximum size of a file in bytes. No shader is longer, and shaderc would hold several copies.
 pub const MAX_FILE_BYTES: u64 = 4 << 20;
@@ -141,11 +143,23 @@ pub enum Source {
     Held(Arc<Held>),
     /// The tree inside the binary, or that of an example.
     Embedded(Option<Example>),
+    /// A single file of another playground.
+    Toy(Arc<Toy>),
     /// Text in memory.
     Memory(BTreeMap<TreePath, String>),
 }
 
 impl Source {
+    /// The tree in a directory, or the tree that a single shader file makes: [`Source::is_file`].
+    pub fn open(path: PathBuf) -> Self {
+        if Self::is_file(&path) { Self::Toy(Arc::new(Toy::new(path))) } else { Self::Disk(path) }
+    }
+
+    /// Whether a single shader file can be opened as a tree. Files that lie in a tree cannot.
+    pub fn is_file(path: &Path) -> bool {
+        !path.is_dir() && Toy::is_toy(path)
+    }
+
     /// The tree that was compiled into the binary.
     pub fn embedded() -> Self {
         Self::Embedded(None)
@@ -162,8 +176,9 @@ impl Source {
             Self::Disk(root) => read_file(&root.join(path.as_str())),
             Self::Held(held) => match held.text(path) {
                 Some(text) => Ok(text.clone()),
-                None => read_file(&held.root().join(path.as_str())),
+                None => held.tree().read(path),
             },
+            Self::Toy(toy) => toy.read(path),
             Self::Embedded(example) => check_text(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
             Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
         }
@@ -173,7 +188,8 @@ impl Source {
     pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
         match self {
             Self::Disk(root) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
-            Self::Held(held) => read_bytes(&held.root().join(path.as_str()), MAX_IMAGE_BYTES),
+            Self::Held(held) => held.tree().read_bytes(path),
+            Self::Toy(toy) => toy.read_bytes(path),
             Self::Memory(files) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
             Self::Embedded(example) => Ok(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
         }
@@ -182,6 +198,8 @@ impl Source {
     /// The path for messages. For a directory, an editor can open it from the working directory.
     pub fn display_path(&self, path: &TreePath) -> String {
         match (self, self.root()) {
+            (Self::Held(held), _) => held.tree().display_path(path),
+            (Self::Toy(toy), _) => toy.display_path(path),
             (_, Some(root)) if root == Path::new(".") => path.to_string(),
             (_, Some(root)) => root.join(path.as_str()).display().to_string(),
             (Self::Embedded(_), None) => format!("embedded:{path}"),
@@ -192,6 +210,8 @@ impl Source {
     /// All files, sorted, without hidden files and directories (of editors and git).
     pub fn list(&self) -> Vec<TreePath> {
         match (self, self.root()) {
+            (Self::Held(held), _) => held.tree().list(),
+            (Self::Toy(toy), _) => toy.list(),
             (_, Some(root)) => {
                 let tree_path = |path: &PathBuf| {
                     let names: Option<Vec<&str>> = path.strip_prefix(root).ok()?.iter().map(OsStr::to_str).collect();
@@ -204,16 +224,46 @@ impl Source {
             }
             (Self::Memory(files), None) => files.keys().cloned().collect(),
             (Self::Embedded(example), None) => embedded::list(*example),
-            (Self::Disk(_) | Self::Held(_), None) => Vec::new(),
+            (Self::Disk(_), None) => Vec::new(),
         }
     }
 
-    /// The directory to watch; `None` for a tree that is not on disk.
+    /// The directory of a tree that is one on disk. All of it is watched.
     pub fn root(&self) -> Option<&Path> {
         match self {
             Self::Disk(root) => Some(root),
-            Self::Held(held) => Some(held.root()),
-            Self::Embedded(_) | Self::Memory(_) => None,
+            Self::Held(held) => held.tree().root(),
+            Self::Embedded(_) | Self::Memory(_) | Self::Toy(_) => None,
+        }
+    }
+
+    /// The directory or file that [`Source::open`] opens; `None` for a tree that is not on disk.
+    pub fn location(&self) -> Option<&Path> {
+        match self {
+            Self::Held(held) => held.tree().location(),
+            Self::Toy(toy) => Some(toy.file()),
+            _ => self.root(),
+        }
+    }
+
+    /// The files to watch of a tree that has no directory of its own. They change with the texts.
+    pub fn files(&self) -> Vec<PathBuf> {
+        match self {
+            Self::Held(held) => held.tree().files(),
+            Self::Toy(toy) => toy.watched(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The paths of the tree whose text a change of this file on disk may change.
+    pub fn changed(&self, file: &Path) -> Vec<TreePath> {
+        match self {
+            Self::Held(held) => held.tree().changed(file),
+            Self::Toy(toy) => toy.changed(file),
+            _ => {
+                let relative = self.root().and_then(|root| file.strip_prefix(root).ok());
+                relative.and_then(|path| TreePath::parse(&path.to_string_lossy())).into_iter().collect()
+            }
         }
     }
 
@@ -221,7 +271,7 @@ impl Source {
     pub fn name(&self) -> String {
         match self {
             Self::Embedded(Some(example)) => format!("examples:{}", example.name()),
-            _ => self.root().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string()),
+            _ => self.location().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string()),
         }
     }
 }

@@ -6,10 +6,14 @@
 #include "common/sampling.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/punctual.glsl"
-#include "user/params.glsl"
 
 // Fur by shells (Lengyel, Praun, Finkelstein & Hoppe 2001, "Real-Time Fur over Arbitrary Surfaces"), lit as hairs (Kajiya & Kay
 // 1989, "Rendering Fur with Three Dimensional Textures", diffuse term: the sine between hair and light).
+
+uniform Fur {
+    float fur_density;         //@ui "Hairs across the model's radius" 10..200 = 60
+    vec3 fur_color;            //@ui "Fur color" color = 0.6 0.35 0.15
+};
 
 layout(location = 0) in Fragment fragment;
 layout(location = 12) in float height;

@@ -8,7 +8,7 @@
 #include "brdf/surface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
-#include "material_textures.glsl"
+#include "material/textures.glsl"
 
 // For debug modes. Code that must vanish where the bit is not set writes the comparison out instead (ARCHITECTURE.md,
 // "Features").

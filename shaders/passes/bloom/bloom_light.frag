@@ -1,4 +1,4 @@
-//@pass bloom_light "Bloom: light" size=1/4 mips doc="Exposed light at a quarter of the size, and its mip levels"
+//@pass bloom_light "Bloom: light" size=1/4 mips when=BLOOM doc="Exposed light at a quarter of the size, and its mip levels"
 #version 460
 #include "pass.glsl"
 #include "common/color.glsl"

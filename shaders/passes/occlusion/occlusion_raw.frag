@@ -17,45 +17,32 @@ uniform OcclusionRaw {
 const int SLICES = 1;
 const int STEPS = 3;
 
-// Rays through the picture: the point at clip-space xy and this distance is eye + distance (center + x right + y down).
-struct Rays {
-    vec3 center;
-    vec3 right;
-    vec3 down;
-};
-
-vec3 at_near(vec2 clip) {
-    vec4 point = frame.world_from_clip * vec4(clip, 1.0, 1.0);
-    return (point.xyz / point.w - frame.eye_ws) / frame.near;
+// Half the picture's width and height at 1 m: a row of the projection divides by it.
+vec2 half_size_at_1m() {
+    mat4 m = frame.clip_from_world;
+    vec3 x = vec3(m[0].x, m[1].x, m[2].x);
+    vec3 y = vec3(m[0].y, m[1].y, m[2].y);
+    return inversesqrt(vec2(dot(x, x), dot(y, y)));
 }
 
-Rays rays() {
-    vec3 center = at_near(vec2(0.0));
-    return Rays(center, at_near(vec2(1.0, 0.0)) - center, at_near(vec2(0.0, 1.0)) - center);
+// The point of the picture at `at`, 0..1 from the upper left corner. View space, meters: x right, y up, the camera looks along -z.
+vec3 point_at(vec2 half_size, vec2 at, float distance_m) {
+    return distance_m * vec3((2.0 * at - 1.0) * vec2(half_size.x, -half_size.y), -1.0);
 }
-
-// Point from the eye, meters.
-vec3 point_at(Rays rays, vec2 at, float distance_m) {
-    vec2 clip = 2.0 * at - 1.0;
-    return distance_m * (rays.center + clip.x * rays.right + clip.y * rays.down);
-}
-
-// Integral of max(cos(angle - n), 0) |sin(angle)| from the view direction to the horizon, times 4 (eq. 7 there).
-float arc(float horizon, float n) { return -cos(2.0 * horizon - n) + cos(n) + 2.0 * horizon * sin(n); }
 
 void main() {
     vec4 here = texelFetch(geometry, ivec2(gl_FragCoord.xy), 0);
     color = vec4(0.0, here.a, 0.0, 0.0);
     if (here.a <= 0.0) return;
 
-    Rays rays = rays();
-    vec3 position = point_at(rays, uv, here.a);
+    vec2 half_size = half_size_at_1m();
+    vec3 position = point_at(half_size, uv, here.a);
     vec3 v = normalize(-position);
     // Points and lines have no normal.
-    vec3 n = dot(here.xyz, here.xyz) > 0.0 ? here.xyz : v;
+    vec3 n = dot(here.xyz, here.xyz) > 0.0 ? mat3(frame.view_from_world) * here.xyz : v;
     float radius_m = occlusion_radius * frame.scene_radius;
     // Radius in the image, 0..1 of its height.
-    float radius = min(radius_m / (2.0 * here.a * length(rays.down)), 0.5);
+    float radius = min(radius_m / (2.0 * here.a * half_size.y), 0.5);
     vec2 scale = vec2(pass.size_px.y / pass.size_px.x, 1.0) * radius;
 
     // Each pixel of a pattern of 4 x 4 has a direction of its own. The next pass averages them.
@@ -67,37 +54,40 @@ void main() {
     for (int slice = 0; slice < SLICES; ++slice) {
         float angle = PI * (float(slice) + turn) / float(SLICES);
         vec2 direction = vec2(cos(angle), sin(angle));
-        vec3 along = normalize(direction.x * rays.right / length(rays.right) + direction.y * rays.down / length(rays.down));
-        // The slice is the plane of v and `along`. The normal is projected into it.
-        vec3 axis = normalize(cross(along, v));
+        // The slice is the plane of v and the direction. The normal is projected into it; gamma is its angle from v.
+        vec3 axis = normalize(cross(vec3(direction.x, -direction.y, 0.0), v));
         vec3 tangent = cross(v, axis);
-        vec3 projected = n - dot(n, axis) * axis;
+        vec2 projected = vec2(dot(n, v), dot(n, tangent));
         float weight = length(projected);
-        float gamma = atan(dot(projected, tangent), dot(projected, v));
-        vec2 horizons = vec2(-1.0);
+        float cos_gamma = projected.x / max(weight, 1e-6);
+        float sin_gamma = projected.y / max(weight, 1e-6);
+        // Cosines of the horizons' angles from v, on both sides. They stay within the hemisphere around the normal.
+        vec2 horizons = vec2(sin_gamma, -sin_gamma);
         for (int i = 0; i < STEPS; ++i) {
             float part = (float(i) + shift) / float(STEPS);
             vec2 offset = direction * scale * part * part;
             // Not nearer than the neighboring pixel.
-            offset += sign(direction) * min(abs(direction), 1.0) / pass.size_px;
+            offset += direction / pass.size_px;
             for (int side = 0; side < 2; ++side) {
                 vec2 at = uv + (side == 0 ? -offset : offset);
                 vec2 place = clamp(at, 0.0, 1.0) * (pass.size_px - 1.0) + 0.5;
                 float distance_m = texelFetch(geometry, ivec2(place), 0).a;
                 if (distance_m <= 0.0) continue;
-                vec3 to = point_at(rays, at, distance_m) - position;
-                float length_m = length(to);
-                float cosine = dot(to, v) / max(length_m, 1e-6);
+                vec3 to = point_at(half_size, at, distance_m) - position;
+                float per_m = inversesqrt(max(dot(to, to), 1e-12));
                 // Beyond the radius nothing hides; between, it fades.
-                cosine = mix(-1.0, cosine, saturate(2.0 - 2.0 * length_m / radius_m));
-                horizons[side] = max(horizons[side], cosine);
+                float near = saturate(2.0 - 2.0 / (per_m * radius_m));
+                horizons[side] = max(horizons[side], mix(-1.0, dot(to, v) * per_m, near));
             }
         }
-        horizons = clamp(horizons, -1.0, 1.0);
-        // Angles from v: negative on the first side. They stay within the hemisphere around the normal.
-        float low = gamma + max(-acos(horizons.x) - gamma, -0.5 * PI);
-        float high = gamma + min(acos(horizons.y) - gamma, 0.5 * PI);
-        open += weight * 0.25 * (arc(low, gamma) + arc(high, gamma));
+        horizons = min(horizons, 1.0);
+        // Integral of max(cos(angle - gamma), 0) |sin(angle)| between the horizons h (eq. 7 there): for each,
+        // (cos(gamma) + 2 h sin(gamma) - cos(2 h - gamma)) / 4, where the first side's h is negative.
+        vec2 h = acos(horizons);
+        vec2 sine = sqrt(1.0 - horizons * horizons);
+        vec2 cos_2h = 2.0 * horizons * horizons - 1.0;
+        float across = sin_gamma * (2.0 * (h.y - h.x) - 2.0 * (sine.y * horizons.y - sine.x * horizons.x));
+        open += weight * 0.25 * (cos_gamma * (2.0 - cos_2h.x - cos_2h.y) + across);
     }
     // One direction alone may be above 1; the mean over all directions of an open point is 1.
     color.r = 1.0 - open / float(SLICES);

@@ -3,7 +3,7 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 layout(location = 0) in Fragment fragment;
 layout(location = 12) in vec3 tile;

@@ -3,7 +3,7 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
-#include "material.glsl"
+#include "material/material.glsl"
 
 // rgb: normal, world space, unit, towards the eye. a: meters along the camera's axis; 0 where there is nothing.
 

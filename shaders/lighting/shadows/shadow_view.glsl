@@ -8,7 +8,7 @@
 // Lights with a tile. Others throw no shadow.
 const uint MAX_SHADOWS = 16u;
 
-// Side of the shadow map, pixels: the size in passes/shadow_map.frag. textureSize takes longer on a software device.
+// Side of the shadow map, pixels: the size in passes/shadows/shadow_map.frag. textureSize takes longer on a software device.
 const float SHADOW_MAP_PX = 2048.0;
 
 // Tiles in a row of the shadow map, and rows.

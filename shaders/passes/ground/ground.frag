@@ -4,9 +4,9 @@
 #include "common/math.glsl"
 #include "common/pixel.glsl"
 #include "lighting/environment.glsl"
-#include "lighting/ground.glsl"
+#include "lighting/shadows/ground.glsl"
 #include "lighting/punctual.glsl"
-#include "lighting/shadow.glsl"
+#include "lighting/shadows/shadow.glsl"
 
 // Darkens the background where the model takes light from the ground, by the part of the irradiance that is left. The ground
 // itself is not drawn. Its light is that of the environment, and of the lights if shadows are on.

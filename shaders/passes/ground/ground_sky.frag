@@ -2,7 +2,7 @@
 #version 460
 #include "pass.glsl"
 #include "common/math.glsl"
-#include "lighting/ground.glsl"
+#include "lighting/shadows/ground.glsl"
 
 // In each direction of the compass the model hides the sky above some angle: that of the lowest surface over the ground, as if the
 // model were solid above it. Below that angle t the sky lights the ground with the integral of 2 sin cos from 0 to t, sin^2 t.

@@ -1,4 +1,4 @@
-// Ambient occlusion of the model by itself. passes/occlusion.frag draws it at half the picture's size.
+// Ambient occlusion of the model by itself. passes/occlusion/occlusion.frag draws it at half the picture's size.
 #ifndef LIGHTING_AMBIENT_OCCLUSION_GLSL
 #define LIGHTING_AMBIENT_OCCLUSION_GLSL
 

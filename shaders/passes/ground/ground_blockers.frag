@@ -2,7 +2,7 @@
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
-#include "lighting/ground.glsl"
+#include "lighting/shadows/ground.glsl"
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;

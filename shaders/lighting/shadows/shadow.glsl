@@ -1,11 +1,11 @@
-// Shadows of punctual and rectangular lights, by shadow maps (Williams 1978). passes/shadow_map.frag draws the map.
+// Shadows of punctual and rectangular lights, by shadow maps (Williams 1978). passes/shadows/shadow_map.frag draws the map.
 #ifndef LIGHTING_SHADOW_GLSL
 #define LIGHTING_SHADOW_GLSL
 
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "lighting/shadow_view.glsl"
+#include "lighting/shadows/shadow_view.glsl"
 #include "user/params.glsl"
 
 const uint NO_SHADOWS = 0u;

@@ -1,4 +1,4 @@
-//@pass bloom_blur "Bloom: blur" size=1/8 doc="Mean of ever wider blurs of the light"
+//@pass bloom_blur "Bloom: blur" size=1/8 when=BLOOM doc="Mean of ever wider blurs of the light"
 #version 460
 #include "pass.glsl"
 

@@ -1,0 +1,161 @@
+//! Changes the text of an opened file so that it compiles in a pass. Each line keeps its number.
+
+use crate::shader::source::text::{find_word, lines};
+
+/// What a line `#iChannel0 "..."` names. The form is that of editors' Shadertoy extensions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Channel {
+    /// The image of this file, one frame ago.
+    This,
+    /// Another file that draws an image, relative to the folder.
+    Drawing(String),
+    /// An image file, relative to the folder.
+    Image(String),
+}
+
+/// The file, beside a toy, that all its files share. Files that these include count as parts of it.
+pub(super) const COMMON: &str = "common";
+
+/// The uniforms of glslViewer and of the Book of Shaders, which toy.glsl defines.
+const UNIFORMS: [&str; 6] = ["u_time", "u_delta", "u_frame", "u_date", "u_resolution", "u_mouse"];
+/// Names that a shader of OpenGL uses, with names of the same length that toy.glsl defines.
+const OPENGL: [(&str, &str); 2] = [("gl_FragCoord", "toyFragCoord"), ("gl_FragColor", "toyFragColor")];
+
+/// Whether a text has Shadertoy's form.
+pub(super) fn is_shadertoy(text: &str) -> bool {
+    uses(text, "mainImage")
+}
+
+/// Whether the code of a text has this word.
+pub(super) fn uses(text: &str, word: &str) -> bool {
+    text.contains(word) && lines(text).iter().any(|line| find_word(&line.code, word).is_some())
+}
+
+/// The channels that a text names, with their numbers.
+pub(super) fn channels(text: &str) -> Vec<(usize, Channel)> {
+    text.lines().filter_map(channel).collect()
+}
+
+/// The names of the outputs that a text declares.
+pub(super) fn outputs(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter(|line| is_replaced(line)).filter_map(|line| {
+        let code = line.split(';').next()?.trim();
+        let is_output = code.split_whitespace().any(|word| word == "out") && !code.starts_with("//");
+        code.split_whitespace().next_back().filter(|_| is_output)
+    })
+}
+
+/// The files that a text names in its channels and includes.
+pub(super) fn named_files(text: &str) -> Vec<String> {
+    let of_channel = |line| match channel(line)?.1 {
+        Channel::This => None,
+        Channel::Drawing(file) | Channel::Image(file) => Some(file),
+    };
+    let included = |line: &str| {
+        let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
+        Some(rest.trim().trim_matches(['"', '<', '>']).to_owned())
+    };
+    text.lines().filter_map(|line| of_channel(line).or_else(|| included(line))).collect()
+}
+
+/// The name of the texture of a channel.
+pub(super) fn texture_name(pass: &str, channel: usize) -> String {
+    format!("{pass}_channel{channel}")
+}
+
+/// The text as a pass compiles it.
+pub(super) fn adapted(text: &str, pass: &str) -> String {
+    let is_shadertoy = is_shadertoy(text);
+    let has_main = !is_shadertoy && uses(text, "main");
+    let mut out = String::with_capacity(text.len() + 64);
+    for line in text.split_inclusive('\n') {
+        match channel(line) {
+            Some((number, Channel::Image(file))) => {
+                let name = texture_name(pass, number);
+                out += &format!("//@texture {name} \"{file}\" linear mips flip\n");
+            }
+            Some(_) => out += &format!("//{line}"),
+            None if is_replaced(line) => out += &format!("//{line}"),
+            None => out += &with_own_names(line, has_main),
+        }
+    }
+    // What all files share needs no main.
+    if pass != COMMON && !is_shadertoy && !has_main {
+        out += "\n#error expected void mainImage(out vec4 fragColor, in vec2 fragCoord), or void main()\n";
+    }
+    out
+}
+
+/// Parses `#iChannel0 "file"`. Other lines of that kind, as `#iChannel0::WrapMode`, name no file.
+fn channel(line: &str) -> Option<(usize, Channel)> {
+    let rest = line.trim().strip_prefix("#iChannel")?;
+    let number = rest.chars().next()?.to_digit(10).filter(|number| *number < 4)? as usize;
+    let name = rest[1..].trim().strip_prefix('"')?.split('"').next()?;
+    let file = name.strip_prefix("file://").unwrap_or(name);
+    let file = file.strip_prefix("./").unwrap_or(file).to_owned();
+    let is_shader = [".glsl", ".frag", ".fs"].iter().any(|ending| file.ends_with(ending));
+    let channel = match name {
+        "self" => Channel::This,
+        _ if is_shader => Channel::Drawing(file),
+        _ => Channel::Image(file),
+    };
+    Some((number, channel))
+}
+
+/// Whether the stage says this instead: a version, a uniform of toy.glsl, an input or output, or a channel's further line.
+fn is_replaced(line: &str) -> bool {
+    let code = line.trim();
+    let mut words = code.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty());
+    let is_uniform = || words.clone().any(|word| UNIFORMS.contains(&word));
+    let is_global = || code.ends_with(';') && (code.starts_with("layout") || !code.contains('('));
+    code.starts_with("#version")
+        || code.starts_with("#iChannel")
+        || match words.clone().next() {
+            Some("uniform") => is_uniform(),
+            Some("varying") => true,
+            Some("in" | "out") => is_global(),
+            Some("layout") => is_global() && words.any(|word| word == "out"),
+            _ => false,
+        }
+}
+
+/// The line with names that toy.glsl gives to what Vulkan has not, or has otherwise. They are as long as those of the file.
+fn with_own_names(line: &str, has_main: bool) -> String {
+    let main = has_main.then_some(("main", "Main"));
+    OPENGL.iter().copied().chain(main).fold(line.to_owned(), |line, (from, to)| {
+        let mut line = line;
+        while let Some(range) = find_word(&line, from) {
+            line.replace_range(range, to);
+        }
+        line
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_stay() {
+        let text = "#version 300 es\nprecision highp float;\nuniform vec2 u_resolution;\nout vec4 shown;\n\
+                    void main() { shown = vec4(gl_FragCoord.xy, main_, 1.0); }\n";
+        let found = adapted(text, "image");
+        assert_eq!(found.lines().count(), text.lines().count());
+        assert_eq!(found.lines().last(), Some("void Main() { shown = vec4(toyFragCoord.xy, main_, 1.0); }"));
+        assert_eq!(found.lines().filter(|line| line.starts_with("//")).count(), 3);
+        assert_eq!(outputs(text).collect::<Vec<_>>(), ["shown"]);
+    }
+
+    #[test]
+    fn channels_name_files() {
+        let text = "#iChannel0 \"file://./a.png\"\n#iChannel1 \"self\"\n  #iChannel2 \"blur.glsl\"\n\
+                    #iChannel0::WrapMode \"Repeat\"\n#iChannel7 \"x.png\"\n";
+        let expected =
+            [(0, Channel::Image("a.png".into())), (1, Channel::This), (2, Channel::Drawing("blur.glsl".into()))];
+        assert_eq!(channels(text), expected);
+        assert_eq!(named_files(text), ["a.png", "blur.glsl"]);
+        let found = adapted(text, "image");
+        assert!(found.starts_with("//@texture image_channel0 \"a.png\" linear mips flip\n"), "{found}");
+        assert!(found.lines().take(5).all(|line| line.starts_with("//")), "{found}");
+    }
+}

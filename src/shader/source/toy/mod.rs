@@ -1,0 +1,271 @@
+//! A single shader file of another playground as a tree: Shadertoy's `mainImage`, or glslViewer's `main` with `u_time`.
+//!
+//! The file, the buffers beside it and what they include appear below `opened/`. Each of them that draws an image has a stage
+//! in `passes/`, which is written here and includes it. Everything else is the tree in the binary.
+
+mod adapt;
+mod noise;
+
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+
+use super::{MAX_IMAGE_BYTES, SourceError, TreePath, embedded, read_bytes, read_file};
+use adapt::{COMMON, Channel, adapted, channels, is_shadertoy, uses};
+
+/// The folder of the opened files in the tree.
+const OPENED: &str = "opened";
+/// The folder of the stages.
+const STAGES: &str = "passes";
+/// The image of a channel that names none.
+const NOISE: &str = "opened/noise.png";
+/// Shadertoy has four buffers.
+const BUFFERS: [&str; 4] = ["buffer_a", "buffer_b", "buffer_c", "buffer_d"];
+
+/// An opened file.
+#[derive(Clone, Debug)]
+pub struct Toy {
+    /// Absolute.
+    file: PathBuf,
+}
+
+/// A file that draws an image.
+struct Drawing {
+    /// The name of its pass.
+    pass: String,
+    /// The file, relative to the folder.
+    file: String,
+    text: String,
+}
+
+impl Toy {
+    /// Opens a file, whether it exists or not.
+    pub fn new(file: PathBuf) -> Self {
+        Self { file }
+    }
+
+    /// Whether `path` can be opened: a shader that lies in no Specula tree.
+    pub fn is_toy(path: &Path) -> bool {
+        let is_shader = path.extension().and_then(|extension| extension.to_str());
+        let in_tree = || path.ancestors().skip(1).any(super::is_specula_tree);
+        is_shader.is_some_and(|extension| ["glsl", "frag", "fs"].contains(&extension)) && !in_tree()
+    }
+
+    /// The file.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// The folder of the file.
+    pub fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new("."))
+    }
+
+    /// The text of a file of the tree.
+    pub fn read(&self, path: &TreePath) -> Result<String, SourceError> {
+        if let Some(relative) = below(path.as_str(), OPENED) {
+            let text = read_file(&self.folder().join(relative))?;
+            let pass = self.drawings().into_iter().find(|drawing| drawing.file == relative).map(|drawing| drawing.pass);
+            return Ok(adapted(&text, pass.as_deref().unwrap_or(COMMON)));
+        }
+        if below(path.as_str(), STAGES).is_some() {
+            let drawings = self.drawings();
+            if let Some(index) = drawings.iter().position(|drawing| stage_path(&drawing.pass) == *path) {
+                return Ok(self.stage(&drawings, index));
+            }
+        }
+        let bytes = embedded::read(None, path).ok_or(SourceError::Missing)?;
+        super::check_text(bytes.to_vec())
+    }
+
+    /// The bytes of an image.
+    pub fn read_bytes(&self, path: &TreePath) -> Result<Vec<u8>, SourceError> {
+        match below(path.as_str(), OPENED) {
+            _ if path.as_str() == NOISE => noise::png().map_err(SourceError::Io),
+            Some(relative) => read_bytes(&self.folder().join(relative), MAX_IMAGE_BYTES),
+            None => Ok(embedded::read(None, path).ok_or(SourceError::Missing)?.to_vec()),
+        }
+    }
+
+    /// The files of the tree that a stage can be, or a library in the binary, sorted.
+    pub fn list(&self) -> Vec<TreePath> {
+        let drawings = self.drawings();
+        let stages = drawings.iter().map(|drawing| stage_path(&drawing.pass));
+        let mut out: Vec<TreePath> = embedded::list(None).into_iter().chain(stages).collect();
+        out.sort();
+        out.dedup();
+        out
+    }
+
+    /// The path for messages: that of the file on disk, if there is one.
+    pub fn display_path(&self, path: &TreePath) -> String {
+        match below(path.as_str(), OPENED) {
+            Some(relative) => self.folder().join(relative).display().to_string(),
+            None => format!("embedded:{path}"),
+        }
+    }
+
+    /// The files whose change changes the tree. Some may not exist yet.
+    pub fn watched(&self) -> Vec<PathBuf> {
+        let mut names: Vec<String> = self.candidates(COMMON).into();
+        names.extend(BUFFERS.iter().flat_map(|buffer| self.candidates(buffer)));
+        for drawing in self.drawings() {
+            names.extend(adapt::named_files(&drawing.text));
+            names.push(drawing.file);
+        }
+        names.push(self.name());
+        names.sort();
+        names.dedup();
+        names.iter().map(|name| self.folder().join(name)).collect()
+    }
+
+    /// The paths of the tree that a change of `file` on disk reaches. Stages depend on the files beside them, too.
+    pub fn changed(&self, file: &Path) -> Vec<TreePath> {
+        let Some(relative) = file.strip_prefix(self.folder()).ok().and_then(slashes) else { return Vec::new() };
+        let stages = self.drawings().into_iter().map(|drawing| drawing.pass).chain(BUFFERS.map(str::to_owned));
+        std::iter::once(opened_path(&relative)).chain(stages.map(|pass| stage_path(&pass))).collect()
+    }
+
+    fn name(&self) -> String {
+        self.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    fn stem(&self) -> String {
+        self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Names that the file of a buffer, or of what all share, may have: first one of this toy alone.
+    fn candidates(&self, name: &str) -> [String; 2] {
+        [format!("{}.{name}.glsl", self.stem()), format!("{name}.glsl")]
+    }
+
+    /// The file of this name beside the toy, and its text.
+    fn beside(&self, name: &str) -> Option<(String, String)> {
+        self.candidates(name).into_iter().filter(|file| *file != self.name()).find_map(|file| {
+            let text = read_file(&self.folder().join(&file)).ok()?;
+            Some((file, text))
+        })
+    }
+
+    /// The files that draw images, in the order in which they are drawn: Shadertoy's buffers, others after what they read,
+    /// and last the file itself.
+    fn drawings(&self) -> Vec<Drawing> {
+        let mut out = Vec::new();
+        for buffer in BUFFERS {
+            if let Some((file, text)) = self.beside(buffer) {
+                out.push(Drawing { pass: buffer.to_owned(), file, text });
+            }
+        }
+        self.add(&self.name(), "image", &mut Vec::new(), &mut out);
+        out
+    }
+
+    /// Adds the file and, before it, the files that its channels name. `above`: the files that are being added.
+    fn add(&self, file: &str, pass: &str, above: &mut Vec<String>, out: &mut Vec<Drawing>) {
+        if above.iter().any(|other| other == file) || out.iter().any(|drawing| drawing.file == file) {
+            return;
+        }
+        let text = read_file(&self.folder().join(file)).unwrap_or_default();
+        above.push(file.to_owned());
+        for (_, channel) in channels(&text) {
+            if let Channel::Drawing(other) = channel {
+                self.add(&other, &buffer_name(&other), above, out);
+            }
+        }
+        above.pop();
+        out.push(Drawing { pass: pass.to_owned(), file: file.to_owned(), text });
+    }
+
+    /// The text of a stage.
+    fn stage(&self, drawings: &[Drawing], index: usize) -> String {
+        let Drawing { pass, file, text } = &drawings[index];
+        let is_image = index + 1 == drawings.len();
+        let goes = if is_image { "to=picture after=tonemap" } else { "keep format=rgba32f" };
+        let mut out = format!("//@pass {pass} \"{file}\" {goes}\n#version 460\n");
+        if !is_image {
+            out += "#define TOY_BUFFER\n";
+        }
+        if !is_shadertoy(text) {
+            out += "#define TOY_MAIN\n";
+        }
+        out += "#include \"toy.glsl\"\n";
+        let common = self.beside(COMMON);
+        let shared = common.as_ref().map_or("", |(_, text)| text);
+        out += &declarations(drawings, index, shared);
+        for name in adapt::outputs(text) {
+            out += &format!("#define {name} toyFragColor\n");
+        }
+        for file in common.iter().map(|(file, _)| file).chain([file]) {
+            out += &format!("#include \"{OPENED}/{file}\"\n");
+        }
+        out
+    }
+}
+
+/// Declares the channels that a drawing, or the text that all files share, uses.
+fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
+    let Drawing { pass, text, .. } = &drawings[index];
+    let named = channels(text);
+    let (mut lines, mut sizes) = (BTreeSet::new(), Vec::new());
+    for (number, buffer) in BUFFERS.iter().enumerate() {
+        let name = format!("iChannel{number}");
+        if !uses(text, &name) && !uses(shared, &name) {
+            sizes.push("vec3(0.0)".to_owned());
+            continue;
+        }
+        sizes.push(format!("vec3(textureSize({name}, 0), 1.0)"));
+        // A channel reads what was drawn before it in this frame, or else in the frame before.
+        let of_frame = |place: usize| match place < index {
+            true => drawings[place].pass.clone(),
+            false => format!("before_{}", drawings[place].pass),
+        };
+        let drawn = |is_it: &dyn Fn(&Drawing) -> bool| drawings.iter().position(is_it).map(of_frame);
+        let sampler = match named.iter().find(|(channel, _)| *channel == number).map(|(_, channel)| channel) {
+            Some(Channel::This) => Some(format!("before_{pass}")),
+            Some(Channel::Drawing(file)) => drawn(&|drawing| drawing.file == *file),
+            Some(Channel::Image(_)) => Some(adapt::texture_name(pass, number)),
+            None => drawn(&|drawing| drawing.pass == *buffer),
+        };
+        let sampler = sampler.unwrap_or_else(|| {
+            lines.insert(format!("//@texture {pass}_noise \"{NOISE}\" linear mips\n"));
+            format!("{pass}_noise")
+        });
+        lines.insert(format!("uniform sampler2D {sampler};\n"));
+        lines.insert(format!("#define {name} {sampler}\n"));
+    }
+    lines.insert(format!("#define iChannelResolution vec3[4]({})\n", sizes.join(", ")));
+    lines.into_iter().collect()
+}
+
+/// The name of the pass that draws a file that is none of Shadertoy's buffers.
+fn buffer_name(file: &str) -> String {
+    let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
+    let name: String =
+        stem.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    if BUFFERS.contains(&name.as_str()) { name } else { format!("buffer_{name}") }
+}
+
+fn stage_path(pass: &str) -> TreePath {
+    TreePath::from(format!("{STAGES}/{pass}.frag").as_str())
+}
+
+fn opened_path(file: &str) -> TreePath {
+    TreePath::from(format!("{OPENED}/{file}").as_str())
+}
+
+fn below<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
+    path.strip_prefix(folder)?.strip_prefix('/')
+}
+
+fn slashes(path: &Path) -> Option<String> {
+    let names: Option<Vec<&str>> = path
+        .components()
+        .map(|part| match part {
+            Component::Normal(name) => name.to_str(),
+            _ => None,
+        })
+        .collect();
+    Some(names?.join("/"))
+}
+
+#[cfg(test)]
+mod tests;

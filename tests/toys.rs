@@ -1,0 +1,116 @@
+//! Single files of other playgrounds: `specula FILE.glsl`.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use support::process::{Finished, run};
+
+/// Writes the files and renders the first of them, 64 x 32 pixels.
+fn render(folder: &Path, files: &[(&str, &str)], options: &[&str]) -> Finished {
+    for (name, text) in files {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let common = ["render", files[0].0, "--size", "64x32", "--validate", "--out", "shot.png"];
+    run(folder, &[&common, options].concat())
+}
+
+/// The pixel of the picture in `folder`, from its upper left corner.
+fn pixel(folder: &Path, x: u32, y: u32) -> [u8; 4] {
+    image::open(folder.join("shot.png")).unwrap().to_rgba8().get_pixel(x, y).0
+}
+
+/// Names that Specula's own shaders have, too, and a picture that is red below and green on the right.
+const IMAGE: &str = "struct Light { vec3 c; };\nstruct Material { Light l; };\nconst float PI = 3.0;\nMaterial material;\n\
+    vec3 color(vec2 uv) { return vec3(uv.y < 0.5 ? 1.0 : 0.0, uv.x < 0.5 ? 0.0 : 1.0, iTime); }\n\
+    void mainImage( out vec4 fragColor, in vec2 fragCoord )\n{\n    \
+    material.l = Light(color(fragCoord / iResolution.xy));\n    fragColor = vec4(material.l.c, 0.0);\n}\n";
+
+#[test]
+fn a_shadertoy_runs_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    render(folder.path(), &[("toy.glsl", IMAGE)], &[]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 0, 31), [255, 0, 0, 255]);
+    assert_eq!(pixel(folder.path(), 63, 0), [0, 255, 0, 255]);
+    render(folder.path(), &[("toy.glsl", IMAGE)], &["--time", "1"]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 63, 0), [0, 255, 255, 255]);
+    run(folder.path(), &["check", "--shaders", "toy.glsl"]).expect(0, &[]);
+}
+
+#[test]
+fn a_shader_of_glsl_viewer_runs_as_it_is() {
+    let old = "#ifdef GL_ES\nprecision mediump float;\n#endif\nuniform vec2 u_resolution;\nuniform float u_time;\n\
+        varying vec2 v_texcoord;\nvoid main() {\n    vec2 st = gl_FragCoord.xy / u_resolution;\n    \
+        gl_FragColor = vec4(step(0.5, st.y), step(0.5, v_texcoord.x), u_time, 1.0);\n}\n";
+    let new = "#version 330\nuniform vec2 u_resolution;\nuniform float u_time;\nin vec2 v_texcoord;\nout vec4 shown;\n\
+        void main() { shown = vec4(step(0.5, gl_FragCoord.y / u_resolution.y), step(0.5, v_texcoord.x), u_time, 1.0); }\n";
+    for text in [old, new] {
+        let folder = tempfile::tempdir().unwrap();
+        render(folder.path(), &[("a.frag", text)], &["--time", "1"]).expect(0, &[]);
+        assert_eq!(pixel(folder.path(), 0, 31), [0, 0, 255, 255]);
+        assert_eq!(pixel(folder.path(), 63, 0), [255, 255, 255, 255]);
+    }
+}
+
+/// Buffer A adds 1/8 in each frame, in a file that all share; the image shows it in the lower half.
+#[test]
+fn buffers_keep_their_images() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = [
+        ("count.glsl", "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy); }\n"),
+        ("common.glsl", "const float STEP = 0.125;\n"),
+        (
+            "buffer_a.glsl",
+            "void mainImage(out vec4 c, in vec2 p) { float old = texelFetch(iChannel0, ivec2(p), 0).r;\n\
+             c = p.y < 16.0 ? vec4(old + STEP) : vec4(0.0); }\n",
+        ),
+    ];
+    render(folder.path(), &files, &["--frames", "4"]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 5, 30), [128, 128, 128, 255]);
+    assert_eq!(pixel(folder.path(), 5, 1), [0, 0, 0, 255]);
+}
+
+#[test]
+fn channels_read_images_and_other_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut spots = image::RgbImage::new(2, 2);
+    spots.put_pixel(0, 1, image::Rgb([255, 0, 0]));
+    spots.save(folder.path().join("spots.png")).unwrap();
+    // The image's first row is at the bottom, as there.
+    let files = [
+        (
+            "a.glsl",
+            "#iChannel2 \"file://half.glsl\"\n#iChannel2::WrapMode \"Clamp\"\nvoid mainImage(out vec4 c, in vec2 p) {\n\
+            c = texelFetch(iChannel2, ivec2(p), 0) + vec4(0.0, iChannelResolution[2].x / 64.0, 0.0, 0.0); }\n",
+        ),
+        (
+            "half.glsl",
+            "#iChannel0 \"spots.png\"\nvoid mainImage(out vec4 c, in vec2 p) {\n\
+            c = textureLod(iChannel0, p / iResolution.xy, 0.0); }\n",
+        ),
+    ];
+    render(folder.path(), &files, &[]).expect(0, &[]);
+    let [low, high] = [24, 7].map(|y| pixel(folder.path(), 16, y));
+    assert!(low[0] > 200 && high[0] < 50 && low[1] == 255 && high[1] == 255, "{low:?} {high:?}");
+    // A channel without a file is noise.
+    let noise = "void mainImage(out vec4 c, in vec2 p) { c = textureLod(iChannel3, p / 64.0, 0.0); }\n";
+    render(folder.path(), &[("noise.glsl", noise)], &[]).expect(0, &[]);
+    let found: std::collections::BTreeSet<_> = (0..20).map(|x| pixel(folder.path(), x, 3)).collect();
+    assert!(found.len() > 15, "{found:?}");
+}
+
+#[test]
+fn errors_have_the_lines_of_the_author() {
+    let folder = tempfile::tempdir().unwrap();
+    let wrong = IMAGE.replace("fragColor = vec4(material", "fragColor = vec4(materials");
+    render(folder.path(), &[("toy.glsl", &wrong)], &[]).expect(1, &["toy.glsl:9:", "'materials'"]);
+    render(folder.path(), &[("none.glsl", "float f() { return 1.0; }\n")], &[])
+        .expect(1, &["none.glsl:3", "mainImage"]);
+    let missing = "#iChannel0 \"no.png\"\nvoid mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p); }\n";
+    render(folder.path(), &[("no.glsl", missing)], &[]).expect(1, &["no.glsl:1:", "\"no.png\" not found"]);
+    run(folder.path(), &["render", "gone.glsl"]).expect(1, &["gone.glsl: there is no such file"]);
+    // A file of a tree is opened with its tree.
+    fs::write(folder.path().join("interface.glsl"), "").unwrap();
+    run(folder.path(), &["render", "toy.glsl"]).expect(2, &["toy.glsl is a shader; use `--shaders .`"]);
+}
