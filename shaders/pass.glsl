@@ -1,4 +1,4 @@
-// Include this in a pass of your own, a .frag file that says //@pass.
+// Include this in a pass of your own, a .frag or .comp file that says //@pass. A compute shader gets the block Pass alone.
 //
 //   //@pass vignette "Vignette" to=picture after=tonemap
 //   #version 460
@@ -13,10 +13,12 @@
 
 #include "interface.glsl"
 
+#ifndef COMPUTE_STAGE
 // Position in this pass's image, 0..1 from the upper left corner.
 layout(location = 0) in vec2 uv;
 // The output of the pass.
 layout(location = 0) out vec4 color;
+#endif
 
 // Properties of this pass's image.
 uniform Pass {

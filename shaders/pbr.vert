@@ -1,6 +1,7 @@
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
+#include "common/jitter.glsl"
 #include "common/vertex.glsl"
 #include "user/vertex.glsl"
 
@@ -14,5 +15,6 @@ void main() {
     fragment = fragment_of(vertex);
     fragment.to_eye_ws = frame.eye_ws - fragment.position_ws;
     gl_Position = frame.clip_from_world * vec4(fragment.position_ws, 1.0);
+    if (MODE == 0u) gl_Position.xy += 2.0 * jitter_px() / frame.viewport_px * gl_Position.w;
     gl_PointSize = 4.0;
 }

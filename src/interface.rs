@@ -10,6 +10,9 @@ mod constants;
 mod print;
 mod textures;
 
+use std::mem::offset_of;
+use std::ops::Range;
+
 pub use blocks::{
     BLOCKS, Block, BvhNode, Draw, EnvironmentCell, Frame, Light, Material, Member, Task, TracedCorners, TracedMaterial,
     TracedTriangle, Vertex, block,
@@ -72,6 +75,12 @@ impl BindingKind {
     }
 }
 
+/// Binding in [`SET_FRAME`] of the block [`Frame`].
+pub const BINDING_FRAME: u32 = 0;
+/// Binding in [`SET_FRAME`] of the lights.
+pub const BINDING_LIGHTS: u32 = 1;
+/// Binding in [`SET_FRAME`] of the author's parameters.
+pub const BINDING_PARAMS: u32 = 2;
 /// Binding in [`SET_TASK`] of the buffer that a task writes numbers to. It is as large as the stages declare.
 pub const BINDING_RESULTS: u32 = 5;
 /// Binding in [`SET_TASK`] of the small lights of an environment, for the tasks that read them.
@@ -96,6 +105,18 @@ pub const BINDING_LEVEL_ABOVE: u32 = 4;
 /// Sets and bindings of the buffer that Specula adds to a stage with loops that might not end: see `shader::spirv::loops`.
 /// Compute stages have it in [`SET_TASK`], the others in [`SET_FRAME`].
 pub const LOOPS: [(u32, u32); 2] = [(SET_FRAME, 20), (SET_TASK, 8)];
+
+/// The bytes of [`Frame`] that change while the time runs.
+pub const CLOCK: [Range<usize>; 4] = [
+    offset_of!(Frame, time_s)..offset_of!(Frame, time_s) + size_of::<f32>(),
+    offset_of!(Frame, delta_s)..offset_of!(Frame, delta_s) + size_of::<f32>(),
+    offset_of!(Frame, frame_index)..offset_of!(Frame, frame_index) + size_of::<u32>(),
+    offset_of!(Frame, mouse_px)..offset_of!(Frame, mouse_px) + size_of::<[f32; 4]>(),
+];
+
+/// The bytes of [`Frame`] that tell how the camera has moved.
+pub const MOTION: Range<usize> =
+    offset_of!(Frame, clip_from_world_before)..offset_of!(Frame, clip_from_world_before) + size_of::<[[f32; 4]; 4]>();
 
 /// One descriptor of the contract. A shader may use any subset.
 #[derive(Clone, Copy, Debug)]
@@ -129,10 +150,10 @@ pub const BINDINGS: &[Binding] = &{
 
 /// Every descriptor that is not a material's texture.
 const OTHERS: &[Binding] = &[
-    binding(SET_FRAME, 0, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
+    binding(SET_FRAME, BINDING_FRAME, "BINDING_FRAME", BindingKind::UniformBuffer, size_of::<Frame>()),
     // Lights are a uniform block because a software device reads a storage buffer separately for each pixel of a group.
-    binding(SET_FRAME, 1, "BINDING_LIGHTS", BindingKind::UniformBuffer, MAX_LIGHTS * size_of::<Light>()),
-    binding(SET_FRAME, 2, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
+    binding(SET_FRAME, BINDING_LIGHTS, "BINDING_LIGHTS", BindingKind::UniformBuffer, MAX_LIGHTS * size_of::<Light>()),
+    binding(SET_FRAME, BINDING_PARAMS, "BINDING_PARAMS", BindingKind::UniformBuffer, PARAMS_SIZE as usize),
     binding(SET_FRAME, 3, "BINDING_ENVIRONMENT", BindingKind::SamplerCube, 0),
     binding(SET_FRAME, 4, "BINDING_PREFILTERED", BindingKind::Sampler2D, 0),
     binding(SET_FRAME, 5, "BINDING_PREFILTERED_SHEEN", BindingKind::SamplerCube, 0),

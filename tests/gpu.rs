@@ -2,7 +2,6 @@
 
 mod support;
 
-use std::collections::BTreeSet;
 use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
@@ -10,7 +9,7 @@ use std::time::Instant;
 use specula::gpu::{
     Attachments, Buffer, DescriptorSet, Encoder, Frames, Gpu, GpuError, GpuOptions, Image, ImageDesc, Memory,
     PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass, Raster, Rect, Sampler, SamplerDesc, SetLayouts,
-    SetWriter, ShaderModule, Submission, Use, fault, one_shot, vk,
+    SetWriter, ShaderModule, Submission, Use, Uses, fault, one_shot, vk,
 };
 use specula::interface::SET_FRAME;
 use support::process::{PATIENCE, finish, specula};
@@ -97,7 +96,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
     let compiler = shaderc::Compiler::new().unwrap();
     let module = |name: &str, kind, glsl: &str| {
         let spirv = compiler.compile_into_spirv(glsl, kind, name, "main", None).unwrap();
-        ShaderModule::new(&gpu, name, spirv.as_binary(), false, BTreeSet::new()).unwrap()
+        ShaderModule::new(&gpu, name, spirv.as_binary(), false, Uses::default()).unwrap()
     };
     let vertex =
         module("one.vert", shaderc::ShaderKind::Vertex, "#version 450\nvoid main() { gl_Position = vec4(1); }");

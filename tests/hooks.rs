@@ -57,7 +57,7 @@ fn as_they_ship_the_hooks_change_nothing() {
     let studio = ["environment.name=studio", "view.background=env"];
     let mut session = Session::new(support::model("shader-ball"), settings(&studio));
     let before = session.render();
-    assert!(!session.headless.shaders().animated);
+    assert!(!session.headless.is_animated().unwrap());
     for (file, call, without) in [
         ("pbr.vert", "    user_vertex(vertex);\n", ""),
         (
@@ -107,7 +107,7 @@ fn the_normals_of_the_documented_wave_are_those_of_the_moved_surface() {
     let (normal, without) = code.split_last().unwrap();
     assert!(normal.starts_with("vertex.normal ="), "{normal}");
     fill(&mut session, VERTEX, VERTEX_HOOK, &without.join("\n    "));
-    assert!(session.headless.shaders().animated, "the wave reads the time");
+    assert!(session.headless.is_animated().unwrap(), "the wave reads the time");
     let kept = mean_angle(&mut session);
     let last = without.last().unwrap().clone();
     ready(&session.edit(

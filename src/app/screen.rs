@@ -194,9 +194,11 @@ impl Screen {
         }
 
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
+        let leaves_motion = frame.as_ref().is_some_and(|frame| self.view.is_moving(frame));
         let accumulates = frame.is_some_and(|frame| frame.state.pipelines.accumulates);
         let gets_better = accumulates && self.view.accumulated() < View::MOST_ACCUMULATED;
-        let again = self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better;
+        let again =
+            self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better || leaves_motion;
         let again = self.awaits_loops() || again;
         Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
     }

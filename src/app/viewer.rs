@@ -154,8 +154,7 @@ impl Viewer {
 
     /// Whether a shader of the picture, or a pass that is drawn, reads the time or what it drew before.
     pub(super) fn is_animated(&self) -> bool {
-        let shaders = self.session.shaders.as_ref().is_some_and(|shaders| shaders.animated);
-        shaders || self.shown().is_some_and(|shown| shown.pipelines.passes.iter().any(|pass| pass.moves))
+        self.shown.as_ref().is_some_and(|shown| shown.frame.is_animated())
     }
 
     /// Whether the device is faster than the display, so that vertical sync saves work.

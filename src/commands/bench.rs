@@ -144,6 +144,8 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
     headless.draw()?;
     let (mut wall, mut device, mut passes) = (Vec::new(), Vec::new(), BTreeMap::<String, Vec<f64>>::new());
     for _ in 0..args.samples {
+        // A still picture is not drawn again, so measure one that turns, too slowly for it to change.
+        headless.settings_mut().camera.azimuth += 0.001;
         let begin = Instant::now();
         headless.draw()?;
         wall.push(ms(begin));
@@ -315,9 +317,10 @@ fn print_table(result: &Value) {
 fn copy_tree(source: &Source, folder: &Path) -> Result<(), Failure> {
     for path in source.list() {
         let to = folder.join(path.as_str());
-        let text = source.read(&path).map_err(|e| Failure::Input(e.to_string()))?;
+        let content = source.read_bytes(&path).map_err(|e| Failure::Input(e.to_string()))?;
         let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
-        made.and_then(|()| std::fs::write(&to, text)).map_err(|e| Failure::Input(format!("{}: {e}", to.display())))?;
+        made.and_then(|()| std::fs::write(&to, content))
+            .map_err(|e| Failure::Input(format!("{}: {e}", to.display())))?;
     }
     Ok(())
 }

@@ -20,12 +20,13 @@ pub(crate) use scene::Appearance;
 pub use scene::Scene;
 
 use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHTS};
 use crate::scene::{CameraView, Model, frame, lights};
 use crate::settings::Settings;
-use crate::shader::graph::Input;
+use crate::shader::graph::{Input, Part};
 use crate::shader::{Mode, ShaderSet, values};
 
 /// Largest half float.
@@ -192,11 +193,27 @@ impl FrameState {
 
     /// Whether both states draw the same picture, bit for bit.
     pub fn is_same(&self, other: &Self) -> bool {
+        self.is_same_with(other, &self.constants, &other.constants) && self.pass_blocks == other.pass_blocks
+    }
+
+    /// Whether nothing differs but the time, and the parameters of passes that follow the model.
+    pub fn is_same_model(&self, other: &Self) -> bool {
+        let timeless =
+            |frame: &Frame| Frame { time_s: 0.0, delta_s: 0.0, frame_index: 0, mouse_px: [0.0; 4], ..*frame };
+        let blocks = |state: &Self| -> PassBlocks {
+            let passes = &state.pipelines.passes;
+            let is_read = |index: usize| passes.get(index).is_some_and(|pass| pass.part == Part::BeforeModel);
+            state.pass_blocks.clone().into_iter().filter(|((index, _), _)| is_read(*index)).collect()
+        };
+        self.is_same_with(other, &timeless(&self.constants), &timeless(&other.constants))
+            && blocks(self) == blocks(other)
+    }
+
+    fn is_same_with(&self, other: &Self, own: &Frame, others: &Frame) -> bool {
         self.shaders.generation == other.shaders.generation
-            && bytemuck::bytes_of(&self.constants) == bytemuck::bytes_of(&other.constants)
+            && bytemuck::bytes_of(own) == bytemuck::bytes_of(others)
             && bytemuck::cast_slice::<Light, u8>(&self.lights) == bytemuck::cast_slice::<Light, u8>(&other.lights)
             && self.params == other.params
-            && self.pass_blocks == other.pass_blocks
             && self.pipelines == other.pipelines
             && self.scene == other.scene
             && self.tables == other.tables
@@ -215,9 +232,11 @@ impl FrameState {
     }
 
     /// The frame constants for a picture at `rect` of the output. The environment's images hold radiance times `scale`,
-    /// and its specular levels leave out `sun`. `sample_index` counts the frames of an accumulated picture from 0.
-    pub(crate) fn constants(&self, rect: Rect, (scale, sun): (f32, Sun), sample_index: u32) -> Frame {
+    /// and its specular levels leave out `sun`. `sample_index` counts the frames of an accumulated picture from 0. `before`:
+    /// `clip_from_world` of the frame before.
+    pub(crate) fn constants(&self, rect: Rect, (scale, sun): (f32, Sun), sample_index: u32, before: Mat4) -> Frame {
         Frame {
+            clip_from_world_before: before.to_cols_array_2d(),
             environment_intensity: self.constants.environment_intensity / scale,
             sun_direction: sun.direction,
             sun_intensity: sun.intensity,

@@ -30,6 +30,7 @@ pub use resources::pipeline::{
     ComputePipeline, Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization,
 };
 pub use resources::sampler::{Sampler, SamplerDesc};
+pub use resources::uses::Uses;
 pub use window::surface::Surface;
 pub use window::swapchain::{Acquired, Swapchain};
 pub use window::ui::UiRenderer;

@@ -31,12 +31,24 @@ impl Headless {
             self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
         }
         self.clock = self.sequence.clock(last);
+        self.view.restart_mean();
         let frame = self.bind()?;
         if frame.state.pipelines.accumulates {
             for _ in 1..self.session.settings.view.frames {
                 self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
             }
         }
+        let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;
+        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
+    }
+
+    /// Renders the frame after the last one, from what passes have kept of that, and reads it back.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn render_next(&mut self) -> Result<Capture, HeadlessError> {
+        self.clock = self.sequence.clock(self.clock.frame_index + 1);
+        let frame = self.bind()?;
         let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }

@@ -302,6 +302,14 @@ impl Headless {
         self.session.problems(true).into_iter().next().map_or(Ok(()), |problem| Err(HeadlessError::Settings(problem)))
     }
 
+    /// Whether the picture changes while the time runs.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn is_animated(&mut self) -> Result<bool, HeadlessError> {
+        Ok(self.bind()?.is_animated())
+    }
+
     fn bind(&mut self) -> Result<BoundFrame, HeadlessError> {
         if let Some(problem) = self.session.problems(false).into_iter().next() {
             return Err(HeadlessError::Settings(problem));

@@ -154,6 +154,8 @@ blocks! {
         frame_index: uint,
         /// Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
         mouse_px: vec4,
+        /// clip_from_world of the frame before; in the first frame the same as now.
+        clip_from_world_before: mat4,
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.

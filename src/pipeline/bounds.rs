@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Gpu, GpuError, ShaderModule, fault};
+use crate::gpu::{Gpu, GpuError, ShaderModule, Uses, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::spirv::bindings::used_bindings;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
 use crate::shader::spirv::optimize;
+use crate::shader::spirv::uses::{used_bindings, used_bytes};
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
 
 /// Rounds that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so that whatever its
@@ -70,8 +70,12 @@ pub(super) fn shader_module(
         words.len(),
         if is_bounded { "has loops that count their rounds" } else { "all loops are counted" }
     );
-    let pass_bindings = used_bindings(&words, interface::SET_PASS);
-    ShaderModule::new(gpu, path, &words, is_bounded && stores, pass_bindings)
+    let uses = Uses {
+        frame_bindings: used_bindings(&words, interface::SET_FRAME),
+        frame_bytes: used_bytes(&words, interface::SET_FRAME, interface::BINDING_FRAME),
+        pass_bindings: used_bindings(&words, interface::SET_PASS),
+    };
+    ShaderModule::new(gpu, path, &words, is_bounded && stores, uses)
 }
 
 /// The diagnostic of a loop that did not end: `words` name it, in one of the stages of `shaders`. Compiles the stage again, for

@@ -1,6 +1,7 @@
 //! The pipelines of one shader generation. Each frame uses exactly one set, so no frame mixes two generations.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
@@ -37,6 +38,12 @@ impl BoundPipelines {
     /// The pipeline of a compute pass.
     pub(crate) fn compute(&self, stage: &str) -> Option<&Arc<ComputePipeline>> {
         self.computes.get(stage)
+    }
+
+    /// Whether a pipeline reads one of these ranges of bytes of the block `interface::Frame`.
+    pub(crate) fn read_frame(&self, bytes: &[Range<usize>]) -> bool {
+        self.pipelines.values().any(|pipeline| pipeline.uses.reads_frame(bytes))
+            || self.computes.values().any(|pipeline| pipeline.uses.reads_frame(bytes))
     }
 
     /// The textures that the tree declares.
@@ -263,7 +270,9 @@ impl PipelineSet {
         modules: &[&ShaderModule],
         draws_model: bool,
     ) -> Result<Arc<PassLayout>, GpuError> {
-        let used = inputs.iter().filter(|(binding, _)| modules.iter().any(|module| module.uses(**binding)));
+        let used = inputs
+            .iter()
+            .filter(|(binding, _)| modules.iter().any(|module| module.uses.pass_bindings.contains(*binding)));
         let bindings: PassBindings = used.map(|(binding, input)| (*binding, kind_of(input))).collect();
         let mut known = lock(&self.pass_layouts);
         let key = (bindings, draws_model);

@@ -4,8 +4,10 @@
 use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts};
+use crate::interface::{CLOCK, MOTION};
 use crate::scene::{Measured, MeasuredError};
 use crate::shader::ModeStage;
+use crate::shader::graph::Part;
 
 use super::brdf::measured::measured_buffer;
 use super::brdf::tables::Tables;
@@ -38,6 +40,39 @@ impl BoundFrame {
 
     /// Whether both draw the same picture, bit for bit.
     pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.has_same_resources(other) && self.state.is_same(&other.state)
+    }
+
+    /// Whether the model looks the same in both: nothing differs but the time, and what passes after the model make of it. A
+    /// mean of many frames then goes on.
+    pub(super) fn is_same_model(&self, other: &Self) -> bool {
+        match self.has_animated_model() {
+            true => self.is_same(other),
+            false => self.has_same_resources(other) && self.state.is_same_model(&other.state),
+        }
+    }
+
+    /// Whether the picture changes while the time runs: a stage reads the clock, or a pass what it drew before.
+    pub fn is_animated(&self) -> bool {
+        self.pipelines.read_frame(&CLOCK) || self.state.pipelines.passes.iter().any(|pass| pass.moves)
+    }
+
+    /// Whether the model, or a pass that it reads, changes while the time runs.
+    fn has_animated_model(&self) -> bool {
+        let request = &self.state.pipelines;
+        let before = || request.passes.iter().filter(|pass| pass.part == Part::BeforeModel);
+        let mut keys = request.model_keys().chain(before().flat_map(|pass| request.pass_keys(pass)));
+        let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.uses.reads_frame(&CLOCK));
+        keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.uses.reads_frame(&CLOCK)))
+            || before().any(|pass| pass.moves || compute(&pass.note.stage))
+    }
+
+    /// Whether a stage asks how the camera has moved since the frame before.
+    pub(super) fn reads_motion(&self) -> bool {
+        self.pipelines.read_frame(std::slice::from_ref(&MOTION))
+    }
+
+    fn has_same_resources(&self, other: &Self) -> bool {
         let same_scene = match (&self.scene, &other.scene) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             (None, None) => true,
@@ -49,7 +84,6 @@ impl BoundFrame {
             && Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.measured, &other.measured)
             && Arc::ptr_eq(&self.traced, &other.traced)
-            && self.state.is_same(&other.state)
     }
 }
 

@@ -49,7 +49,7 @@ fn a_thousand_reloads_keep_nothing() {
     viewer.running.event("ready");
     let first = viewer.screenshot();
     let original = viewer.tree.read(TONEMAP);
-    let texts = [viewer.tree.edited(TONEMAP, "value * frame.exposure", "value * (0.5 * frame.exposure)"), original];
+    let texts = [viewer.tree.edited(TONEMAP, "value *= frame.exposure", "value *= 0.5 * frame.exposure"), original];
     repeat(&mut viewer, "reloads", 100 * factor(), |viewer, number| {
         viewer.tree.write(TONEMAP, &texts[number % 2]);
         viewer.running.reload(true);

@@ -1,4 +1,4 @@
-//@pass depth_of_field "Depth of field" to=picture after=ground off doc="Blurs what a lens does not focus"
+//@pass depth_of_field "Depth of field" to=picture after=temporal off doc="Blurs what a lens does not focus"
 #version 460
 #include "pass.glsl"
 #include "common/pixel.glsl"

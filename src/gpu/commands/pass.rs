@@ -15,26 +15,34 @@ pub(in crate::gpu) const MAX_TIMESTAMPS: u32 = 2 + 2 * MAX_TIMED_PASSES;
 pub struct PassTime {
     /// The pass's name.
     pub name: String,
-    /// Milliseconds from the end of all earlier commands to the end of the pass.
+    /// Milliseconds from the end of all earlier commands to the end of the pass; 0 if it is kept.
     pub ms: f64,
+    /// Whether its image is that of an earlier frame, since it would be the same.
+    pub kept: bool,
 }
 
-/// The query pool of the commands being recorded, and the names of the passes timed so far.
+/// A pass of the commands being recorded.
+pub(in crate::gpu) struct TimedPass {
+    pub(in crate::gpu) name: String,
+    pub(in crate::gpu) kept: bool,
+}
+
+/// The query pool of the commands being recorded, and the passes timed so far.
 pub(in crate::gpu) struct PassTimer {
     queries: vk::QueryPool,
-    pub(in crate::gpu) names: Vec<String>,
+    pub(in crate::gpu) passes: Vec<TimedPass>,
 }
 
 impl PassTimer {
     /// `queries` holds [`MAX_TIMESTAMPS`] timestamps, all reset.
     pub(in crate::gpu) fn new(queries: vk::QueryPool) -> Self {
-        Self { queries, names: Vec::new() }
+        Self { queries, passes: Vec::new() }
     }
 
     /// The first of the two timestamps of a new pass, if one is free.
-    fn reserve(&mut self, name: &str) -> Option<(vk::QueryPool, u32)> {
-        let pass = u32::try_from(self.names.len()).ok().filter(|pass| *pass < MAX_TIMED_PASSES)?;
-        self.names.push(name.to_owned());
+    fn reserve(&mut self, name: &str, kept: bool) -> Option<(vk::QueryPool, u32)> {
+        let pass = u32::try_from(self.passes.len()).ok().filter(|pass| *pass < MAX_TIMED_PASSES)?;
+        self.passes.push(TimedPass { name: name.to_owned(), kept });
         Some((self.queries, 2 + 2 * pass))
     }
 }
@@ -46,7 +54,7 @@ impl Encoder {
     /// Passes may nest, and names may repeat. Between [`Encoder::begin_rendering`] and [`Encoder::end_rendering`] a pass is valid,
     /// but its time is not exact on a software device or a tiled GPU.
     pub fn pass<T>(&mut self, name: &str, commands: impl FnOnce(&mut Self) -> T) -> T {
-        let timestamps = self.timer.as_mut().and_then(|timer| timer.reserve(name));
+        let timestamps = self.timer.as_mut().and_then(|timer| timer.reserve(name, false));
         self.gpu.begin_label(self.raw, name);
         if let Some((queries, first)) = timestamps {
             self.write_timestamp(queries, first);
@@ -57,6 +65,14 @@ impl Encoder {
         }
         self.gpu.end_label(self.raw);
         result
+    }
+
+    /// Records that the pass `name` keeps its image, so that it has no commands.
+    pub fn kept_pass(&mut self, name: &str) {
+        if let Some((queries, first)) = self.timer.as_mut().and_then(|timer| timer.reserve(name, true)) {
+            self.write_timestamp(queries, first);
+            self.write_timestamp(queries, first + 1);
+        }
     }
 
     /// Writes a timestamp when all earlier commands are finished.

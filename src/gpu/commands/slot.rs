@@ -7,7 +7,7 @@ use std::time::Duration;
 use ash::vk;
 
 use super::encoder::Encoder;
-use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer};
+use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer, TimedPass};
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::{self, Watched};
 use crate::gpu::{Buffer, Gpu, GpuError, Memory, fault};
@@ -40,8 +40,8 @@ pub(in crate::gpu) struct Slot {
     queries: vk::QueryPool,
     /// Whether the fence belongs to a submission that nobody has waited for.
     pending: bool,
-    /// Names of the timed passes of the last submission; `None` before the first.
-    passes: Option<Vec<String>>,
+    /// The timed passes of the last submission; `None` before the first.
+    passes: Option<Vec<TimedPass>>,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
     /// The words that the stages of the last submission wrote about loops that did not end, and whether they have such loops.
     loops: (Option<Arc<Buffer>>, bool),
@@ -161,7 +161,7 @@ impl Slot {
             encoder.take_loops(&loops, &buffer);
         }
         let device = &self.gpu.device;
-        let passes = encoder.timer.take().map(|timer| timer.names);
+        let passes = encoder.timer.take().map(|timer| timer.passes);
         if passes.is_some() {
             encoder.write_timestamp(self.queries, 1);
         }
@@ -197,22 +197,30 @@ impl Slot {
 
     /// Device times of the last submission, which must be finished. `None` without timestamps.
     pub(in crate::gpu) fn times(&self) -> Option<Times> {
-        let names = self.passes.as_ref()?;
-        let mut ticks = vec![0u64; 2 + 2 * names.len()];
+        let passes = self.passes.as_ref()?;
+        let mut ticks = vec![0u64; 2 + 2 * passes.len()];
         // SAFETY: a finished submission has written these queries, two for itself and two for each pass.
         unsafe { self.gpu.device.get_query_pool_results(self.queries, 0, &mut ticks, vk::QueryResultFlags::TYPE_64) }
             .ok()?;
         let mut ms = ticks.chunks_exact(2).map(|pair| self.gpu.ticks_to_ms(pair[0], pair[1]));
         let whole = ms.next()?;
-        let passes = names.iter().zip(ms).map(|(name, ms)| PassTime { name: name.clone(), ms }).collect();
+        let time = |(pass, ms): (&TimedPass, f64)| PassTime {
+            name: pass.name.clone(),
+            ms: if pass.kept { 0.0 } else { ms },
+            kept: pass.kept,
+        };
+        let passes = passes.iter().zip(ms).map(time).collect();
         Some(Times { ms: whole, passes })
     }
 }
 
 /// Watches what the device does with a submission that has these passes.
-fn watch(passes: Option<&[String]>) -> Option<Watched> {
+fn watch(passes: Option<&[TimedPass]>) -> Option<Watched> {
     Watched::begin(|| match passes {
-        Some(names @ [_, ..]) => format!("drawing a frame (passes: {})", names.join(", ")),
+        Some(passes @ [_, ..]) => {
+            let names: Vec<&str> = passes.iter().filter(|pass| !pass.kept).map(|pass| pass.name.as_str()).collect();
+            format!("drawing a frame (passes: {})", names.join(", "))
+        }
         _ => "running compute shaders or copies".to_owned(),
     })
 }

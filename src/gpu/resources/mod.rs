@@ -8,3 +8,4 @@ pub(in crate::gpu) mod memory;
 pub(in crate::gpu) mod pass_layout;
 pub(in crate::gpu) mod pipeline;
 pub(in crate::gpu) mod sampler;
+pub(in crate::gpu) mod uses;

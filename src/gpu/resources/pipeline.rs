@@ -1,6 +1,5 @@
 //! Shader modules and pipelines.
 
-use std::collections::BTreeSet;
 use std::ffi::CStr;
 use std::sync::Arc;
 
@@ -9,6 +8,7 @@ use ash::vk;
 use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
+use super::uses::Uses;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError, fault};
@@ -21,13 +21,13 @@ pub struct ShaderModule {
     raw: vk::ShaderModule,
     name: String,
     names_loops: bool,
-    pass_bindings: BTreeSet<u32>,
+    /// The descriptors that its functions use.
+    pub uses: Uses,
 }
 
 impl ShaderModule {
     /// Creates a module from SPIR-V. `name` is the stage's path, as `pbr.frag`; pipelines are named after their modules.
-    /// `names_loops`: the module writes `interface::LOOPS` when a loop does not end. `pass_bindings`: the bindings in
-    /// `interface::SET_PASS` that its functions use.
+    /// `names_loops`: the module writes `interface::LOOPS` when a loop does not end.
     ///
     /// # Errors
     /// The driver rejects the module or is out of memory.
@@ -36,19 +36,14 @@ impl ShaderModule {
         name: &str,
         spirv: &[u32],
         names_loops: bool,
-        pass_bindings: BTreeSet<u32>,
+        uses: Uses,
     ) -> Result<Arc<Self>, GpuError> {
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the words come from shaderc and `shader::spirv`, whose output is valid SPIR-V.
         let raw = unsafe { gpu.device.create_shader_module(&info, None) };
         let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
         gpu.name(raw, name);
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned(), names_loops, pass_bindings }))
-    }
-
-    /// Whether it uses this binding of `interface::SET_PASS`.
-    pub fn uses(&self, binding: u32) -> bool {
-        self.pass_bindings.contains(&binding)
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned(), names_loops, uses }))
     }
 }
 
@@ -126,6 +121,8 @@ pub struct Pipeline {
     gpu: Arc<Gpu>,
     /// Its layout.
     pub layout: Arc<PassLayout>,
+    /// The descriptors that its stages use.
+    pub uses: Uses,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
@@ -209,7 +206,8 @@ impl Pipeline {
         gpu.name(raw, &name);
         let names_loops = desc.vertex.names_loops || desc.fragment.names_loops;
         let loops = names_loops.then(|| layouts.blank.loops.clone());
-        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), loops, raw }))
+        let uses = desc.vertex.uses.union(&desc.fragment.uses);
+        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, loops, raw }))
     }
 }
 
@@ -219,6 +217,8 @@ pub struct ComputePipeline {
     layouts: Arc<SetLayouts>,
     /// The layout of a declared pass.
     pub layout: Option<Arc<PassLayout>>,
+    /// The descriptors that its stage uses.
+    pub uses: Uses,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
@@ -253,7 +253,8 @@ impl ComputePipeline {
         let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
         gpu.name(raw, &module.name);
         let loops = module.names_loops.then(|| layouts.blank.loops.clone());
-        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, loops, raw }))
+        let uses = module.uses.clone();
+        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, uses, loops, raw }))
     }
 }
 

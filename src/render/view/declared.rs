@@ -3,6 +3,7 @@
 mod blocks;
 mod images;
 mod reads;
+mod reuse;
 mod sets;
 
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use crate::gpu::{
     Attachments, DescriptorSet, Encoder, Gpu, GpuError, Image, PassLayout, PassResource, Sampler, SetLayouts,
     SetWriter, Use,
 };
-use crate::interface::SET_TASK;
+use crate::interface::{Frame, SET_TASK};
 use crate::render::resources::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{Dispatch, Instances};
@@ -22,6 +23,7 @@ pub(super) use blocks::Blocks;
 use images::Images;
 pub(super) use reads::Given;
 use reads::Reads;
+use reuse::DrawnFrom;
 pub(super) use sets::PassSets;
 use sets::Sets;
 
@@ -49,6 +51,8 @@ pub(super) struct Drawn<'a> {
     pub(super) frame: &'a BoundFrame,
     pub(super) frame_set: &'a Arc<DescriptorSet>,
     pub(super) blocks: &'a Blocks,
+    /// The content of the block `Frame`.
+    pub(super) constants: &'a Frame,
     /// Depth of the model, one sample a pixel.
     pub(super) depth: Option<&'a Arc<Image>>,
 }
@@ -96,7 +100,7 @@ impl DeclaredPasses {
         Ok(is_new)
     }
 
-    /// Makes the next frame clear all images and buffers to 0.
+    /// Makes the next frame clear the images and buffers that depend on earlier frames to 0.
     pub(super) fn restart(&mut self) {
         self.images.restart();
     }
@@ -172,7 +176,7 @@ impl DeclaredPasses {
 
     /// Forgets the drawn pictures: the frame's commands were not submitted.
     pub(super) fn forget(&mut self) {
-        self.restart();
+        self.images.forget();
         (self.picture, self.display) = (None, None);
     }
 
@@ -220,16 +224,28 @@ impl DeclaredPasses {
             let Some(target) = target else { continue };
             let given = Given { picture: Some(&picture), depth: drawn.depth, target: Some(&target), behind: None };
             let reads = Reads { name: pass.name(), inputs: &pass.inputs, given: &given, index: Some(index) };
-            encoder.pass(&pass.note.name, |encoder| match pass.is_compute {
+            let from = self.sources(drawn, pass, index);
+            if from.as_ref().is_some_and(|from| self.images.holds(pass.name(), from)) {
+                encoder.kept_pass(pass.name());
+                continue;
+            }
+            encoder.pass(pass.name(), |encoder| match pass.is_compute {
                 true => self.dispatch(encoder, drawn, pass, &reads, &target),
                 false => self.draw(encoder, drawn, pass, &reads, &target),
             })?;
             match pass.note.to_picture {
                 true => picture = target,
-                false => self.images.finished(pass.name()),
+                false => self.images.finished(pass.name(), from),
             }
         }
         Ok(picture)
+    }
+
+    /// What the image of a pass is drawn from in this frame.
+    fn sources(&self, drawn: &Drawn<'_>, pass: &Arc<GraphPass>, index: usize) -> Option<DrawnFrom> {
+        let keys = drawn.frame.state.pipelines.pass_keys(pass);
+        let pipelines: Vec<_> = keys.iter().filter_map(|key| drawn.frame.pipelines.get(key)).collect();
+        DrawnFrom::new(pass, index, &pipelines, instances(drawn, pass), drawn, &self.images)
     }
 
     fn draw(
@@ -253,16 +269,13 @@ impl DeclaredPasses {
         let color = level.as_ref().unwrap_or(target);
         encoder.transition(color, Use::Undefined, Use::Color);
         match pass.note.model {
-            Some(instances) => {
+            Some(_) => {
                 let Some(depth) = self.images.depth(pass.name()) else { return Ok(()) };
                 encoder.transition(depth, Use::Undefined, Use::Depth);
                 let attachments = Attachments { clear: Some([0.0; 4]), depth: Some(depth), ..Attachments::of(color) };
                 encoder.begin_rendering(&attachments);
                 encoder.bind_set(&self.layouts, drawn.frame_set);
-                let instances = match instances {
-                    Instances::Count(count) => count,
-                    Instances::Lights => drawn.frame.state.lights.len().min(MOST_LIGHTS) as u32,
-                };
+                let instances = instances(drawn, pass);
                 let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances };
                 let draws = drawn.frame.scene.iter().flat_map(|scene| &scene.draws);
                 model.draw(encoder, draws, |material| request.model_pass_key(pass, material));
@@ -359,6 +372,15 @@ fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
     encoder.scale(from, to);
     encoder.transition(from, Use::CopyFrom, Use::Sampled);
     encoder.transition(to, Use::CopyTo, Use::Sampled);
+}
+
+/// How often a pass draws the model.
+fn instances(drawn: &Drawn<'_>, pass: &GraphPass) -> u32 {
+    match pass.note.model {
+        Some(Instances::Count(count)) => count,
+        Some(Instances::Lights) => drawn.frame.state.lights.len().min(MOST_LIGHTS) as u32,
+        None => 0,
+    }
 }
 
 fn uses_buffers(pass: &GraphPass) -> bool {

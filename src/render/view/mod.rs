@@ -9,6 +9,8 @@ mod uniforms;
 
 use std::sync::Arc;
 
+use glam::Mat4;
+
 pub use capture::Capture;
 use capture::{PixelReadback, Readback};
 use targets::{TargetDesc, Targets};
@@ -39,9 +41,9 @@ pub struct Output<'a> {
 pub enum Redraw {
     /// Draws the model only if the picture has changed since the last frame; otherwise only tone maps.
     IfChanged,
-    /// Draws everything.
+    /// Draws the model in any case. As ever, declared passes keep images that would be the same again.
     Always,
-    /// Draws everything, but shades only this pixel, counted from the upper left corner.
+    /// Draws the model, but shades only this pixel, counted from the upper left corner.
     Pixel(u32, u32),
 }
 
@@ -73,6 +75,8 @@ pub struct View {
     declared: DeclaredPasses,
     /// The frame that the HDR target holds, and the part of it that was shaded. `None` is all of it.
     drawn: Option<(BoundFrame, Option<Rect>)>,
+    /// The cameras of the last picture and of the one before, as `clip_from_world`.
+    cameras: Option<[Mat4; 2]>,
     /// How often the model was drawn.
     picture: u64,
     sample_index: u32,
@@ -103,6 +107,7 @@ impl View {
             in_flight: (0..frames_in_flight).map(|_| in_flight()).collect::<Result<_, _>>()?,
             targets: None,
             drawn: None,
+            cameras: None,
             picture: 0,
             sample_index: 0,
             probe: None,
@@ -175,13 +180,14 @@ impl View {
         let in_flight = &mut self.in_flight[slot];
 
         // Uniforms and set 0.
-        let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), self.sample_index);
+        let [_, before] = self.cameras.unwrap_or([frame.state.camera.clip_from_world(); 2]);
+        let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), self.sample_index, before);
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
         encoder.bind_set(&self.layouts, &set);
 
         // The passes that the model reads, the model to the HDR target, and the passes before the tone map.
         let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
-        let drawn = Drawn { frame, frame_set: &set, blocks, depth };
+        let drawn = Drawn { frame, frame_set: &set, blocks, constants: &constants, depth };
         if redrawn {
             self.declared.before_model(encoder, &drawn)?;
         }
@@ -222,28 +228,43 @@ impl View {
     }
 
     /// Whether this frame draws the model, so that it begins a new picture. An accumulating mode adds a frame to the mean
-    /// while the picture is the same, and starts again when it changes.
+    /// while the model looks the same, and starts again when that changes.
     fn begins_picture(&mut self, frame: &BoundFrame, only: Option<Rect>, redraw: Redraw) -> bool {
         let accumulates = frame.state.pipelines.accumulates;
-        let unchanged = self.drawn.as_ref().is_some_and(|(drawn, part)| *part == only && drawn.is_same(frame));
+        let drawn = self.drawn.as_ref().filter(|(_, part)| *part == only).map(|(drawn, _)| drawn);
+        let unchanged = !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same(frame));
+        let goes_on = accumulates && drawn.is_some_and(|drawn| drawn.is_same_model(frame));
         let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
         let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
         if redrawn {
+            let now = frame.state.camera.clip_from_world();
+            self.cameras = Some([now, self.cameras.map_or(now, |[last, _]| last)]);
             self.picture += 1;
-            self.sample_index = if unchanged && accumulates { self.sample_index.saturating_add(1) } else { 0 };
+            self.sample_index = if goes_on { self.sample_index.saturating_add(1) } else { 0 };
         }
         redrawn
+    }
+
+    /// Whether the picture shows how the camera has moved, so that the next one differs even if the camera rests.
+    pub fn is_moving(&self, frame: &BoundFrame) -> bool {
+        self.cameras.is_some_and(|[now, before]| now != before) && frame.reads_motion()
     }
 
     /// Makes the next frame draw everything: the commands of a frame were not submitted, so the targets may be
     /// undefined.
     pub fn forget(&mut self) {
-        self.drawn = None;
+        (self.drawn, self.cameras) = (None, None);
         self.declared.forget();
     }
 
-    /// Restarts the declared passes: the next frame clears their images and buffers to 0.
+    /// Makes an accumulating mode start again with the next frame.
+    pub fn restart_mean(&mut self) {
+        self.drawn = None;
+    }
+
+    /// Restarts the declared passes: the next frame clears the images and buffers that depend on earlier frames to 0.
     pub fn restart_passes(&mut self) {
+        self.cameras = None;
         self.declared.restart();
     }
 

@@ -225,12 +225,18 @@ pub fn declares_pass(text: &str) -> bool {
         && lines(text).iter().any(|line| line.annotation.is_some_and(|at| line.raw[at..].starts_with("//@pass")))
 }
 
+/// The macro that compute shaders are compiled with, so that a file that they share with other stages can tell.
+const COMPUTE_STAGE: &str = "COMPUTE_STAGE";
+
 /// Compile options for a stage: unoptimized, which is five times faster and keeps the names that reflection needs.
 fn options<'a>(kind: StageKind, stage: &str) -> Result<CompileOptions<'a>, String> {
     let mut options = CompileOptions::new().map_err(|error| error.to_string())?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
     options.set_target_spirv(SpirvVersion::V1_5);
     options.set_optimization_level(OptimizationLevel::Zero);
+    if kind == StageKind::Compute {
+        options.add_macro_definition(COMPUTE_STAGE, None);
+    }
     if reads_by_name(kind, stage) {
         options.set_auto_bind_uniforms(true);
     }

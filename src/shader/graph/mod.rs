@@ -17,10 +17,9 @@ use serde::Serialize;
 use super::annotation::Annotations;
 use super::annotation::pass::{Dispatch, PassFormat, PassNote, PassSize};
 use super::compile::StageKind;
-use super::contract::{INTERFACE_FILE, Texts};
+use super::contract::Texts;
 use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
-use super::source::text::{find_word, lines};
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 pub use textures::Texture;
@@ -91,7 +90,8 @@ pub struct GraphPass {
     pub inputs: Inputs,
     /// Invocations of a workgroup, of a compute pass.
     pub local_size: [u32; 3],
-    /// Whether its image may change while nothing else does: the pass reads the time, the previous frame, or a buffer.
+    /// Whether its image may change while the settings do not: it reads the previous frame, a buffer, or the clock in the block
+    /// `Pass`. The clock in the block `Frame` does not count: [`crate::gpu::Uses`] tells which pipelines read that.
     pub moves: bool,
 }
 
@@ -185,9 +185,7 @@ impl Graph {
             }
             match inputs::inputs(note, stage, &names) {
                 Ok(inputs) => passes.push(GraphPass {
-                    moves: inputs.values().any(moves)
-                        || reads_clock(&stage.texts)
-                        || (has_vertex && reads_clock(&stages[&vertex].texts)),
+                    moves: inputs.values().any(moves),
                     note: note.clone(),
                     is_compute: stage.kind == StageKind::Compute,
                     vertex: has_vertex.then_some(vertex),
@@ -318,19 +316,6 @@ fn moves(input: &Input) -> bool {
         Input::Pass(_, members) => members.iter().any(|(_, name)| name != "size_px"),
         _ => false,
     }
-}
-
-/// Whether the code of a text reads the clock: the time, the frame's number or the mouse.
-pub fn text_reads_clock(text: &str) -> bool {
-    const CLOCK: [&str; 4] = ["frame.time_s", "frame.delta_s", "frame.frame_index", "frame.mouse_px"];
-    CLOCK.iter().any(|member| text.contains(member))
-        && lines(text).iter().any(|line| CLOCK.iter().any(|member| find_word(&line.code, member).is_some()))
-}
-
-/// Whether any file of a stage, except the contract, reads the clock.
-fn reads_clock(texts: &Texts<'_>) -> bool {
-    let files = texts.dependencies.iter().filter(|path| path.as_str() != INTERFACE_FILE);
-    files.filter_map(|path| texts.snapshot.read(path).ok()).any(|text| text_reads_clock(&text))
 }
 
 /// A message if the options of an annotation contradict each other, or do not apply to this kind of stage.

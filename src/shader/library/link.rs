@@ -4,13 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::passes::modes_of;
-use super::slot::Slot;
 use super::{Library, Report, ShaderSet, Stage, Update};
 use crate::shader::annotation::{self, Annotations};
 use crate::shader::compile::include::files_of;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
-use crate::shader::graph::{Graph, GraphPass, PassStage, text_reads_clock};
+use crate::shader::graph::{Graph, GraphPass, PassStage};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
@@ -103,10 +102,6 @@ impl Library {
         let dependencies = self.dependencies().into_iter();
         let texts: BTreeMap<_, _> =
             dependencies.filter_map(|path| snapshot.read(&path).ok().map(|text| (path, text))).collect();
-        // The graph knows which passes move.
-        let fixed = self.slots.iter().take(self.fixed).flat_map(Slot::dependencies);
-        let fixed: BTreeSet<&TreePath> = fixed.filter(|path| path.as_str() != contract::INTERFACE_FILE).collect();
-        let animated = texts.iter().any(|(path, text)| fixed.contains(path) && text_reads_clock(text));
         let (mut stages, mut pending) = (BTreeMap::new(), BTreeSet::new());
         for slot in &mut self.slots {
             match &slot.current {
@@ -129,8 +124,7 @@ impl Library {
                 return Update::Unchanged { cleared };
             }
         }
-        let set =
-            ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, animated };
+        let set = ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts };
         let set = Arc::new(set);
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)

@@ -75,8 +75,6 @@ pub struct ShaderSet {
     pub warnings: Vec<Diagnostic>,
     /// The texts of all files that the stages depend on.
     pub texts: BTreeMap<TreePath, Arc<str>>,
-    /// Whether a shader of the model or the tone map reads the time, so that the picture changes without input.
-    pub animated: bool,
 }
 
 /// The stages that an update compiled, and how long it took.
@@ -328,9 +326,22 @@ impl Library {
             Ok(linked) => self.commit(linked, generation, snapshot, report),
             Err(diagnostics) => {
                 self.failed = true;
-                Update::Failed(unique(diagnostics.into_iter().chain(self.source.refusals()).collect()), report)
+                let mut diagnostics = unique(diagnostics.into_iter().chain(self.source.refusals()).collect());
+                let waiting = self.waiting(&diagnostics, snapshot);
+                if let Some(first) = diagnostics.first_mut().filter(|_| !waiting.is_empty()) {
+                    first.notes.push(format!("other edits wait until this is repaired: {}", waiting.join(", ")));
+                }
+                Update::Failed(diagnostics, report)
             }
         }
+    }
+
+    /// The files, as displayed, whose text differs from the last good one and that no diagnostic is about.
+    fn waiting(&self, diagnostics: &[Diagnostic], snapshot: &Snapshot<'_>) -> Vec<String> {
+        let texts = self.set.iter().flat_map(|set| &set.texts);
+        let edited = texts.filter(|(path, text)| snapshot.read(path).is_ok_and(|now| *now != ***text));
+        let shown = edited.map(|(path, _)| self.source.display_path(path));
+        shown.filter(|path| diagnostics.iter().all(|diagnostic| diagnostic.file != *path)).collect()
     }
 }
 

@@ -49,6 +49,21 @@ fn two_stages() -> Library {
 }
 
 #[test]
+fn edits_that_wait_for_a_repair_are_named() {
+    let mut library = two_stages();
+    let notes = |update: &Update| -> Vec<String> {
+        let Update::Failed(diagnostics, _) = update else { panic!("expected a failure, found {update:?}") };
+        diagnostics.iter().flat_map(|diagnostic| diagnostic.notes.clone()).collect()
+    };
+    let broken = edit(&mut library, "b.frag", Some(&format!("{HEAD}void main() {{ o = vec4(1.0) }}\n")));
+    assert_eq!(notes(&broken), [""; 0], "nothing else was edited");
+    let held = edit(&mut library, "lib/color.glsl", Some("float color() { return 0.6; }\n"));
+    assert_eq!(notes(&held), ["other edits wait until this is repaired: lib/color.glsl"]);
+    let repaired = edit(&mut library, "b.frag", Some(&format!("{HEAD}void main() {{ o = vec4(1.0); }}\n")));
+    assert!(matches!(repaired, Update::Ready(..)), "{repaired:?}");
+}
+
+#[test]
 fn an_include_rebuilds_only_its_stages() {
     let mut library = two_stages();
     let old = Arc::clone(library.set().unwrap());
@@ -94,20 +109,6 @@ fn the_reload_key_keeps_stages_that_were_linked() {
     let Update::Ready(edited, _) = update else { panic!("{update:?}") };
     assert!(matches!(library.update(&Change::All), Update::Unchanged { cleared: false }));
     assert!(Arc::ptr_eq(library.set().unwrap(), &edited));
-}
-
-#[test]
-fn a_comment_about_the_time_moves_nothing() {
-    let mut library = two_stages();
-    let text =
-        |code: &str| format!("struct F {{ float time_s; }};\nfloat color() {{ F frame = F(1.0); return {code}; }}\n");
-    let animated = |library: &mut Library, code: &str| {
-        let update = edit(library, "lib/color.glsl", Some(&text(code)));
-        let Update::Ready(set, _) = update else { panic!("{update:?}") };
-        set.animated
-    };
-    assert!(!animated(&mut library, "0.1 /* frame.time_s */; // frame.time_s\n"));
-    assert!(animated(&mut library, "0.2 * frame.time_s"));
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! Gives the descriptors that a pass declares by name alone a set of their own.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 
 use super::opcode as op;
 
-const BINDING: u32 = 33;
-const DESCRIPTOR_SET: u32 = 34;
+pub(super) const BINDING: u32 = 33;
+pub(super) const DESCRIPTOR_SET: u32 = 34;
 
 /// Words before the first instruction.
-const HEADER: usize = 5;
+pub(super) const HEADER: usize = 5;
 
 /// Moves the descriptors with these names to `set`. The binding of each is the place of its name in `names`, so it does not depend
 /// on which of them the module uses. The name of a block is that of its type.
@@ -56,30 +56,8 @@ pub fn assign_set(words: &mut [u32], set: u32, names: &BTreeSet<String>) {
     }
 }
 
-/// The bindings in `set` that functions of the module use.
-pub fn used_bindings(words: &[u32], set: u32) -> BTreeSet<u32> {
-    let (mut in_set, mut bindings) = (BTreeSet::new(), HashMap::new());
-    let mut at = HEADER;
-    while let Some((opcode, length)) = instruction(words, at) {
-        match (opcode, &words[at + 1..at + length]) {
-            (op::DECORATE, [id, DESCRIPTOR_SET, number]) if *number == set => {
-                in_set.insert(*id);
-            }
-            (op::DECORATE, [id, BINDING, binding]) => {
-                bindings.insert(*id, *binding);
-            }
-            _ => {}
-        }
-        at += length;
-    }
-    bindings.retain(|id, _| in_set.contains(id));
-    // A word of a function that is no id may look like one. That costs a descriptor that nobody reads.
-    let words: HashSet<u32> = if bindings.is_empty() { HashSet::new() } else { words[at..].iter().copied().collect() };
-    bindings.into_iter().filter(|(id, _)| words.contains(id)).map(|(_, binding)| binding).collect()
-}
-
 /// Opcode and length of the declaration at `at`; `None` at the first function and at the end.
-fn instruction(words: &[u32], at: usize) -> Option<(u32, usize)> {
+pub(super) fn instruction(words: &[u32], at: usize) -> Option<(u32, usize)> {
     let first = *words.get(at)?;
     let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
     (length > 0 && at + length <= words.len() && opcode != op::FUNCTION).then_some((opcode, length))

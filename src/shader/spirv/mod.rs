@@ -12,6 +12,7 @@ mod operands;
 mod optimize;
 pub mod reflect;
 mod specialize;
+pub mod uses;
 
 pub use hash::behavior_hash;
 pub use optimize::optimize;

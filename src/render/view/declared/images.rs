@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::reuse::DrawnFrom;
 use crate::frame::pass_format;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
 use crate::render::resources::BoundFrame;
@@ -35,6 +36,10 @@ struct PassImages {
     newest: usize,
     /// Whether this frame has drawn the pass.
     is_drawn: bool,
+    /// The number of the drawing that the newest image holds; 0: it was cleared.
+    drawing: u64,
+    /// What that was drawn from, if the next frame may keep it.
+    from: Option<DrawnFrom>,
 }
 
 /// The needs of a frame. If they are unchanged, all images and buffers are kept.
@@ -60,6 +65,8 @@ pub(super) struct Images {
     pub(super) displays: Vec<Arc<Image>>,
     /// The image of the shown pass, scaled to the size of the picture.
     shown: Option<Arc<Image>>,
+    /// Number of drawings of all passes so far.
+    drawings: u64,
     /// Images and buffers that were never drawn to.
     fresh: (Vec<Arc<Image>>, Vec<Arc<Buffer>>),
 }
@@ -91,7 +98,7 @@ impl Images {
         if key == self.key {
             return Ok(None);
         }
-        let mut next = Self { key, fresh: self.fresh.clone(), ..Self::default() };
+        let mut next = Self { key, fresh: self.fresh.clone(), drawings: self.drawings, ..Self::default() };
         for pass in request.passes.iter().filter(|pass| !pass.note.to_picture) {
             let images = next.images_of(gpu, pass, self.passes.get(pass.name()))?;
             next.passes.insert(pass.name().to_owned(), images);
@@ -186,7 +193,7 @@ impl Images {
             }
             false => None,
         };
-        Ok(PassImages { desc, images, first_level, depth, newest: 0, is_drawn: false })
+        Ok(PassImages { desc, images, first_level, depth, newest: 0, is_drawn: false, drawing: 0, from: None })
     }
 
     fn new_buffer(&mut self, gpu: &Arc<Gpu>, name: &str, bytes: u32) -> Result<Arc<Buffer>, GpuError> {
@@ -196,9 +203,22 @@ impl Images {
         Ok(buffer)
     }
 
-    /// Makes the next frame clear everything to 0.
+    /// Makes the next frame clear what depends on earlier frames to 0.
     pub(super) fn restart(&mut self) {
-        let images = self.passes.values().flat_map(|pass| &pass.images).cloned();
+        self.clear(|pass| pass.from.is_none());
+    }
+
+    /// Makes the next frame clear everything to 0: the images may be undefined.
+    pub(super) fn forget(&mut self) {
+        self.clear(|_| true);
+    }
+
+    fn clear(&mut self, which: impl Fn(&PassImages) -> bool) {
+        let passes = self.passes.values_mut().filter(|pass| which(pass));
+        let images = passes.flat_map(|pass| {
+            (pass.drawing, pass.from) = (0, None);
+            pass.images.clone()
+        });
         self.fresh = (images.collect(), self.buffers.values().cloned().collect());
     }
 
@@ -233,12 +253,24 @@ impl Images {
         self.passes.get(name)?.first_level.as_ref()
     }
 
-    /// Records that the pass has drawn its image.
-    pub(super) fn finished(&mut self, name: &str) {
+    /// Records that the pass has drawn its image, and what it was drawn from if a later frame may keep it.
+    pub(super) fn finished(&mut self, name: &str, from: Option<DrawnFrom>) {
+        self.drawings += 1;
         if let Some(pass) = self.passes.get_mut(name) {
             pass.newest = (pass.newest + 1) % pass.images.len();
             pass.is_drawn = true;
+            (pass.drawing, pass.from) = (self.drawings, from);
         }
+    }
+
+    /// Whether the image of the pass holds what would be drawn from these sources.
+    pub(super) fn holds(&self, name: &str, from: &DrawnFrom) -> bool {
+        self.passes.get(name).and_then(|pass| pass.from.as_ref()).is_some_and(|of| of == from)
+    }
+
+    /// The number of the drawing that the image of a pass holds, which no other drawing of a pass has. `None`: it has no image.
+    pub(super) fn drawn_at(&self, name: &str) -> Option<u64> {
+        self.passes.get(name).map(|pass| pass.drawing)
     }
 
     /// The newest image of a pass.

@@ -1,0 +1,102 @@
+//! Tells whether a pass would draw the same image again. Then it is not drawn: while only the camera moves, shadow maps stay.
+
+use std::any::Any;
+use std::sync::{Arc, Weak};
+
+use super::Drawn;
+use super::images::Images;
+use crate::gpu::{Pipeline, Uses};
+use crate::interface::{BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS};
+use crate::shader::GraphPass;
+use crate::shader::graph::Input;
+
+/// Everything that an image of a pass was drawn from.
+#[derive(Clone, Default)]
+pub(super) struct DrawnFrom {
+    /// The device objects. A weak reference keeps the address, so that no other object gets it.
+    objects: Vec<Weak<dyn Any + Send + Sync>>,
+    /// When the images of other passes were drawn; `None`: not at all.
+    images: Vec<Option<u64>>,
+    /// The parts of uniform blocks that the stages use.
+    bytes: Vec<u8>,
+}
+
+impl DrawnFrom {
+    /// The sources of a pass in this frame. `None` if it has some that change with every picture, or that cannot be compared.
+    ///
+    /// `pipelines`: those that draw it. `instances`: how often each draws the model; 0: not at all. `index`: its place in
+    /// `PipelineRequest::passes`.
+    pub(super) fn new(
+        pass: &GraphPass,
+        index: usize,
+        pipelines: &[&Arc<Pipeline>],
+        instances: u32,
+        drawn: &Drawn<'_>,
+        images: &Images,
+    ) -> Option<Self> {
+        if pass.is_compute || pass.note.to_picture || pass.note.keep {
+            return None;
+        }
+        // Each frame reports the loops that it has cut short.
+        if pipelines.iter().any(|pipeline| pipeline.names_loops()) {
+            return None;
+        }
+        let uses = pipelines.iter().fold(Uses::default(), |all, pipeline| all.union(&pipeline.uses));
+        let (frame, state) = (drawn.frame, &drawn.frame.state);
+        let mut from = Self::default();
+        pipelines.iter().for_each(|pipeline| from.object(pipeline));
+        for (binding, input) in pass.inputs.iter().filter(|(binding, _)| uses.pass_bindings.contains(binding)) {
+            match input {
+                Input::Picture
+                | Input::Behind
+                | Input::Depth
+                | Input::Before(_)
+                | Input::Output
+                | Input::Buffer(..) => {
+                    return None;
+                }
+                Input::Image(name) => from.images.push(images.drawn_at(name)),
+                Input::Texture(name) => {
+                    frame.pipelines.textures().get(name).into_iter().for_each(|(i, _)| from.object(i))
+                }
+                Input::Parameters(..) | Input::Pass(..) => {
+                    from.bytes.extend(state.pass_blocks().get(&(index, *binding)).into_iter().flatten());
+                }
+            }
+        }
+        let constants = bytemuck::bytes_of(drawn.constants);
+        for bytes in &uses.frame_bytes {
+            from.bytes.extend(constants.get(bytes.start..bytes.end.min(constants.len())).into_iter().flatten());
+        }
+        if uses.frame_bindings.contains(&BINDING_LIGHTS) {
+            from.bytes.extend_from_slice(bytemuck::cast_slice(&state.lights));
+        }
+        if uses.frame_bindings.contains(&BINDING_PARAMS) {
+            from.bytes.extend_from_slice(state.params());
+        }
+        let is_block = |binding: &u32| [BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS].contains(binding);
+        if !uses.frame_bindings.iter().all(is_block) {
+            from.object(&frame.environment);
+            from.object(&frame.tables);
+            from.object(&frame.measured);
+            from.object(&frame.traced);
+        }
+        if instances > 0 {
+            from.bytes.extend(instances.to_le_bytes());
+            frame.scene.iter().for_each(|scene| from.object(scene));
+        }
+        Some(from)
+    }
+
+    fn object<T: Any + Send + Sync>(&mut self, object: &Arc<T>) {
+        let object: Weak<dyn Any + Send + Sync> = Arc::downgrade(object) as _;
+        self.objects.push(object);
+    }
+}
+
+impl PartialEq for DrawnFrom {
+    fn eq(&self, other: &Self) -> bool {
+        let addresses = |from: &Self| -> Vec<*const ()> { from.objects.iter().map(|o| o.as_ptr().cast()).collect() };
+        self.images == other.images && self.bytes == other.bytes && addresses(self) == addresses(other)
+    }
+}

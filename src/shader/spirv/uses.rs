@@ -1,0 +1,135 @@
+//! Finds the descriptors that the functions of a module use, and the parts of a block that they read.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::ops::Range;
+
+use super::bindings::{BINDING, DESCRIPTOR_SET, HEADER, instruction};
+use super::opcode as op;
+
+const OFFSET: u32 = 35;
+
+/// The bindings in `set` that functions of the module use.
+pub fn used_bindings(words: &[u32], set: u32) -> BTreeSet<u32> {
+    let (mut in_set, mut bindings) = (BTreeSet::new(), HashMap::new());
+    let mut at = HEADER;
+    while let Some((opcode, length)) = instruction(words, at) {
+        match (opcode, &words[at + 1..at + length]) {
+            (op::DECORATE, [id, DESCRIPTOR_SET, number]) if *number == set => {
+                in_set.insert(*id);
+            }
+            (op::DECORATE, [id, BINDING, binding]) => {
+                bindings.insert(*id, *binding);
+            }
+            _ => {}
+        }
+        at += length;
+    }
+    bindings.retain(|id, _| in_set.contains(id));
+    // A word of a function that is no id may look like one. That costs a descriptor that nobody reads.
+    let words: HashSet<u32> = if bindings.is_empty() { HashSet::new() } else { words[at..].iter().copied().collect() };
+    bindings.into_iter().filter(|(id, _)| words.contains(id)).map(|(_, binding)| binding).collect()
+}
+
+/// The bytes that functions of the module may read of the block at this set and binding. Members that they do not name are left
+/// out; the last member ends at `usize::MAX`, since its size follows from the block.
+pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
+    let (mut in_set, mut at_binding, mut structs) = (HashSet::new(), HashSet::new(), HashMap::new());
+    let (mut offsets, mut constants): (HashMap<u32, BTreeMap<u32, usize>>, _) = (HashMap::new(), HashMap::new());
+    let (mut pointers, mut block) = (HashMap::new(), None);
+    let mut at = HEADER;
+    while let Some((opcode, length)) = instruction(words, at) {
+        match (opcode, &words[at + 1..at + length]) {
+            (op::DECORATE, [id, DESCRIPTOR_SET, number]) if *number == set => {
+                in_set.insert(*id);
+            }
+            (op::DECORATE, [id, BINDING, number]) if *number == binding => {
+                at_binding.insert(*id);
+            }
+            (op::MEMBER_DECORATE, [id, member, OFFSET, bytes]) => {
+                offsets.entry(*id).or_default().insert(*member, *bytes as usize);
+            }
+            (op::CONSTANT, [_, id, value]) => {
+                constants.insert(*id, *value);
+            }
+            (op::TYPE_POINTER, [id, _, to]) => {
+                pointers.insert(*id, *to);
+            }
+            (op::VARIABLE, [pointer, id, ..]) if in_set.contains(id) && at_binding.contains(id) => {
+                block = Some(*id);
+                structs.extend(pointers.get(pointer).map(|to| (*id, *to)));
+            }
+            _ => {}
+        }
+        at += length;
+    }
+    let Some(block) = block else { return Vec::new() };
+    let everything = vec![Range { start: 0, end: usize::MAX }];
+    let Some(offsets) = structs.get(&block).and_then(|of| offsets.get(of)) else { return everything };
+    let mut members = BTreeSet::new();
+    while let Some(first) = words.get(at) {
+        let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
+        let Some(operands) = words.get(at + 1..at + length).filter(|_| length > 0) else { return everything };
+        match (opcode, operands) {
+            (op::ACCESS_CHAIN | op::IN_BOUNDS_ACCESS_CHAIN, [_, _, base, member, ..]) if *base == block => {
+                match constants.get(member) {
+                    Some(member) => members.insert(*member),
+                    None => return everything,
+                };
+            }
+            // The whole block, or a word that only looks like its id.
+            _ if operands.contains(&block) => return everything,
+            _ => {}
+        }
+        at += length;
+    }
+    let end_of = |start: usize| offsets.values().copied().filter(|other| *other > start).min().unwrap_or(usize::MAX);
+    let start_of = |member: &u32| offsets.get(member).copied();
+    match members.iter().map(start_of).collect::<Option<Vec<usize>>>() {
+        Some(starts) => starts.into_iter().map(|start| start..end_of(start)).collect(),
+        None => everything,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::compile::Compiler;
+    use crate::shader::source::Source;
+    use crate::shader::source::snapshot::Snapshot;
+    use crate::shader::spirv::optimize;
+
+    /// What a stage with these functions uses of a block with members at 0, 64, 76 and 80.
+    #[track_caller]
+    fn used(functions: &str) -> Vec<(usize, usize)> {
+        let text = format!(
+            "#version 460\n#extension GL_EXT_scalar_block_layout : require\n
+             layout(set = 0, binding = 1, scalar) uniform Other {{ vec4 other; }};
+             layout(set = 0, binding = 0, scalar) uniform Block {{ mat4 a; vec3 b; float c; vec2 d[2]; }} block;
+             layout(location = 0) in flat int n;
+             layout(location = 0) out vec4 color;\n{functions}"
+        );
+        let source = Source::memory([("m.frag", text.as_str())]);
+        let words = Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.frag".into()).result.unwrap();
+        let before = used_bytes(&words, 0, 0);
+        let after = used_bytes(&optimize(words), 0, 0);
+        assert_eq!(before, after, "the optimizer reads no more");
+        after.into_iter().map(|bytes| (bytes.start, bytes.end)).collect()
+    }
+
+    #[test]
+    fn members_that_a_function_reads_count() {
+        assert_eq!(used("void main() { color = other; }"), []);
+        assert_eq!(used("void main() { color = vec4(block.c); }"), [(76, 80)]);
+        assert_eq!(used("void main() { color = block.a[n]; }"), [(0, 64)]);
+        assert_eq!(
+            used("float f() { return block.d[n].y; } void main() { color = vec4(block.b, f()); }"),
+            [(64, 76), (80, usize::MAX)]
+        );
+    }
+
+    #[test]
+    fn bytes_of_no_block_are_none() {
+        assert_eq!(used_bytes(&[], 0, 0), []);
+        assert_eq!(used_bytes(&[0; 40], 0, 0), []);
+    }
+}
