@@ -132,7 +132,7 @@ fn temporal_antialiasing_smooths_edges_and_follows_the_camera() {
     let jagged = session.render();
     session.set("TEMPORAL_ANTIALIASING=true");
     session.headless.set_sequence(Sequence { frames: 48, start_s: 0.0, fps: 30.0 });
-    let mut turned = |session: &mut Session| {
+    let turned = |session: &mut Session| {
         session.set("camera.azimuth=30");
         let still = session.render();
         for step in 1..=8 {
