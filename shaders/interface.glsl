@@ -6,6 +6,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_control_flow_attributes : require
 
 const uint INTERFACE_VERSION = 8u;
 const int SET_FRAME = 0;
@@ -138,6 +139,7 @@ const uint TEXTURE_DIFFUSE_TRANSMISSION = 17u;
 const uint TEXTURE_DIFFUSE_TRANSMISSION_COLOR = 18u;
 const int TEXTURE_COUNT = 19;
 const int MAX_LIGHTS = 204;
+const int MAX_LIGHT_VIEWS = 16;
 
 layout(constant_id = 0) const uint MODE = 0u; // debug mode, one of MODE_* in debug/modes.glsl
 layout(constant_id = 1) const uint ALPHA_MODE = 0u; // glTF alphaMode, one of ALPHA_*
@@ -180,6 +182,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint frame_index;                  // Frames drawn before this one. Stays while nothing moves.
     vec4 mouse_px;                     // Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
     mat4 clip_from_world_before;       // clip_from_world of the frame before; in the first frame the same as now.
+    mat4 light_clip_from_world[MAX_LIGHT_VIEWS]; // The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
 } frame;
 
 struct Light {

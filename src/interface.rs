@@ -30,6 +30,9 @@ pub const SET_FRAME: u32 = 0;
 pub const SET_MATERIAL: u32 = 1;
 /// Set 2: the images and buffers that a stage declares by name. It has no bindings in the contract.
 pub const SET_PASS: u32 = 2;
+/// The first binding in [`SET_PASS`] of a vertex stage. Those of other stages begin at 0, so the two stages of a pipeline share a
+/// set.
+pub const VERTEX_BINDINGS: u32 = 256;
 /// Set 3: the inputs and outputs of a compute task.
 pub const SET_TASK: u32 = 3;
 
@@ -40,6 +43,9 @@ pub const PARAMS_SIZE: u32 = 4096;
 
 /// Maximum number of lights in a frame: as many as fit into 16 KiB, the uniform block size that Vulkan guarantees.
 pub const MAX_LIGHTS: usize = 16384 / size_of::<Light>();
+
+/// Number of lights whose view of the model is in the block [`Frame`].
+pub const MAX_LIGHT_VIEWS: usize = 16;
 
 /// First id of the author's specialization constants (`//@ui` on a `constant_id`).
 pub const USER_CONSTANTS: u32 = 32;

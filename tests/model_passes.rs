@@ -200,6 +200,61 @@ fn the_model_reads_buffers_that_passes_write() {
     assert_validated();
 }
 
+/// A displacement map in the model's vertex stage, and what a pass with a vertex stage of its own reads there.
+#[test]
+fn vertex_stages_read_by_name() {
+    let mut session = sphere();
+    let before = session.render();
+    let covered = |capture: &Capture| capture.raw.iter().filter(|pixel| pixel[3] > 0.0).count() as f64;
+    image::GrayImage::from_pixel(2, 2, image::Luma([128])).save(session.tree.path("height.png")).unwrap();
+    let hook = "void user_vertex(inout Vertex vertex) {";
+    let moved = "vertex.position *= texture(height, vertex.uv0).r;";
+    let declared = "//@texture height \"height.png\" linear\nuniform sampler2D height;\n";
+    let text = session.tree.read("user/vertex.glsl");
+    ready(&session.save("user/vertex.glsl", &text.replace(hook, &format!("{declared}{hook}\n    {moved}"))));
+    let displaced = session.render();
+    let part = covered(&displaced) / covered(&before);
+    assert!((0.18..0.27).contains(&part), "half the radius covers {part}");
+    passes_check(&session);
+    // A new image file reaches the vertices.
+    image::GrayImage::from_pixel(2, 2, image::Luma([255])).save(session.tree.path("height.png")).unwrap();
+    ready(&session.changed(&["height.png"]));
+    assert_same(&before, &session.render(), "a height of 1");
+    // The image of a pass, which is drawn before the model.
+    let height = "//@pass height size=2x2 format=r32f\n#version 460\n#include \"pass.glsl\"\n\
+        uniform Height { float height_m; };   //@ui \"Height\" 0..1 = 0.50196\nvoid main() { color = vec4(height_m); }\n";
+    session.save("passes/height.frag", height);
+    let by_pass = text.replace(hook, &format!("uniform sampler2D height;\n{hook}\n    {moved}"));
+    ready(&session.save("user/vertex.glsl", &by_pass));
+    assert_eq!(covered(&session.render()) / covered(&before), part, "half the radius, by a pass");
+    session.set("height_m=1");
+    assert_same(&before, &session.render(), "a height of 1, by a pass");
+    // Without an own vertex stage, a pass that draws the model has that of the picture.
+    ready(&session.save("passes/normals.frag", &model_pass("normals format=rgba32f", "color = vec4(1.0);")));
+    ready(&session.save("passes/show.frag", &show("normals")));
+    session.set("height_m=0.50196");
+    let white = |capture: &Capture| capture.raw.iter().filter(|pixel| pixel[0] > 0.5).count() as f64;
+    assert_eq!(white(&session.render()) / covered(&before), part, "the pass is displaced, too");
+    // A vertex stage of its own, whose names are not those of its fragment stage.
+    let own = SHIFTED.replace("void main", "uniform sampler2D height;\nvoid main");
+    let own = own.replace("0.2 * fragment", "0.4 * texture(height, vec2(0.5)).r * fragment");
+    let shifted = |scale: f32| {
+        let body = format!("color = texture(paint, vec2({scale}));");
+        model_pass("normals format=rgba32f instances=3", &body)
+            .replace("void main", "//@texture paint \"height.png\" linear\nuniform sampler2D paint;\nvoid main")
+    };
+    session.save("passes/normals.frag", &shifted(0.5));
+    ready(&session.save("passes/normals.vert", &own));
+    let halves = session.render();
+    assert!((at(&halves, 0.2)[0] - 1.0).abs() < 1e-3 && (at(&halves, 0.8)[0] - 1.0).abs() < 1e-3);
+    session.set("height_m=1");
+    assert!(white(&session.render()) > 2.0 * white(&halves), "twice the size");
+    // An unknown name has its line.
+    let told = lines(failed(&session.save("passes/normals.vert", &own.replace("height", "heigth")))).join("\n");
+    assert!(told.contains("normals.vert:") && told.contains("Did you mean `height`?"), "{told}");
+    assert_validated();
+}
+
 /// Two stages with the same kinds of inputs have sets of their own.
 #[test]
 fn the_sky_reads_its_own_image_in_an_accumulating_mode() {

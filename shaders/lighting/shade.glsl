@@ -31,7 +31,8 @@ struct LightRange {
     bool for_terms;            // fill in Lit's `lobes` and `last`, even for lights that do not reach the surface
 };
 
-// A constant LIGHT_COUNT lets the driver unroll the loop over the lights.
+// The loop over a constant LIGHT_COUNT is unrolled. A software device then reads a light once for a group of pixels instead of for
+// each.
 LightRange all_lights() { return LightRange(0u, LIGHT_COUNT != 0u ? LIGHT_COUNT : frame.light_count, false); }
 
 // The lights that most debug modes of direct light show: the selected light, or all. Empty if there is none or the
@@ -51,6 +52,28 @@ void cross_volume(Surface s, inout Lobes light) {
     light.all += light.transmitted;
 }
 
+// Adds what the surface reflects of light `i`. `for_terms`: see LightRange.
+void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, bool for_terms) {
+    Light light = light_at(i, s.position_ws);
+    // For BRDF terms a rectangle counts as a point light at its center.
+    bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !for_terms && light.kind == LIGHT_RECT;
+    if (has_size) {
+        vec3 to_center = safe_normalize(light.position_ws.xyz - s.position_ws, s.n);
+        add(lit.area, rectangle_light(s, v, albedo, light), vec3(shadow_visibility(i, s.position_ws, s.n, to_center)));
+        return;
+    }
+    // L = f E |NoL|, with E the irradiance on a plane perpendicular to l. Below the horizon f is 0, unless the surface
+    // transmits light or the coat has its own normal.
+    Illumination illumination = illuminate(light, s.position_ws);
+    float n_dot_l = dot(s.n, illumination.l);
+    if (n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms) return;
+    lit.last = evaluate_brdf(s, illumination.l, v);
+    Lobes lobes = lobes_of(lit.last);
+    add(lit.lobes, lobes, vec3(1.0));
+    float visible = shadow_visibility(i, s.position_ws, s.n, illumination.l);
+    add(lit.punctual, lobes, illumination.irradiance * (abs(n_dot_l) * visible));
+}
+
 Lit shade(Surface s, vec3 v, LightRange range) {
     Albedo albedo = directional_albedo(s, v);
     Lit lit;
@@ -59,26 +82,15 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     lit.behind = vec3(0.0);
     lit.emitted = s.emissive * albedo.under_coat;
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
-    // With a limit that the compiler can see, the loop needs no budget of rounds.
-    for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) {
-        Light light = light_at(i, s.position_ws);
-        // For BRDF terms a rectangle counts as a point light at its center.
-        bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !range.for_terms && light.kind == LIGHT_RECT;
-        if (has_size) {
-            vec3 to_center = safe_normalize(light.position_ws.xyz - s.position_ws, s.n);
-            add(lit.area, rectangle_light(s, v, albedo, light), vec3(shadow_visibility(i, s.position_ws, s.n, to_center)));
-            continue;
+    if (LIGHT_COUNT != 0u) {
+        [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) {
+            if (i >= range.first && i < range.end) add_light(lit, s, v, albedo, i, range.for_terms);
         }
-        // L = f E |NoL|, with E the irradiance on a plane perpendicular to l. Below the horizon f is 0, unless the surface
-        // transmits light or the coat has its own normal.
-        Illumination illumination = illuminate(light, s.position_ws);
-        float n_dot_l = dot(s.n, illumination.l);
-        if (n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !range.for_terms) continue;
-        lit.last = evaluate_brdf(s, illumination.l, v);
-        Lobes lobes = lobes_of(lit.last);
-        add(lit.lobes, lobes, vec3(1.0));
-        float visible = shadow_visibility(i, s.position_ws, s.n, illumination.l);
-        add(lit.punctual, lobes, illumination.irradiance * (abs(n_dot_l) * visible));
+    } else {
+        // With a limit that the compiler can see, the loop needs no budget of rounds.
+        for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) {
+            add_light(lit, s, v, albedo, i, range.for_terms);
+        }
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {
         cross_volume(s, lit.punctual);

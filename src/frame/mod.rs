@@ -24,7 +24,7 @@ use glam::Mat4;
 
 use crate::gpu::Rect;
 use crate::interface::{Frame, Light, MAX_LIGHTS};
-use crate::scene::{CameraView, Model, frame, lights};
+use crate::scene::{CameraView, Model, frame, lights, view_of_light};
 use crate::settings::Settings;
 use crate::shader::graph::{Input, Part};
 use crate::shader::{Mode, ShaderSet, values};
@@ -164,6 +164,9 @@ impl FrameState {
             environment_blur: settings.environment.blur,
             sample_count: pipelines.paths_per_frame(),
             path_bounces: settings.view.bounces,
+            light_clip_from_world: std::array::from_fn(|index| {
+                lights.get(index).map_or(Mat4::ZERO, |light| view_of_light(light, bounds)).to_cols_array_2d()
+            }),
             ..Default::default()
         };
         Self {

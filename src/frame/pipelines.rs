@@ -118,7 +118,7 @@ pub(crate) enum Pass {
 }
 
 /// The stages of a picture that every debug mode has, too.
-const SHARED_STAGES: [&str; 2] = ["tonemap.frag", "average.frag"];
+const SHARED_STAGES: [&str; 3] = [FULL_SCREEN, "tonemap.frag", "average.frag"];
 
 impl Pass {
     /// Paths of the vertex and fragment stages.
@@ -148,10 +148,10 @@ impl PipelineRequest {
             let is_used = looked_at.contains(&index) || is_switched_on(pass, shaders, &constants);
             is_used && pass.is_wanted(&settings.passes)
         };
-        let mut readers = vec![stage.path()];
+        let mut readers = vec![MODEL, stage.path()];
         readers.extend(SHARED_STAGES);
         // Transmissive surfaces may show the picture behind them in a debug mode.
-        readers.extend(shows_light.then_some("sky.frag"));
+        readers.extend(["sky.vert", "sky.frag"].into_iter().filter(|_| shows_light));
         readers.extend(mode.is_some_and(|m| m.through).then_some(ModeStage::Picture.path()));
         let passes = shaders.graph.active(&readers, shows_light, is_on, shown_pass.as_deref());
         let reads = |input: &Input| passes.iter().any(|pass| pass.inputs.values().any(|other| other == input));

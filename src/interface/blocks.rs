@@ -7,7 +7,7 @@ use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
+use super::{MAX_LIGHT_VIEWS, PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
 
 /// A struct of the contract.
 #[derive(Debug)]
@@ -156,6 +156,8 @@ blocks! {
         mouse_px: vec4,
         /// clip_from_world of the frame before; in the first frame the same as now.
         clip_from_world_before: mat4,
+        /// The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
+        light_clip_from_world: [mat4; MAX_LIGHT_VIEWS],
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.

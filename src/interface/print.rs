@@ -12,7 +12,8 @@ pub fn glsl() -> String {
          #ifndef SPECULA_INTERFACE_GLSL\n#define SPECULA_INTERFACE_GLSL\n\n\
          #extension GL_EXT_scalar_block_layout : require\n\
          #extension GL_EXT_buffer_reference : require\n\
-         #extension GL_EXT_buffer_reference2 : require\n\n",
+         #extension GL_EXT_buffer_reference2 : require\n\
+         #extension GL_EXT_control_flow_attributes : require\n\n",
     );
     let mut constant = |kind: &str, name: &str, value: String| {
         let _ = writeln!(out, "const {kind} {name} = {value};");
@@ -33,6 +34,7 @@ pub fn glsl() -> String {
     }
     constant("int", "TEXTURE_COUNT", TEXTURE_COUNT.to_string());
     constant("int", "MAX_LIGHTS", MAX_LIGHTS.to_string());
+    constant("int", "MAX_LIGHT_VIEWS", MAX_LIGHT_VIEWS.to_string());
     out.push('\n');
     for s in SPECIALIZATION {
         let _ = writeln!(out, "layout(constant_id = {}) const uint {} = 0u; // {}", s.id, s.name, s.doc);

@@ -313,14 +313,13 @@ impl PipelineSet {
             Pass::Tonemap | Pass::FullScreen(_) => (false, Raster::Solid, PrimitiveClass::Triangles),
             Pass::DeclaredModel(_, class) => (true, Raster::Solid, *class),
         };
-        let nothing = Inputs::new();
         let inputs = match &key.pass {
-            Pass::FullScreen(pass) | Pass::DeclaredModel(pass, _) => &pass.inputs,
-            _ => self.shaders.graph.readers.get(fragment).unwrap_or(&nothing),
+            Pass::FullScreen(pass) | Pass::DeclaredModel(pass, _) => pass.inputs.clone(),
+            _ => self.shaders.graph.reads(&key.pass.stages()),
         };
         let (vertex, fragment) = (module(vertex)?, module(fragment)?);
         let draws_model = matches!(key.pass, Pass::Model { .. } | Pass::DeclaredModel(..));
-        let layout = self.layout(inputs, &[&vertex, &fragment], draws_model);
+        let layout = self.layout(&inputs, &[&vertex, &fragment], draws_model);
         let layout = layout.map_err(|error| match &key.pass {
             Pass::FullScreen(pass) | Pass::DeclaredModel(pass, _) => of_pass(pass, error),
             _ => error,

@@ -1,9 +1,9 @@
 //! Builds the lights of a frame from the settings and the model.
 
-use glam::Vec3;
+use glam::{Mat4, Vec3, Vec4};
 
 use super::camera::direction;
-use super::model::{LightKind, Model};
+use super::model::{Bounds, LightKind, Model};
 use crate::interface::{self, Light};
 use crate::settings::{LightSettings, LightSource, OrbitLight, RectLight};
 
@@ -29,6 +29,39 @@ pub fn light_count(settings: &LightSettings, in_model: usize) -> usize {
         LightSource::Model => in_model,
     };
     punctual + usize::from(settings.rect.enabled)
+}
+
+/// World to the clip space of a light that sees the sphere around the model: right, up, and reversed depth, 1 at the near end of
+/// the sphere and 0 at its far end. Directional lights see it by a parallel projection, others by a perspective one towards its
+/// center. A light inside the sphere sees at most 143 degrees of it, from a hundredth of its width on.
+pub fn view_of_light(light: &Light, bounds: &Bounds) -> Mat4 {
+    let radius = (1.02 * bounds.radius()).max(f32::MIN_POSITIVE);
+    let place = Vec4::from(light.position_ws);
+    if place.w == 0.0 {
+        let axis = (-place.truncate()).normalize_or(Vec3::NEG_Y);
+        let view = look_along(axis, bounds.center());
+        let size = Vec3::new(radius, radius, 2.0 * radius);
+        return Mat4::from_translation(Vec3::new(0.0, 0.0, 0.5)) * Mat4::from_scale(size.recip() * NEARER) * view;
+    }
+    let offset = bounds.center() - place.truncate();
+    let distance = offset.length();
+    let (near, far) = ((distance - radius).max(0.02 * radius), distance + radius);
+    let tangent = (radius / (distance * distance - radius * radius).max(0.0).sqrt()).min(3.0);
+    let view = look_along(offset.normalize_or(Vec3::NEG_Y), place.truncate());
+    let across = Vec4::new(tangent.recip(), 0.0, 0.0, 0.0);
+    let depth = Vec4::new(0.0, 0.0, -near / (far - near), 1.0);
+    let shift = Vec4::new(0.0, 0.0, near * far / (far - near), 0.0);
+    Mat4::from_cols(across, Vec4::new(0.0, tangent.recip(), 0.0, 0.0), depth, shift) * view
+}
+
+/// Reversed depth: what is farther along the axis has less.
+const NEARER: Vec3 = Vec3::new(1.0, 1.0, -1.0);
+
+/// World space to right, up and the distance along an axis, from a point.
+fn look_along(axis: Vec3, from: Vec3) -> Mat4 {
+    let (right, up) = axis.any_orthonormal_pair();
+    Mat4::from_cols(right.extend(0.0), up.extend(0.0), axis.extend(0.0), Vec4::W).transpose()
+        * Mat4::from_translation(-from)
 }
 
 /// Scales distance and intensity with the model, so that every model has the same lighting.
@@ -98,9 +131,7 @@ fn cone(inner: f32, outer: f32) -> (f32, f32) {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec4;
-
-    use super::super::model::{self, Bounds};
+    use super::super::model;
     use super::*;
 
     fn model() -> Model {
@@ -130,6 +161,32 @@ mod tests {
             assert!(Vec3::from(light.direction_ws).distance(-side) < 1e-5);
             assert_eq!((light.intensity, light.kind), ([18.0, 9.0, 0.0], interface::LIGHT_POINT));
         }
+    }
+
+    #[test]
+    fn a_light_sees_the_sphere_around_the_model() {
+        let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+        let radius = bounds.radius();
+        for position_ws in [[0.0, 1.0, 0.0, 0.0], [0.6, 0.0, 0.8, 0.0], [3.0, 4.0, -2.0, 1.0], [0.0, 90.0, 0.0, 1.0]] {
+            let light = Light { position_ws, ..Light::default() };
+            let view = view_of_light(&light, &bounds);
+            let place = Vec4::from(position_ws);
+            let towards = if place.w == 0.0 { place.truncate() } else { place.truncate().normalize() };
+            let depth = |point: Vec3| view.project_point3(point).z;
+            assert!((0.98..1.0).contains(&depth(towards * radius)), "{light:?}: {}", depth(towards * radius));
+            assert!((0.0..0.02).contains(&depth(-towards * radius)), "{light:?}: {}", depth(-towards * radius));
+            let middle = view.project_point3(Vec3::ZERO);
+            assert!(middle.truncate().length() < 1e-5, "{middle}");
+            for point in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::ONE.normalize()] {
+                let seen = view.project_point3(point * radius);
+                assert!(seen.abs().max_element() <= 1.0 + 1e-5, "{light:?}: {seen}");
+            }
+        }
+        // Inside
+        let light = Light { position_ws: [0.1, 0.0, 0.0, 1.0], ..Light::default() };
+        let seen = view_of_light(&light, &bounds).project_point3(Vec3::ZERO);
+        assert!(seen.is_finite() && (0.0..=1.0).contains(&seen.z), "{seen}");
+        assert!(view_of_light(&Light::default(), &Bounds::default()).is_finite());
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub use environment::{Environment, EnvironmentError, EnvironmentFile, has_exact_
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
 pub use gltf::triangles;
-pub use lights::{light_count, lights};
+pub use lights::{light_count, lights, view_of_light};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pack::pack_material;

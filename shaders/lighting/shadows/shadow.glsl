@@ -5,7 +5,7 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
-#include "lighting/shadows/shadow_view.glsl"
+#include "lighting/shadows/tiles.glsl"
 #include "user/params.glsl"
 
 const uint NO_SHADOWS = 0u;
@@ -14,7 +14,7 @@ const uint SOFT_SHADOWS = 2u;
 //@ui "Shadows" choice Off=0 Hard=1 Soft=2
 layout(constant_id = USER_CONSTANTS + 10) const uint SHADOWS = NO_SHADOWS;
 
-// Depth of what is nearest to each light. 0: nothing, as where the pass is off.
+// Reversed depth of what is nearest to each light. 0: nothing, as where the pass is off.
 uniform sampler2D shadow_map;
 
 // Part of 2 x 2 texels that do not hide the point, blended (percentage-closer filtering: Reeves, Salesin, Cook 1987).
@@ -36,23 +36,45 @@ vec2 disk_sample(int i, int count, float turn) {
 // Interleaved gradient noise, 0..1 (Jimenez 2014).
 float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
+// Meters along a light's axis from its reversed depth, for differences. `view`: clip from world.
+struct LightDepth {
+    float scale;               // perspective: w of a point times (its depth - offset); parallel: meters from depth 1 to depth 0
+    float offset;
+};
+
+LightDepth light_depth(mat4 view, bool is_parallel) {
+    vec4 z = vec4(view[0].z, view[1].z, view[2].z, view[3].z);
+    if (is_parallel) return LightDepth(inversesqrt(dot(z.xyz, z.xyz)), 0.0);
+    vec4 w = vec4(view[0].w, view[1].w, view[2].w, view[3].w);
+    float offset = dot(z.xyz, w.xyz);
+    return LightDepth(z.w - offset * w.w, offset);
+}
+
+float along_axis_m(LightDepth of, bool is_parallel, float depth) {
+    return is_parallel ? -depth * of.scale : of.scale / (depth - of.offset);
+}
+
 // Part of the light that reaches the point, 0..1. The edge of its shadow is as wide as the penumbra: the wider, the farther the
-// point is from what hides it (percentage-closer soft shadows, Fernando 2005). `per_meter`: of the map's width. `angle`: width
-// of the light / its distance. `low`, `high`: corners of the tile.
-float soft_visibility(vec2 uv, vec2 low, vec2 high, float depth, float meters_per_depth, float per_meter, float angle) {
+// point is from what hides it (percentage-closer soft shadows, Fernando 2005). `seen`: the point in the light's clip space.
+// `low`, `high`: corners of the tile. `per_meter`: of the map's width, at the point. `angle`: width of the light / its distance.
+float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, float per_meter, float angle) {
     const int BLOCKERS = 8;
     const int TAPS = 16;
     float turn = pixel_noise(gl_FragCoord.xy);
+    float depth = max(seen.z / seen.w, 0.0);
+    bool is_parallel = view[0].w == 0.0 && view[1].w == 0.0 && view[2].w == 0.0;
+    LightDepth of = light_depth(view, is_parallel);
+    float here_m = along_axis_m(of, is_parallel, depth);
     // Blockers lie within the cone towards the light, up to the front of the model.
-    float reach = clamp(angle * (1.0 - depth) * meters_per_depth * per_meter, 0.0, 0.1 * (high.x - low.x));
+    float reach = clamp(angle * (here_m - along_axis_m(of, is_parallel, 1.0)) * per_meter, 0.0, 0.1 * (high.x - low.x));
     vec2 blockers = vec2(0.0);
     for (int i = 0; i < BLOCKERS; ++i) {
         vec2 at = clamp(uv + reach * disk_sample(i, BLOCKERS, turn), low, high);
         float blocker = textureLod(shadow_map, at, 0.0).r;
-        if (blocker > depth) blockers += vec2(blocker, 1.0);
+        if (blocker > depth) blockers += vec2(along_axis_m(of, is_parallel, blocker), 1.0);
     }
     if (blockers.y == 0.0) return 1.0;
-    float apart_m = (blockers.x / blockers.y - depth) * meters_per_depth;
+    float apart_m = here_m - blockers.x / blockers.y;
     float radius = max(min(angle * apart_m * per_meter, reach), 1.5 / SHADOW_MAP_PX);
     float lit = 0.0;
     for (int i = 0; i < TAPS; ++i) {
@@ -62,31 +84,33 @@ float soft_visibility(vec2 uv, vec2 low, vec2 high, float depth, float meters_pe
     return lit / float(TAPS);
 }
 
-// Part of light `i` that reaches a point with this normal, 0..1. The point is moved along the normal, by what a texel of the map
-// spans on the surface, so that the surface does not hide itself. `l`: unit, towards the light.
+// Part of light `i` that reaches a point with this normal, 0..1. The point is moved along the normal and towards the light, by
+// what a texel of the map spans on the surface, so that the surface does not hide itself. `l`: unit, towards the light.
 float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
-    if (SHADOWS == NO_SHADOWS || i >= MAX_SHADOWS) return 1.0;
-    Light light = lights[i];
-    ShadowView view = shadow_view(light);
-    vec3 seen = seen_from(view, position_ws);
+    if (SHADOWS == NO_SHADOWS || i >= MAX_LIGHT_VIEWS) return 1.0;
+    mat4 view = frame.light_clip_from_world[i];
+    vec4 x_axis = vec4(view[0].x, view[1].x, view[2].x, view[3].x);
+    vec4 w_axis = vec4(view[0].w, view[1].w, view[2].w, view[3].w);
     float tile_size = 1.0 / float(shadow_tiles());
-    float texel_m = 2.0 * half_width_at(view, seen) / (tile_size * SHADOW_MAP_PX);
+    // Widths of the map to a meter, where w is 1.
+    float per_meter = 0.5 * tile_size * length(x_axis.xyz);
+    float texel_m = dot(w_axis, vec4(position_ws, 1.0)) / (per_meter * SHADOW_MAP_PX);
     float n_dot_l = dot(n, l);
     float slope = sqrt(saturate(1.0 - n_dot_l * n_dot_l));
-    seen += (texel_m * (0.5 + 3.0 * slope) * sign(n_dot_l)) * (n * view.axes);
-    vec2 in_tile = 0.5 + 0.5 * seen.xy / half_width_at(view, seen);
-    if ((!view.is_parallel && seen.z <= 0.0) || clamp(in_tile, 0.0, 1.0) != in_tile) return 1.0;
+    position_ws += texel_m * ((0.5 + 3.0 * slope) * sign(n_dot_l) * n + 0.5 * l);
+    vec4 seen = view * vec4(position_ws, 1.0);
+    if (seen.w <= 0.0 || any(greaterThan(abs(seen.xy), vec2(seen.w)))) return 1.0;
     vec2 low = shadow_tile(i);
-    vec2 uv = low + tile_size * in_tile;
-    float depth = shadow_depth(view, seen) + 0.5 * texel_m / view.meters_per_depth;
+    vec2 uv = low + tile_size * (0.5 + 0.5 * seen.xy / seen.w);
     if (SHADOWS == SOFT_SHADOWS) {
-        float to_light_m = view.is_parallel ? 1.0 : length(seen);
+        Light light = lights[i];
+        float to_light_m = light.position_ws.w == 0.0 ? 1.0 : distance(light.position_ws.xyz, position_ws);
         float size_m = light.kind == LIGHT_RECT ? length(light.half_x_ws + light.half_y_ws) : shadow_softness * to_light_m;
-        float per_meter = 0.5 * tile_size / half_width_at(view, seen);
         float angle = size_m / max(to_light_m, 1e-6);
-        return soft_visibility(uv, low, low + tile_size, depth, view.meters_per_depth, per_meter, angle);
+        return soft_visibility(view, seen, uv, low, low + tile_size, per_meter / seen.w, angle);
     }
-    return hard_visibility(uv, depth);
+    // What lies behind the model's bounds has a depth below 0.
+    return hard_visibility(uv, max(seen.z / seen.w, 0.0));
 }
 
 #endif

@@ -21,17 +21,25 @@ uniform Ground {
     float ground_strength;     //@ui "Ground shadow" 0..1 = 0.8
 };
 
+const vec3 UP = vec3(0.0, 1.0, 0.0);
+
+// Adds the irradiance by light `i`, and what is left of it in the light's shadow.
+void add_light(inout vec3 whole, inout vec3 left, uint i, vec3 position_ws) {
+    Illumination light = illuminate(light_at(i, position_ws), position_ws);
+    vec3 irradiance = light.irradiance * max(light.l.y, 0.0);
+    whole += irradiance;
+    left += irradiance * shadow_visibility(i, position_ws, UP, light.l);
+}
+
 // Part of the irradiance of a point of the ground that reaches it.
 vec3 lit_part_of(vec3 position_ws) {
-    const vec3 UP = vec3(0.0, 1.0, 0.0);
     vec3 sky = PI * irradiance_over_pi(UP);
     vec3 whole = sky;
     vec3 left = sky * texture(ground_sky, ground_uv(position_ws)).r;
-    for (uint i = 0u; i < min(frame.light_count, uint(MAX_LIGHTS)); ++i) {
-        Illumination light = illuminate(light_at(i, position_ws), position_ws);
-        vec3 irradiance = light.irradiance * max(light.l.y, 0.0);
-        whole += irradiance;
-        left += irradiance * shadow_visibility(i, position_ws, UP, light.l);
+    if (LIGHT_COUNT != 0u) {
+        [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) add_light(whole, left, i, position_ws);
+    } else {
+        for (uint i = 0u; i < min(frame.light_count, uint(MAX_LIGHTS)); ++i) add_light(whole, left, i, position_ws);
     }
     // Without light there is no shadow.
     return mix(vec3(1.0), left / max(whole, 1e-12), greaterThan(whole, vec3(1e-12)));

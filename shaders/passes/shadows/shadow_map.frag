@@ -6,7 +6,7 @@
 #include "material/material.glsl"
 
 layout(location = 0) in Fragment fragment;
-layout(location = 12) in vec3 tile;
+layout(location = 12) in vec2 in_tile;
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -17,6 +17,6 @@ void main() {
         if (surface.coverage < material.alpha_cutoff) discard;
     }
     // A light inside the model sees parts of it beyond its tile. gl_FragCoord.w is 1 / w.
-    if (any(greaterThan(abs(tile.xy) * gl_FragCoord.w, vec2(1.0)))) discard;
-    color = vec4(tile.z, 0.0, 0.0, 1.0);
+    if (any(greaterThan(abs(in_tile) * gl_FragCoord.w, vec2(1.0)))) discard;
+    color = vec4(gl_FragCoord.z, 0.0, 0.0, 1.0);
 }

@@ -2,29 +2,23 @@
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/vertex.glsl"
-#include "lighting/shadows/shadow_view.glsl"
+#include "lighting/shadows/tiles.glsl"
 #include "user/vertex.glsl"
 
 // The model as each light sees it, in the light's tile. Instance i belongs to light i.
 
 layout(location = 0) out Fragment fragment;
-layout(location = 12) out vec3 tile;  // beyond those of Fragment; xy: position in the tile, -w..w; z: depth, linear
+layout(location = 12) out vec2 in_tile;  // beyond those of Fragment; -w..w inside the tile
 
 void main() {
     Vertex vertex = mesh_vertex();
     user_vertex(vertex);
     fragment = fragment_of(vertex);
 
-    uint light = uint(gl_InstanceIndex);
-    ShadowView view = shadow_view(lights[light]);
-    vec3 seen = seen_from(view, fragment.position_ws);
-    float depth = shadow_depth(view, seen);
-    tile = vec3(seen.xy / view.half_width, depth);
-    float w = view.is_parallel ? 1.0 : seen.z;
+    vec4 seen = frame.light_clip_from_world[gl_InstanceIndex] * vec4(fragment.position_ws, 1.0);
+    in_tile = seen.xy;
     float size = 1.0 / float(shadow_tiles());
-    vec2 center = 2.0 * shadow_tile(light) + size - 1.0;
-    gl_Position = vec4(seen.xy / view.half_width * size + w * center, view.is_parallel ? depth : view.near_m, w);
+    vec2 center = 2.0 * shadow_tile(uint(gl_InstanceIndex)) + size - 1.0;
+    gl_Position = vec4(seen.xy * size + seen.w * center, seen.zw);
     gl_PointSize = 1.0;
-    // No tile: behind the far plane.
-    if (light >= MAX_SHADOWS) gl_Position = vec4(0.0, 0.0, -1.0, 1.0);
 }

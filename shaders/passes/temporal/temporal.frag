@@ -12,5 +12,5 @@ void main() {
     float alpha = texelFetch(picture, pixel, 0).a;
     vec4 mean = texelFetch(temporal_mean, pixel, 0);
     // The flags in alpha are those of the newest frame.
-    color = vec4(expand(mean.rgb), alpha - coverage_of(alpha) + min(mean.a - 1.0, 1.0));
+    color = vec4(expand(mean.rgb), alpha - coverage_of(alpha) + min(2.0 * mean.a - 1.0, 1.0));
 }

@@ -1,4 +1,4 @@
-//@pass temporal_mean "Temporal antialiasing: mean" keep after=ground when=TEMPORAL_ANTIALIASING doc="Mean of the last frames, each seen from the newest camera: light, exposed and compressed to 0..1, and 1 + coverage"
+//@pass temporal_mean "Temporal antialiasing: mean" keep after=ground when=TEMPORAL_ANTIALIASING doc="Mean of the last frames, each seen from the newest camera: light, exposed and compressed to 0..1, and (1 + coverage) / 2"
 #version 460
 #include "pass.glsl"
 #include "common/jitter.glsl"
@@ -80,14 +80,15 @@ void main() {
     vec2 motion_px = 0.5 * pass.size_px * (before.xy / before.w - ndc);
     vec2 before_px = gl_FragCoord.xy + motion_px;
 
-    // Alpha is 1 + coverage, and 0 in an image that was never drawn.
+    // Alpha is 0 in an image that was never drawn.
     vec4 mean = mean_before(before_px);
     bool is_outside = any(lessThan(before_px, vec2(0.0))) || any(greaterThan(before_px, pass.size_px)) || before.w <= 0.0;
     vec4 center = sum / 9.0;
     vec4 reach = DEVIATIONS * sqrt(max(squares / 9.0 - center * center, 0.0)) + 1e-5;
-    vec4 offset = ycocg_from_rgb(mean - vec4(0.0, 0.0, 0.0, 1.0)) - center;
+    vec4 offset = ycocg_from_rgb(vec4(mean.rgb, 2.0 * mean.a - 1.0)) - center;
     vec4 beyond = abs(offset) / reach;
     vec4 kept = center + offset / max(max(max(beyond.x, beyond.y), max(beyond.z, beyond.w)), 1.0);
-    float weight = is_outside || mean.a < 0.5 ? 1.0 : temporal_newest;
-    color = max(rgb_from_ycocg(mix(kept, newest, weight)), 0.0) + vec4(0.0, 0.0, 0.0, 1.0);
+    float weight = is_outside || mean.a < 0.25 ? 1.0 : temporal_newest;
+    vec4 result = max(rgb_from_ycocg(mix(kept, newest, weight)), 0.0);
+    color = vec4(result.rgb, 0.5 + 0.5 * result.a);
 }

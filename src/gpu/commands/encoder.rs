@@ -30,6 +30,13 @@ impl Rect {
     }
 }
 
+/// The stages that read images and buffers.
+const SHADERS: vk::PipelineStageFlags2 = vk::PipelineStageFlags2::from_raw(
+    vk::PipelineStageFlags2::VERTEX_SHADER.as_raw()
+        | vk::PipelineStageFlags2::FRAGMENT_SHADER.as_raw()
+        | vk::PipelineStageFlags2::COMPUTE_SHADER.as_raw(),
+);
+
 /// How commands use an image: its layout, and the stages and accesses that a transition waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
@@ -77,9 +84,7 @@ impl Use {
                 A::COLOR_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
                 L::DEPTH_ATTACHMENT_OPTIMAL,
             ),
-            Self::Sampled => {
-                (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_SAMPLED_READ, L::SHADER_READ_ONLY_OPTIMAL)
-            }
+            Self::Sampled => (SHADERS, A::SHADER_SAMPLED_READ, L::SHADER_READ_ONLY_OPTIMAL),
             Self::Storage => (S::COMPUTE_SHADER, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE, L::GENERAL),
             Self::CopyFrom => (S::ALL_TRANSFER, A::TRANSFER_READ, L::TRANSFER_SRC_OPTIMAL),
             Self::CopyTo => (S::ALL_TRANSFER, A::TRANSFER_WRITE, L::TRANSFER_DST_OPTIMAL),
@@ -333,8 +338,8 @@ impl Encoder {
 
     /// SYNC: orders what earlier passes did with storage buffers before what later passes do with them.
     pub fn buffers_done(&mut self) {
-        use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
-        let scope = (S::FRAGMENT_SHADER | S::COMPUTE_SHADER, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE);
+        use vk::AccessFlags2 as A;
+        let scope = (SHADERS, A::SHADER_STORAGE_READ | A::SHADER_STORAGE_WRITE);
         self.order(scope, scope);
     }
 

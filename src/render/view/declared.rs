@@ -14,7 +14,7 @@ use crate::gpu::{
     Attachments, DescriptorSet, Encoder, Gpu, GpuError, Image, PassLayout, PassResource, Sampler, SetLayouts,
     SetWriter, Use,
 };
-use crate::interface::{Frame, SET_TASK};
+use crate::interface::{Frame, MAX_LIGHT_VIEWS, SET_TASK};
 use crate::render::resources::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{Dispatch, Instances};
@@ -62,9 +62,6 @@ pub(super) struct Drawn<'a> {
 const SETS_KEPT: usize = 8;
 /// Number of stages that come with Specula and read images, in one frame: model, `behind`, sky, mean and tone map.
 const BUILT_IN_SETS: usize = 5;
-
-/// The lights that a pass with `instances=lights` draws the model for.
-const MOST_LIGHTS: usize = 16;
 
 impl DeclaredPasses {
     pub(super) fn new(
@@ -193,14 +190,12 @@ impl DeclaredPasses {
         given: &Given<'_>,
         keys: impl Iterator<Item = PipelineKey>,
     ) -> Result<PassSets, GpuError> {
-        let readers = &drawn.frame.state.shaders.graph.readers;
+        let graph = &drawn.frame.state.shaders.graph;
         let mut sets = PassSets::default();
         for key in keys {
-            let [_, fragment] = key.pass.stages();
-            let (Some(pipeline), Some(inputs)) = (drawn.frame.pipelines.get(&key), readers.get(fragment)) else {
-                continue;
-            };
-            let reads = Reads { name: fragment, inputs, given, index: None };
+            let stages = key.pass.stages();
+            let Some(pipeline) = drawn.frame.pipelines.get(&key) else { continue };
+            let reads = Reads { name: stages[1], inputs: &graph.reads(&stages), given, index: None };
             sets.insert(pipeline, self.set(&pipeline.layout, drawn, &reads)?);
         }
         Ok(sets)
@@ -378,7 +373,7 @@ fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
 fn instances(drawn: &Drawn<'_>, pass: &GraphPass) -> u32 {
     match pass.note.model {
         Some(Instances::Count(count)) => count,
-        Some(Instances::Lights) => drawn.frame.state.lights.len().min(MOST_LIGHTS) as u32,
+        Some(Instances::Lights) => drawn.frame.state.lights.len().min(MAX_LIGHT_VIEWS) as u32,
         None => 0,
     }
 }

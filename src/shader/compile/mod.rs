@@ -11,7 +11,7 @@ use std::time::Instant;
 use serde::Serialize;
 use shaderc::{CompileOptions, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind, SpirvVersion, TargetEnv};
 
-use crate::interface::SET_PASS;
+use crate::interface::{SET_PASS, VERTEX_BINDINGS};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -194,7 +194,8 @@ impl Compiler {
             Ok(artifact) => {
                 let mut words = artifact.as_binary().to_vec();
                 if reads_by_name(kind, text) {
-                    assign_set(&mut words, SET_PASS, &includes.unbound());
+                    let first = if kind == StageKind::Vertex { VERTEX_BINDINGS } else { 0 };
+                    assign_set(&mut words, SET_PASS, first, &includes.unbound());
                 }
                 Ok((words, artifact.get_warning_messages()))
             }
@@ -214,9 +215,9 @@ fn unbalanced(snapshot: &Snapshot<'_>, files: &BTreeSet<TreePath>, quick: bool) 
     files.iter().filter_map(check).collect()
 }
 
-/// Whether a stage declares images and buffers by name alone: all fragment stages, and compute passes.
+/// Whether a stage declares images and buffers by name alone: all but the compute stages that bake.
 pub fn reads_by_name(kind: StageKind, text: &str) -> bool {
-    kind == StageKind::Fragment || declares_pass(text)
+    kind != StageKind::Compute || declares_pass(text)
 }
 
 /// Whether the text of a stage declares a pass.

@@ -28,7 +28,10 @@ pub struct Names<'a> {
 }
 
 /// The stages that come with Specula and read images by name, each with the images that Specula gives it.
-const BUILT_IN: [(&str, &[(&str, Input)]); 6] = [
+const BUILT_IN: [(&str, &[(&str, Input)]); 9] = [
+    ("pbr.vert", &[]),
+    ("sky.vert", &[]),
+    ("fullscreen.vert", &[]),
     ("pbr.frag", &[("behind", Input::Behind)]),
     ("debug.frag", &[("behind", Input::Behind)]),
     ("paths.frag", &[("behind", Input::Behind)]),
@@ -142,8 +145,11 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
         }
         "buffer block" => buffer(found),
         glsl if glsl.ends_with("image2D") && kind != StageKind::Compute => {
-            let message = format!("a fragment shader cannot write the image `{name}`");
-            Err((message, "it draws to the image of its pass; a compute shader (.comp) writes it by imageStore".into()))
+            let message = format!("only a compute shader can write the image `{name}`");
+            Err((
+                message,
+                "a fragment shader draws to the image of its pass; a .comp file writes it by imageStore".into(),
+            ))
         }
         glsl if glsl.ends_with("image2D") && name == &note.name => written(note, found),
         glsl if glsl.ends_with("image2D") => {

@@ -183,7 +183,8 @@ impl Graph {
                 errors.push(note.place.error(message));
                 continue;
             }
-            match inputs::inputs(note, stage, &names) {
+            let own_vertex = has_vertex.then(|| inputs::inputs(note, &stages[&vertex], &names));
+            match inputs::inputs(note, stage, &names).and_then(|inputs| with(inputs, own_vertex)) {
                 Ok(inputs) => passes.push(GraphPass {
                     moves: inputs.values().any(moves),
                     note: note.clone(),
@@ -204,6 +205,11 @@ impl Graph {
                 }
                 Err(found) => errors.extend(found),
             }
+        }
+        for pass in passes.iter_mut().filter(|pass| pass.vertex.is_none() && !pass.is_compute) {
+            let shared = readers.get(pass.vertex_stage()).cloned().unwrap_or_default();
+            pass.moves |= shared.values().any(moves);
+            pass.inputs.extend(shared);
         }
         errors.extend(different_buffers(&passes, &readers));
         // The model shows how it was one frame ago.
@@ -231,6 +237,12 @@ impl Graph {
     /// The paths of the image files, which are watched with the tree.
     pub fn texture_paths(&self) -> impl Iterator<Item = &str> {
         self.textures.values().map(|texture| texture.path.as_str())
+    }
+
+    /// What the stages of a pipeline read that come with Specula.
+    pub fn reads(&self, stages: &[&str]) -> Inputs {
+        let inputs = stages.iter().filter_map(|stage| self.readers.get(*stage));
+        inputs.flatten().map(|(binding, input)| (*binding, input.clone())).collect()
     }
 
     /// The pass of this name.
@@ -307,6 +319,12 @@ impl Graph {
     fn makes_picture(&self, index: usize, is_on: impl Fn(usize) -> bool) -> bool {
         self.passes[index].note.to_picture && is_on(index)
     }
+}
+
+/// The inputs of a fragment stage, and those of its vertex stage.
+fn with(mut inputs: Inputs, vertex: Option<Result<Inputs, Vec<Diagnostic>>>) -> Result<Inputs, Vec<Diagnostic>> {
+    inputs.extend(vertex.transpose()?.into_iter().flatten());
+    Ok(inputs)
 }
 
 /// Whether an input may change while nothing else does.

@@ -95,7 +95,7 @@ fn put_before_model(
 }
 
 /// The stages that come with Specula and run after the model.
-const AFTER_MODEL: [&str; 2] = ["average.frag", "tonemap.frag"];
+const AFTER_MODEL: [&str; 3] = ["average.frag", "tonemap.frag", "fullscreen.vert"];
 
 /// The names of the images that are read as they are in this frame.
 fn images(inputs: &Inputs) -> impl Iterator<Item = &str> {

@@ -10,9 +10,9 @@ pub(super) const DESCRIPTOR_SET: u32 = 34;
 /// Words before the first instruction.
 pub(super) const HEADER: usize = 5;
 
-/// Moves the descriptors with these names to `set`. The binding of each is the place of its name in `names`, so it does not depend
-/// on which of them the module uses. The name of a block is that of its type.
-pub fn assign_set(words: &mut [u32], set: u32, names: &BTreeSet<String>) {
+/// Moves the descriptors with these names to `set`. The binding of each is `first` and the place of its name in `names`, so it does
+/// not depend on which of them the module uses. The name of a block is that of its type.
+pub fn assign_set(words: &mut [u32], set: u32, first: u32, names: &BTreeSet<String>) {
     let (mut named, mut pointers, mut bound) = (HashMap::new(), HashMap::new(), BTreeSet::new());
     let mut moved: HashMap<u32, u32> = HashMap::new();
     let mut at = HEADER;
@@ -35,7 +35,7 @@ pub fn assign_set(words: &mut [u32], set: u32, names: &BTreeSet<String>) {
                     names.iter().position(|known| known == name)
                 };
                 if let Some(place) = place(id).or_else(|| place(pointers.get(pointer)?)) {
-                    moved.insert(*id, place as u32);
+                    moved.insert(*id, first + place as u32);
                 }
             }
             _ => {}
