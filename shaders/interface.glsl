@@ -181,7 +181,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     float delta_s;                     // Seconds since the frame before; 0 in the first.
     uint frame_index;                  // Frames drawn before this one. Stays while nothing moves.
     vec4 mouse_px;                     // Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
-    mat4 clip_from_world_before;       // clip_from_world of the frame before; in the first frame the same as now.
+    mat4 clip_from_world_before;       // clip_from_world of the last picture before this one; in the first the same as now.
     mat4 light_clip_from_world[MAX_LIGHT_VIEWS]; // The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
 } frame;
 

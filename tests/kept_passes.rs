@@ -162,3 +162,31 @@ fn temporal_antialiasing_smooths_edges_and_follows_the_camera() {
     assert!(lagging > 1.3 * with, "{lagging} of {with}");
     assert_validated();
 }
+
+#[test]
+fn a_mean_goes_on_while_only_what_follows_the_model_moves() {
+    let mut session = Session::new(model(), settings(&["view.msaa=1", "environment.name=sky", "view.frames=256"]));
+    session.headless.settings_mut().mode = "monte-carlo".to_owned();
+    let truth = session.render();
+    session.set("view.frames=1");
+    session.headless.set_sequence(Sequence { frames: 1, start_s: 0.0, fps: 30.0 });
+    let pass = "//@pass flicker to=picture after=tonemap\n#version 460\n#include \"pass.glsl\"\n\
+        uniform sampler2D picture;\nvoid main() { color = texture(picture, uv) * (frame.time_s < 0.0 ? 0.0 : 1.0); }\n";
+    ready(&session.save("passes/flicker.frag", pass));
+    assert!(session.headless.is_animated().unwrap());
+    let after = |session: &mut Session| {
+        let first = error(&session.render(), &truth);
+        (1..48).for_each(|_| session.headless.draw_next().unwrap());
+        (first, error(&session.headless.render_next().unwrap(), &truth))
+    };
+    let (first, last) = after(&mut session);
+    println!("one frame: {first:.2} levels, 48 frames: {last:.2}");
+    assert!(last < 0.4 * first, "{last} of {first}");
+    // A model that moves begins a new mean with each frame.
+    let hook = "void user_vertex(inout Vertex vertex) {";
+    let moved = format!("{hook}\n    vertex.position *= frame.time_s < 0.0 ? 2.0 : 1.0;");
+    ready(&session.edit("user/vertex.glsl", hook, &moved));
+    let (first, last) = after(&mut session);
+    assert!(last > 0.8 * first, "{last} of {first}");
+    assert_validated();
+}

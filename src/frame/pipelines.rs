@@ -197,9 +197,14 @@ impl PipelineRequest {
         }
     }
 
+    /// The mode that the model is drawn in.
+    fn model_mode(&self) -> u32 {
+        if self.shown_pass.is_some() { interface::MODE_FINAL } else { self.mode }
+    }
+
     pub(crate) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
         let mut specialization = vec![
-            (SPEC_MODE, if self.shown_pass.is_some() { interface::MODE_FINAL } else { self.mode }),
+            (SPEC_MODE, self.model_mode()),
             (SPEC_ALPHA_MODE, material.alpha),
             (SPEC_FEATURES, material.features | self.shared_features),
             (SPEC_LIGHT_COUNT, self.light_count),
@@ -305,6 +310,7 @@ impl PipelineRequest {
     /// The pipeline with which a declared pass draws a material of the model.
     pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
         let mut specialization = vec![
+            (SPEC_MODE, self.model_mode()),
             (SPEC_ALPHA_MODE, material.alpha),
             (SPEC_FEATURES, material.features | self.shared_features),
             (SPEC_LIGHT_COUNT, self.light_count),

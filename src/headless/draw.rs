@@ -53,6 +53,15 @@ impl Headless {
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
+    /// [`Headless::render_next`] without reading the frame back.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn draw_next(&mut self) -> Result<(), HeadlessError> {
+        self.clock = self.sequence.clock(self.clock.frame_index + 1);
+        self.draw()
+    }
+
     /// Renders one frame and waits for it without reading it back: the same work as a frame in a window.
     ///
     /// # Errors

@@ -60,6 +60,7 @@ impl Headless {
             for state in states {
                 let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
                 self.view.restart_passes();
+                self.view.restart_mean();
                 let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
                 for _ in 0..frames {
                     self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;

@@ -154,7 +154,7 @@ blocks! {
         frame_index: uint,
         /// Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
         mouse_px: vec4,
-        /// clip_from_world of the frame before; in the first frame the same as now.
+        /// clip_from_world of the last picture before this one; in the first the same as now.
         clip_from_world_before: mat4,
         /// The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
         light_clip_from_world: [mat4; MAX_LIGHT_VIEWS],

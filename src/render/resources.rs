@@ -7,7 +7,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts};
 use crate::interface::{CLOCK, MOTION};
 use crate::scene::{Measured, MeasuredError};
 use crate::shader::ModeStage;
-use crate::shader::graph::Part;
+use crate::shader::graph::{Input, Part};
 
 use super::brdf::measured::measured_buffer;
 use super::brdf::tables::Tables;
@@ -63,7 +63,11 @@ impl BoundFrame {
         let before = || request.passes.iter().filter(|pass| pass.part == Part::BeforeModel);
         let mut keys = request.model_keys().chain(before().flat_map(|pass| request.pass_keys(pass)));
         let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.uses.reads_frame(&CLOCK));
+        let model_stages: Vec<String> = request.stages().into_iter().collect();
+        let model_stages: Vec<&str> = model_stages.iter().map(String::as_str).collect();
+        let remembers = |input: &Input| matches!(input, Input::Before(_) | Input::Buffer(..));
         keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.uses.reads_frame(&CLOCK)))
+            || self.state.shaders.graph.reads(&model_stages).values().any(remembers)
             || before().any(|pass| pass.moves || compute(&pass.note.stage))
     }
 

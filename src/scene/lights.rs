@@ -31,11 +31,11 @@ pub fn light_count(settings: &LightSettings, in_model: usize) -> usize {
     punctual + usize::from(settings.rect.enabled)
 }
 
-/// World to the clip space of a light that sees the sphere around the model: right, up, and reversed depth, 1 at the near end of
+/// World to the clip space of a light that sees the sphere around the model: two axes across, and reversed depth, 1 at the near end of
 /// the sphere and 0 at its far end. Directional lights see it by a parallel projection, others by a perspective one towards its
 /// center. A light inside the sphere sees at most 143 degrees of it, from a hundredth of its width on.
 pub fn view_of_light(light: &Light, bounds: &Bounds) -> Mat4 {
-    let radius = (1.02 * bounds.radius()).max(f32::MIN_POSITIVE);
+    let radius = (1.02 * bounds.radius()).max(1e-6 * (1.0 + bounds.center().length()));
     let place = Vec4::from(light.position_ws);
     if place.w == 0.0 {
         let axis = (-place.truncate()).normalize_or(Vec3::NEG_Y);
@@ -45,7 +45,8 @@ pub fn view_of_light(light: &Light, bounds: &Bounds) -> Mat4 {
     }
     let offset = bounds.center() - place.truncate();
     let distance = offset.length();
-    let (near, far) = ((distance - radius).max(0.02 * radius), distance + radius);
+    let near = (distance - radius).max(0.02 * radius);
+    let far = (distance + radius).max(1.000_01 * near);
     let tangent = (radius / (distance * distance - radius * radius).max(0.0).sqrt()).min(3.0);
     let view = look_along(offset.normalize_or(Vec3::NEG_Y), place.truncate());
     let across = Vec4::new(tangent.recip(), 0.0, 0.0, 0.0);
@@ -57,7 +58,7 @@ pub fn view_of_light(light: &Light, bounds: &Bounds) -> Mat4 {
 /// Reversed depth: what is farther along the axis has less.
 const NEARER: Vec3 = Vec3::new(1.0, 1.0, -1.0);
 
-/// World space to right, up and the distance along an axis, from a point.
+/// World space to two axes across, and the distance along an axis, from a point.
 fn look_along(axis: Vec3, from: Vec3) -> Mat4 {
     let (right, up) = axis.any_orthonormal_pair();
     Mat4::from_cols(right.extend(0.0), up.extend(0.0), axis.extend(0.0), Vec4::W).transpose()

@@ -16,4 +16,10 @@ vec2 ground_uv(vec3 position_ws) {
     return 0.5 + vec2(offset.x, -offset.y) / ground_width();
 }
 
+// The point of the ground at this place, world space, meters.
+vec3 ground_position(vec2 uv) {
+    vec2 offset = vec2(uv.x - 0.5, 0.5 - uv.y) * ground_width();
+    return vec3(frame.scene_center_ws.x + offset.x, ground_height(), frame.scene_center_ws.z + offset.y);
+}
+
 #endif

@@ -64,7 +64,7 @@ float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, float 
     float depth = max(seen.z / seen.w, 0.0);
     bool is_parallel = view[0].w == 0.0 && view[1].w == 0.0 && view[2].w == 0.0;
     LightDepth of = light_depth(view, is_parallel);
-    float here_m = along_axis_m(of, is_parallel, depth);
+    float here_m = along_axis_m(of, is_parallel, seen.z / seen.w);
     // Blockers lie within the cone towards the light, up to the front of the model.
     float reach = clamp(angle * (here_m - along_axis_m(of, is_parallel, 1.0)) * per_meter, 0.0, 0.1 * (high.x - low.x));
     vec2 blockers = vec2(0.0);

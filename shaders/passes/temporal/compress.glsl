@@ -10,9 +10,10 @@ vec3 compress(vec3 light) {
     return exposed / (1.0 + max(exposed.r, max(exposed.g, exposed.b)));
 }
 
-// The inverse of `compress`.
+// The inverse of `compress`. Half floats near 1 are 1 / 2048 apart, so light beyond 4096 times white is cut off.
 vec3 expand(vec3 value) {
-    return value / max((1.0 - max(value.r, max(value.g, value.b))) * frame.exposure, 1e-12);
+    vec3 exposed = value / max(1.0 - max(value.r, max(value.g, value.b)), 1.0 / 4096.0);
+    return min(exposed / frame.exposure, frame.largest_value);
 }
 
 #endif

@@ -9,8 +9,11 @@ uniform sampler2D temporal_mean;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float alpha = texelFetch(picture, pixel, 0).a;
+    vec4 newest = texelFetch(picture, pixel, 0);
     vec4 mean = texelFetch(temporal_mean, pixel, 0);
+    // The other pass is off.
+    color = newest;
+    if (mean.a == 0.0) return;
     // The flags in alpha are those of the newest frame.
-    color = vec4(expand(mean.rgb), alpha - coverage_of(alpha) + min(2.0 * mean.a - 1.0, 1.0));
+    color = vec4(expand(mean.rgb), newest.a - coverage_of(newest.a) + min(2.0 * mean.a - 1.0, 1.0));
 }

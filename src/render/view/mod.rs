@@ -233,7 +233,7 @@ impl View {
         let accumulates = frame.state.pipelines.accumulates;
         let drawn = self.drawn.as_ref().filter(|(_, part)| *part == only).map(|(drawn, _)| drawn);
         let unchanged = !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same(frame));
-        let goes_on = accumulates && drawn.is_some_and(|drawn| drawn.is_same_model(frame));
+        let goes_on = accumulates && !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same_model(frame));
         let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
         let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
         if redrawn {

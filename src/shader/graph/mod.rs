@@ -22,6 +22,7 @@ use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
+use crate::interface::VERTEX_BINDINGS;
 pub use textures::Texture;
 use textures::{read_texture, texture_name};
 
@@ -171,7 +172,8 @@ impl Graph {
         for note in notes {
             let stage = &stages[&note.stage];
             let vertex = vertex_of(&note.stage);
-            let has_vertex = snapshot.read(&TreePath::from(vertex.as_str())) != Err(SourceError::Missing);
+            let has_vertex = stage.kind != StageKind::Compute
+                && snapshot.read(&TreePath::from(vertex.as_str())) != Err(SourceError::Missing);
             // It is still to be compiled.
             if has_vertex && !stages.contains_key(&vertex) {
                 continue;
@@ -308,8 +310,10 @@ impl Graph {
     fn makers(&self, input: &Input) -> impl Iterator<Item = usize> {
         let shares = move |pass: &GraphPass| match input {
             Input::Image(name) | Input::Before(name) => pass.name() == name,
+            // Vertex stages only read.
             Input::Buffer(name, _) => {
-                pass.inputs.values().any(|other| matches!(other, Input::Buffer(other, _) if other == name))
+                let mut inputs = pass.inputs.range(..VERTEX_BINDINGS);
+                inputs.any(|(_, other)| matches!(other, Input::Buffer(other, _) if other == name))
             }
             _ => false,
         };

@@ -55,7 +55,10 @@ pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
                 pointers.insert(*id, *to);
             }
             (op::VARIABLE, [pointer, id, ..]) if in_set.contains(id) && at_binding.contains(id) => {
-                block = Some(*id);
+                // Two variables may share a binding.
+                if block.replace(*id).is_some() {
+                    return vec![Range { start: 0, end: usize::MAX }];
+                }
                 structs.extend(pointers.get(pointer).map(|to| (*id, *to)));
             }
             _ => {}

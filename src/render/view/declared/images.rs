@@ -270,18 +270,24 @@ impl Images {
 
     /// The number of the drawing that the image of a pass holds, which no other drawing of a pass has. `None`: it has no image.
     pub(super) fn drawn_at(&self, name: &str) -> Option<u64> {
-        self.passes.get(name).map(|pass| pass.drawing)
+        self.active(name).map(|pass| pass.drawing)
+    }
+
+    /// The images of a pass of this frame. Those that are kept of a pass that is off are not read.
+    fn active(&self, name: &str) -> Option<&PassImages> {
+        let is_active = self.key.passes.iter().any(|pass| pass.name() == name);
+        self.passes.get(name).filter(|_| is_active)
     }
 
     /// The newest image of a pass.
     pub(super) fn current(&self, name: &str) -> Option<&Arc<Image>> {
-        let pass = self.passes.get(name)?;
+        let pass = self.active(name)?;
         pass.images.get(pass.newest)
     }
 
     /// The image of a pass one frame ago.
     pub(super) fn before(&self, name: &str) -> Option<&Arc<Image>> {
-        let pass = self.passes.get(name)?;
+        let pass = self.active(name)?;
         let frames = if pass.is_drawn { pass.images.len() - 1 } else { 0 };
         pass.images.get((pass.newest + frames) % pass.images.len())
     }

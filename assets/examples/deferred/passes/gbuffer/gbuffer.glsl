@@ -1,0 +1,26 @@
+// What the passes of the G-buffer have in common.
+#ifndef PASSES_GBUFFER_GLSL
+#define PASSES_GBUFFER_GLSL
+
+#include "interface.glsl"
+#include "common/fragment.glsl"
+#include "common/math.glsl"
+#include "material/antialiasing.glsl"
+#include "material/material.glsl"
+#include "user.glsl"
+
+// Materials with parameters that the G-buffer has no room for. Their pixels are 0, and stay as the model's own pass draws them.
+const uint FORWARD_FEATURES = FEATURE_UNLIT | FEATURE_CLEARCOAT | FEATURE_ANISOTROPY | FEATURE_SHEEN | FEATURE_SPECULAR
+    | FEATURE_IRIDESCENCE | FEATURE_TRANSMISSION | FEATURE_DIFFUSE_TRANSMISSION | FEATURE_SPECULAR_GLOSSINESS | FEATURE_CONDUCTOR;
+bool is_deferred() { return ALPHA_MODE != ALPHA_BLEND && (FEATURES & FORWARD_FEATURES) == 0u; }
+
+// The surface that pbr.frag lights, before complete_surface.
+Surface gbuffer_surface(Fragment f) {
+    Surface s = make_surface(f, safe_normalize(f.to_eye_ws, vec3(0.0, 0.0, 1.0)));
+    user_surface(s);
+    antialias_specular(s);
+    if (ALPHA_MODE == ALPHA_MASK && s.coverage < material.alpha_cutoff) discard;
+    return s;
+}
+
+#endif
