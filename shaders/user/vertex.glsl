@@ -6,7 +6,8 @@
 #include "user/params.glsl"
 
 // A vertex of the mesh before its transform to world space: object space, meters. Change its position, normal, tangent,
-// texture coordinates or color here. draw.world_from_object leads to world space; frame.time_s makes the picture move.
+// texture coordinates (uv0, uv1) or color here. draw.world_from_object leads to world space; frame.time_s makes the picture
+// move.
 //
 // A new position needs a new normal. A height h along the normal n tilts n by the height's gradient g in object space:
 //

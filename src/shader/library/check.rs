@@ -1,11 +1,12 @@
 //! `specula check`: finds all errors in a tree that can be found without a device.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
 use super::{Change, Library, Update};
 use crate::shader::compile::StageKind;
+use crate::shader::compile::include::files_of;
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::{Diagnostic, unique};
 use crate::shader::source::TreePath;
@@ -28,17 +29,17 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let rest: Vec<TreePath> =
         library.source().list().into_iter().filter(|path| is_ours(path) && !known.contains(path)).collect();
     let compiler = library.compiler();
-    // A file that only stages of one kind include may use what only that kind has, as gl_VertexIndex or barrier().
-    let users = |path: &TreePath| {
-        library.set().into_iter().flat_map(|set| set.stages.values()).filter({
-            let path = path.clone();
-            move |stage| stage.dependencies.contains(&path)
-        })
-    };
-    let kind_of = |path: &TreePath| {
-        let mut kinds = users(path).map(|stage| stage.kind);
-        let first = kinds.next().unwrap_or(StageKind::Fragment);
-        if kinds.all(|kind| kind == first) { first } else { StageKind::Fragment }
+    // A file that only stages of one kind include may use what only that kind has, as gl_VertexIndex or barrier(). The includes
+    // are those in the texts, since a stage with an error has not compiled.
+    let mut kinds: BTreeMap<TreePath, Vec<StageKind>> = BTreeMap::new();
+    for stage in library.stages() {
+        for file in files_of(&snapshot, stage) {
+            kinds.entry(file).or_default().extend(StageKind::of(stage));
+        }
+    }
+    let kind_of = |path: &TreePath| match kinds.get(path).map(Vec::as_slice) {
+        Some([first, others @ ..]) if others.iter().all(|kind| kind == first) => *first,
+        _ => StageKind::Fragment,
     };
     let found: Vec<Diagnostic> = rest
         .par_iter()
@@ -66,6 +67,18 @@ mod tests {
 
     use super::*;
     use crate::shader::{Compiler, Source};
+
+    #[test]
+    fn an_error_elsewhere_does_not_hide_the_kind_of_a_library() {
+        let source = Source::memory([
+            ("a.vert", "#version 460\n#include \"vertex.glsl\"\nvoid main() { gl_Position = place(); }\n"),
+            ("vertex.glsl", "vec4 place() { return vec4(gl_VertexIndex); }\n"),
+            ("b.frag", "#version 460\nvoid main() { nope; }\n"),
+        ]);
+        let mut library = Library::new(source, Arc::new(Compiler::new().unwrap()), &["a.vert", "b.frag"]);
+        let lines: Vec<String> = check(&mut library).iter().map(Diagnostic::one_line).collect();
+        assert!(lines.len() == 1 && lines[0].starts_with("b.frag:2:15: error: 'nope'"), "{lines:#?}");
+    }
 
     #[test]
     fn libraries_must_stand_alone() {
