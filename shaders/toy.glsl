@@ -28,7 +28,7 @@ vec4 iDate;                    // year, month from 0, day, seconds: the clock st
 float iChannelTime[4];
 const float iSampleRate = 44100.0;
 
-// What glslViewer and the Book of Shaders call them.
+// The same under the names of glslViewer and the Book of Shaders.
 #define u_time iTime
 #define u_delta iTimeDelta
 #define u_frame iFrame

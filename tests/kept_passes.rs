@@ -1,4 +1,4 @@
-//! What passes keep between frames: images that would be the same again, and means over time.
+//! Passes keep between frames: images that would be the same again, and means over time.
 
 mod support;
 

@@ -1,4 +1,4 @@
-// What the stages that draw the model have in common: a vertex in world space, as the fragment stages read it.
+// Shared by the stages that draw the model: a vertex in world space, as the fragment stages read it.
 #ifndef COMMON_VERTEX_GLSL
 #define COMMON_VERTEX_GLSL
 

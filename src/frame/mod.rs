@@ -4,6 +4,7 @@
 //! shaders or resources.
 
 mod baked;
+mod formats;
 mod pipelines;
 mod scene;
 pub mod stages;
@@ -14,8 +15,10 @@ use std::sync::Arc;
 
 pub(crate) use baked::BakeStage;
 pub use baked::{EnvironmentKey, TablesKey};
-pub use pipelines::{MaterialVariant, PipelineRequest, TargetFormat};
-pub(crate) use pipelines::{Pass, PipelineKey, pass_format};
+pub use formats::TargetFormat;
+pub(crate) use formats::pass_format;
+pub use pipelines::{MaterialVariant, PipelineRequest};
+pub(crate) use pipelines::{Pass, PipelineKey};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 

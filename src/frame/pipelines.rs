@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Scene;
+use super::formats::{MEAN_FORMAT, TargetFormat, pass_format};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
     self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
@@ -11,7 +12,6 @@ use crate::interface::{
 };
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings, Tonemap};
-use crate::shader::annotation::pass::PassFormat;
 use crate::shader::graph::{FULL_SCREEN, Input, MODEL, Part};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, ModeStage, ShaderSet, values};
 
@@ -24,32 +24,6 @@ pub struct MaterialVariant {
     pub features: u32,
     /// Kind of primitive.
     pub class: PrimitiveClass,
-}
-
-/// Format of the HDR target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TargetFormat {
-    /// Format of the HDR color target.
-    pub color: vk::Format,
-    /// Samples per pixel.
-    pub samples: u32,
-}
-
-impl TargetFormat {
-    /// Half floats: precise enough for a picture, at half the bandwidth.
-    pub fn half(samples: u32) -> Self {
-        Self { color: vk::Format::R16G16B16A16_SFLOAT, samples }
-    }
-
-    /// Full floats, so that readback returns exactly what the shader wrote.
-    pub fn full(samples: u32) -> Self {
-        Self { color: vk::Format::R32G32B32A32_SFLOAT, samples }
-    }
-
-    /// Whether the target holds half floats, in which values beyond 65504 overflow.
-    pub fn is_half(self) -> bool {
-        self.color == vk::Format::R16G16B16A16_SFLOAT
-    }
 }
 
 /// Everything that selects the pipelines of a picture.
@@ -352,22 +326,6 @@ impl PipelineRequest {
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         let passes = self.passes.iter().flat_map(|pass| self.pass_keys(pass));
         self.model_keys().chain([self.tonemap_key()]).chain(passes)
-    }
-}
-
-/// Format of the mean of an accumulating mode.
-pub(crate) const MEAN_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-
-/// Vulkan's name of a format.
-pub(crate) fn pass_format(format: PassFormat) -> vk::Format {
-    match format {
-        PassFormat::Rgba16f => vk::Format::R16G16B16A16_SFLOAT,
-        PassFormat::Rgba32f => vk::Format::R32G32B32A32_SFLOAT,
-        PassFormat::Rgba8 => vk::Format::R8G8B8A8_UNORM,
-        PassFormat::Rg16f => vk::Format::R16G16_SFLOAT,
-        PassFormat::Rg32f => vk::Format::R32G32_SFLOAT,
-        PassFormat::R16f => vk::Format::R16_SFLOAT,
-        PassFormat::R32f => vk::Format::R32_SFLOAT,
     }
 }
 

@@ -9,7 +9,7 @@ const LARGEST: u32 = 256;
 /// The table as an image of `size * size` times `size` pixels.
 ///
 /// # Errors
-/// What is wrong, with the line if there is one.
+/// A fault of the file, with the line if there is one.
 pub fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
     let text = std::str::from_utf8(bytes).map_err(|_| "is no text".to_owned())?;
     let (mut size, mut values) = (None, Vec::new());

@@ -1,4 +1,4 @@
-//! What a tree declares and this device cannot have, each with its line.
+//! Errors about declarations that this device cannot have, each with its line.
 
 use std::io::Cursor;
 

@@ -3,6 +3,7 @@
 //! [`Resources`] holds all device objects, and binds a [`FrameState`](crate::frame::FrameState) to them once none is missing. A
 //! [`View`] draws the resulting [`BoundFrame`].
 
+mod bound_frame;
 mod brdf;
 pub(crate) mod compute;
 mod environment;
@@ -11,12 +12,13 @@ mod resources;
 mod scene;
 mod view;
 
+pub use bound_frame::BoundFrame;
 pub(crate) use brdf::measured::measured_buffer;
 pub use brdf::tables::{Tables, wrong_values};
 pub use environment::bake::{BakeControl, BakeError};
 pub use environment::maps::{BakeReport, GpuEnvironment};
 pub use paths::{TraceError, TraceKey, TraceRequest, Traced};
-pub use resources::{BoundFrame, Missing, ProvideError, Resources, read_measured};
+pub use resources::{Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};
 pub use view::{Capture, Output, PixelAt, Redraw, View};
 pub(crate) use view::{SharedImages, Sources, Uniforms};

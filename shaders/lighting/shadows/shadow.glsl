@@ -109,7 +109,7 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
         float angle = size_m / max(to_light_m, 1e-6);
         return soft_visibility(view, seen, uv, low, low + tile_size, per_meter / seen.w, angle);
     }
-    // What lies behind the model's bounds has a depth below 0.
+    // Points behind the model's bounds have a depth below 0.
     return hard_visibility(uv, max(seen.z / seen.w, 0.0));
 }
 

@@ -5,7 +5,7 @@
 
 // Depth of field of a thin lens (dof_circle.frag), gathered at half the size in two layers, as Hammon 2007, "Practical Post-Process
 // Depth of Field" (GPU Gems 3, chapter 28), and Jimenez 2014, "Next Generation Post Processing in Call of Duty: Advanced Warfare", do.
-// What is behind the focus blurs within its own edges (dof_far_raw.frag). What is in front of it also blurs over what is behind
+// The part behind the focus blurs within its own edges (dof_far_raw.frag). What is in front of it also blurs over what is behind
 // (dof_near_raw.frag).
 //
 // Limits: behind a blurred foreground the picture is guessed from around it; what shows through glass, or in a mirror, is as blurred

@@ -1,4 +1,4 @@
-// What the passes of the depth of field share. depth_of_field.frag tells how they work.
+// Shared by the passes of the depth of field. depth_of_field.frag tells how they work.
 #ifndef LENS_GLSL
 #define LENS_GLSL
 

@@ -15,7 +15,7 @@ use crate::gpu::{
     SetWriter, Use,
 };
 use crate::interface::{Frame, MAX_LIGHT_VIEWS, SET_TASK};
-use crate::render::resources::BoundFrame;
+use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{Dispatch, Instances};
 use crate::shader::graph::{Input, Part};
@@ -236,7 +236,7 @@ impl DeclaredPasses {
         Ok(picture)
     }
 
-    /// What the image of a pass is drawn from in this frame.
+    /// The sources of a pass in this frame.
     fn sources(&self, drawn: &Drawn<'_>, pass: &Arc<GraphPass>, index: usize) -> Option<DrawnFrom> {
         let keys = drawn.frame.state.pipelines.pass_keys(pass);
         let pipelines: Vec<_> = keys.iter().filter_map(|key| drawn.frame.pipelines.get(key)).collect();

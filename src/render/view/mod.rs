@@ -18,7 +18,7 @@ pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use declared::{Blocks, DeclaredPasses, Drawn, Given};
 
-use super::resources::BoundFrame;
+use super::bound_frame::BoundFrame;
 use crate::frame::TargetFormat;
 use crate::gpu::{
     Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,

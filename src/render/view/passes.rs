@@ -10,7 +10,7 @@ use super::targets::Targets;
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
 use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
-use crate::render::resources::BoundFrame;
+use crate::render::bound_frame::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
 
 /// The arguments of all passes of a frame.

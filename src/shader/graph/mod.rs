@@ -92,7 +92,7 @@ pub struct GraphPass {
     /// Invocations of a workgroup, of a compute pass.
     pub local_size: [u32; 3],
     /// Whether its image may change while the settings do not: it reads the previous frame, a buffer, or the clock in the block
-    /// `Pass`. The clock in the block `Frame` does not count: [`crate::gpu::Uses`] tells which pipelines read that.
+    /// `Pass`. The clock in the block `Frame` does not count: the compiled modules tell which pipelines read that.
     pub moves: bool,
 }
 
@@ -241,7 +241,7 @@ impl Graph {
         self.textures.values().map(|texture| texture.path.as_str())
     }
 
-    /// What the stages of a pipeline read that come with Specula.
+    /// The inputs of a pipeline's stages, as far as they come with Specula.
     pub fn reads(&self, stages: &[&str]) -> Inputs {
         let inputs = stages.iter().filter_map(|stage| self.readers.get(*stage));
         inputs.flatten().map(|(binding, input)| (*binding, input.clone())).collect()

@@ -101,7 +101,7 @@ mod tests {
     use crate::shader::source::snapshot::Snapshot;
     use crate::shader::spirv::optimize;
 
-    /// What a stage with these functions uses of a block with members at 0, 64, 76 and 80.
+    /// The bytes that a stage with these functions uses of a block with members at 0, 64, 76 and 80.
     #[track_caller]
     fn used(functions: &str) -> Vec<(usize, usize)> {
         let text = format!(

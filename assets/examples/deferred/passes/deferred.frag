@@ -22,7 +22,7 @@ uniform Deferred {
     float deferred_views;      //@ui "G-buffer in the corners, part of the picture" 0..0.5 = 0.28
 };
 
-// What the view in a corner shows at `at`, 0..1 across the view, linear RGB. Upper left: base color; upper right: normal; lower
+// Color of the view in a corner at `at`, 0..1 across the view, linear RGB. Upper left: base color; upper right: normal; lower
 // left: occlusion, roughness and metallic as red, green and blue; lower right: distance, white at the front of the model's bounds
 // and black a third of their radius behind the center.
 vec3 view_at(bvec2 corner, vec2 at) {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::reuse::DrawnFrom;
 use crate::frame::pass_format;
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
-use crate::render::resources::BoundFrame;
+use crate::render::bound_frame::BoundFrame;
 use crate::scene::mips;
 use crate::shader::GraphPass;
 use crate::shader::graph::{Graph, Input, Part};
@@ -38,7 +38,7 @@ struct PassImages {
     is_drawn: bool,
     /// The number of the drawing that the newest image holds; 0: it was cleared.
     drawing: u64,
-    /// What that was drawn from, if the next frame may keep it.
+    /// The sources of that drawing, if the next frame may keep it.
     from: Option<DrawnFrom>,
 }
 

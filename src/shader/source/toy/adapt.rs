@@ -2,7 +2,7 @@
 
 use crate::shader::source::text::{find_word, lines};
 
-/// What a line `#iChannel0 "..."` names. The form is that of editors' Shadertoy extensions.
+/// The source of a channel, as a line `#iChannel0 "..."` names it. The form is that of editors' Shadertoy extensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Channel {
     /// The image of this file, one frame ago.
@@ -79,7 +79,7 @@ pub(super) fn adapted(text: &str, pass: &str) -> String {
             None => out += &with_own_names(line, has_main),
         }
     }
-    // What all files share needs no main.
+    // The file that all others share needs no main.
     if pass != COMMON && !is_shadertoy && !has_main {
         out += "\n#error expected void mainImage(out vec4 fragColor, in vec2 fragCoord), or void main()\n";
     }

@@ -1,4 +1,4 @@
-// What the passes of the G-buffer have in common.
+// Shared by the passes of the G-buffer.
 #ifndef PASSES_GBUFFER_GLSL
 #define PASSES_GBUFFER_GLSL
 

@@ -1,4 +1,4 @@
-// What the passes of the fluid have in common: sliders, the time step, and the two emitters.
+// Shared by the passes of the fluid: sliders, the time step, and the two emitters.
 //
 // The fluid fills the picture. Velocities are in texels of the velocity image a second: x to the right, y down.
 #ifndef PASSES_FLUID_GLSL

@@ -1,0 +1,46 @@
+//! The formats of the images that a picture is drawn to.
+
+use crate::gpu::vk;
+use crate::shader::annotation::pass::PassFormat;
+
+/// Format of the HDR target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetFormat {
+    /// Format of the HDR color target.
+    pub color: vk::Format,
+    /// Samples per pixel.
+    pub samples: u32,
+}
+
+impl TargetFormat {
+    /// Half floats: precise enough for a picture, at half the bandwidth.
+    pub fn half(samples: u32) -> Self {
+        Self { color: vk::Format::R16G16B16A16_SFLOAT, samples }
+    }
+
+    /// Full floats, so that readback returns exactly what the shader wrote.
+    pub fn full(samples: u32) -> Self {
+        Self { color: vk::Format::R32G32B32A32_SFLOAT, samples }
+    }
+
+    /// Whether the target holds half floats, in which values beyond 65504 overflow.
+    pub fn is_half(self) -> bool {
+        self.color == vk::Format::R16G16B16A16_SFLOAT
+    }
+}
+
+/// Format of the mean of an accumulating mode.
+pub(crate) const MEAN_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// Vulkan's name of the format of a pass.
+pub(crate) fn pass_format(format: PassFormat) -> vk::Format {
+    match format {
+        PassFormat::Rgba16f => vk::Format::R16G16B16A16_SFLOAT,
+        PassFormat::Rgba32f => vk::Format::R32G32B32A32_SFLOAT,
+        PassFormat::Rgba8 => vk::Format::R8G8B8A8_UNORM,
+        PassFormat::Rg16f => vk::Format::R16G16_SFLOAT,
+        PassFormat::Rg32f => vk::Format::R32G32_SFLOAT,
+        PassFormat::R16f => vk::Format::R16_SFLOAT,
+        PassFormat::R32f => vk::Format::R32_SFLOAT,
+    }
+}

@@ -1,0 +1,85 @@
+//! A picture together with the device objects that draw it.
+
+use std::sync::Arc;
+
+use super::brdf::tables::Tables;
+use super::environment::maps::GpuEnvironment;
+use super::paths::Traced;
+use super::scene::GpuScene;
+use crate::frame::FrameState;
+use crate::gpu::Buffer;
+use crate::interface::{CLOCK, MOTION};
+use crate::pipeline::BoundPipelines;
+use crate::shader::graph::{Input, Part};
+
+/// A [`FrameState`] with all the pipelines and resources that draw it. It keeps them alive after newer ones replace them.
+#[derive(Clone)]
+pub struct BoundFrame {
+    /// The picture.
+    pub state: Arc<FrameState>,
+    pub(super) pipelines: BoundPipelines,
+    pub(super) scene: Option<Arc<GpuScene>>,
+    pub(super) tables: Arc<Tables>,
+    pub(super) environment: Arc<GpuEnvironment>,
+    pub(super) measured: Arc<Buffer>,
+    pub(super) traced: Arc<Traced>,
+}
+
+impl BoundFrame {
+    /// The same pipelines and resources with another state. It must need the same ones: only camera, lights or time may differ.
+    #[must_use]
+    pub fn with_state(&self, state: FrameState) -> Self {
+        Self { state: Arc::new(state), ..self.clone() }
+    }
+
+    /// Whether both draw the same picture, bit for bit.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.has_same_resources(other) && self.state.is_same(&other.state)
+    }
+
+    /// Whether the model looks the same in both: nothing differs but the time, and what passes after the model make of it. A
+    /// mean of many frames then goes on.
+    pub(super) fn is_same_model(&self, other: &Self) -> bool {
+        match self.has_animated_model() {
+            true => self.is_same(other),
+            false => self.has_same_resources(other) && self.state.is_same_model(&other.state),
+        }
+    }
+
+    /// Whether the picture changes while the time runs: a stage reads the clock, or a pass what it drew before.
+    pub fn is_animated(&self) -> bool {
+        self.pipelines.read_frame(&CLOCK) || self.state.pipelines.passes.iter().any(|pass| pass.moves)
+    }
+
+    /// Whether the model, or a pass that it reads, changes while the time runs.
+    fn has_animated_model(&self) -> bool {
+        let request = &self.state.pipelines;
+        let before = || request.passes.iter().filter(|pass| pass.part == Part::BeforeModel);
+        let mut keys = request.model_keys().chain(before().flat_map(|pass| request.pass_keys(pass)));
+        let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.uses.reads_frame(&CLOCK));
+        let remembers = |input: &Input| matches!(input, Input::Before(_) | Input::Buffer(..));
+        let mut reads = request.model_keys().map(|key| self.state.shaders.graph.reads(&key.pass.stages()));
+        keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.uses.reads_frame(&CLOCK)))
+            || reads.any(|inputs| inputs.values().any(remembers))
+            || before().any(|pass| pass.moves || compute(&pass.note.stage))
+    }
+
+    /// Whether a stage asks how the camera has moved since the frame before.
+    pub(super) fn reads_motion(&self) -> bool {
+        self.pipelines.read_frame(std::slice::from_ref(&MOTION))
+    }
+
+    fn has_same_resources(&self, other: &Self) -> bool {
+        let same_scene = match (&self.scene, &other.scene) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        same_scene
+            && self.pipelines.is_same(&other.pipelines)
+            && Arc::ptr_eq(&self.tables, &other.tables)
+            && Arc::ptr_eq(&self.environment, &other.environment)
+            && Arc::ptr_eq(&self.measured, &other.measured)
+            && Arc::ptr_eq(&self.traced, &other.traced)
+    }
+}
