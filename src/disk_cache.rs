@@ -1,4 +1,6 @@
-//! Baked results on disk. An entry is named by a hash of all its inputs, so it is never stale.
+//! Results on disk that take long to make: what bakes compute, and the driver's pipelines.
+//!
+//! A baked entry is named by a hash of all its inputs, so it is never stale.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,9 +8,15 @@ use std::time::SystemTime;
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
+use crate::gpu::PipelineStore;
+
 /// Size of the cache in bytes. Beyond it, the oldest entries are deleted.
 const MOST_BYTES: u64 = 512 << 20;
+const BAKED: &str = "baked";
+const PIPELINES: &str = "pipelines";
 const ENDING: &str = "bake";
+/// Bytes of a driver's pipelines. A session of some hundred edits collects more; the next one then starts without any.
+const MOST_PIPELINE_BYTES: usize = 32 << 20;
 /// Bytes of the checksum at the end of a file: XXH3 of all before it.
 const CHECKSUM: u64 = 8;
 
@@ -23,13 +31,13 @@ pub(crate) fn key(parts: &[&[u8]]) -> String {
     format!("{:032x}", hasher.digest128())
 }
 
-/// `baked` in `$SPECULA_CACHE` or in `specula` of the user's cache folder. `None` without a home folder.
-fn folder() -> Option<PathBuf> {
+/// The folder `name` in `$SPECULA_CACHE` or in `specula` of the user's cache folder. `None` without a home folder.
+fn folder(name: &str) -> Option<PathBuf> {
     let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let base = set("SPECULA_CACHE")
         .or_else(|| set("XDG_CACHE_HOME").map(|p| p.join("specula")))
         .or_else(|| set("HOME").map(|p| p.join(".cache/specula")))?;
-    Some(base.join("baked"))
+    Some(base.join(name))
 }
 
 fn file(folder: &Path, key: &str) -> PathBuf {
@@ -38,13 +46,13 @@ fn file(folder: &Path, key: &str) -> PathBuf {
 
 /// Loads an entry of exactly `size` bytes. An entry of another size, or with a wrong checksum, counts as absent.
 pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
-    let path = file(&folder()?, key);
-    let metadata = std::fs::metadata(&path).ok()?;
-    if metadata.len() != size + CHECKSUM {
-        return None;
-    }
-    let mut bytes = std::fs::read(path).ok()?;
-    let end = usize::try_from(size).ok().filter(|end| bytes.len() == end + CHECKSUM as usize)?;
+    contains(key, size).then(|| read(&folder(BAKED)?, key)).flatten().filter(|bytes| bytes.len() as u64 == size)
+}
+
+/// An entry of any size, if its checksum is right.
+fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
+    let mut bytes = std::fs::read(file(folder, key)).ok()?;
+    let end = bytes.len().checked_sub(CHECKSUM as usize)?;
     let is_whole = bytes[end..] == xxh3_64(&bytes[..end]).to_le_bytes();
     bytes.truncate(end);
     is_whole.then_some(bytes)
@@ -52,15 +60,33 @@ pub(crate) fn load(key: &str, size: u64) -> Option<Vec<u8>> {
 
 /// Whether [`load`] will find an entry of this size, unless it is damaged.
 pub(crate) fn contains(key: &str, size: u64) -> bool {
-    let metadata = folder().and_then(|folder| std::fs::metadata(file(&folder, key)).ok());
+    let metadata = folder(BAKED).and_then(|folder| std::fs::metadata(file(&folder, key)).ok());
     metadata.is_some_and(|metadata| metadata.len() == size + CHECKSUM)
 }
 
 /// Stores an entry. A failure costs only time, so it is traced and not reported.
 pub(crate) fn store(key: &str, bytes: &[u8]) {
-    let Some(folder) = folder() else { return };
+    store_in(BAKED, key, bytes);
+}
+
+fn store_in(folder_name: &str, key: &str, bytes: &[u8]) {
+    let Some(folder) = folder(folder_name) else { return };
     if let Err(error) = write(&folder, key, bytes) {
         tracing::debug!("{}: the cache was not written: {error}", folder.display());
+    }
+}
+
+/// Stores a driver's pipelines as one entry for each driver.
+pub struct Pipelines;
+
+impl PipelineStore for Pipelines {
+    fn load(&self, driver: &[u8]) -> Option<Vec<u8>> {
+        read(&folder(PIPELINES)?, &key(&[driver]))
+    }
+
+    fn store(&self, driver: &[u8], data: &[u8]) {
+        let data = if data.len() > MOST_PIPELINE_BYTES { &[] } else { data };
+        store_in(PIPELINES, &key(&[driver]), data);
     }
 }
 

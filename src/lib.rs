@@ -27,7 +27,7 @@
 pub mod app;
 mod cancel;
 pub mod comparison;
-mod disk_cache;
+pub mod disk_cache;
 pub mod events;
 pub mod file_kind;
 pub mod frame;

@@ -12,7 +12,7 @@ use std::sync::mpsc::channel;
 
 use notify::{RecursiveMode, Watcher as _};
 use support::open_image;
-use support::process::{PATIENCE, finish, run};
+use support::process::{PATIENCE, finish, run, specula};
 use tempfile::TempDir;
 
 /// Arguments of a `render` that is fast.
@@ -149,4 +149,29 @@ fn an_ignored_signal_stays_ignored() {
     running.reload(true);
     running.signal("TERM");
     assert_eq!(running.end().signal(), Some(15));
+}
+
+#[test]
+fn the_drivers_pipelines_outlive_the_process_and_a_damaged_file_is_ignored() {
+    let directory = tempfile::tempdir().unwrap();
+    let cache = directory.path().join("cache");
+    let picture = || {
+        let mut command = specula(directory.path());
+        command.env("SPECULA_CACHE", &cache).args(QUICK).args(["--validate", "--out", "out.png"]);
+        finish(&mut command).expect(0, &[]);
+        open_image(&directory.path().join("out.png"))
+    };
+    let first = picture();
+    let pipelines = cache.join("pipelines");
+    let [name] = &names_in(&pipelines)[..] else { panic!("not one file: {:?}", names_in(&pipelines)) };
+    let whole = fs::read(pipelines.join(name)).unwrap();
+    assert!(picture() == first, "pipelines of the run before look different");
+
+    let mut flipped = whole.clone();
+    flipped[10] ^= 4;
+    for damaged in [&whole[..whole.len() / 2], &flipped, b""] {
+        fs::write(pipelines.join(name), damaged).unwrap();
+        assert!(picture() == first, "a damaged file looks different");
+        assert!(fs::read(pipelines.join(name)).unwrap() == whole, "the damaged file is still there");
+    }
 }

@@ -22,6 +22,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
+use crate::disk_cache;
 use crate::gpu::{Gpu, GpuError, GpuOptions, SetLayouts};
 use crate::recovery::Recorder;
 use crate::scene::LoadOptions;
@@ -150,6 +151,7 @@ impl App {
             device: options.device.clone(),
             validation: options.validation,
             display: Some(display.as_raw()),
+            pipelines: Some(&disk_cache::Pipelines),
         })?;
         let layouts = SetLayouts::new(&gpu)?;
         let screen = Screen::new(&gpu, &layouts, &window)?;

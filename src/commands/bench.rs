@@ -54,7 +54,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     args.common.take_shader(&mut args.model);
-    let gpu = args.common.gpu()?;
+    let gpu = args.common.gpu_without_pipelines()?;
     let compiler = compiler()?;
     compiler.warm();
     let mut result = match args.what {

@@ -20,6 +20,7 @@ pub use commands::slot::Submission;
 pub use commands::upload::upload_images;
 pub use device::adapter::{AdapterInfo, adapters};
 pub use device::gpu::{Gpu, GpuOptions};
+pub use device::pipeline_cache::PipelineStore;
 pub use error::GpuError;
 pub use heap::{return_freed_memory, return_large_blocks};
 pub use resources::buffer::{Buffer, Memory};

@@ -129,7 +129,7 @@ impl Opened {
         if let Some(message) = unknown_names(&settings.shader, &shaders).or(misfit) {
             return Err(Failure::Usage(message));
         }
-        let gpu = open_gpu(options.device.as_deref(), options.validate, TIMEOUT_S)?;
+        let gpu = open_gpu(options.device.as_deref(), options.validate, TIMEOUT_S, None)?;
         let bench = Bench::new(&gpu, &shaders, &settings)?;
         Ok(Self { gpu, shaders, settings, bench })
     }

@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage("split-sum needs an environment: use --env studio, sky, furnace or a file".into()));
     }
 
-    let gpu = open_gpu(args.options.device.as_deref(), args.options.validate, TIMEOUT_S)?;
+    let gpu = open_gpu(args.options.device.as_deref(), args.options.validate, TIMEOUT_S, None)?;
     let model = scene::open(Some(Path::new(MODEL)), &LoadOptions::default());
     let model = model.map_err(|e| Failure::Input(e.to_string()))?;
     let tree = source(args.options.shaders.as_deref())?;

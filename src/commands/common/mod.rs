@@ -8,7 +8,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use clap::ValueEnum;
-use specula::gpu::{Gpu, GpuOptions, watchdog};
+use specula::disk_cache::Pipelines;
+use specula::gpu::{Gpu, GpuOptions, PipelineStore, watchdog};
 use specula::message::{self, did_you_mean};
 use specula::picture;
 use specula::scene::{self, LoadOptions, Model};
@@ -180,7 +181,12 @@ impl Common {
 
     /// Opens the device without a window.
     pub fn gpu(&self) -> Result<Arc<Gpu>, Failure> {
-        open_gpu(self.device.as_deref(), self.validate, self.timeout)
+        open_gpu(self.device.as_deref(), self.validate, self.timeout, Some(&Pipelines))
+    }
+
+    /// The same without the pipelines of earlier runs, so that every pipeline takes the time that an edit takes.
+    pub fn gpu_without_pipelines(&self) -> Result<Arc<Gpu>, Failure> {
+        open_gpu(self.device.as_deref(), self.validate, self.timeout, None)
     }
 
     /// Whether events are printed.
@@ -239,9 +245,14 @@ pub fn source(directory: Option<&Path>) -> Result<Source, Failure> {
 
 /// Opens the device whose name contains `name`, or the best one, without a window. If the device hangs, the process ends after
 /// `timeout_s` seconds.
-pub fn open_gpu(name: Option<&str>, validation: bool, timeout_s: u32) -> Result<Arc<Gpu>, Failure> {
+pub fn open_gpu(
+    name: Option<&str>,
+    validation: bool,
+    timeout_s: u32,
+    pipelines: Option<&'static dyn PipelineStore>,
+) -> Result<Arc<Gpu>, Failure> {
     watchdog::end_after(Duration::from_secs(timeout_s.into()), end_of_device);
-    Ok(Gpu::new(&GpuOptions { device: name.map(str::to_owned), validation, display: None })?)
+    Ok(Gpu::new(&GpuOptions { device: name.map(str::to_owned), validation, display: None, pipelines })?)
 }
 
 /// Ends the process: every wait for the device, and every destructor that waits, would hang.

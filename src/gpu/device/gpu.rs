@@ -9,6 +9,7 @@ use raw_window_handle::RawDisplayHandle;
 
 use super::adapter::{AdapterInfo, choose, graphics_family};
 use super::instance::Instance;
+use super::pipeline_cache::{PipelineCache, PipelineStore};
 use crate::gpu::GpuError;
 use crate::gpu::error::Context;
 
@@ -21,6 +22,8 @@ pub struct GpuOptions {
     pub validation: bool,
     /// The display that windows will open on; `None` is headless.
     pub display: Option<RawDisplayHandle>,
+    /// Keeps compiled pipelines between runs; `None` forgets them.
+    pub pipelines: Option<&'static dyn PipelineStore>,
 }
 
 /// An open device with one graphics queue and one allocator.
@@ -35,7 +38,7 @@ pub struct Gpu {
     pub(in crate::gpu) surface: Option<khr::surface::Instance>,
     pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
     pub(in crate::gpu) debug_utils: Option<ext::debug_utils::Device>,
-    pub(in crate::gpu) pipeline_cache: vk::PipelineCache,
+    pub(in crate::gpu) pipeline_cache: PipelineCache,
     pub(in crate::gpu) properties: vk::PhysicalDeviceProperties,
     timestamp_bits: u32,
     pub(in crate::gpu) anisotropy: bool,
@@ -77,9 +80,7 @@ impl Gpu {
             allocation_sizes: gpu_allocator::AllocationSizes::default(),
         })
         .map_err(|error| GpuError::allocation(&error, "creating the memory allocator"))?;
-        // SAFETY: the device is live; an empty cache needs no data.
-        let pipeline_cache = unsafe { device.create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None) }
-            .context("creating the pipeline cache")?;
+        let pipeline_cache = PipelineCache::new(&device, &properties, options.pipelines)?;
         let gpu = Self {
             surface: with_window.then(|| khr::surface::Instance::new(&instance.entry, &instance.raw)),
             swapchain: with_window.then(|| khr::swapchain::Device::new(&instance.raw, &device)),
@@ -101,7 +102,7 @@ impl Gpu {
         };
         gpu.name(gpu.device.handle(), "device");
         gpu.name(queue, "graphics queue");
-        gpu.name(pipeline_cache, "pipeline cache");
+        gpu.name(gpu.pipeline_cache.raw, "pipeline cache");
         Ok(Arc::new(gpu))
     }
 
@@ -179,7 +180,7 @@ impl Gpu {
 impl Drop for Gpu {
     fn drop(&mut self) {
         // SAFETY: pipelines hold an `Arc<Gpu>`, so none is being created with the cache.
-        unsafe { self.device.destroy_pipeline_cache(self.pipeline_cache, None) };
+        unsafe { self.pipeline_cache.end(&self.device) };
     }
 }
 

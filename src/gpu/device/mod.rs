@@ -4,4 +4,5 @@ pub(in crate::gpu) mod adapter;
 pub(in crate::gpu) mod debug;
 pub(in crate::gpu) mod gpu;
 pub(in crate::gpu) mod instance;
+pub(in crate::gpu) mod pipeline_cache;
 pub(in crate::gpu) mod validation;

@@ -196,19 +196,37 @@ impl Pipeline {
             .dynamic_state(&dynamic)
             .layout(desc.layout.pipeline)
             .push_next(&mut rendering);
+        let mut parts = [vk::PipelineCreationFeedback::default(); 2];
+        let mut whole = vk::PipelineCreationFeedback::default();
+        let mut feedback = vk::PipelineCreationFeedbackCreateInfo::default()
+            .pipeline_creation_feedback(&mut whole)
+            .pipeline_stage_creation_feedbacks(&mut parts);
+        let info = info.push_next(&mut feedback);
         let name = desc.name();
         let _watched = Watched::begin(|| format!("compiling the pipeline `{name}`"));
         fault::delay("pipeline-hang-ms");
         // SAFETY: every pointer in `info` lives until the call returns; modules and layout are live. The cache is internally
         // synchronized.
-        let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None) };
+        let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache.raw, &[info], None) };
         let raw = made.map_err(|(_, result)| result).context_of("creating the pipeline", &format!("`{name}`"))?[0];
         gpu.name(raw, &name);
+        trace_feedback(&name, whole, &parts);
         let names_loops = desc.vertex.names_loops || desc.fragment.names_loops;
         let loops = names_loops.then(|| layouts.blank.loops.clone());
         let uses = desc.vertex.uses.union(&desc.fragment.uses);
         Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, loops, raw }))
     }
+}
+
+/// Traces how long the driver took for a pipeline as a whole and for each of its stages, where it says so.
+fn trace_feedback(name: &str, whole: vk::PipelineCreationFeedback, stages: &[vk::PipelineCreationFeedback]) {
+    let ms = |feedback: &vk::PipelineCreationFeedback| {
+        let is_valid = feedback.flags.contains(vk::PipelineCreationFeedbackFlags::VALID);
+        is_valid.then(|| feedback.duration as f64 * 1e-6)
+    };
+    let is_cached = whole.flags.contains(vk::PipelineCreationFeedbackFlags::APPLICATION_PIPELINE_CACHE_HIT);
+    let stages: Vec<_> = stages.iter().map(ms).collect();
+    tracing::debug!("`{name}`: {:?} ms, stages {stages:?} ms, cached: {is_cached}", ms(&whole));
 }
 
 /// A compute pipeline.
@@ -248,7 +266,7 @@ impl ComputePipeline {
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(raw_layout);
         // SAFETY: every pointer in `info` lives until the call returns; module and layout are live. The cache is internally
         // synchronized.
-        let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipeline_cache, &[info], None) };
+        let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipeline_cache.raw, &[info], None) };
         let name = format!("`{}`", module.name);
         let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
         gpu.name(raw, &module.name);
