@@ -1,3 +1,4 @@
+//@pass mean "Mean" to=mean doc="The mean of all frames since the picture last changed, in modes that accumulate"
 #version 460
 #include "interface.glsl"
 

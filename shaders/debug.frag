@@ -1,3 +1,4 @@
+//@pass debug "Debug modes" draw=model to=picture instead=model doc="One channel, term or check in place of the picture"
 #version 460
 #include "interface.glsl"
 #include "brdf/energy/multiscatter.glsl"

@@ -1,3 +1,4 @@
+//@pass paths "Random paths" draw=model to=picture instead=model doc="The model in the light of random paths"
 #version 460
 #include "interface.glsl"
 #include "brdf/energy/multiscatter.glsl"

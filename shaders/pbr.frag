@@ -1,3 +1,4 @@
+//@pass model "Model" draw=model to=picture doc="The model in the light of lamps and environment"
 #version 460
 #include "interface.glsl"
 #include "brdf/energy/multiscatter.glsl"

@@ -1,3 +1,4 @@
+//@pass background "Background" draw=background to=picture doc="The environment where the model does not cover it"
 #version 460
 #include "interface.glsl"
 #include "common/pixel.glsl"

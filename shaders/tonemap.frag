@@ -1,3 +1,4 @@
+//@pass tonemap "Tone map" to=display doc="Exposure, tone map and encoding: scene color to the picture"
 #version 460
 #include "interface.glsl"
 #include "common/bloom.glsl"

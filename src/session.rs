@@ -106,7 +106,8 @@ impl Session {
 
 /// A message about the first switch of a pass that the tree does not declare.
 fn unknown_pass(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
-    let known: Vec<&str> = shaders.graph.passes.iter().map(|pass| pass.name()).collect();
+    let known: Vec<&str> =
+        shaders.graph.passes.iter().filter(|pass| pass.has_switch()).map(|pass| pass.name()).collect();
     let unknown = settings.passes.keys().find(|name| !known.contains(&name.as_str()))?;
     let hint = did_you_mean(unknown, known.iter().copied());
     let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };

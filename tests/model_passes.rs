@@ -194,7 +194,7 @@ fn the_model_reads_buffers_that_passes_write() {
     assert!((found[2] - plain[2] - 5.0).abs() < 0.02, "{plain:?} {found:?}");
     let told = lines(failed(&session.save("passes/fill.comp", &fill.replace("counts[4]", "counts[8]")))).join("\n");
     assert!(
-        told.contains("fill.comp:1:1: error: the buffer `Counts` has 32 bytes here and 16 in `debug.frag`"),
+        told.contains("fill.comp:1:1: error: the buffer `Counts` has 32 bytes here and 16 in the pass `debug`"),
         "{told}"
     );
     assert_validated();
@@ -277,6 +277,105 @@ fn the_sky_reads_its_own_image_in_an_accumulating_mode() {
 }
 
 #[test]
+fn a_pass_adds_to_the_model_in_the_picture() {
+    let mut session = Session::new(
+        load(&glb::model(&glb::sphere(16, 32), &glb::gray())),
+        settings(&["view.msaa=4", "view.background=none", "environment.name=none"]),
+    );
+    let plain = session.render();
+    let is_empty = |capture: &Capture, x: u32| capture.raw_at(x, SIZE.1 / 2).unwrap()[3] == 0.0;
+    let edge = (0..SIZE.0).find(|x| !is_empty(&plain, *x)).expect("the sphere is in the picture");
+    assert!(edge > 4, "there is room beside the sphere");
+    // Three copies: one to the left, the model's own place, one to the right.
+    let red = |options: &str| model_pass(&format!("red to=picture {options}"), "color = vec4(4.0, 0.0, 0.0, 1.0);");
+    ready(&session.save("passes/red.frag", &red("instances=3")));
+    ready(&session.save("passes/red.vert", &SHIFTED.replace("0.6 *", "0.9 *")));
+    let three = session.render();
+    let of = |capture: &Capture, x: f32| capture.raw_at((SIZE.0 as f32 * x) as u32, SIZE.1 / 2).unwrap();
+    assert_eq!(of(&three, 0.05)[..3], [4.0, 0.0, 0.0], "a copy beside the model");
+    assert_eq!(of(&three, 0.5), of(&plain, 0.5), "the copy inside of the model is hidden by it");
+    let pixels = || (0..SIZE.0).map(|x| three.raw_at(x, SIZE.1 / 2).unwrap());
+    assert!(pixels().any(|pixel| pixel[0] > 0.5 && pixel[3] < 0.9 && pixel[3] > 0.1), "its edges are multisampled");
+    // The inside of a sphere that surrounds the model.
+    let hull = SHIFTED.replace("0.2 *", "1.3 *").replace("0.6 *", "0.0 *");
+    ready(&session.save("passes/red.vert", &hull));
+    ready(&session.save("passes/red.frag", &red("cull=front")));
+    let outline = session.render();
+    assert_eq!(of(&outline, 0.5), of(&plain, 0.5), "faces towards the camera are left out");
+    assert_eq!(outline.raw_at(edge - 2, SIZE.1 / 2).unwrap()[..3], [4.0, 0.0, 0.0]);
+    ready(&session.save("passes/red.frag", &red("cull=back")));
+    assert_eq!(of(&session.render(), 0.5)[..3], [4.0, 0.0, 0.0]);
+    // Blended with what is there.
+    let half = red("cull=back blend").replace("vec4(4.0, 0.0, 0.0, 1.0)", "vec4(2.0, 0.0, 0.0, 0.5)");
+    ready(&session.save("passes/red.frag", &half));
+    let (blended, below) = (of(&session.render(), 0.5), of(&plain, 0.5));
+    for axis in 0..3 {
+        let expected = 0.5 * below[axis] + [2.0, 0.0, 0.0][axis];
+        assert!((blended[axis] - expected).abs() < 0.01, "{blended:?} over {below:?}");
+    }
+    // A debug mode shows the model alone.
+    let mode = session.mode("geometric-normal");
+    session.headless.settings_mut().mode = "final".to_owned();
+    std::fs::remove_file(session.tree.path("passes/red.frag")).unwrap();
+    ready(&session.changed(&["passes/red.frag"]));
+    assert_same(&plain, &session.render(), "the pass is gone");
+    assert_same(&mode, &session.mode("geometric-normal"), "a mode without the pass");
+    assert_validated();
+}
+
+/// Model, background, mean and tone map are passes of the tree like all others.
+#[test]
+fn the_picture_is_declared_in_the_tree() {
+    let mut session = Session::new(
+        load(&glb::model(&glb::sphere(16, 32), &glb::gray())),
+        settings(&["view.msaa=1", "view.background=env", "environment.name=furnace"]),
+    );
+    let plain = session.render();
+    session.set("passes.model=false");
+    let empty = session.render();
+    assert_eq!(at(&empty, 0.5), at(&plain, 0.02), "the background alone");
+    session.set("passes.background=false");
+    assert_eq!(at(&session.render(), 0.5)[3], 0.0, "nothing at all");
+    session.set("passes.model=true");
+    session.set("passes.background=true");
+    assert_same(&plain, &session.render(), "all on again");
+    // A stage of one's own for a mode.
+    let mine = model_pass("mine to=picture instead=model", "color = vec4(float(MODE), 0.0, 7.0, 1.0);");
+    ready(&session.save("mine.frag", &mine));
+    let modes = session.tree.read("debug/modes.glsl");
+    let declared = |stage: &str| {
+        let note = format!("//@mode mine \"Mine\" encode=data stage={stage}\nconst uint MODE_MINE = 1000u;\n");
+        modes.replace("// Your modes:", &format!("{note}\n// Your modes:"))
+    };
+    ready(&session.save("debug/modes.glsl", &declared("mine")));
+    assert_same(&plain, &session.render(), "a stage for a mode leaves the picture alone");
+    assert_eq!(at(&session.mode("mine"), 0.5)[..3], [1000.0, 0.0, 7.0]);
+    session.headless.settings_mut().mode = "final".to_owned();
+    passes_check(&session);
+    let told = lines(failed(&session.save("debug/modes.glsl", &declared("mein")))).join("\n");
+    assert!(
+        told.contains("no pass draws the model with mein.frag for the mode `mine`. Did you mean `mine`?"),
+        "{told}"
+    );
+    session.save("debug/modes.glsl", &declared("mine"));
+    // Without one of the steps there is no picture, so the last one stays.
+    for (file, pass) in [("tonemap.frag", "tonemap"), ("pbr.frag", "model")] {
+        let text = session.tree.read(file);
+        let unsaid = text.replace("//@pass", "// pass");
+        let told = lines(failed(&session.save(file, &unsaid))).join("\n");
+        assert!(told.contains(&format!("no stage of the tree declares the pass `{pass}`")), "{told}");
+        assert_same(&plain, &session.render(), file);
+        session.save(file, &text);
+        std::fs::remove_file(session.tree.path(file)).unwrap();
+        failed(&session.changed(&[file]));
+        assert_same(&plain, &session.render(), file);
+        session.save(file, &text);
+    }
+    assert_same(&plain, &session.render(), "repaired");
+    assert_validated();
+}
+
+#[test]
 fn contradictions_have_their_line() {
     let mut session = sphere();
     let before = session.render();
@@ -285,14 +384,34 @@ fn contradictions_have_their_line() {
         (
             "passes/mine.frag",
             text.replace("draw=model", "draw=teapot"),
-            "mine.frag:1:19: error: expected draw=model, found `teapot`",
+            "mine.frag:1:19: error: expected draw=model or draw=background, found `teapot`",
         ),
         ("passes/mine.frag", text.replace("draw=model", "instances=0"), "expected instances=lights, or instances=1 to"),
         (
             "passes/mine.frag",
-            text.replace("mine draw", "mine to=picture draw"),
-            "a pass with draw=model draws to an image of its own",
+            text.replace("mine draw", "mine to=picture size=1/2 draw"),
+            "the picture has its own size and format",
         ),
+        ("passes/mine.frag", text.replace("draw=model", "cull=front"), "only a pass that draws the model has cull="),
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=model blend"),
+            "only a pass that draws the model to the picture has blend",
+        ),
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=model to=display"),
+            "only the pass `tonemap` has to=display",
+        ),
+        ("passes/mine.frag", text.replace("draw=model", "draw=model to=mean"), "there is another pass with to=mean"),
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=model to=picture instead=sky"),
+            "expected instead=model, found `sky`",
+        ),
+        ("passes/mine.frag", text.replace("draw=model", "instead=model"), "draws the model as well"),
+        ("passes/mine.frag", text.replace("draw=model", "draw=background"), "draw=background to=picture"),
+        ("passes/model.frag", text.replace("mine", "model"), "pass or texture `model` is given twice"),
         (
             "passes/mine.comp",
             "//@pass mine draw=model\n#version 460\nlayout(local_size_x = 1) in;\nvoid main() {}\n".into(),

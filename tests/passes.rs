@@ -258,7 +258,10 @@ fn errors_have_their_line_and_the_picture_stays() {
         (use_it("show"), "show.frag:4:19: error: a pass cannot read the image that it draws, `show`"),
         (show("").replace("to=picture", "size=0"), "show.frag:1:19: error: expected size=1, size=1/2 to size=1/64"),
         (show("").replace("to=picture", "format=rgb8"), "show.frag:1:21: error: expected one of the formats rgba16f"),
-        (show("").replace("to=picture", "to=glow"), "show.frag:1:17: error: expected to=picture, found `glow`"),
+        (
+            show("").replace("to=picture", "to=glow"),
+            "show.frag:1:17: error: expected to=picture, to=mean or to=display, found `glow`",
+        ),
         (show("").replace("to=picture", "after=nobody"), "show.frag:1:1: error: no pass is named `nobody`."),
         (show("").replace("show to", "picture to"), "show.frag:1:9: error: `picture` names what Specula draws"),
         (show("").replace("show to", "glow to"), "error: pass or texture `glow` is given twice"),
@@ -394,7 +397,7 @@ fn what_ships_is_off_and_changes_what_it_says() {
     let mut session = Session::new(support::model("shader-ball"), settings(&[]));
     let plain = session.render();
     let shipped: Vec<_> = session.headless.shaders().graph.passes.clone();
-    for pass in shipped.iter().filter(|pass| pass.note.to_picture) {
+    for pass in shipped.iter().filter(|pass| pass.note.to_picture() && !pass.note.is_drawn_with_model()) {
         assert!(!pass.note.on || pass.note.when.is_some(), "{} is on", pass.name());
         let switch = pass.note.when.clone().unwrap_or_else(|| format!("passes.{}", pass.name()));
         session.set(&format!("{switch}=true"));

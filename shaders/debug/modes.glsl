@@ -2,7 +2,7 @@
 //
 // To add a mode, write an annotation and a constant here, compute its value in `your_mode` below, and save.
 //
-//   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [stage=pbr|debug|paths]
+//   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [stage=debug]
 //         [tonemap] [accumulate] [traces] [through] [draw=lines|layers] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
@@ -15,7 +15,8 @@
 //   tonemap   the value is light, so exposure and tone map apply
 //   accumulate  the value is an estimate from frame.sample_count random paths per pixel; the renderer shows the mean
 //             of all frames since the picture changed, and frame.sample_index counts these frames
-//   stage     the file that computes the value: pbr.frag (the picture alone), debug.frag (default) or paths.frag
+//   stage     the stage that computes the value: debug.frag (default), paths.frag, pbr.frag (the picture alone), or one of
+//             your own, which says //@pass NAME draw=model to=picture instead=model
 //   traces    rays can be traced through the model (paths/bvh.glsl), in paths.frag
 //   through   transmissive surfaces show the final picture behind them instead of this mode
 //   key       letter key that selects the mode in the window

@@ -119,11 +119,7 @@ fn build_choices(
         PipelineRequest { materials: all_materials, target: TargetFormat::half(4), light_count: 0, ..plain.clone() };
     build(&every_material, &args.common.source()?.name(), 1, "some kind of material".to_owned());
     for mode in &shaders.modes {
-        // The image of a pass needs that pass, whether it is on or off.
-        let of_mode = match &mode.pass {
-            Some(_) => request(&Settings { mode: mode.slug.clone(), ..settings.clone() }),
-            None => plain.with_mode(mode, settings.view.tonemap),
-        };
+        let of_mode = request(&Settings { mode: mode.slug.clone(), ..settings.clone() });
         build(&of_mode, &mode.file, mode.line, format!("mode {}", mode.slug));
     }
     for constant in &shaders.constants {

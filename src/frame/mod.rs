@@ -17,8 +17,8 @@ pub(crate) use baked::BakeStage;
 pub use baked::{EnvironmentKey, TablesKey};
 pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
+pub(crate) use pipelines::PipelineKey;
 pub use pipelines::{MaterialVariant, PipelineRequest};
-pub(crate) use pipelines::{Pass, PipelineKey};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 

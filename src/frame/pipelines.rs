@@ -11,9 +11,10 @@ use crate::interface::{
     UNROLLED_LIGHTS,
 };
 use crate::scene::{has_exact_sun, light_count};
-use crate::settings::{LightSource, Settings, Tonemap};
-use crate::shader::graph::{FULL_SCREEN, Input, MODEL, Part};
-use crate::shader::{DrawAs, Encode, GraphPass, Mode, ModeStage, ShaderSet, values};
+use crate::settings::{LightSource, Settings};
+use crate::shader::annotation::pass::{MODEL, Target};
+use crate::shader::graph::{Graph, Input, Part};
+use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -47,12 +48,10 @@ pub struct PipelineRequest {
     pub shared_features: u32,
     /// Number of lights, if there are few enough to unroll the loop over them; otherwise 0.
     pub light_count: u32,
-    /// Whether the environment is visible behind the model.
-    pub sky: bool,
     /// Whether the picture is the mean of all frames since it last changed.
     pub accumulates: bool,
-    /// The stage that computes the mode.
-    pub stage: ModeStage,
+    /// Path of the fragment stage that computes the mode.
+    pub stage: String,
     /// Whether the mode traces rays through the model.
     pub traces: bool,
     /// Whether transmissive surfaces look up the final picture behind them instead of this mode's.
@@ -68,41 +67,50 @@ pub struct PipelineRequest {
 /// One pipeline of a [`PipelineRequest`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
-    pub(crate) pass: Pass,
+    /// The pass that it draws. It determines the stages.
+    pub(crate) pass: Arc<GraphPass>,
+    pub(crate) raster: Raster,
+    pub(crate) class: PrimitiveClass,
     pub(crate) format: vk::Format,
     pub(crate) samples: u32,
     pub(crate) specialization: Specialization,
 }
 
-/// The pass that a pipeline belongs to. It determines the stages.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Pass {
-    /// The model: `pbr.vert`, and the fragment stage of the mode.
-    Model { raster: Raster, class: PrimitiveClass, fragment: ModeStage },
-    /// The environment behind it: `sky.vert`, `sky.frag`.
-    Sky,
-    /// Adds a frame to the mean: `fullscreen.vert`, `average.frag`.
-    Average,
-    /// HDR to picture: `fullscreen.vert`, `tonemap.frag`.
-    Tonemap,
-    /// A declared pass over a whole image: `fullscreen.vert` or its own vertex stage, and its own stage.
-    FullScreen(Arc<GraphPass>),
-    /// A declared pass that draws the model: `pbr.vert` or its own vertex stage, and its own stage.
-    DeclaredModel(Arc<GraphPass>, PrimitiveClass),
-}
-
-/// The stages of a picture that every debug mode has, too.
-const SHARED_STAGES: [&str; 3] = [FULL_SCREEN, "tonemap.frag", "average.frag"];
-
-impl Pass {
+impl PipelineKey {
     /// Paths of the vertex and fragment stages.
     pub(crate) fn stages(&self) -> [&str; 2] {
-        match self {
-            Self::FullScreen(pass) | Self::DeclaredModel(pass, _) => [pass.vertex_stage(), &pass.note.stage],
-            Self::Model { fragment, .. } => [MODEL, fragment.path()],
-            Self::Sky => ["sky.vert", "sky.frag"],
-            Self::Average => [FULL_SCREEN, "average.frag"],
-            Self::Tonemap => [FULL_SCREEN, "tonemap.frag"],
+        [&self.pass.vertex, &self.pass.note.stage]
+    }
+}
+
+/// The properties of the settings that select the passes of a picture.
+struct Selection<'a> {
+    graph: &'a Graph,
+    settings: &'a Settings,
+    /// Path of the stage that draws the model.
+    stage: &'a str,
+    shows_light: bool,
+    shows_background: bool,
+    /// Whether transmissive surfaces look up the final picture in this mode.
+    through: bool,
+    accumulates: bool,
+}
+
+impl Selection<'_> {
+    /// Whether a pass is one of the built-in steps of this picture. Without `draws_model`, the model and the background are not.
+    fn is_base(&self, pass: &GraphPass, draws_model: bool) -> bool {
+        let wanted = |name: &str| self.graph.pass(name).is_none_or(|pass| pass.is_wanted(&self.settings.passes));
+        match pass.part {
+            Part::Tonemap => true,
+            Part::Mean => self.accumulates,
+            Part::Model if pass.note.background => {
+                draws_model && self.shows_background && pass.is_wanted(&self.settings.passes)
+            }
+            Part::Model if pass.note.is_built_in() => {
+                let draws = pass.note.stage == self.stage || (self.through && pass.name() == MODEL);
+                draws_model && draws && wanted(MODEL)
+            }
+            _ => false,
         }
     }
 }
@@ -113,23 +121,36 @@ impl PipelineRequest {
         let mode = find_mode(shaders, &settings.mode);
         let shown_pass = mode.and_then(|mode| mode.pass.clone());
         let shows_light = mode.is_some_and(|m| m.tonemap) || shown_pass.is_some();
-        let stage = mode.map(|m| m.stage).unwrap_or_default();
+        let graph = &shaders.graph;
+        let stage = mode.map(|m| m.stage.clone()).unwrap_or_default();
         let constants = values::constants(&settings.shader, &shaders.constants);
         // An image that is looked at needs what it reads, although the model needs none of it.
-        let looked_at = shown_pass.as_deref().map(|name| shaders.graph.needed_by(name)).unwrap_or_default();
+        let looked_at = shown_pass.as_deref().map(|name| graph.needed_by(name)).unwrap_or_default();
         let is_on = |index: usize| {
-            let pass = &shaders.graph.passes[index];
+            let pass = &graph.passes[index];
             let is_used = looked_at.contains(&index) || is_switched_on(pass, shaders, &constants);
             is_used && pass.is_wanted(&settings.passes)
         };
-        let mut readers = vec![MODEL, stage.path()];
-        readers.extend(SHARED_STAGES);
-        // Transmissive surfaces may show the picture behind them in a debug mode.
-        readers.extend(["sky.vert", "sky.frag"].into_iter().filter(|_| shows_light));
-        readers.extend(mode.is_some_and(|m| m.through).then_some(ModeStage::Picture.path()));
-        let passes = shaders.graph.active(&readers, shows_light, is_on, shown_pass.as_deref());
-        let reads = |input: &Input| passes.iter().any(|pass| pass.inputs.values().any(|other| other == input));
-        let draws_model = !passes.iter().any(|pass| pass.covers()) || reads(&Input::Picture) || reads(&Input::Depth);
+        let selection = Selection {
+            graph,
+            settings,
+            stage: &stage,
+            shows_light,
+            shows_background: shows_light && settings.environment.is_shown(&settings.view),
+            through: mode.is_some_and(|m| m.through),
+            accumulates: mode.is_some_and(|m| m.accumulate),
+        };
+        let active = |draws_model: bool| {
+            let is_base = |pass: &GraphPass| selection.is_base(pass, draws_model);
+            graph.active(is_base, selection.shows_light, is_on, shown_pass.as_deref())
+        };
+        let mut passes = active(true);
+        let own = || passes.iter().filter(|pass| !pass.note.is_built_in());
+        let reads = |input: &Input| own().any(|pass| pass.inputs.values().any(|other| other == input));
+        let draws_model = !own().any(|pass| pass.covers()) || reads(&Input::Picture) || reads(&Input::Depth);
+        if !draws_model {
+            passes = active(false);
+        }
         let lights = light_count(&settings.lights, scene.map_or(0, |scene| scene.model().lights.len()));
         Self {
             mode: mode.map_or(0, |m| m.id),
@@ -141,33 +162,13 @@ impl PipelineRequest {
             materials: scene.map(|scene| scene.materials().clone()).unwrap_or_default(),
             shared_features: shared_features(settings),
             light_count: if lights <= UNROLLED_LIGHTS { lights as u32 } else { 0 },
-            sky: settings.environment.is_shown(&settings.view) && shows_light && draws_model,
-            accumulates: mode.is_some_and(|m| m.accumulate),
-            stage,
+            accumulates: selection.accumulates,
             traces: mode.is_some_and(|m| m.traces),
-            through: mode.is_some_and(|m| m.through),
+            through: selection.through,
+            stage,
             passes,
             draws_model,
             shown_pass,
-        }
-    }
-
-    /// The same request for another mode, with `tonemap` if that mode shows light.
-    pub fn with_mode(&self, mode: &Mode, tonemap: Tonemap) -> Self {
-        Self {
-            mode: mode.id,
-            tonemap: if mode.tonemap { tonemap as u32 } else { TONEMAP_OFF },
-            encode: mode.encode.id(),
-            draw: mode.draw,
-            sky: self.sky && mode.tonemap,
-            accumulates: mode.accumulate,
-            stage: mode.stage,
-            traces: mode.traces,
-            through: mode.through,
-            passes: if mode.tonemap { self.passes.clone() } else { Vec::new() },
-            draws_model: self.draws_model || !mode.tonemap,
-            shown_pass: None,
-            ..self.clone()
         }
     }
 
@@ -176,14 +177,18 @@ impl PipelineRequest {
         if self.shown_pass.is_some() { interface::MODE_FINAL } else { self.mode }
     }
 
-    pub(crate) fn model_key(&self, material: MaterialVariant) -> PipelineKey {
-        let mut specialization = vec![
-            (SPEC_MODE, self.model_mode()),
-            (SPEC_ALPHA_MODE, material.alpha),
-            (SPEC_FEATURES, material.features | self.shared_features),
-            (SPEC_LIGHT_COUNT, self.light_count),
-        ];
-        specialization.extend_from_slice(&self.constants);
+    /// The pass that draws the model in this mode. `None` if the model is not drawn, or its stage is still to be compiled.
+    pub(crate) fn model_pass(&self) -> Option<&Arc<GraphPass>> {
+        let draws = |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.is_built_in();
+        self.passes.iter().filter(draws).find(|pass| pass.note.stage == self.stage)
+    }
+
+    fn pass_of(&self, is_wanted: impl Fn(&GraphPass) -> bool) -> Option<&Arc<GraphPass>> {
+        self.passes.iter().find(|pass| is_wanted(pass))
+    }
+
+    /// The pipeline that draws a material of the model.
+    pub(crate) fn model_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
         let raster = match self.draw {
             DrawAs::Lines => Raster::Lines,
             DrawAs::Layers => Raster::Added,
@@ -194,12 +199,30 @@ impl PipelineRequest {
             },
             DrawAs::Surfaces => Raster::Solid,
         };
+        self.model_pass().map(|pass| self.key_with_model(pass, material, raster))
+    }
+
+    /// A pipeline that draws a material to the multisampled picture.
+    fn key_with_model(&self, pass: &Arc<GraphPass>, material: MaterialVariant, raster: Raster) -> PipelineKey {
         PipelineKey {
-            pass: Pass::Model { raster, class: material.class, fragment: self.stage },
+            pass: pass.clone(),
+            raster,
+            class: material.class,
             format: self.target.color,
             samples: self.target.samples,
-            specialization,
+            specialization: self.material_constants(material),
         }
+    }
+
+    /// The specialization of stages that draw a material.
+    fn material_constants(&self, material: MaterialVariant) -> Specialization {
+        let own = [
+            (SPEC_MODE, self.model_mode()),
+            (SPEC_ALPHA_MODE, material.alpha),
+            (SPEC_FEATURES, material.features | self.shared_features),
+            (SPEC_LIGHT_COUNT, self.light_count),
+        ];
+        own.iter().chain(&self.constants).copied().collect()
     }
 
     /// Random paths per pixel in each frame of an accumulating mode. Tracing the model takes so long on a software device that a
@@ -208,71 +231,95 @@ impl PipelineRequest {
         if self.traces { 1 } else { 8 }
     }
 
+    /// Whether the model is drawn as in the final picture.
+    fn is_picture_stage(&self) -> bool {
+        self.model_pass().is_some_and(|pass| pass.name() == MODEL)
+    }
+
+    /// Whether the mode follows random paths, and so needs what they trace.
+    pub(crate) fn follows_paths(&self) -> bool {
+        self.stage == PATHS_STAGE
+    }
+
     /// Whether the mode shows all light: the final picture, or the same by random paths.
     fn shows_picture(&self) -> bool {
-        self.stage == ModeStage::Picture || (self.traces && self.tonemap != TONEMAP_OFF)
+        self.is_picture_stage() || (self.traces && self.tonemap != TONEMAP_OFF)
     }
 
     /// Whether opaque surfaces are drawn twice: as in the final picture for transmissive surfaces to look up, and as this mode
     /// shows them.
     pub(crate) fn draws_opaque_twice(&self) -> bool {
         let transmissive = self.materials.iter().any(|material| is_transmissive(*material));
-        transmissive && self.through && self.stage != ModeStage::Picture
+        transmissive && self.through && !self.is_picture_stage()
     }
 
     /// The pipeline that draws a material in the pass `behind`.
-    pub(crate) fn behind_key(&self, material: MaterialVariant) -> PipelineKey {
+    pub(crate) fn behind_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
         let is_opaque = material.alpha != interface::ALPHA_BLEND && !is_transmissive(material);
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
-        let picture =
-            Self { mode: interface::MODE_FINAL, draw: DrawAs::Surfaces, stage: ModeStage::Picture, ..self.clone() };
-        picture.model_key(material)
+        let pass = self.pass_of(|pass| pass.name() == MODEL)?;
+        let picture = Self { mode: interface::MODE_FINAL, ..self.clone() };
+        Some(picture.key_with_model(pass, material, Raster::Solid))
     }
 
-    pub(crate) fn tonemap_key(&self) -> PipelineKey {
-        let mut specialization = vec![(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, self.encode)];
-        specialization.extend_from_slice(&self.constants);
-        PipelineKey { pass: Pass::Tonemap, format: Swapchain::FORMAT, samples: 1, specialization }
+    /// The pipeline of a pass that draws a full-screen triangle.
+    fn triangle_key(
+        &self,
+        pass: &Arc<GraphPass>,
+        raster: Raster,
+        format: vk::Format,
+        specialization: Specialization,
+    ) -> PipelineKey {
+        let class = PrimitiveClass::Triangles;
+        PipelineKey { pass: pass.clone(), raster, class, format, samples: 1, specialization }
     }
 
-    /// The pipeline of the environment behind the model, if it is visible.
-    pub(crate) fn sky_key(&self) -> Option<PipelineKey> {
-        self.sky.then(|| PipelineKey {
-            pass: Pass::Sky,
-            format: self.target.color,
-            samples: self.target.samples,
-            specialization: [&[(SPEC_FEATURES, self.shared_features)], &*self.constants].concat(),
+    /// The pipeline of the tone map.
+    pub(crate) fn tonemap_key(&self) -> Option<PipelineKey> {
+        let pass = self.pass_of(|pass| pass.part == Part::Tonemap)?;
+        let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, self.encode)];
+        let specialization = own.iter().chain(&self.constants).copied().collect();
+        Some(self.triangle_key(pass, Raster::Solid, Swapchain::FORMAT, specialization))
+    }
+
+    /// The pipelines of what lies behind the model.
+    pub(crate) fn background_keys(&self) -> impl Iterator<Item = PipelineKey> {
+        let passes = self.passes.iter().filter(|pass| pass.part == Part::Model && pass.note.background);
+        passes.map(|pass| {
+            let specialization = [&[(SPEC_FEATURES, self.shared_features)], &*self.constants].concat();
+            let key = self.triangle_key(pass, Raster::Solid, self.target.color, specialization);
+            PipelineKey { samples: self.target.samples, ..key }
         })
+    }
+
+    /// The passes that draw the model to the picture besides the model's own.
+    pub(crate) fn added_passes(&self) -> impl Iterator<Item = &Arc<GraphPass>> {
+        self.passes.iter().filter(|pass| pass.adds_to_model())
     }
 
     /// The pipeline that adds a frame to the mean, in an accumulating mode.
     pub(crate) fn average_key(&self) -> Option<PipelineKey> {
-        self.accumulates.then(|| PipelineKey {
-            pass: Pass::Average,
-            format: MEAN_FORMAT,
-            samples: 1,
-            specialization: Vec::new(),
-        })
+        let pass = self.pass_of(|pass| pass.part == Part::Mean)?;
+        Some(self.triangle_key(pass, Raster::Averaged, MEAN_FORMAT, Vec::new()))
     }
 
-    /// The pipelines of a declared pass: one for each material if it draws the model, none for a compute pass.
+    /// The pipelines of a pass that is none of the built-in steps: one for each material if it draws the model, none for a
+    /// compute pass.
     pub(crate) fn pass_keys(&self, pass: &Arc<GraphPass>) -> Vec<PipelineKey> {
+        if pass.is_compute || pass.note.is_built_in() || pass.note.background {
+            return Vec::new();
+        }
         if pass.note.model.is_some() {
             return self.materials.iter().map(|material| self.model_pass_key(pass, *material)).collect();
         }
-        let key = (!pass.is_compute).then(|| PipelineKey {
-            pass: Pass::FullScreen(pass.clone()),
-            format: match pass.note.to_picture {
-                true if pass.part == Part::Display => Swapchain::FORMAT,
-                true => self.picture_format(),
-                false => pass_format(pass.note.format),
-            },
-            samples: 1,
-            specialization: self.pass_constants(),
-        });
-        key.into_iter().collect()
+        let format = match pass.note.to {
+            Target::Image => pass_format(pass.note.format),
+            _ if pass.part == Part::Display => Swapchain::FORMAT,
+            _ => self.picture_format(),
+        };
+        vec![self.triangle_key(pass, Raster::Solid, format, self.pass_constants())]
     }
 
     /// The specialization of declared passes that cover an image or compute.
@@ -281,20 +328,13 @@ impl PipelineRequest {
         shared.iter().chain(&self.constants).copied().collect()
     }
 
-    /// The pipeline with which a declared pass draws a material of the model.
+    /// The pipeline with which a pass that is not the model's own draws a material of the model.
     pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
-        let mut specialization = vec![
-            (SPEC_MODE, self.model_mode()),
-            (SPEC_ALPHA_MODE, material.alpha),
-            (SPEC_FEATURES, material.features | self.shared_features),
-            (SPEC_LIGHT_COUNT, self.light_count),
-        ];
-        specialization.extend_from_slice(&self.constants);
-        PipelineKey {
-            pass: Pass::DeclaredModel(pass.clone(), material.class),
-            format: pass_format(pass.note.format),
-            samples: 1,
-            specialization,
+        let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
+        let key = self.key_with_model(pass, material, raster);
+        match pass.note.to {
+            Target::Image => PipelineKey { format: pass_format(pass.note.format), samples: 1, ..key },
+            _ => key,
         }
     }
 
@@ -305,10 +345,10 @@ impl PipelineRequest {
 
     /// The stages of the pipelines.
     pub(crate) fn stages(&self) -> BTreeSet<String> {
-        // Without a model the stages of the mode count too: the model is still loading.
-        let model = [MODEL, self.stage.path()].map(str::to_owned).into_iter().filter(|_| self.draws_model);
-        let computes = self.passes.iter().filter(|pass| pass.is_compute).map(|pass| pass.note.stage.clone());
-        self.keys().flat_map(|key| key.pass.stages().map(str::to_owned)).chain(model).chain(computes).collect()
+        // Without a model the stages of the mode count too: the model is still loading. Its stage may be still to be compiled.
+        let model = self.draws_model.then(|| self.stage.clone());
+        let passes = self.passes.iter().flat_map(|pass| [&pass.vertex, &pass.note.stage]).cloned();
+        passes.chain(model).collect()
     }
 
     /// Whether a picture needs stages that are still to be compiled.
@@ -316,16 +356,16 @@ impl PipelineRequest {
         !shaders.pending.is_empty() && self.stages().iter().any(|path| shaders.pending.contains(path))
     }
 
-    /// The pipelines of the model, the sky and the mean.
+    /// The pipelines of the model, of what is drawn with it, and of the mean.
     pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let materials = self.materials.iter().filter(|_| self.draws_model);
-        let model = materials.flat_map(|m| [self.model_key(*m), self.behind_key(*m)]);
-        model.chain(self.sky_key()).chain(self.average_key())
+        let model = self.materials.iter().flat_map(|m| [self.model_key(*m), self.behind_key(*m)]).flatten();
+        let added = self.added_passes().flat_map(|pass| self.pass_keys(pass));
+        model.chain(added).chain(self.background_keys()).chain(self.average_key())
     }
 
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let passes = self.passes.iter().flat_map(|pass| self.pass_keys(pass));
-        self.model_keys().chain([self.tonemap_key()]).chain(passes)
+        let others = self.passes.iter().filter(|pass| pass.part != Part::Model);
+        self.model_keys().chain(self.tonemap_key()).chain(others.flat_map(|pass| self.pass_keys(pass)))
     }
 }
 

@@ -1,17 +1,6 @@
-//! The stages that a shader tree must have, as paths from its root.
+//! The stages that a shader tree must have besides those of its passes, as paths from its root.
 
-/// The stages that draw a picture.
-const GRAPHICS: [&str; 9] = [
-    "pbr.vert",
-    "pbr.frag",
-    "debug.frag",
-    "paths.frag",
-    "sky.vert",
-    "sky.frag",
-    "fullscreen.vert",
-    "tonemap.frag",
-    "average.frag",
-];
+use crate::shader::graph::FULL_SCREEN;
 
 pub(crate) const CUBE: &str = "ibl/cube.comp";
 pub(crate) const DOWNSAMPLE: &str = "ibl/downsample.comp";
@@ -30,13 +19,13 @@ pub(crate) const TABLE_STAGES: [&str; 3] = ["ibl/dfg.comp", "ibl/diffuse_albedo.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
 
-/// The stages that a shader tree must have.
+/// The stages that a shader tree must have besides those of its passes.
 pub fn stages() -> Vec<&'static str> {
     let baked = TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES);
-    GRAPHICS.into_iter().chain(baked).collect()
+    std::iter::once(FULL_SCREEN).chain(baked).collect()
 }
 
-/// [`stages`] and [`MEASURE_STAGES`]: every file of the built-in tree with a `main()`.
+/// [`stages`] and [`MEASURE_STAGES`].
 pub fn all_stages() -> Vec<&'static str> {
     stages().into_iter().chain(MEASURE_STAGES).collect()
 }

@@ -33,11 +33,13 @@ fn rounds(gpu: &Gpu, kind: StageKind) -> u32 {
     }
 }
 
-/// The module of a stage, specialized with these constants, with loops that end, optimized.
+/// The module of a stage, specialized with these constants, with loops that end, optimized. `is_on_display`: its color is shown as
+/// it is, after the tone map.
 pub(super) fn shader_module(
     gpu: &Arc<Gpu>,
     stage: &Stage,
     constants: &[(u32, u32)],
+    is_on_display: bool,
 ) -> Result<Arc<ShaderModule>, GpuError> {
     let mut words = stage.specialize(constants);
     let (path, kind) = (stage.path.as_str(), stage.kind);
@@ -48,9 +50,9 @@ pub(super) fn shader_module(
     };
     let buffer = interface::LOOPS[usize::from(kind == StageKind::Compute)];
     let is = |id: u32, value: u32| constants.contains(&(id, value));
-    let mark = match (kind, path) {
-        (StageKind::Vertex | StageKind::Compute, _) => None,
-        (_, "tonemap.frag") => Some(MARK_ON_DISPLAY),
+    let mark = match kind {
+        StageKind::Vertex | StageKind::Compute => None,
+        StageKind::Fragment if is_on_display => Some(MARK_ON_DISPLAY),
         // The blend unit takes alpha for coverage.
         _ if is(SPEC_ALPHA_MODE, ALPHA_BLEND) && is(SPEC_MODE, MODE_FINAL) => None,
         _ => Some(MARK),

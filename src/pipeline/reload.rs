@@ -4,17 +4,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Gpu, SetLayouts};
-use crate::shader::{
-    Change, Compiler, Diagnostic, Library, ModeStage, Report, ShaderSet, Source, StageKind, TreePath, Update,
-};
+use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, StageKind, TreePath, Update};
 
 use super::limits::beyond_limits;
 use super::set::PipelineSet;
 use crate::frame::PipelineRequest;
 use crate::frame::stages::stages;
-
-/// Stages that the first picture does not need: a window starts with the picture, and headless finishes before a mode.
-const LATER_STAGES: [&str; 2] = [ModeStage::Debug.path(), ModeStage::Paths.path()];
 
 /// Compiles a shader tree and builds its pipelines. In the window the worker thread owns it; headless calls it directly.
 pub struct Reloader {
@@ -124,7 +119,7 @@ impl Reloader {
     /// Compiles what a first picture needs, while the model may still be loading. [`Reloader::build`] takes the result. Declared
     /// passes that are off are not needed, unless `with_all_passes`.
     pub fn compile_first_picture(&mut self, with_all_passes: bool) -> Update {
-        self.library.first_picture(&LATER_STAGES, with_all_passes)
+        self.library.first_picture(with_all_passes)
     }
 
     /// Compiles the stages that [`Reloader::update_first`] has left. The set that it returns has the pipelines of the one before.

@@ -7,14 +7,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use rayon::prelude::*;
 
-use crate::frame::{Pass, PipelineKey, PipelineRequest};
+use crate::frame::{PipelineKey, PipelineRequest};
 use crate::gpu::{
-    ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, PrimitiveClass,
-    Raster, SetLayouts, ShaderModule, Specialization,
+    ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, SetLayouts,
+    ShaderModule, Specialization,
 };
 use crate::pipeline::bounds::shader_module;
 use crate::pipeline::textures::PassTextures;
-use crate::shader::graph::{Input, Inputs};
+use crate::shader::graph::{Input, Inputs, Part};
 use crate::shader::{GraphPass, ShaderSet, Stage};
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -158,7 +158,7 @@ impl PipelineSet {
         };
         self.requests.store(before.requests.load(Ordering::SeqCst), Ordering::SeqCst);
         for (key, entry) in &lock(&before.graphics).entries {
-            if key.pass.stages().iter().all(|path| is_same(path)) {
+            if key.stages().iter().all(|path| is_same(path)) {
                 lock(&self.graphics).entries.insert(key.clone(), entry.clone());
             }
         }
@@ -185,7 +185,7 @@ impl PipelineSet {
             if old.0.names_loops() {
                 return;
             }
-            if key.pass.stages().iter().all(|path| is_same(path, &key.specialization)) {
+            if key.stages().iter().all(|path| is_same(path, &key.specialization)) {
                 lock(&self.graphics).entries.insert(key, old);
             }
         });
@@ -216,7 +216,7 @@ impl PipelineSet {
 
     /// Whether a stage of the pipeline is still to be compiled.
     fn is_pending(&self, key: &PipelineKey) -> bool {
-        key.pass.stages().iter().any(|path| self.is_pending_stage(path))
+        key.stages().iter().any(|path| self.is_pending_stage(path))
     }
 
     fn is_pending_stage(&self, path: &str) -> bool {
@@ -245,11 +245,6 @@ impl PipelineSet {
     /// A stage of this generation.
     fn stage(&self, path: &str) -> Result<&Arc<Stage>, GpuError> {
         self.shaders.stages.get(path).ok_or_else(|| GpuError::NoStage(path.to_owned()))
-    }
-
-    /// The module of a stage, specialized with these constants.
-    fn module(&self, path: &str, constants: &[(u32, u32)]) -> Result<Arc<ShaderModule>, GpuError> {
-        shader_module(&self.gpu, self.stage(path)?, constants)
     }
 
     /// A compute pipeline, created at its first use.
@@ -297,41 +292,28 @@ impl PipelineSet {
         if let Some(pipeline) = lock(&self.computes).get(&key) {
             return Ok(pipeline.clone());
         }
-        let module = self.module(path, constants)?;
+        let module = shader_module(&self.gpu, self.stage(path)?, constants, false)?;
         let pipeline = ComputePipeline::new(&self.gpu, &self.layouts, &module, layout(&module)?)?;
         lock(&self.computes).insert(key, pipeline.clone(), number);
         Ok(pipeline)
     }
 
     fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
-        let module = |path: &str| self.module(path, &key.specialization);
-        let [vertex, fragment] = key.pass.stages();
-        let (depth, raster, class) = match &key.pass {
-            Pass::Model { raster, class, .. } => (true, *raster, *class),
-            Pass::Sky => (true, Raster::Solid, PrimitiveClass::Triangles),
-            Pass::Average => (false, Raster::Averaged, PrimitiveClass::Triangles),
-            Pass::Tonemap | Pass::FullScreen(_) => (false, Raster::Solid, PrimitiveClass::Triangles),
-            Pass::DeclaredModel(_, class) => (true, Raster::Solid, *class),
-        };
-        let inputs = match &key.pass {
-            Pass::FullScreen(pass) | Pass::DeclaredModel(pass, _) => pass.inputs.clone(),
-            _ => self.shaders.graph.reads(&key.pass.stages()),
-        };
-        let (vertex, fragment) = (module(vertex)?, module(fragment)?);
-        let draws_model = matches!(key.pass, Pass::Model { .. } | Pass::DeclaredModel(..));
-        let layout = self.layout(&inputs, &[&vertex, &fragment], draws_model);
-        let layout = layout.map_err(|error| match &key.pass {
-            Pass::FullScreen(pass) | Pass::DeclaredModel(pass, _) => of_pass(pass, error),
-            _ => error,
-        })?;
+        let pass = &key.pass;
+        let is_on_display = matches!(pass.part, Part::Tonemap | Part::Display);
+        let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
+        let (vertex, fragment) = (module(&pass.vertex)?, module(&pass.note.stage)?);
+        let draws_model = pass.note.model.is_some();
+        let layout = self.layout(&pass.inputs, &[&vertex, &fragment], draws_model);
+        let layout = layout.map_err(|error| of_pass(pass, error))?;
         let desc = PipelineDesc {
             vertex: &vertex,
             fragment: &fragment,
             color: key.format,
-            depth,
-            raster,
+            depth: draws_model || pass.part == Part::Model,
+            raster: key.raster,
             samples: key.samples,
-            class,
+            class: key.class,
             layout,
         };
         Pipeline::new(&self.gpu, &self.layouts, &desc)

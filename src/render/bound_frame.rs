@@ -10,7 +10,7 @@ use crate::frame::FrameState;
 use crate::gpu::Buffer;
 use crate::interface::{CLOCK, MOTION};
 use crate::pipeline::BoundPipelines;
-use crate::shader::graph::{Input, Part};
+use crate::shader::graph::Part;
 
 /// A [`FrameState`] with all the pipelines and resources that draw it. It keeps them alive after newer ones replace them.
 #[derive(Clone)]
@@ -54,14 +54,13 @@ impl BoundFrame {
     /// Whether the model, or a pass that it reads, changes while the time runs.
     fn has_animated_model(&self) -> bool {
         let request = &self.state.pipelines;
-        let before = || request.passes.iter().filter(|pass| pass.part == Part::BeforeModel);
+        let passes = || request.passes.iter().filter(|pass| pass.part <= Part::Mean);
+        let before = || passes().filter(|pass| pass.part == Part::BeforeModel);
         let mut keys = request.model_keys().chain(before().flat_map(|pass| request.pass_keys(pass)));
         let compute = |stage: &str| self.pipelines.compute(stage).is_some_and(|of| of.uses.reads_frame(&CLOCK));
-        let remembers = |input: &Input| matches!(input, Input::Before(_) | Input::Buffer(..));
-        let mut reads = request.model_keys().map(|key| self.state.shaders.graph.reads(&key.pass.stages()));
         keys.any(|key| self.pipelines.get(&key).is_some_and(|pipeline| pipeline.uses.reads_frame(&CLOCK)))
-            || reads.any(|inputs| inputs.values().any(remembers))
-            || before().any(|pass| pass.moves || compute(&pass.note.stage))
+            || passes().any(|pass| pass.moves)
+            || before().any(|pass| compute(&pass.note.stage))
     }
 
     /// Whether a stage asks how the camera has moved since the frame before.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts};
 use crate::scene::{Measured, MeasuredError};
-use crate::shader::ModeStage;
 
 use super::bound_frame::BoundFrame;
 use super::brdf::measured::measured_buffer;
@@ -175,7 +174,7 @@ impl Resources {
     /// Identifies what the paths of `state` trace; `None` for a mode without random paths.
     fn trace_key(state: &FrameState, environment: &Arc<GpuEnvironment>) -> Option<TraceKey> {
         let scene = state.scene.clone().filter(|_| state.pipelines.traces);
-        (state.pipelines.stage == ModeStage::Paths).then(|| TraceKey { scene, environment: environment.clone() })
+        state.pipelines.follows_paths().then(|| TraceKey { scene, environment: environment.clone() })
     }
 
     /// The resources that `state` still lacks. The model is never missing, because states refer only to uploaded models.

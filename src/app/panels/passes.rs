@@ -18,9 +18,6 @@ pub(super) fn show(
     playback: &mut Playback,
     is_animated: bool,
 ) {
-    if shaders.graph.passes.is_empty() && !is_animated {
-        return;
-    }
     section(ui, "Passes", true, |ui| {
         for switch in switches(shaders) {
             show_constant(ui, switch, &mut settings.shader);
@@ -30,10 +27,12 @@ pub(super) fn show(
             }
         }
         let graph = &shaders.graph;
-        let active = graph.active(&[], true, |index| graph.passes[index].is_wanted(&settings.passes), None);
+        let is_base = |pass: &GraphPass| pass.note.is_built_in() || pass.note.background;
+        let active = graph.active(is_base, true, |index| graph.passes[index].is_wanted(&settings.passes), None);
         // A pass whose readers are all off is off with them.
         let is_shown = |pass: &&Arc<GraphPass>| {
             pass.note.when.is_none()
+                && pass.has_switch()
                 && (!graph.is_read(pass.name()) || !pass.is_wanted(&settings.passes) || active.contains(pass))
         };
         for pass in graph.passes.iter().filter(is_shown).cloned().collect::<Vec<_>>() {

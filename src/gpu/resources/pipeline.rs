@@ -222,7 +222,7 @@ impl Pipeline {
 fn trace_feedback(name: &str, whole: vk::PipelineCreationFeedback, stages: &[vk::PipelineCreationFeedback]) {
     let ms = |feedback: &vk::PipelineCreationFeedback| {
         let is_valid = feedback.flags.contains(vk::PipelineCreationFeedbackFlags::VALID);
-        is_valid.then(|| feedback.duration as f64 * 1e-6)
+        is_valid.then_some(feedback.duration as f64 * 1e-6)
     };
     let is_cached = whole.flags.contains(vk::PipelineCreationFeedbackFlags::APPLICATION_PIPELINE_CACHE_HIT);
     let stages: Vec<_> = stages.iter().map(ms).collect();

@@ -1,4 +1,4 @@
-//! The passes that the shader tree declares: their images and buffers, and how a view draws them.
+//! The passes of the shader tree: their images and buffers, and how a view draws those that make an image or a new picture.
 
 mod blocks;
 mod images;
@@ -8,16 +8,16 @@ mod sets;
 
 use std::sync::Arc;
 
-use super::passes::ModelDraws;
+use super::passes::{ModelDraws, instances};
 use crate::frame::PipelineKey;
 use crate::gpu::{
     Attachments, DescriptorSet, Encoder, Gpu, GpuError, Image, PassLayout, PassResource, Sampler, SetLayouts,
     SetWriter, Use,
 };
-use crate::interface::{Frame, MAX_LIGHT_VIEWS, SET_TASK};
+use crate::interface::{Frame, SET_TASK};
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
-use crate::shader::annotation::pass::{Dispatch, Instances};
+use crate::shader::annotation::pass::Dispatch;
 use crate::shader::graph::{Input, Part};
 pub(super) use blocks::Blocks;
 use images::Images;
@@ -60,8 +60,6 @@ pub(super) struct Drawn<'a> {
 /// Number of cached sets per pass at which the cache is cleared: the sets of two frame slots with two images each, and
 /// spares.
 const SETS_KEPT: usize = 8;
-/// Number of stages that come with Specula and read images, in one frame: model, `behind`, sky, mean and tone map.
-const BUILT_IN_SETS: usize = 5;
 
 impl DeclaredPasses {
     pub(super) fn new(
@@ -183,19 +181,19 @@ impl DeclaredPasses {
         self.picture = None;
     }
 
-    /// The sets of the stages that come with Specula, for the pipelines of `keys`. Images of passes are read as they are now.
-    pub(super) fn built_in_sets(
+    /// The sets of the pipelines of `keys`, which draw to the picture. Images of passes are read as they are now.
+    pub(super) fn sets_of(
         &mut self,
         drawn: &Drawn<'_>,
         given: &Given<'_>,
         keys: impl Iterator<Item = PipelineKey>,
     ) -> Result<PassSets, GpuError> {
-        let graph = &drawn.frame.state.shaders.graph;
+        let passes = &drawn.frame.state.pipelines.passes;
         let mut sets = PassSets::default();
         for key in keys {
-            let stages = key.pass.stages();
             let Some(pipeline) = drawn.frame.pipelines.get(&key) else { continue };
-            let reads = Reads { name: stages[1], inputs: &graph.reads(&stages), given, index: None };
+            let index = passes.iter().position(|pass| Arc::ptr_eq(pass, &key.pass));
+            let reads = Reads { name: key.pass.name(), inputs: &key.pass.inputs, given, index };
             sets.insert(pipeline, self.set(&pipeline.layout, drawn, &reads)?);
         }
         Ok(sets)
@@ -212,7 +210,7 @@ impl DeclaredPasses {
         let mut picture = picture.clone();
         let request = &drawn.frame.state.pipelines;
         for (index, pass) in request.passes.iter().enumerate().filter(|(_, pass)| pass.part == part) {
-            let target = match pass.note.to_picture {
+            let target = match pass.note.to_picture() {
                 true => self.images.other_picture(part, &picture).cloned(),
                 false => self.images.target(pass.name()).cloned(),
             };
@@ -228,7 +226,7 @@ impl DeclaredPasses {
                 true => self.dispatch(encoder, drawn, pass, &reads, &target),
                 false => self.draw(encoder, drawn, pass, &reads, &target),
             })?;
-            match pass.note.to_picture {
+            match pass.note.to_picture() {
                 true => picture = target,
                 false => self.images.finished(pass.name(), from),
             }
@@ -240,7 +238,7 @@ impl DeclaredPasses {
     fn sources(&self, drawn: &Drawn<'_>, pass: &Arc<GraphPass>, index: usize) -> Option<DrawnFrom> {
         let keys = drawn.frame.state.pipelines.pass_keys(pass);
         let pipelines: Vec<_> = keys.iter().filter_map(|key| drawn.frame.pipelines.get(key)).collect();
-        DrawnFrom::new(pass, index, &pipelines, instances(drawn, pass), drawn, &self.images)
+        DrawnFrom::new(pass, index, &pipelines, instances(drawn.frame, pass), drawn, &self.images)
     }
 
     fn draw(
@@ -270,10 +268,10 @@ impl DeclaredPasses {
                 let attachments = Attachments { clear: Some([0.0; 4]), depth: Some(depth), ..Attachments::of(color) };
                 encoder.begin_rendering(&attachments);
                 encoder.bind_set(&self.layouts, drawn.frame_set);
-                let instances = instances(drawn, pass);
-                let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances };
+                let instances = instances(drawn.frame, pass);
+                let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances, pass };
                 let draws = drawn.frame.scene.iter().flat_map(|scene| &scene.draws);
-                model.draw(encoder, draws, |material| request.model_pass_key(pass, material));
+                model.draw(encoder, draws, |material| Some(request.model_pass_key(pass, material)));
             }
             None => {
                 encoder.begin_rendering(&Attachments::of(color));
@@ -345,7 +343,7 @@ impl DeclaredPasses {
         let set = self.resources(layout, drawn, reads).and_then(|resources| {
             let ids = resources.iter().map(PassResource::id);
             let key = std::iter::once(Arc::as_ptr(layout) as usize).chain(ids).collect();
-            let most = SETS_KEPT * (drawn.frame.state.pipelines.passes.len() + BUILT_IN_SETS);
+            let most = SETS_KEPT * drawn.frame.state.pipelines.passes.len();
             sets.get(key, most, || layout.set(reads.name, &resources))
         });
         self.sets = sets;
@@ -357,7 +355,7 @@ impl DeclaredPasses {
 fn shown_image(frame: &BoundFrame) -> Option<&Arc<GraphPass>> {
     let request = &frame.state.pipelines;
     let shown = request.shown_pass.as_deref()?;
-    request.passes.iter().find(|pass| pass.name() == shown && !pass.note.to_picture)
+    request.passes.iter().find(|pass| pass.name() == shown && !pass.note.to_picture())
 }
 
 /// Scales an image to the size of another. Leaves both in [`Use::Sampled`].
@@ -369,23 +367,14 @@ fn scale(encoder: &mut Encoder, from: &Arc<Image>, to: &Arc<Image>) {
     encoder.transition(to, Use::CopyTo, Use::Sampled);
 }
 
-/// How often a pass draws the model.
-fn instances(drawn: &Drawn<'_>, pass: &GraphPass) -> u32 {
-    match pass.note.model {
-        Some(Instances::Count(count)) => count,
-        Some(Instances::Lights) => drawn.frame.state.lights.len().min(MAX_LIGHT_VIEWS) as u32,
-        None => 0,
-    }
-}
-
 fn uses_buffers(pass: &GraphPass) -> bool {
     pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
 }
 
-/// SYNC: makes what passes wrote to buffers visible to the stages that come with Specula, if one of them reads a buffer.
+/// SYNC: makes what passes wrote to buffers visible to the passes that make up the picture, if one of them reads a buffer.
 fn finish_buffers(encoder: &mut Encoder, drawn: &Drawn<'_>) {
-    let readers = &drawn.frame.state.shaders.graph.readers;
-    if readers.values().flat_map(|inputs| inputs.values()).any(|input| matches!(input, Input::Buffer(..))) {
+    let makes_picture = |pass: &&Arc<GraphPass>| matches!(pass.part, Part::Model | Part::Mean | Part::Tonemap);
+    if drawn.frame.state.pipelines.passes.iter().filter(makes_picture).any(|pass| uses_buffers(pass)) {
         encoder.buffers_done();
     }
 }

@@ -169,8 +169,8 @@ impl View {
         let has_display_passes = DeclaredPasses::has_display_passes(frame);
         let rect = if has_display_passes { Rect { x: 0, y: 0, ..at_output } } else { at_output };
         let only = match redraw {
-            // A declared pass may read any pixel.
-            Redraw::Pixel(..) if !frame.state.pipelines.passes.is_empty() => None,
+            // A pass may read any pixel.
+            Redraw::Pixel(..) if frame.state.pipelines.passes.iter().any(|pass| !pass.note.is_built_in()) => None,
             Redraw::Pixel(x, y) => Some(Rect { x, y, width: 1, height: 1 }),
             Redraw::IfChanged | Redraw::Always => None,
         };
@@ -192,7 +192,7 @@ impl View {
             self.declared.before_model(encoder, &drawn)?;
         }
         let given = Given { picture: Some(&targets.color), behind: targets.behind.as_ref(), ..Given::default() };
-        let sets = self.declared.built_in_sets(&drawn, &given, frame.state.pipelines.model_keys())?;
+        let sets = self.declared.sets_of(&drawn, &given, frame.state.pipelines.model_keys())?;
         let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only };
         if redrawn {
             passes.model(encoder);
@@ -208,8 +208,7 @@ impl View {
 
         // The HDR picture to the display: exposure, tone map, sRGB.
         let given = Given { picture: Some(&picture), ..Given::default() };
-        let keys = std::iter::once(frame.state.pipelines.tonemap_key());
-        let sets = self.declared.built_in_sets(&drawn, &given, keys)?;
+        let sets = self.declared.sets_of(&drawn, &given, frame.state.pipelines.tonemap_key().into_iter())?;
         if !has_display_passes {
             encoder.transition(output.image, output.before, Use::Color);
             encoder.pass("tone map", |encoder| passes.tone_map(encoder, &sets, output.image, rect));

@@ -1,4 +1,5 @@
-//! The passes of a frame, in the order in which they run: `behind`, `model`, `accumulate`, `tone map`.
+//! How the passes that make up the picture are drawn, in the order in which they run: the model with its background, the mean,
+//! the tone map.
 
 use std::sync::Arc;
 
@@ -9,9 +10,11 @@ use super::declared::PassSets;
 use super::targets::Targets;
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
-use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
+use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION, MAX_LIGHT_VIEWS};
 use crate::render::bound_frame::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
+use crate::shader::GraphPass;
+use crate::shader::annotation::pass::{Cull, Instances};
 
 /// The arguments of all passes of a frame.
 pub(super) struct Passes<'a> {
@@ -69,10 +72,12 @@ impl Passes<'_> {
         }
         if !has_opaque {
             self.draw(encoder, &sorted.opaque, PipelineRequest::model_key);
+            self.added(encoder, false);
         }
         self.draw(encoder, &sorted.transmissive, PipelineRequest::model_key);
-        self.sky(encoder);
+        self.background(encoder);
         self.draw(encoder, &sorted.blended, PipelineRequest::model_key);
+        self.added(encoder, true);
         encoder.end_rendering();
         if let Some(depth) = targets.read_depth() {
             let before = if resolve_depth.is_some() { Use::DepthResolve } else { Use::Depth };
@@ -86,6 +91,7 @@ impl Passes<'_> {
         encoder.transition(behind, Use::Undefined, Use::Sampled);
         encoder.begin_rendering(&Attachments { goes_on: true, ..self.hdr() });
         self.draw(encoder, opaque, PipelineRequest::behind_key);
+        self.added(encoder, false);
         encoder.end_rendering();
         encoder.transition(&targets.color, Use::Color, Use::CopyFrom);
         encoder.transition(behind, Use::Sampled, Use::CopyTo);
@@ -98,14 +104,25 @@ impl Passes<'_> {
         }
     }
 
-    /// Draws the environment where nothing covers it, if it is visible.
-    fn sky(&self, encoder: &mut Encoder) {
-        let Some(pipeline) = self.request().sky_key().and_then(|key| self.pipeline(&key)) else { return };
-        self.sets.bind(encoder, pipeline);
-        let (list, both, front) =
-            (vk::PrimitiveTopology::TRIANGLE_LIST, vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE);
-        encoder.set_raster(list, both, front);
-        encoder.draw(3);
+    /// Draws the passes that add to the model: those that blend, or the others.
+    fn added(&self, encoder: &mut Encoder, blend: bool) {
+        let Some(scene) = &self.frame.scene else { return };
+        for pass in self.request().added_passes().filter(|pass| pass.note.blend == blend) {
+            let instances = instances(self.frame, pass);
+            let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
+            model.draw(encoder, &scene.draws, |material| Some(self.request().model_pass_key(pass, material)));
+        }
+    }
+
+    /// Draws what lies behind the model where nothing covers it.
+    fn background(&self, encoder: &mut Encoder) {
+        for pipeline in self.request().background_keys().filter_map(|key| self.pipeline(&key)) {
+            self.sets.bind(encoder, pipeline);
+            let (list, both, front) =
+                (vk::PrimitiveTopology::TRIANGLE_LIST, vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE);
+            encoder.set_raster(list, both, front);
+            encoder.draw(3);
+        }
     }
 
     /// Adds the newest frame to the mean, and leaves the mean in [`Use::Sampled`].
@@ -132,7 +149,7 @@ impl Passes<'_> {
     /// Tone maps the picture in `sets` to `rect` of `output`. The rest of `output` becomes black.
     pub(super) fn tone_map(&self, encoder: &mut Encoder, sets: &PassSets, output: &Arc<Image>, rect: Rect) {
         encoder.begin_rendering(&cleared(output));
-        if let Some(pipeline) = self.pipeline(&self.request().tonemap_key()) {
+        if let Some(pipeline) = self.request().tonemap_key().and_then(|key| self.pipeline(&key)) {
             encoder.set_viewport(rect);
             // After a resize, the previous picture may be larger than its output.
             encoder.set_scissor(self.only.unwrap_or(within(rect, whole(output))));
@@ -164,9 +181,11 @@ impl Passes<'_> {
         &self,
         encoder: &mut Encoder,
         draws: &[&GpuDraw],
-        key: fn(&PipelineRequest, MaterialVariant) -> PipelineKey,
+        key: fn(&PipelineRequest, MaterialVariant) -> Option<PipelineKey>,
     ) {
-        let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances: 1 };
+        let Some(pass) = self.request().model_pass() else { return };
+        let instances = instances(self.frame, pass);
+        let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
         model.draw(encoder, draws.iter().copied(), |material| key(self.request(), material));
     }
 }
@@ -178,6 +197,7 @@ pub(super) struct ModelDraws<'a> {
     pub(super) sets: &'a PassSets,
     /// How often each is drawn.
     pub(super) instances: u32,
+    pub(super) pass: &'a GraphPass,
 }
 
 impl ModelDraws<'_> {
@@ -186,13 +206,13 @@ impl ModelDraws<'_> {
         &self,
         encoder: &mut Encoder,
         draws: impl IntoIterator<Item = &'d GpuDraw>,
-        key: impl Fn(MaterialVariant) -> PipelineKey,
+        key: impl Fn(MaterialVariant) -> Option<PipelineKey>,
     ) {
         let Some(scene) = &self.frame.scene else { return };
         encoder.keep(&scene.vertices);
         encoder.bind_indices(&scene.indices);
         for draw in draws {
-            if let Some(pipeline) = self.frame.pipelines.get(&key(draw.variant)) {
+            if let Some(pipeline) = key(draw.variant).and_then(|key| self.frame.pipelines.get(&key)) {
                 encoder.bind_set(self.layouts, &draw.material);
                 self.sets.bind(encoder, pipeline);
                 self.draw_one(encoder, draw);
@@ -203,15 +223,26 @@ impl ModelDraws<'_> {
     fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
         encoder.push(self.layouts, &draw.push);
         // A blended double-sided surface is drawn back faces first, since they lie behind.
-        let passes: &[vk::CullModeFlags] = match (draw.double_sided, draw.variant.alpha) {
-            (true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
-            (true, _) => &[vk::CullModeFlags::NONE],
-            (false, _) => &[vk::CullModeFlags::BACK],
+        let passes: &[vk::CullModeFlags] = match (self.pass.note.cull, draw.double_sided, draw.variant.alpha) {
+            (Some(Cull::None), ..) => &[vk::CullModeFlags::NONE],
+            (Some(Cull::Front), ..) => &[vk::CullModeFlags::FRONT],
+            (None, true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
+            (None, true, _) => &[vk::CullModeFlags::NONE],
+            (Some(Cull::Back), ..) | (None, false, _) => &[vk::CullModeFlags::BACK],
         };
         for cull in passes {
             encoder.set_raster(draw.topology, *cull, draw.front);
             encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
         }
+    }
+}
+
+/// How often a pass draws the model; 0 if it does not.
+pub(super) fn instances(frame: &BoundFrame, pass: &GraphPass) -> u32 {
+    match pass.note.model {
+        Some(Instances::Count(count)) => count,
+        Some(Instances::Lights) => frame.state.lights.len().min(MAX_LIGHT_VIEWS) as u32,
+        None => 0,
     }
 }
 

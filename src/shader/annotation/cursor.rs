@@ -131,6 +131,16 @@ impl<'a> Cursor<'a> {
         Ok((bytes, word.to_owned()))
     }
 
+    /// The value of `key=`, which is one of three names.
+    pub fn one_of<T: Copy>(&mut self, key: &str, all: &[(&str, T); 3]) -> Result<T, Box<Diagnostic>> {
+        let (bytes, value) = self.value(key)?;
+        let found = all.iter().find(|(name, _)| *name == value);
+        found.map(|(_, one)| *one).ok_or_else(|| {
+            let [a, b, c] = all.each_ref().map(|(name, _)| format!("{key}={name}"));
+            self.error(bytes, format!("expected {a}, {b} or {c}, found `{value}`"))
+        })
+    }
+
     /// A quoted string, if one begins here.
     pub fn string(&mut self) -> Result<Option<String>, Box<Diagnostic>> {
         self.skip();

@@ -38,7 +38,7 @@ use pass::{PassNote, TextureNote};
 use resolve::resolve;
 use ui::Ui;
 
-pub use mode::{DrawAs, Encode, Mode, ModeStage};
+pub use mode::{DrawAs, Encode, Mode, PATHS_STAGE};
 pub use parameter::{Constant, Parameter, ParameterType};
 
 /// All annotations of a tree.

@@ -49,31 +49,10 @@ pub enum DrawAs {
     Layers,
 }
 
-/// The fragment stage that computes a mode's value.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-pub enum ModeStage {
-    /// The picture.
-    #[serde(rename = "pbr.frag")]
-    Picture,
-    /// Channels, terms and checks.
-    #[default]
-    #[serde(rename = "debug.frag")]
-    Debug,
-    /// Random paths.
-    #[serde(rename = "paths.frag")]
-    Paths,
-}
-
-impl ModeStage {
-    /// The path of the stage in the shader tree.
-    pub const fn path(self) -> &'static str {
-        match self {
-            Self::Picture => "pbr.frag",
-            Self::Debug => "debug.frag",
-            Self::Paths => "paths.frag",
-        }
-    }
-}
+/// The stage of modes that name none.
+const DEBUG_STAGE: &str = "debug.frag";
+/// The stage of modes that follow random paths. Such modes get what paths trace.
+pub const PATHS_STAGE: &str = "paths.frag";
 
 /// A debug mode.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -98,8 +77,8 @@ pub struct Mode {
     pub tonemap: bool,
     /// Whether the view averages frames, each of which is a noisy estimate.
     pub accumulate: bool,
-    /// The stage that computes the value.
-    pub stage: ModeStage,
+    /// Path of the fragment stage that computes the value. A pass draws the model with it.
+    pub stage: String,
     /// Whether the mode traces rays through the model, which needs its bounding volume hierarchy.
     pub traces: bool,
     /// Whether transmissive surfaces show the final picture behind them instead of this mode.
@@ -137,6 +116,7 @@ pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> R
         slug: slug.to_owned(),
         name,
         components: 3,
+        stage: DEBUG_STAGE.to_owned(),
         file: cursor.place().file.clone(),
         line: cursor.place().line,
         ..Mode::default()
@@ -150,7 +130,7 @@ pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> R
         given.push(key);
         set(&mut mode, key, bytes, cursor)?;
     }
-    if mode.traces && mode.stage != ModeStage::Paths {
+    if mode.traces && mode.stage != PATHS_STAGE {
         return Err(cursor.expected("stage=paths beside `traces`: only paths.frag can trace rays"));
     }
     Ok(mode)
@@ -166,18 +146,15 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
         "group" => mode.group = cursor.value(key)?.1,
         "doc" => mode.doc = cursor.value(key)?.1,
         "unit" => mode.unit = cursor.value(key)?.1,
-        "components" => mode.components = one_of(cursor, key, &[("1", 1), ("2", 2), ("3", 3)])?,
+        "components" => mode.components = cursor.one_of(key, &[("1", 1), ("2", 2), ("3", 3)])?,
         "encode" => {
             let all = [("color", Encode::Color), ("data", Encode::Data), ("vector", Encode::Vector)];
-            mode.encode = one_of(cursor, key, &all)?;
+            mode.encode = cursor.one_of(key, &all)?;
         }
-        "stage" => {
-            let all = [("pbr", ModeStage::Picture), ("debug", ModeStage::Debug), ("paths", ModeStage::Paths)];
-            mode.stage = one_of(cursor, key, &all)?;
-        }
+        "stage" => mode.stage = format!("{}.frag", cursor.value(key)?.1),
         "draw" => {
             let all = [("surfaces", DrawAs::Surfaces), ("lines", DrawAs::Lines), ("layers", DrawAs::Layers)];
-            mode.draw = one_of(cursor, key, &all)?;
+            mode.draw = cursor.one_of(key, &all)?;
         }
         "key" => mode.key = Some(window_key(cursor)?),
         other => {
@@ -187,16 +164,6 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
         }
     }
     Ok(())
-}
-
-/// Reads the value of `key`, which is one of three names.
-fn one_of<T: Copy>(cursor: &mut Cursor<'_>, key: &str, all: &[(&str, T); 3]) -> Result<T, Box<Diagnostic>> {
-    let (bytes, value) = cursor.value(key)?;
-    let found = all.iter().find(|(name, _)| *name == value);
-    found.map(|(_, one)| *one).ok_or_else(|| {
-        let [a, b, c] = all.each_ref().map(|(name, _)| format!("{key}={name}"));
-        cursor.error(bytes, format!("expected {a}, {b} or {c}, found `{value}`"))
-    })
 }
 
 /// Reads the value of `key=`.

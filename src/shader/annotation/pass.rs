@@ -10,11 +10,14 @@ use crate::shader::diagnostic::Diagnostic;
 /// Largest side of a pass's image in pixels, if it is given in pixels. The device may offer less.
 const LARGEST_SIDE: u32 = 16384;
 
-/// Specula's own pass from the HDR picture to the displayed picture, as `after=` names it.
+/// The pass from the HDR picture to the displayed picture. Every tree declares it, with `to=display`.
 pub const TONEMAP: &str = "tonemap";
 
-/// Names that no pass or texture can have, since they name Specula's own images and passes.
-pub const RESERVED: [&str; 4] = ["picture", "depth", TONEMAP, "model"];
+/// The pass that draws the model in the final picture. Every tree declares it, with `draw=model to=picture`.
+pub const MODEL: &str = "model";
+
+/// Names that no pass or texture can have, since they name images that Specula gives to passes.
+const RESERVED: [&str; 2] = ["picture", "depth"];
 
 /// The location of an annotation. All locations compare as equal, so that moving a line does not count as a change.
 #[derive(Clone, Debug, Default)]
@@ -118,6 +121,33 @@ pub enum Dispatch {
     Groups([u32; 3]),
 }
 
+/// The image that a pass draws to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Target {
+    /// One of its own, with the name of the pass.
+    #[default]
+    Image,
+    /// The picture.
+    Picture,
+    /// The mean of all frames, in modes that accumulate.
+    Mean,
+    /// What the display shows.
+    Display,
+}
+
+/// The faces that a pass leaves out when it draws the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Cull {
+    /// None.
+    None,
+    /// Those that face the camera.
+    Front,
+    /// Those that face away from it.
+    Back,
+}
+
 /// How often a pass draws the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Instances {
@@ -144,14 +174,22 @@ pub struct PassNote {
     pub keep: bool,
     /// Whether it is on until the user switches it off.
     pub on: bool,
-    /// Whether its output replaces the picture.
-    pub to_picture: bool,
+    /// The image that it draws to.
+    pub to: Target,
     /// A pass that comes before this pass, besides those whose images it reads.
     pub after: Option<String>,
     /// The workgroups of a compute pass.
     pub dispatch: Dispatch,
     /// How often it draws the model; `None` if it covers its image with one triangle.
     pub model: Option<Instances>,
+    /// Whether its triangle lies behind the model.
+    pub background: bool,
+    /// The pass that it replaces in the debug modes that name its stage.
+    pub instead: Option<String>,
+    /// The faces of the model that it leaves out; `None`: as the material says.
+    pub cull: Option<Cull>,
+    /// Whether its colors, premultiplied by alpha, are blended with the picture.
+    pub blend: bool,
     /// The author's constant that switches the pass on. It also tells the stages that read its image.
     pub when: Option<String>,
     /// A description of the pass.
@@ -161,6 +199,24 @@ pub struct PassNote {
     /// Location of the annotation.
     #[serde(skip)]
     pub place: NotePlace,
+}
+
+impl PassNote {
+    /// Whether it gives what it draws to the picture, so that it has no image of its own.
+    pub fn to_picture(&self) -> bool {
+        self.to == Target::Picture
+    }
+
+    /// Whether it belongs to the picture that Specula itself composes: the model, what may stand in its place, and the steps to
+    /// the display.
+    pub fn is_built_in(&self) -> bool {
+        matches!(self.to, Target::Mean | Target::Display) || self.instead.is_some() || self.name == MODEL
+    }
+
+    /// Whether it draws to the multisampled picture, together with the model.
+    pub fn is_drawn_with_model(&self) -> bool {
+        self.to_picture() && (self.model.is_some() || self.background)
+    }
 }
 
 /// The addressing mode of a texture, for coordinates beyond its edges.
@@ -213,10 +269,14 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
         mips: false,
         keep: false,
         on: true,
-        to_picture: false,
+        to: Target::Image,
         after: None,
         dispatch: Dispatch::Size,
         model: None,
+        background: false,
+        instead: None,
+        cull: None,
+        blend: false,
         when: None,
         doc: String::new(),
         stage: String::new(),
@@ -228,6 +288,12 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             "mips" => note.mips = true,
             "keep" => note.keep = true,
             "off" => note.on = false,
+            "blend" => note.blend = true,
+            "instead" => note.instead = Some(cursor.value(key)?.1),
+            "cull" => {
+                let all = [("none", Cull::None), ("front", Cull::Front), ("back", Cull::Back)];
+                note.cull = Some(cursor.one_of(key, &all)?);
+            }
             "size" => note.size = size(cursor)?,
             "format" => note.format = format(cursor)?,
             "after" => note.after = Some(cursor.value(key)?.1),
@@ -236,15 +302,20 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             "instances" => note.model = Some(instances(cursor)?),
             "draw" => match cursor.value(key)? {
                 (_, what) if what == "model" => note.model = note.model.or(Some(Instances::Count(1))),
-                (bytes, other) => return Err(cursor.error(bytes, format!("expected draw=model, found `{other}`"))),
+                (_, what) if what == "background" => note.background = true,
+                (bytes, other) => {
+                    let message = format!("expected draw=model or draw=background, found `{other}`");
+                    return Err(cursor.error(bytes, message));
+                }
             },
             "doc" => note.doc = cursor.value(key)?.1,
-            "to" => match cursor.value(key)? {
-                (_, to) if to == "picture" => note.to_picture = true,
-                (bytes, other) => return Err(cursor.error(bytes, format!("expected to=picture, found `{other}`"))),
-            },
+            "to" => {
+                let all = [("picture", Target::Picture), ("mean", Target::Mean), ("display", Target::Display)];
+                note.to = cursor.one_of(key, &all)?;
+            }
             other => {
-                let known = "to=picture, after=, size=, format=, draw=model, instances=, dispatch=, when=, mips, keep, off or doc=";
+                let known = "to=picture, after=, size=, format=, draw=model, instances=, cull=, blend, dispatch=, when=, mips, \
+                             keep, off or doc=";
                 return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
             }
         }

@@ -3,7 +3,7 @@
 use super::{Input, Inputs, PassStage};
 use crate::interface::SET_PASS;
 use crate::message::did_you_mean;
-use crate::shader::annotation::pass::{PassFormat, PassNote, TextureNote};
+use crate::shader::annotation::pass::{PassFormat, PassNote, Target, TextureNote};
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::spirv::reflect::Descriptor;
@@ -25,53 +25,6 @@ pub struct Names<'a> {
     pub passes: &'a [PassNote],
     /// All declared textures.
     pub textures: &'a [TextureNote],
-}
-
-/// The stages that come with Specula and read images by name, each with the images that Specula gives it.
-const BUILT_IN: [(&str, &[(&str, Input)]); 9] = [
-    ("pbr.vert", &[]),
-    ("sky.vert", &[]),
-    ("fullscreen.vert", &[]),
-    ("pbr.frag", &[("behind", Input::Behind)]),
-    ("debug.frag", &[("behind", Input::Behind)]),
-    ("paths.frag", &[("behind", Input::Behind)]),
-    ("sky.frag", &[]),
-    ("average.frag", &[("picture", Input::Picture)]),
-    ("tonemap.frag", &[("picture", Input::Picture)]),
-];
-
-/// Whether a stage comes with Specula and reads images by name.
-pub fn is_built_in(path: &str) -> bool {
-    BUILT_IN.iter().any(|(stage, _)| *stage == path)
-}
-
-/// The inputs of a stage that comes with Specula.
-///
-/// # Errors
-/// As [`inputs`].
-pub fn built_in(path: &str, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
-    let given = BUILT_IN.iter().find(|(stage, _)| *stage == path).map_or(&[][..], |(_, given)| given);
-    inputs_by(stage, |found| {
-        let Descriptor { name, glsl, .. } = found;
-        match glsl.as_str() {
-            "sampler2D" => match given.iter().find(|(known, _)| known == name) {
-                Some((_, input)) => Ok(input.clone()),
-                None => {
-                    let given: Vec<&str> = given.iter().map(|(name, _)| *name).collect();
-                    image(name, names).unwrap_or_else(|| Err(unknown(name, &given, names)))
-                }
-            },
-            "buffer block" => buffer(found),
-            "uniform block" => {
-                let message = format!("the uniform block `{name}` has no binding");
-                Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))
-            }
-            other => Err((
-                format!("a stage cannot have {other} `{name}` by name"),
-                "it can have a sampler2D or a buffer".into(),
-            )),
-        }
-    })
 }
 
 /// The inputs of a declared pass.
@@ -121,6 +74,10 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
         "sampler2D" => sampled(note, name, names),
+        "uniform block" if note.is_built_in() || note.background => {
+            let message = format!("the uniform block `{name}` has no binding");
+            Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))
+        }
         "uniform block" if name == PASS_BLOCK => {
             let block = found.block.clone().unwrap_or_default();
             for member in &block.members {
@@ -164,15 +121,29 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
     }
 }
 
+/// The images that Specula gives to a pass, by name.
+fn given(note: &PassNote) -> &'static [(&'static str, Input)] {
+    match note.to {
+        Target::Mean | Target::Display => &[("picture", Input::Picture)],
+        Target::Picture if note.is_drawn_with_model() => &[("behind", Input::Behind)],
+        Target::Picture | Target::Image => &[("picture", Input::Picture), ("depth", Input::Depth)],
+    }
+}
+
 fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refusal> {
+    let given = given(note);
+    if let Some((_, input)) = given.iter().find(|(known, _)| *known == name) {
+        return Ok(input.clone());
+    }
     match name {
-        "picture" => Ok(Input::Picture),
-        "depth" => Ok(Input::Depth),
         name if name == note.name => {
             let message = format!("a pass cannot read the image that it draws, `{name}`");
             Err((message, format!("write `keep` in its //@pass and read `before_{name}`, the image one frame ago")))
         }
-        name => image(name, names).unwrap_or_else(|| Err(unknown(name, &["picture", "depth"], names))),
+        name => image(name, names).unwrap_or_else(|| {
+            let given: Vec<&str> = given.iter().map(|(name, _)| *name).collect();
+            Err(unknown(name, &given, names))
+        }),
     }
 }
 
@@ -190,7 +161,7 @@ fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
         });
     }
     match find(name) {
-        Some(pass) if pass.to_picture => {
+        Some(pass) if pass.to != Target::Image => {
             let message = format!("`{name}` gives what it draws to the picture, so it has no image of its own");
             Some(Err((message, format!("read `picture` in a pass with after={name}"))))
         }
@@ -205,7 +176,7 @@ fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
 /// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.
 fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
     let mut known: Vec<String> = given.iter().map(|name| (*name).to_owned()).collect();
-    known.extend(names.passes.iter().filter(|pass| !pass.to_picture).map(|pass| pass.name.clone()));
+    known.extend(names.passes.iter().filter(|pass| pass.to == Target::Image).map(|pass| pass.name.clone()));
     known.extend(names.passes.iter().filter(|pass| pass.keep).map(|pass| format!("before_{}", pass.name)));
     known.extend(names.textures.iter().map(|texture| texture.name.clone()));
     let hint = did_you_mean(name, known.iter().map(String::as_str));

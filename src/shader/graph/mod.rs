@@ -2,11 +2,12 @@
 //!
 //! A pass reads an image by its name. `uniform sampler2D glow;` is the image of the pass `glow`, `before_glow` the same
 //! image one frame ago, `picture` the picture so far, and `depth` the depth of the model. A pass with `to=picture`
-//! replaces the picture. A pass follows the passes whose images it reads, and the pass that its `after=` names. Names
-//! break ties.
+//! replaces the picture, or adds to it if it draws the model or the background. A pass follows the passes whose images it reads,
+//! and the pass that its `after=` names. Names break ties.
 
 mod inputs;
 mod order;
+mod roles;
 mod textures;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,7 +16,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::annotation::Annotations;
-use super::annotation::pass::{Dispatch, PassFormat, PassNote, PassSize};
+use super::annotation::pass::{Dispatch, MODEL, PassFormat, PassNote, PassSize, Target};
 use super::compile::StageKind;
 use super::contract::Texts;
 use super::diagnostic::Diagnostic;
@@ -23,6 +24,7 @@ use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
+pub use roles::missing_passes;
 pub use textures::Texture;
 use textures::{read_texture, texture_name};
 
@@ -53,8 +55,6 @@ pub enum Input {
 
 /// The vertex stage of stages that cover an image.
 pub const FULL_SCREEN: &str = "fullscreen.vert";
-/// The vertex stage of the model.
-pub const MODEL: &str = "pbr.vert";
 
 /// How to get the constant that `when=` names.
 const DECLARE_A_CONSTANT: &str =
@@ -69,9 +69,15 @@ pub type Inputs = BTreeMap<u32, Input>;
 pub enum Part {
     /// Before the model, which reads its image.
     BeforeModel,
+    /// The model and the background.
+    Model,
+    /// The mean of all frames.
+    Mean,
     /// Between the model and the tone map: the picture is linear light.
     #[default]
     Light,
+    /// The tone map.
+    Tonemap,
     /// After the tone map: the picture is as the display shows it.
     Display,
 }
@@ -83,8 +89,8 @@ pub struct GraphPass {
     pub note: PassNote,
     /// Whether its stage is a compute shader. Otherwise it is a fragment shader over the whole image.
     pub is_compute: bool,
-    /// The vertex stage of its own, if it has one.
-    pub vertex: Option<String>,
+    /// The vertex stage of a pass that is no compute pass: its own, that of the model, or [`FULL_SCREEN`].
+    pub vertex: String,
     /// When it is drawn.
     pub part: Part,
     /// The images, textures and buffers that it reads and writes.
@@ -102,10 +108,14 @@ impl GraphPass {
         &self.note.name
     }
 
-    /// The vertex stage of a pass that is no compute pass.
-    pub fn vertex_stage(&self) -> &str {
-        let default = if self.note.model.is_some() { MODEL } else { FULL_SCREEN };
-        self.vertex.as_deref().unwrap_or(default)
+    /// Whether the user can switch it on and off.
+    pub fn has_switch(&self) -> bool {
+        self.note.name == MODEL || !self.note.is_built_in()
+    }
+
+    /// Whether it draws the model to the picture besides the model's own pass.
+    pub fn adds_to_model(&self) -> bool {
+        self.part == Part::Model && self.note.model.is_some() && !self.note.is_built_in()
     }
 
     /// Whether its own uniform block has a member of this name.
@@ -119,7 +129,7 @@ impl GraphPass {
     /// Whether it makes a displayed picture without reading the one before.
     pub fn covers(&self) -> bool {
         let reads_picture = || self.inputs.values().any(|input| *input == Input::Picture);
-        self.note.to_picture && self.part == Part::Display && !reads_picture()
+        self.note.to_picture() && self.part == Part::Display && !reads_picture()
     }
 
     /// Whether the user wants the pass. `switched`: the passes that she switched on or off, by name.
@@ -138,8 +148,6 @@ impl GraphPass {
 pub struct Graph {
     /// In the order in which they are drawn.
     pub passes: Vec<Arc<GraphPass>>,
-    /// The inputs of the stages that come with Specula, by path.
-    pub readers: BTreeMap<String, Inputs>,
     /// The textures that the stages read, by name.
     pub textures: BTreeMap<String, Arc<Texture>>,
 }
@@ -168,14 +176,26 @@ impl Graph {
         let mut errors = Vec::new();
         let notes: Vec<&PassNote> = annotations.passes.iter().filter(|note| stages.contains_key(&note.stage)).collect();
         let names = inputs::Names { passes: &annotations.passes, textures: &annotations.textures };
+        errors.extend(roles::misplaced(annotations));
+        // Without it, the stages are not those of a picture.
+        if stages.contains_key(FULL_SCREEN) {
+            errors.extend(missing_passes(&annotations.passes, &snapshot.source().name()));
+            errors.extend(roles::undrawn_modes(annotations));
+        }
+        let model = annotations.passes.iter().find(|note| note.name == MODEL).map(|note| vertex_of(&note.stage));
         let mut passes = Vec::new();
         for note in notes {
             let stage = &stages[&note.stage];
-            let vertex = vertex_of(&note.stage);
-            let has_vertex = stage.kind != StageKind::Compute
-                && snapshot.read(&TreePath::from(vertex.as_str())) != Err(SourceError::Missing);
+            let is_compute = stage.kind == StageKind::Compute;
+            let own = vertex_of(&note.stage);
+            let has_own = snapshot.read(&TreePath::from(own.as_str())) != Err(SourceError::Missing);
+            let vertex = match (&model, note.model.is_some()) {
+                _ if has_own => own,
+                (Some(model), true) => model.clone(),
+                _ => FULL_SCREEN.to_owned(),
+            };
             // It is still to be compiled.
-            if has_vertex && !stages.contains_key(&vertex) {
+            if !is_compute && !stages.contains_key(&vertex) {
                 continue;
             }
             if let Some(message) = note.when.as_deref().and_then(|name| annotations.unknown_constant(name)) {
@@ -185,40 +205,22 @@ impl Graph {
                 errors.push(note.place.error(message));
                 continue;
             }
-            let own_vertex = has_vertex.then(|| inputs::inputs(note, &stages[&vertex], &names));
-            match inputs::inputs(note, stage, &names).and_then(|inputs| with(inputs, own_vertex)) {
+            let of_vertex = (!is_compute).then(|| inputs::inputs(note, &stages[&vertex], &names));
+            match inputs::inputs(note, stage, &names).and_then(|inputs| with(inputs, of_vertex)) {
                 Ok(inputs) => passes.push(GraphPass {
                     moves: inputs.values().any(moves),
                     note: note.clone(),
-                    is_compute: stage.kind == StageKind::Compute,
-                    vertex: has_vertex.then_some(vertex),
-                    part: Part::default(),
+                    is_compute,
+                    vertex,
+                    part: roles::part(note),
                     inputs,
                     local_size: stage.reflection.local_size,
                 }),
                 Err(found) => errors.extend(found),
             }
         }
-        let mut readers = BTreeMap::new();
-        for (path, stage) in stages.iter().filter(|(path, _)| inputs::is_built_in(path)) {
-            match inputs::built_in(path, stage, &names) {
-                Ok(inputs) => {
-                    readers.insert(path.clone(), inputs);
-                }
-                Err(found) => errors.extend(found),
-            }
-        }
-        for pass in passes.iter_mut().filter(|pass| pass.vertex.is_none() && !pass.is_compute) {
-            let shared = readers.get(pass.vertex_stage()).cloned().unwrap_or_default();
-            pass.moves |= shared.values().any(moves);
-            pass.inputs.extend(shared);
-        }
-        errors.extend(different_buffers(&passes, &readers));
-        // The model shows how it was one frame ago.
-        let is_before =
-            |name: &str| readers.values().flat_map(BTreeMap::values).any(|i| *i == Input::Before(name.into()));
-        passes.iter_mut().for_each(|pass| pass.moves |= is_before(&pass.note.name));
-        let inputs = passes.iter().map(|pass| &pass.inputs).chain(readers.values());
+        errors.extend(different_buffers(&passes));
+        let inputs = passes.iter().map(|pass| &pass.inputs);
         let used: BTreeSet<&str> = inputs.flat_map(BTreeMap::values).filter_map(texture_name).collect();
         let mut textures = BTreeMap::new();
         for note in annotations.textures.iter().filter(|note| used.contains(note.name.as_str())) {
@@ -232,19 +234,13 @@ impl Graph {
         if !errors.is_empty() {
             return Err(errors);
         }
-        let passes = order::ordered(passes, &readers)?.into_iter().map(Arc::new).collect();
-        Ok(Self { passes, readers, textures })
+        let passes = order::ordered(passes)?.into_iter().map(Arc::new).collect();
+        Ok(Self { passes, textures })
     }
 
     /// The paths of the image files, which are watched with the tree.
     pub fn texture_paths(&self) -> impl Iterator<Item = &str> {
         self.textures.values().map(|texture| texture.path.as_str())
-    }
-
-    /// The inputs of a pipeline's stages, as far as they come with Specula.
-    pub fn reads(&self, stages: &[&str]) -> Inputs {
-        let inputs = stages.iter().filter_map(|stage| self.readers.get(*stage));
-        inputs.flatten().map(|(binding, input)| (*binding, input.clone())).collect()
     }
 
     /// The pass of this name.
@@ -258,12 +254,13 @@ impl Graph {
         inputs.into_iter().any(|input| matches!(input, Input::Image(read) if read == name))
     }
 
-    /// The passes to draw, in order: those whose images or buffers `stages` read, with `is_picture` those that change the
+    /// The passes to draw, in order: the built-in ones for which `is_base` returns true, with `is_picture` those that change the
     /// picture, and what these need. With `shown`: the pass of that name, and what it needs. Passes for whose
-    /// index `is_on` returns false are left out, except `shown` itself, and so are those whose picture a later one covers. A pass that nothing uses costs nothing.
+    /// index `is_on` returns false are left out, except `shown` itself, and so are those whose picture a later one covers. A pass
+    /// that nothing uses costs nothing.
     pub fn active(
         &self,
-        stages: &[&str],
+        is_base: impl Fn(&GraphPass) -> bool,
         is_picture: bool,
         is_on: impl Fn(usize) -> bool,
         shown: Option<&str>,
@@ -276,9 +273,7 @@ impl Graph {
                 None => is_picture && *index >= cover && self.makes_picture(*index, &is_on),
             })
             .collect();
-        for input in stages.iter().filter_map(|stage| self.readers.get(*stage)).flat_map(BTreeMap::values) {
-            open.extend(self.makers(input).filter(|index| is_on(*index)));
-        }
+        open.extend((0..self.passes.len()).filter(|index| is_base(&self.passes[*index])));
         let needed = self.with_inputs(open, is_on);
         needed.into_iter().map(|index| self.passes[index].clone()).collect()
     }
@@ -308,6 +303,8 @@ impl Graph {
 
     /// The passes that write an input.
     fn makers(&self, input: &Input) -> impl Iterator<Item = usize> {
+        // The model and the steps to the display are roots of their own, even if they declare a buffer.
+        let is_maker = |pass: &GraphPass| !pass.note.is_built_in() && !pass.note.background;
         let shares = move |pass: &GraphPass| match input {
             Input::Image(name) | Input::Before(name) => pass.name() == name,
             // Vertex stages only read.
@@ -317,11 +314,13 @@ impl Graph {
             }
             _ => false,
         };
-        self.passes.iter().enumerate().filter(move |(_, pass)| shares(pass)).map(|(index, _)| index)
+        self.passes.iter().enumerate().filter(move |(_, pass)| is_maker(pass) && shares(pass)).map(|(index, _)| index)
     }
 
     fn makes_picture(&self, index: usize, is_on: impl Fn(usize) -> bool) -> bool {
-        self.passes[index].note.to_picture && is_on(index)
+        let pass = &self.passes[index];
+        let is_own = !pass.note.is_drawn_with_model() || pass.adds_to_model();
+        pass.note.to_picture() && is_own && is_on(index)
     }
 }
 
@@ -343,20 +342,21 @@ fn moves(input: &Input) -> bool {
 /// A message if the options of an annotation contradict each other, or do not apply to this kind of stage.
 fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
     let is_compute = kind == StageKind::Compute;
-    if note.to_picture && is_compute {
+    if note.to != Target::Image && is_compute {
         return Some("a compute pass writes an image of its own; read that in a fragment pass with to=picture");
     }
     let given = note.size != PassSize::Divided(1) || note.format != PassFormat::default() || note.mips || note.keep;
-    if note.to_picture && given {
-        return Some(
-            "the picture has its own size and format, so size=, format=, mips and keep do not go with to=picture",
-        );
+    if note.to != Target::Image && given {
+        return Some("the picture has its own size and format, so size=, format=, mips and keep do not go with to=");
     }
-    if note.model.is_some() && is_compute {
+    if (note.model.is_some() || note.background) && is_compute {
         return Some("a compute pass cannot draw the model; draw=model is for .frag files");
     }
-    if note.model.is_some() && note.to_picture {
-        return Some("a pass with draw=model draws to an image of its own; read that in a pass with to=picture");
+    if note.cull.is_some() && note.model.is_none() {
+        return Some("only a pass that draws the model has cull=; write draw=model");
+    }
+    if note.blend && !(note.model.is_some() && note.to_picture()) {
+        return Some("only a pass that draws the model to the picture has blend; write draw=model to=picture");
     }
     (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
 }
@@ -366,16 +366,9 @@ pub fn vertex_of(stage: &str) -> String {
     format!("{}.vert", stage.rsplit_once('.').map_or(stage, |(stem, _)| stem))
 }
 
-/// Errors of passes whose buffer another pass, or a stage that comes with Specula, declares with another size.
-fn different_buffers(passes: &[GraphPass], readers: &BTreeMap<String, Inputs>) -> Vec<Diagnostic> {
+/// Errors of passes whose buffer another pass declares with another size.
+fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
     let mut first: BTreeMap<&str, (u32, String)> = BTreeMap::new();
-    for (path, inputs) in readers {
-        for input in inputs.values() {
-            if let Input::Buffer(name, bytes) = input {
-                first.entry(name).or_insert_with(|| (*bytes, format!("`{path}`")));
-            }
-        }
-    }
     let mut errors = Vec::new();
     for pass in passes {
         for input in pass.inputs.values() {

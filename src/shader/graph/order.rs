@@ -7,14 +7,11 @@ use crate::message::did_you_mean;
 use crate::shader::annotation::pass::TONEMAP;
 use crate::shader::diagnostic::Diagnostic;
 
-/// The passes in the order in which they are drawn. `readers` are the stages that come with Specula, by path.
+/// The passes in the order in which they are drawn.
 ///
 /// # Errors
 /// An unknown name after `after=`, a cycle, or an image that is read before it is drawn.
-pub fn ordered(
-    mut passes: Vec<GraphPass>,
-    readers: &BTreeMap<String, Inputs>,
-) -> Result<Vec<GraphPass>, Vec<Diagnostic>> {
+pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnostic>> {
     passes.sort_by(|a, b| a.name().cmp(b.name()));
     let index: BTreeMap<String, usize> =
         passes.iter().enumerate().map(|(index, pass)| (pass.name().to_owned(), index)).collect();
@@ -23,12 +20,12 @@ pub fn ordered(
         return Err(unknown);
     }
     put_on_display(&mut passes, &index);
-    put_before_model(&mut passes, &index, readers)?;
+    put_before_model(&mut passes, &index)?;
     let mut order = Order { passes: &passes, index: &index, state: vec![State::New; passes.len()], done: Vec::new() };
-    for part in [Part::BeforeModel, Part::Light, Part::Display] {
+    for part in [Part::BeforeModel, Part::Model, Part::Mean, Part::Light, Part::Tonemap, Part::Display] {
         let in_part = |at: &usize| passes[*at].part == part;
         let (makers, others): (Vec<usize>, Vec<usize>) =
-            (0..passes.len()).filter(in_part).partition(|at| passes[*at].note.to_picture);
+            (0..passes.len()).filter(in_part).partition(|at| passes[*at].note.to_picture());
         for at in makers.into_iter().chain(others) {
             order.emit(at, &mut Vec::new()).map_err(|error| vec![*error])?;
         }
@@ -47,7 +44,7 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
                 |name: &str| name == TONEMAP || index.get(name).is_some_and(|at| passes[*at].part == Part::Display);
             let reads = images(&passes[at].inputs).any(follows);
             let after = passes[at].note.after.as_deref().is_some_and(follows);
-            if (reads || after) && passes[at].part != Part::Display {
+            if (reads || after) && passes[at].part == Part::Light {
                 passes[at].part = Part::Display;
                 changed = true;
             }
@@ -55,21 +52,20 @@ fn put_on_display(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
     }
 }
 
-/// The passes whose images the model's stages read are drawn before the model, and so are those that they read in turn.
-fn put_before_model(
-    passes: &mut [GraphPass],
-    index: &BTreeMap<String, usize>,
-    readers: &BTreeMap<String, Inputs>,
-) -> Result<(), Vec<Diagnostic>> {
+/// The passes whose images the model or the background reads are drawn before the model, and so are those that they read in turn.
+fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -> Result<(), Vec<Diagnostic>> {
     let mut errors = Vec::new();
-    for (path, inputs) in readers {
-        let is_model = !AFTER_MODEL.contains(&path.as_str());
-        let mut open: Vec<usize> = images(inputs).filter_map(|name| index.get(name).copied()).collect();
+    let is_reader = |pass: &&GraphPass| matches!(pass.part, Part::Model | Part::Mean | Part::Tonemap);
+    let readers: Vec<GraphPass> = passes.iter().filter(is_reader).cloned().collect();
+    for reader in readers {
+        let is_model = reader.part == Part::Model;
+        let path = &reader.note.stage;
+        let mut open: Vec<usize> = images(&reader.inputs).filter_map(|name| index.get(name).copied()).collect();
         while let Some(at) = open.pop() {
             let pass = &mut passes[at];
             let refusal = if pass.part == Part::Display {
                 Some("it comes after the tone map")
-            } else if is_model && pass.note.to_picture {
+            } else if is_model && pass.note.to_picture() {
                 Some("the model is drawn after it, so it cannot change the picture")
             } else if is_model && pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth)) {
                 Some("the model is drawn after it, so there is no `picture` and no `depth` yet")
@@ -93,9 +89,6 @@ fn put_before_model(
     }
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
-
-/// The stages that come with Specula and run after the model.
-const AFTER_MODEL: [&str; 3] = ["average.frag", "tonemap.frag", "fullscreen.vert"];
 
 /// The names of the images that are read as they are in this frame.
 fn images(inputs: &Inputs) -> impl Iterator<Item = &str> {

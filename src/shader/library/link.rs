@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::passes::modes_of;
+use super::slot::Slot;
 use super::{Library, Report, ShaderSet, Stage, Update};
 use crate::shader::annotation::{self, Annotations};
 use crate::shader::compile::include::files_of;
@@ -31,9 +32,13 @@ impl Library {
         warnings.extend(self.idle_warnings(snapshot));
         let mut files = BTreeSet::new();
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
-        // A stage that has never compiled adds the annotations of its files. A pass adds its own once it has compiled.
-        let fixed = self.slots.iter().take(self.fixed);
-        let unseen = fixed.filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
+        // A stage that has never compiled adds the annotations of its files. One that draws an image of its own adds them once it
+        // has compiled, since its parameters are its own.
+        let is_unseen = |slot: &&Slot| is_partial && slot.good.is_none() && !slot.is_good();
+        let replacing = if is_partial { self.replacing(snapshot) } else { BTreeSet::new() };
+        let is_shared = |place: usize, path: &TreePath| place < self.fixed || replacing.contains(path);
+        let unseen = self.slots.iter().enumerate().filter(|(place, slot)| is_shared(*place, &slot.path));
+        let unseen = unseen.map(|(_, slot)| slot).filter(is_unseen);
         let unseen: Vec<TreePath> = unseen.flat_map(|slot| files_of(snapshot, &slot.path)).collect();
         files.extend(&unseen);
         match contract::interface_matches(snapshot) {
@@ -55,13 +60,6 @@ impl Library {
                 }
             }
         }
-        for (vertex, fragment) in &self.pairs {
-            let (Some(vertex), Some(fragment)) = (modules.get(vertex), modules.get(fragment)) else { continue };
-            errors.extend(contract::check_pair(
-                (&vertex.reflection, vertex.texts(snapshot)),
-                (&fragment.reflection, fragment.texts(snapshot)),
-            ));
-        }
         if !errors.is_empty() {
             return Err(errors);
         }
@@ -71,10 +69,14 @@ impl Library {
         let goods = goods.map(|built| (&built.stage.path, &*built.stage));
         let known: BTreeMap<&TreePath, &Stage> = goods.chain(modules.clone()).collect();
         let reflections: Vec<&Reflection> = known.values().map(|stage| &stage.reflection).collect();
-        let mut annotations = annotation::read(snapshot, files, &reflections)?;
+        let mut annotations = annotation::read(snapshot, files, &reflections).map_err(|errors| {
+            // Without one of the built-in passes, what its files declare is unknown, and other files may need it.
+            let missing = self.missing_passes(snapshot);
+            if missing.is_empty() { errors } else { missing }
+        })?;
         // A pass that has never compiled has a name, which other stages may read already.
-        let unseen =
-            self.slots.iter().skip(self.fixed).filter(|slot| is_partial && slot.good.is_none() && !slot.is_good());
+        let unseen = self.slots.iter().skip(self.fixed).filter(is_unseen);
+        let unseen = unseen.filter(|slot| !replacing.contains(&slot.path));
         annotations.passes.extend(unseen.flat_map(|slot| annotation::passes_of(snapshot, &slot.path)));
         let declared = known.into_iter().map(|(path, stage)| {
             let texts = stage.texts(snapshot);
@@ -133,7 +135,7 @@ impl Library {
 
 /// Errors of a pass whose vertex stage does not write what its fragment stage reads.
 fn unlike_vertex(pass: &GraphPass, stages: &BTreeMap<String, PassStage<'_>>) -> Vec<Diagnostic> {
-    let vertex = stages.get(pass.vertex_stage());
+    let vertex = stages.get(&pass.vertex);
     let (Some(vertex), Some(fragment), false) = (vertex, stages.get(&pass.note.stage), pass.is_compute) else {
         return Vec::new();
     };

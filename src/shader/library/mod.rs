@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use crate::shader::annotation::pass::is_image_extension;
 use crate::shader::annotation::{Constant, Mode, Parameter};
-use crate::shader::compile::{Compiler, StageKind};
+use crate::shader::compile::Compiler;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, unique};
 use crate::shader::graph::Graph;
@@ -107,13 +107,12 @@ pub struct Library {
     source: Arc<Source>,
     compiler: Arc<Compiler>,
     cache: FileCache,
-    /// The entry points that every tree has, then the stages that declare a pass.
+    /// The entry points that a library is made with, then the stages that declare a pass.
     slots: Vec<Slot>,
-    /// Number of entry points that every tree has.
+    /// Number of entry points that a library is made with.
     fixed: usize,
     /// Stages in `passes/` that declare no pass, so that nothing draws them.
     idle: BTreeSet<TreePath>,
-    pairs: Vec<(TreePath, TreePath)>,
     set: Option<Arc<ShaderSet>>,
     failed: bool,
     /// Whether the next update links, even if no stage has changed: the source may refuse other texts.
@@ -121,21 +120,12 @@ pub struct Library {
 }
 
 impl Library {
-    /// A library with the entry points `stages`, and every other stage of the tree that declares a pass. The outputs of
-    /// `NAME.vert` are the inputs of `NAME.frag`.
+    /// A library with the entry points `stages`, and every other stage of the tree that declares a pass.
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
-        let paths: Vec<TreePath> = stages.iter().map(|path| TreePath::from(*path)).collect();
-        let of = |kind| paths.iter().filter(move |path| StageKind::of(path) == Some(kind));
-        let pairs = of(StageKind::Vertex)
-            .flat_map(|vertex| {
-                let fragments = of(StageKind::Fragment).filter(|fragment| fragment.stem() == vertex.stem());
-                fragments.map(|fragment| (vertex.clone(), fragment.clone()))
-            })
-            .collect();
-        let fixed = paths.len();
-        let slots = paths.into_iter().map(Slot::new).collect();
+        let slots: Vec<Slot> = stages.iter().map(|path| Slot::new(TreePath::from(*path))).collect();
         let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
-        Self { source, compiler, cache, slots, fixed, idle, pairs, set: None, failed: false, relink: false }
+        let fixed = slots.len();
+        Self { source, compiler, cache, slots, fixed, idle, set: None, failed: false, relink: false }
     }
 
     /// The tree.
@@ -218,14 +208,17 @@ impl Library {
         self.conclude(linked, self.next_generation(), &snapshot, report)
     }
 
-    /// The first update, in two steps: [`Library::finish`] compiles the stages of `later`, and unless `with_all_passes`
+    /// The first update, in two steps: [`Library::finish`] compiles the stages of debug modes, and unless `with_all_passes`
     /// the passes that are off.
-    pub fn first_picture(&mut self, later: &[&str], with_all_passes: bool) -> Update {
+    pub fn first_picture(&mut self, with_all_passes: bool) -> Update {
         let source = Arc::clone(&self.source);
         let snapshot = Snapshot::new(&source);
         self.find_passes(&Change::All, &snapshot);
-        let off = if with_all_passes { BTreeSet::new() } else { self.passes_off(&snapshot) };
-        self.update_first(&Change::All, |path| !later.contains(&path.as_str()) && !off.contains(path))
+        let mut later = self.replacing(&snapshot);
+        if !with_all_passes {
+            later.extend(self.passes_off(&snapshot));
+        }
+        self.update_first(&Change::All, |path| !later.contains(path))
     }
 
     /// Compiles the stages that [`Library::update_first`] has left. The new set has the same generation. On an error

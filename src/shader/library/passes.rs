@@ -6,10 +6,11 @@ use std::sync::Arc;
 use super::slot::Slot;
 use super::{Change, Library};
 use crate::interface;
-use crate::shader::annotation::{self, Mode, ModeStage};
+use crate::shader::annotation::pass::{MODEL, PassNote, Target};
+use crate::shader::annotation::{self, Mode};
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::graph::{Graph, Part, vertex_of};
+use crate::shader::graph::{FULL_SCREEN, Graph, Part, missing_passes, vertex_of};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::text::{Line, find_word, lines};
 use crate::shader::source::{SourceError, TreePath};
@@ -72,6 +73,26 @@ impl Library {
         }
     }
 
+    /// The stages that draw the model in debug modes, in place of the picture's.
+    pub(super) fn replacing(&self, snapshot: &Snapshot<'_>) -> BTreeSet<TreePath> {
+        let stages = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
+        let replaces = |path: &&TreePath| {
+            snapshot.read(path).is_ok_and(|text| text.contains("instead"))
+                && annotation::passes_of(snapshot, path).any(|note| note.instead.is_some())
+        };
+        stages.filter(replaces).cloned().collect()
+    }
+
+    /// An error for each built-in pass that no stage declares, in a tree that draws pictures.
+    pub(super) fn missing_passes(&self, snapshot: &Snapshot<'_>) -> Vec<Diagnostic> {
+        if self.slots.iter().take(self.fixed).all(|slot| slot.path.as_str() != FULL_SCREEN) {
+            return Vec::new();
+        }
+        let notes: Vec<PassNote> =
+            self.slots.iter().flat_map(|slot| annotation::passes_of(snapshot, &slot.path)).collect();
+        missing_passes(&notes, &snapshot.source().name())
+    }
+
     /// The stages of passes that are off unless the user switches them on, and of passes that only these read.
     pub(super) fn passes_off(&self, snapshot: &Snapshot<'_>) -> BTreeSet<TreePath> {
         let stages = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
@@ -80,7 +101,7 @@ impl Library {
             for note in annotation::passes_of(snapshot, &path) {
                 match !note.on || note.when.is_some() {
                     true => drop(off.insert(path.clone())),
-                    false if note.to_picture => {}
+                    false if note.to != Target::Image => {}
                     false => on.push((path.clone(), note.name)),
                 }
             }
@@ -148,15 +169,16 @@ fn is_kind(path: &TreePath, kind: StageKind) -> bool {
 
 /// A debug mode for the image of each pass.
 pub(super) fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
-    (interface::PASS_MODES..).zip(&graph.passes).map(|(id, pass)| Mode {
+    let shown = graph.passes.iter().filter(|pass| !pass.note.is_drawn_with_model() && !pass.note.is_built_in());
+    (interface::PASS_MODES..).zip(shown).map(|(id, pass)| Mode {
         id,
         slug: pass.slug(),
         name: pass.note.label.clone(),
         group: "Passes".to_owned(),
         components: 3,
         // A pass that changes the picture is shown like the picture.
-        tonemap: pass.note.to_picture || pass.part == Part::Display,
-        stage: ModeStage::Picture,
+        tonemap: pass.note.to_picture() || pass.part == Part::Display,
+        stage: graph.pass(MODEL).map(|model| model.note.stage.clone()).unwrap_or_default(),
         pass: Some(pass.name().to_owned()),
         doc: pass.note.doc.clone(),
         file: pass.note.place.file.clone(),

@@ -227,14 +227,15 @@ fn annotations_are_part_of_the_transaction() {
 fn pairs_and_the_contract_are_checked() {
     let vertex =
         "#version 460\nlayout(location = 0) out vec3 n;\nvoid main() { n = vec3(0); gl_Position = vec4(0); }\n";
-    let fragment = format!("{HEAD}layout(location = 0) in vec2 n;\nvoid main() {{ o = n.xyxy; }}\n");
+    let fragment = format!("{HEAD}layout(location = 0) in vec2 n;\nvoid main() {{ o = n.xyxy; }}\n//@pass p\n");
     let mut library = library(&[("p.vert", vertex), ("p.frag", &fragment)], &["p.vert", "p.frag"]);
     let update = library.update(&Change::All);
     let expected = "p.frag:3:30: error: p.frag reads `vec2 n` at location 0, p.vert writes `vec3 n` there";
     assert_eq!(failed(&update), [expected]);
     let fragment = fragment.replace("vec2 n", "vec3 n").replace("n.xyxy", "n.xyzx");
     assert!(matches!(edit(&mut library, "p.frag", Some(&fragment)), Update::Ready(..)));
-    let extra = format!("{HEAD}layout(set = 5, binding = 0) uniform sampler2D t;\nvoid main() {{ o = vec4(0); }}\n");
+    let extra =
+        format!("{HEAD}layout(set = 5, binding = 0) uniform sampler2D t;\nvoid main() {{ o = vec4(0); }}\n//@pass p\n");
     let update = edit(&mut library, "p.frag", Some(&extra));
     assert!(failed(&update)[0].contains("Specula has nothing there"));
 }
@@ -261,8 +262,12 @@ fn the_same_error_in_two_stages_is_one() {
 #[test]
 fn the_embedded_tree_is_sound() {
     let source = Source::embedded();
-    let stages: Vec<String> =
-        source.list().iter().filter(|path| StageKind::of(path).is_some()).map(TreePath::to_string).collect();
+    let stages: Vec<String> = source
+        .list()
+        .iter()
+        .filter(|path| crate::shader::StageKind::of(path).is_some())
+        .map(TreePath::to_string)
+        .collect();
     let stages: Vec<&str> = stages.iter().map(String::as_str).collect();
     let mut library = Library::new(source, Arc::new(Compiler::new().unwrap()), &stages);
     let found: Vec<String> = super::super::check::check(&mut library).iter().map(Diagnostic::render).collect();

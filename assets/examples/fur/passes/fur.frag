@@ -1,4 +1,4 @@
-//@pass fur "Fur" draw=model instances=24 doc="Shells around the model, of which a fragment is left where a hair is"
+//@pass fur "Fur" draw=model to=picture instances=24 doc="Shells around the model, of which a fragment is left where a hair is"
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"

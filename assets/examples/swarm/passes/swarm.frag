@@ -1,4 +1,4 @@
-//@pass swarm "Swarm" draw=model instances=48 format=rgba32f doc="Copies of the model that fly around it"
+//@pass swarm "Swarm" draw=model to=picture instances=48 doc="Copies of the model that fly around it"
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
@@ -13,6 +13,5 @@ void main() {
     vec3 v = safe_normalize(fragment.to_eye_ws, n);
     float fresnel = 0.04 + 0.96 * pow(1.0 - saturate(dot(n, v)), 5.0);
     vec3 radiance = fragment.color.rgb * irradiance_over_pi(n) + fresnel * prefiltered_radiance(reflect(-v, n), 0.3);
-    // Depth in alpha, for swarm_over.frag.
-    color = vec4(radiance, gl_FragCoord.z);
+    color = vec4(radiance, 1.0);
 }

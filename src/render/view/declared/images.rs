@@ -9,6 +9,7 @@ use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapc
 use crate::render::bound_frame::BoundFrame;
 use crate::scene::mips;
 use crate::shader::GraphPass;
+use crate::shader::annotation::pass::Target;
 use crate::shader::graph::{Graph, Input, Part};
 
 /// The properties of a pass that determine its images.
@@ -99,11 +100,11 @@ impl Images {
             return Ok(None);
         }
         let mut next = Self { key, fresh: self.fresh.clone(), drawings: self.drawings, ..Self::default() };
-        for pass in request.passes.iter().filter(|pass| !pass.note.to_picture) {
+        for pass in request.passes.iter().filter(|pass| pass.note.to == Target::Image) {
             let images = next.images_of(gpu, pass, self.passes.get(pass.name()))?;
             next.passes.insert(pass.name().to_owned(), images);
         }
-        let inputs = request.passes.iter().map(|pass| &pass.inputs).chain(frame.state.shaders.graph.readers.values());
+        let inputs = request.passes.iter().map(|pass| &pass.inputs);
         for (name, bytes) in inputs.flat_map(|inputs| inputs.values()).filter_map(buffer_of) {
             let known = next.buffers.get(name).or(self.buffers.get(name));
             let known = known.filter(|buffer| buffer.size() == u64::from(bytes).max(1));
@@ -123,7 +124,7 @@ impl Images {
                 next.buffers.entry(name.clone()).or_insert_with(|| buffer.clone());
             }
         }
-        let makers = request.passes.iter().filter(|pass| pass.note.to_picture && pass.part == Part::Light).count();
+        let makers = request.passes.iter().filter(|pass| pass.note.to_picture() && pass.part == Part::Light).count();
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
         let (width, height) = frame.state.size;
@@ -311,7 +312,7 @@ impl Images {
 
 /// The sizes in bytes of all buffers that a graph declares, by name.
 fn buffers(graph: &Graph) -> BTreeMap<String, u32> {
-    let inputs = graph.passes.iter().map(|pass| &pass.inputs).chain(graph.readers.values());
+    let inputs = graph.passes.iter().map(|pass| &pass.inputs);
     inputs
         .flat_map(|inputs| inputs.values())
         .filter_map(buffer_of)

@@ -8,6 +8,7 @@ use super::images::Images;
 use crate::gpu::{Pipeline, Uses};
 use crate::interface::{BINDING_FRAME, BINDING_LIGHTS, BINDING_PARAMS};
 use crate::shader::GraphPass;
+use crate::shader::annotation::pass::Target;
 use crate::shader::graph::Input;
 
 /// Everything that an image of a pass was drawn from.
@@ -34,7 +35,7 @@ impl DrawnFrom {
         drawn: &Drawn<'_>,
         images: &Images,
     ) -> Option<Self> {
-        if pass.is_compute || pass.note.to_picture || pass.note.keep {
+        if pass.is_compute || pass.note.to != Target::Image || pass.note.keep {
             return None;
         }
         // Each frame reports the loops that it has cut short.

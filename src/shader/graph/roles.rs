@@ -1,0 +1,83 @@
+//! The passes that make up the picture: the model, its background, the mean and the tone map. They are declared as all others;
+//! this module says what is asked of them.
+
+use super::Part;
+use crate::message::did_you_mean;
+use crate::shader::annotation::Annotations;
+use crate::shader::annotation::pass::{MODEL, PassNote, TONEMAP, Target};
+use crate::shader::diagnostic::Diagnostic;
+
+/// The part of the frame that an annotation itself determines.
+pub(super) fn part(note: &PassNote) -> Part {
+    match note.to {
+        Target::Mean => Part::Mean,
+        Target::Display => Part::Tonemap,
+        Target::Picture if note.is_drawn_with_model() => Part::Model,
+        Target::Picture | Target::Image => Part::Light,
+    }
+}
+
+/// Errors of passes with a name or an option that belongs to another kind of pass.
+pub(super) fn misplaced(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
+    let passes = &annotations.passes;
+    passes.iter().filter_map(|note| Some(note.place.error(misplacement(note, passes)?)))
+}
+
+/// Errors about passes that a picture needs and no stage declares. `tree`: the name of the tree.
+pub fn missing_passes(passes: &[PassNote], tree: &str) -> Vec<Diagnostic> {
+    let is_missing = |name: &str| passes.iter().all(|note| note.name != name);
+    let needed = [(MODEL, "draw=model to=picture"), (TONEMAP, "to=display")];
+    let missing = needed.into_iter().filter(|(name, _)| is_missing(name));
+    let error = |(name, options): (&str, &str)| {
+        let message = format!("no stage of the tree declares the pass `{name}`");
+        let help = format!("write `//@pass {name} {options}` in the fragment stage that draws it");
+        Diagnostic::error(tree, message).with_help(help)
+    };
+    missing.map(error).collect()
+}
+
+/// Errors about debug modes whose stage no pass draws the model with.
+pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
+    let draws = |note: &&PassNote| note.is_drawn_with_model() && note.is_built_in();
+    let known: Vec<&str> = annotations.passes.iter().filter(draws).map(|note| note.stage.as_str()).collect();
+    annotations.modes.iter().filter_map(move |mode| {
+        if known.contains(&mode.stage.as_str()) {
+            return None;
+        }
+        let stems: Vec<&str> = known.iter().map(|path| path.trim_end_matches(".frag")).collect();
+        let hint = did_you_mean(mode.stage.trim_end_matches(".frag"), stems.iter().copied());
+        let message = format!("no pass draws the model with {} for the mode `{}`.{hint}", mode.stage, mode.slug);
+        let error = Diagnostic::error(&mode.file, message).on_line(mode.line, None);
+        Some(error.with_help(format!("stage= can be {}", stems.join(", "))))
+    })
+}
+
+fn misplacement(note: &PassNote, passes: &[PassNote]) -> Option<String> {
+    let draws_model = note.model.is_some() && note.to_picture();
+    match note.name.as_str() {
+        MODEL if !draws_model => return Some(format!("the pass `{MODEL}` draws the model: draw=model to=picture")),
+        TONEMAP if note.to != Target::Display => {
+            return Some(format!("the pass `{TONEMAP}` brings the picture to the display: to=display"));
+        }
+        _ => {}
+    }
+    if note.to == Target::Display && note.name != TONEMAP {
+        return Some(format!(
+            "only the pass `{TONEMAP}` has to=display; a pass after it has to=picture after={TONEMAP}"
+        ));
+    }
+    let is_other_mean = |other: &PassNote| other.to == Target::Mean && other.name < note.name;
+    if note.to == Target::Mean && passes.iter().any(is_other_mean) {
+        return Some("there is another pass with to=mean; one pass makes the mean of all frames".into());
+    }
+    if note.background && !note.to_picture() {
+        return Some("the background lies behind the model in the picture: draw=background to=picture".into());
+    }
+    match note.instead.as_deref() {
+        Some(MODEL) if !draws_model || note.name == MODEL => {
+            Some(format!("a pass with instead={MODEL} draws the model as well: draw=model to=picture"))
+        }
+        Some(MODEL) | None => None,
+        Some(other) => Some(format!("expected instead={MODEL}, found `{other}`: only the model has such passes")),
+    }
+}
