@@ -7,11 +7,11 @@
 // left of it lies behind the model and surrounds it.
 
 uniform Hull {
-    vec3 hull_color;     //@ui "Outline color" color = 0.02 0.02 0.05
-    float hull_glow;     //@ui "Outline glow" 0..1 = 0.0
+    vec3 hull_color;     //@ui "Outline color" color = 1 0.35 0.05
 };
 
 layout(location = 0) in Fragment fragment;
 layout(location = 0) out vec4 color;
 
-void main() { color = vec4(hull_color * mix(1.0, 2000.0, hull_glow * hull_glow), 1.0); }
+// The color as it is exposed, whatever the exposure is.
+void main() { color = vec4(hull_color / frame.exposure, 1.0); }
