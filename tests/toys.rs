@@ -101,6 +101,38 @@ fn channels_read_images_and_other_files() {
 }
 
 #[test]
+fn channels_read_cube_maps_and_volumes() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("maps")).unwrap();
+    // +X has a red row on top, which is where y is up.
+    for face in ["nx", "py", "ny", "pz", "nz", "px"] {
+        let color = |y: u32| if face == "px" && y == 0 { [255, 0, 0] } else { [0, 0, 255] };
+        let image = image::RgbImage::from_fn(2, 2, |_, y| image::Rgb(color(y)));
+        image.save(folder.path().join(format!("maps/sky_{face}.png"))).unwrap();
+    }
+    let slices = image::RgbImage::from_fn(2, 4, |_, y| image::Rgb([0, (y / 2 * 255) as u8, 0]));
+    slices.save(folder.path().join("slices.png")).unwrap();
+    let text = "#iChannel0 \"file://maps/sky_{}.png\" // six files\n#iChannel0::Type \"CubeMap\"\n\
+        #iChannel1 \"slices.png\"\n#iChannel1::Type \"Volume\"\n\
+        vec4 look(samplerCube sky, vec3 d) { return textureLod(sky, d, 0.0); }\n\
+        void mainImage(out vec4 c, in vec2 p) {\n    \
+        if (p.x < 16.0) c = look(iChannel0, vec3(1.0, p.y < 16.0 ? -0.5 : 0.5, 0.5));\n    \
+        else if (p.x < 32.0) c = textureLod(iChannel1, vec3(0.5, 0.5, p.y < 16.0 ? 0.25 : 0.75), 0.0);\n    \
+        else c = vec4(iChannelResolution[0].x / 2.0, iChannelResolution[1].z / 2.0, 0.0, 1.0);\n}\n";
+    render(folder.path(), &[("toy.glsl", text)], &[]).expect(0, &[]);
+    let found = [(8, 8), (8, 24), (24, 8), (24, 24), (48, 8)].map(|(x, y)| pixel(folder.path(), x, y));
+    let expected = [[255, 0, 0, 255], [0, 0, 255, 255], [0, 255, 0, 255], [0, 0, 0, 255], [255, 255, 0, 255]];
+    assert_eq!(found, expected);
+    run(folder.path(), &["check", "--shaders", "toy.glsl"]).expect(0, &[]);
+    // What is wrong has the author's line.
+    fs::remove_file(folder.path().join("maps/sky_ny.png")).unwrap();
+    render(folder.path(), &[("toy.glsl", text)], &[]).expect(1, &["toy.glsl:1:", "has no sky_ny.png"]);
+    let wrong = text.replace("\"CubeMap\"", "\"Cube\"");
+    render(folder.path(), &[("toy.glsl", &wrong)], &[])
+        .expect(1, &["toy.glsl:2:", "expected #iChannel0::Type Texture2D"]);
+}
+
+#[test]
 fn errors_have_the_lines_of_the_author() {
     let folder = tempfile::tempdir().unwrap();
     let wrong = IMAGE.replace("fragColor = vec4(material", "fragColor = vec4(materials");
