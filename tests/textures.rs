@@ -526,7 +526,7 @@ fn errors_have_their_line_and_the_picture_stays() {
         ),
         ("uniform sampler2DMS t;", "texelFetch(t, ivec2(0), 0)", "4:21: error: a pass cannot have sampler2DMS `t`"),
         ("uniform samplerCube t[2];", "texture(t[0], vec3(1.0))", "4:21: error: a pass cannot have samplerCube[2] `t`"),
-        ("//@texture t \"a.png\" layers=0", "vec4(1.0)", "4:29: error: expected a number of layers from 1"),
+        ("//@texture t \"a.png\" layers=0", "vec4(1.0)", "4:29: error: expected layers=1 to layers=65536, found `0`"),
         (
             "//@texture t \"a.png\" cube",
             "vec4(1.0)",

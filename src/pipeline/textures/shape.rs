@@ -39,6 +39,9 @@ impl Shape {
     pub(super) fn of(texture: &Texture, sizes: &[(u32, u32)]) -> Result<Self, String> {
         let file = |index: usize| texture.files[index].path.as_str();
         let (width, height) = sizes[0];
+        if width == 0 || height == 0 {
+            return Err(format!("{} has no pixels", file(0)));
+        }
         if let Some(other) = sizes.iter().position(|size| *size != sizes[0]) {
             let (found, first) = (pixels(sizes[other]), pixels(sizes[0]));
             return Err(format!("{} has {found} pixels, and {} has {first}; expected one size", file(other), file(0)));

@@ -64,9 +64,9 @@ fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>
                 _ => vk::SamplerMipmapMode::NEAREST,
             },
             mips: sampler.mip != model::Mip::None,
-            wrap_w: vk::SamplerAddressMode::CLAMP_TO_EDGE,
             wrap_u: wrap(sampler.wrap_u),
             wrap_v: wrap(sampler.wrap_v),
+            wrap_w: vk::SamplerAddressMode::CLAMP_TO_EDGE,
             anisotropy,
         },
     )

@@ -35,7 +35,7 @@ pub struct TextureNote {
     pub mips: bool,
     /// Whether the first row of each picture, face, layer and slice is at the bottom, as in OpenGL.
     pub flip: bool,
-    /// Number of layers or slices that lie in one image, at least 1.
+    /// Number of layers or slices that lie in one image, 1 to 65536.
     pub layers: Option<u32>,
     /// Location of the annotation.
     #[serde(skip)]
@@ -85,9 +85,9 @@ pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> 
 }
 
 fn layers(cursor: &mut Cursor<'_>) -> Result<u32, Box<Diagnostic>> {
+    /// More than any device has.
+    const MOST: u32 = 65536;
     let (bytes, value) = cursor.value("layers")?;
-    let count = value.parse().ok().filter(|count| *count > 0);
-    count.ok_or_else(|| {
-        cursor.error(bytes, format!("expected a number of layers from 1, as in layers=8, found `{value}`"))
-    })
+    let count = value.parse().ok().filter(|count| (1..=MOST).contains(count));
+    count.ok_or_else(|| cursor.error(bytes, format!("expected layers=1 to layers={MOST}, found `{value}`")))
 }

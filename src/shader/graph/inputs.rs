@@ -224,12 +224,8 @@ fn texture(name: &str, kind: TextureKind, names: &Names<'_>) -> Result<Input, Re
     }
     let known: Vec<&str> = names.textures.iter().map(|texture| texture.name.as_str()).collect();
     let message = format!("no texture is named `{name}`.{}", did_you_mean(name, known.iter().copied()));
-    let example = match kind {
-        TextureKind::Flat => format!("{name}.png\""),
-        TextureKind::Cube => format!("{name}_*.png\""),
-        TextureKind::Volume | TextureKind::Array => format!("{name}.png\" layers=8"),
-    };
-    Err((message, format!("declare it: //@texture {name} \"{example}")))
+    let example = if kind == TextureKind::Cube { "_*.png\"" } else { ".png\" layers=8" };
+    Err((message, format!("declare it: //@texture {name} \"{name}{example}")))
 }
 
 /// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.
