@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use support::process::{Finished, run};
+use support::process::{Finished, Running, run, specula};
 
 /// Writes the files and renders the first of them, 64 x 32 pixels.
 fn render(folder: &Path, files: &[(&str, &str)], options: &[&str]) -> Finished {
@@ -130,6 +130,39 @@ fn channels_read_cube_maps_and_volumes() {
     let wrong = text.replace("\"CubeMap\"", "\"Cube\"");
     render(folder.path(), &[("toy.glsl", &wrong)], &[])
         .expect(1, &["toy.glsl:2:", "expected #iChannel0::Type Texture2D"]);
+}
+
+/// A face of a cube map, a new slice of a volume and the text are all watched.
+#[test]
+fn saving_a_file_of_a_toy_draws_it_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let paint = |name: String, value: u8| {
+        let image = image::RgbImage::from_pixel(2, 2, image::Rgb([value; 3]));
+        image.save(path(&format!("new-{name}"))).unwrap();
+        // In one step, as editors do.
+        fs::rename(path(&format!("new-{name}")), path(&name)).unwrap();
+    };
+    ["px", "nx", "py", "ny", "pz", "nz"].iter().for_each(|face| paint(format!("sky_{face}.png"), 0));
+    paint("slice_1.png".into(), 0);
+    let text = "#iChannel0 \"sky_{}.png\"\n#iChannel0::Type \"CubeMap\"\n\
+        #iChannel1 \"slice_{}.png\"\n#iChannel1::Type \"Volume\"\nvoid mainImage(out vec4 c, in vec2 p) {\n    \
+        c = textureLod(iChannel0, vec3(1.0, 0.0, 0.0), 0.0);\n    c.g = iChannelResolution[1].z / 2.0;\n}\n";
+    fs::write(path("toy.glsl"), text).unwrap();
+    let options = ["render", "toy.glsl", "--size", "64x32", "--watch", "--events", "json", "--out", "shot.png"];
+    let mut running = Running::start(specula(folder.path()).args(options));
+    running.event("completed");
+    assert_eq!(pixel(folder.path(), 8, 8), [0, 128, 0, 255]);
+    paint("sky_px.png".into(), 255);
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 8, 8), [255, 128, 255, 255]);
+    fs::write(path("toy.glsl"), text.replace("c.g", "c.b")).unwrap();
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 8, 8), [255, 255, 128, 255]);
+    paint("slice_2.png".into(), 0);
+    fs::write(path("toy.glsl"), text.replace("c.g", "c.r")).unwrap();
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 8, 8), [255, 255, 255, 255]);
 }
 
 #[test]
