@@ -143,7 +143,8 @@ impl Bench {
     /// The driver rejects a stage, or no memory is left.
     pub fn new(gpu: &Arc<Gpu>, shaders: &Arc<ShaderSet>, settings: &Settings) -> Result<Self, GpuError> {
         let layouts = SetLayouts::new(gpu)?;
-        let (set, _) = PipelineSet::new(gpu, &layouts, shaders.clone(), &request(settings, shaders), None)?;
+        let (set, _) =
+            PipelineSet::new(gpu, &layouts, shaders.clone(), Arc::default(), &request(settings, shaders), None)?;
         let shared = Shared {
             gpu: gpu.clone(),
             layouts,

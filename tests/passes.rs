@@ -282,7 +282,7 @@ fn errors_have_their_line_and_the_picture_stays() {
         ),
         (
             use_it("cube").replace("sampler2D", "samplerCube").replace("uv)", "vec3(uv, 1))"),
-            "a pass cannot have samplerCube `cube`",
+            "show.frag:4:21: error: no texture is named `cube`.",
         ),
     ] {
         let told = lines(failed(&session.save("passes/show.frag", &text)));

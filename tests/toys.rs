@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use support::process::{Finished, run};
+use support::process::{Finished, Running, run, specula};
 
 /// Writes the files and renders the first of them, 64 x 32 pixels.
 fn render(folder: &Path, files: &[(&str, &str)], options: &[&str]) -> Finished {
@@ -98,6 +98,71 @@ fn channels_read_images_and_other_files() {
     render(folder.path(), &[("noise.glsl", noise)], &[]).expect(0, &[]);
     let found: std::collections::BTreeSet<_> = (0..20).map(|x| pixel(folder.path(), x, 3)).collect();
     assert!(found.len() > 15, "{found:?}");
+}
+
+#[test]
+fn channels_read_cube_maps_and_volumes() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("maps")).unwrap();
+    // +X has a red row on top, which is where y is up.
+    for face in ["nx", "py", "ny", "pz", "nz", "px"] {
+        let color = |y: u32| if face == "px" && y == 0 { [255, 0, 0] } else { [0, 0, 255] };
+        let image = image::RgbImage::from_fn(2, 2, |_, y| image::Rgb(color(y)));
+        image.save(folder.path().join(format!("maps/sky_{face}.png"))).unwrap();
+    }
+    let slices = image::RgbImage::from_fn(2, 4, |_, y| image::Rgb([0, (y / 2 * 255) as u8, 0]));
+    slices.save(folder.path().join("slices.png")).unwrap();
+    let text = "#iChannel0 \"file://maps/sky_{}.png\" // six files\n#iChannel0::Type \"CubeMap\"\n\
+        #iChannel1 \"slices.png\"\n#iChannel1::Type \"Volume\"\n\
+        vec4 look(samplerCube sky, vec3 d) { return textureLod(sky, d, 0.0); }\n\
+        void mainImage(out vec4 c, in vec2 p) {\n    \
+        if (p.x < 16.0) c = look(iChannel0, vec3(1.0, p.y < 16.0 ? -0.5 : 0.5, 0.5));\n    \
+        else if (p.x < 32.0) c = textureLod(iChannel1, vec3(0.5, 0.5, p.y < 16.0 ? 0.25 : 0.75), 0.0);\n    \
+        else c = vec4(iChannelResolution[0].x / 2.0, iChannelResolution[1].z / 2.0, 0.0, 1.0);\n}\n";
+    render(folder.path(), &[("toy.glsl", text)], &[]).expect(0, &[]);
+    let found = [(8, 8), (8, 24), (24, 8), (24, 24), (48, 8)].map(|(x, y)| pixel(folder.path(), x, y));
+    let expected = [[255, 0, 0, 255], [0, 0, 255, 255], [0, 255, 0, 255], [0, 0, 0, 255], [255, 255, 0, 255]];
+    assert_eq!(found, expected);
+    run(folder.path(), &["check", "--shaders", "toy.glsl"]).expect(0, &[]);
+    // What is wrong has the author's line.
+    fs::remove_file(folder.path().join("maps/sky_ny.png")).unwrap();
+    render(folder.path(), &[("toy.glsl", text)], &[]).expect(1, &["toy.glsl:1:", "has no sky_ny.png"]);
+    let wrong = text.replace("\"CubeMap\"", "\"Cube\"");
+    render(folder.path(), &[("toy.glsl", &wrong)], &[])
+        .expect(1, &["toy.glsl:2:", "expected #iChannel0::Type Texture2D"]);
+}
+
+/// A face of a cube map, a new slice of a volume and the text are all watched.
+#[test]
+fn saving_a_file_of_a_toy_draws_it_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let paint = |name: String, value: u8| {
+        let image = image::RgbImage::from_pixel(2, 2, image::Rgb([value; 3]));
+        image.save(path(&format!("new-{name}"))).unwrap();
+        // In one step, as editors do.
+        fs::rename(path(&format!("new-{name}")), path(&name)).unwrap();
+    };
+    ["px", "nx", "py", "ny", "pz", "nz"].iter().for_each(|face| paint(format!("sky_{face}.png"), 0));
+    paint("slice_1.png".into(), 0);
+    let text = "#iChannel0 \"sky_{}.png\"\n#iChannel0::Type \"CubeMap\"\n\
+        #iChannel1 \"slice_{}.png\"\n#iChannel1::Type \"Volume\"\nvoid mainImage(out vec4 c, in vec2 p) {\n    \
+        c = textureLod(iChannel0, vec3(1.0, 0.0, 0.0), 0.0);\n    c.g = iChannelResolution[1].z / 2.0;\n}\n";
+    fs::write(path("toy.glsl"), text).unwrap();
+    let options = ["render", "toy.glsl", "--size", "64x32", "--watch", "--events", "json", "--out", "shot.png"];
+    let mut running = Running::start(specula(folder.path()).args(options));
+    running.event("completed");
+    assert_eq!(pixel(folder.path(), 8, 8), [0, 128, 0, 255]);
+    paint("sky_px.png".into(), 255);
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 8, 8), [255, 128, 255, 255]);
+    fs::write(path("toy.glsl"), text.replace("c.g", "c.b")).unwrap();
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 8, 8), [255, 255, 128, 255]);
+    paint("slice_2.png".into(), 0);
+    fs::write(path("toy.glsl"), text.replace("c.g", "c.r")).unwrap();
+    running.reload(true);
+    assert_eq!(pixel(folder.path(), 8, 8), [255, 255, 255, 255]);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use specula::frame::{MaterialVariant, PipelineRequest, TargetFormat};
 use specula::gpu::{PrimitiveClass, SetLayouts};
 use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
 use specula::message::tell;
-use specula::pipeline::{PipelineSet, beyond_limits};
+use specula::pipeline::{PassTextures, PipelineSet, beyond_limits};
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
@@ -93,12 +93,16 @@ fn build_choices(
         PipelineRequest { materials: materials.clone(), ..request }
     };
     let plain = request(&settings);
-    let problems = beyond_limits(&gpu, &shaders.graph);
+    let mut problems = beyond_limits(&gpu, &shaders.graph);
+    let textures = PassTextures::load(&gpu, &shaders.graph, None).unwrap_or_else(|errors| {
+        problems.extend(errors);
+        Arc::default()
+    });
     if !problems.is_empty() {
         diagnostics.extend(problems);
         return Ok(None);
     }
-    let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), &plain, None) {
+    let set = match PipelineSet::new(&gpu, &layouts, shaders.clone(), textures, &plain, None) {
         Ok((set, _)) => set,
         Err(error) => {
             diagnostics.push(Diagnostic::error(args.common.source()?.name(), error.to_string()));

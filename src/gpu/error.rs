@@ -53,7 +53,7 @@ pub enum GpuError {
     /// A pipeline needs a stage that the shader tree does not have.
     #[error("the shader tree has no {0}")]
     NoStage(String),
-    /// An image file of the shader tree is no image, or too large.
+    /// A stage reads more textures than the device has.
     #[error("{0}")]
     Texture(String),
     /// The user interface renderer failed.

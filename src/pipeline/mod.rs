@@ -1,7 +1,6 @@
 //! Pipelines: one set per shader generation, and the reload that creates the next set.
 
 mod bounds;
-mod cube;
 mod limits;
 mod reload;
 mod set;
@@ -12,3 +11,4 @@ pub use limits::beyond_limits;
 pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;
 pub use set::PipelineSet;
+pub use textures::PassTextures;

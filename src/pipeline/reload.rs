@@ -8,6 +8,7 @@ use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, So
 
 use super::limits::beyond_limits;
 use super::set::PipelineSet;
+use super::textures::PassTextures;
 use crate::frame::PipelineRequest;
 use crate::frame::stages::stages;
 
@@ -159,13 +160,17 @@ impl Reloader {
             return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
         }
         let start = Instant::now();
-        let problems = beyond_limits(&self.gpu, &shaders.graph);
+        let before = self.current.as_deref();
+        let mut problems = beyond_limits(&self.gpu, &shaders.graph);
+        let textures = PassTextures::load(&self.gpu, &shaders.graph, before).unwrap_or_else(|errors| {
+            problems.extend(errors);
+            Arc::default()
+        });
         if !problems.is_empty() {
             return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(problems) };
         }
-        let before = self.current.as_deref();
         let request = request(&shaders);
-        let built = PipelineSet::new(&self.gpu, &self.layouts, shaders, &request, before);
+        let built = PipelineSet::new(&self.gpu, &self.layouts, shaders, textures, &request, before);
         let pipeline_ms = start.elapsed().as_secs_f64() * 1e3;
         let (outcome, pipelines) = match built {
             Ok((set, pipelines)) => {

@@ -119,19 +119,19 @@ impl PipelineSet {
     /// A set keeps the pipelines of this many newest requests, so recent modes return at once and memory stays bounded.
     pub const REQUESTS_KEPT: u64 = 64;
 
-    /// Creates a set with the pipelines of `request`, all or nothing. Pipelines of `before` whose stages did not change are
-    /// taken over.
+    /// Creates a set with the pipelines of `request`, all or nothing. `textures`: those of the shaders' graph. Pipelines of
+    /// `before` whose stages did not change are taken over.
     ///
     /// # Errors
-    /// The driver rejects a stage or a pipeline, or a texture is no image.
+    /// The driver rejects a stage or a pipeline.
     pub fn new(
         gpu: &Arc<Gpu>,
         layouts: &Arc<SetLayouts>,
         shaders: Arc<ShaderSet>,
+        textures: Arc<PassTextures>,
         request: &PipelineRequest,
         before: Option<&Self>,
     ) -> Result<(Arc<Self>, usize), GpuError> {
-        let textures = PassTextures::of(gpu, &shaders.graph, before.map(|set| &set.textures))?;
         let set = Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
@@ -148,6 +148,11 @@ impl PipelineSet {
         }
         let built = set.build(request)?;
         Ok((Arc::new(set), built))
+    }
+
+    /// The textures of this generation.
+    pub(super) fn textures(&self) -> &Arc<PassTextures> {
+        &self.textures
     }
 
     /// Takes over the pipelines of unchanged stages. Frames may use `before` at the same time, so its locks are held briefly.
@@ -330,7 +335,7 @@ fn of_pass(pass: &GraphPass, error: GpuError) -> GpuError {
 
 fn kind_of(input: &Input) -> PassBinding {
     match input {
-        Input::Picture | Input::Behind | Input::Depth | Input::Image(_) | Input::Before(_) | Input::Texture(_) => {
+        Input::Picture | Input::Behind | Input::Depth | Input::Image(_) | Input::Before(_) | Input::Texture(..) => {
             PassBinding::Texture
         }
         Input::Output => PassBinding::Storage,

@@ -1,5 +1,5 @@
-//! Computes the mip levels of 8-bit images on the CPU, so that every device gets the same bytes. A software device would take
-//! seven times as long to blit them.
+//! Computes mip levels on the CPU, so that every device gets the same bytes. A software device would take seven times as long
+//! to blit them.
 
 use std::sync::LazyLock;
 
@@ -42,6 +42,32 @@ pub fn below(rgba8: &[u8], width: u32, height: u32, srgb: bool) -> Vec<u8> {
     chain
 }
 
+/// Levels 1 and up of an RGBA image or volume of floats, one after the other. `size`: width, height and depth. Each texel is the
+/// mean of up to 2x2x2 texels of the level above.
+pub fn below_floats(texels: &[[f32; 4]], size: [u32; 3]) -> Vec<[f32; 4]> {
+    let at_level = |level: u32| size.map(|side| (side >> level).max(1) as usize);
+    let [width, height, depth] = size;
+    let mut out = Vec::new();
+    let mut above = texels.to_vec();
+    for level in 1..count(width.max(depth), height) {
+        let (from, [to_w, to_h, to_d]) = (at_level(level - 1), at_level(level));
+        let mut texels = vec![[0.0; 4]; to_w * to_h * to_d];
+        // An axis with a single texel keeps it.
+        let pair = |axis: usize, at: usize| if from[axis] > 1 { [2 * at, 2 * at + 1] } else { [0, 0] };
+        texels.par_chunks_exact_mut(to_w).enumerate().for_each(|(row, texels)| {
+            let (ys, zs) = (pair(1, row % to_h), pair(2, row / to_h));
+            let rows = zs.map(|z| ys.map(|y| &above[(z * from[1] + y) * from[0]..][..from[0]]));
+            for (x, texel) in texels.iter_mut().enumerate() {
+                let taps = rows.iter().flatten().flat_map(|row| pair(0, x).map(|x| row[x]));
+                *texel = taps.fold([0.0; 4], |sum, tap| std::array::from_fn(|c| sum[c] + tap[c] / 8.0));
+            }
+        });
+        out.extend_from_slice(&texels);
+        above = texels;
+    }
+    out
+}
+
 fn level_bytes(width: u32, height: u32, level: u32) -> usize {
     let (width, height) = size(width, height, level);
     width as usize * height as usize * 4
@@ -79,18 +105,20 @@ fn mean_of_four(pixel: &mut [u8], taps: [&[u8]; 4], curve: Option<&Curve>) {
     }
 }
 
+/// The sRGB curve (IEC 61966-2-1) of a linear value, 0..1.
+pub fn encode_srgb(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// Tables of the sRGB curve and its inverse (IEC 61966-2-1). 16 bits of linear light distinguish all dark values.
 struct Curve {
     linear: [u32; 256],
     encoded: Vec<u8>,
 }
 
-static CURVE: LazyLock<Curve> = LazyLock::new(|| {
-    let encode = |l: f32| if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
-    Curve {
-        linear: std::array::from_fn(|i| (linear_from_srgb(i as f32 / 255.0) * 65535.0).round() as u32),
-        encoded: (0..=65535u32).map(|l| (encode(l as f32 / 65535.0) * 255.0).round() as u8).collect(),
-    }
+static CURVE: LazyLock<Curve> = LazyLock::new(|| Curve {
+    linear: std::array::from_fn(|i| (linear_from_srgb(i as f32 / 255.0) * 65535.0).round() as u32),
+    encoded: (0..=65535u32).map(|l| (encode_srgb(l as f32 / 65535.0) * 255.0).round() as u8).collect(),
 });
 
 impl Curve {
@@ -116,6 +144,15 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_texel_of_a_volume_is_the_mean_of_eight() {
+        let volume: Vec<[f32; 4]> = (0..8).map(|value| [value as f32; 4]).collect();
+        assert_eq!(below_floats(&volume, [2, 2, 2]), [[3.5; 4]]);
+        // 4 x 1 x 2: a level of 2 x 1 x 1, and one texel.
+        assert_eq!(below_floats(&volume, [4, 1, 2]), [[2.5; 4], [4.5; 4], [3.5; 4]]);
+        assert_eq!(below_floats(&volume[..3], [3, 1, 1]), [[0.5; 4]]);
     }
 
     #[test]

@@ -125,6 +125,8 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
     let new_files = take_files(headless, args, watch, changes)?;
     let reload = headless.update_first(headless.reloader().library().change_of(&changes.paths));
+    // A changed text may name other files.
+    watch.follow(headless);
     let mut first_frame_ms = 0.0;
     if new_files || matches!(reload.outcome, Outcome::Ready(_)) {
         let begin = Instant::now();

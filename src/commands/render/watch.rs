@@ -40,16 +40,20 @@ impl Watch {
         let on_batch = move |batch| {
             let _ = sender.send(batch);
         };
-        let watcher = Watcher::new(source.root(), &[], on_batch).map_err(|e| Failure::Input(e.to_string()))?;
+        let watcher =
+            Watcher::new(source.root(), &source.files(), on_batch).map_err(|e| Failure::Input(e.to_string()))?;
         let (model_files, environment_files, measured_files) = Default::default();
         Ok(Self { watcher, batches, model_files, environment_files, measured_files })
     }
 
-    /// Also watches the current files of the model, the environment and the measured BRDF, instead of the previous ones.
+    /// Also watches the current files of the model, the environment, the measured BRDF and a tree that is a single file, instead
+    /// of the previous ones.
     pub fn follow(&mut self, headless: &Headless) {
         let model = headless.model();
         let (environment, measured) = (headless.session().environment_files(), headless.session().measured_files());
-        let files: Vec<PathBuf> = model.files.iter().chain(&environment).chain(&measured).cloned().collect();
+        let tree = headless.reloader().library().source().files();
+        let files: Vec<PathBuf> =
+            model.files.iter().chain(&environment).chain(&measured).chain(&tree).cloned().collect();
         self.watcher.set_files(&files);
         self.model_files = model.files.iter().cloned().collect();
         self.environment_files = environment.into_iter().collect();

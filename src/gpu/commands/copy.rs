@@ -102,15 +102,16 @@ fn one_pixel(image: &Image, (x, y): (u32, u32)) -> vk::BufferImageCopy {
 /// The region of a mip level with all its layers.
 fn whole_level(image: &Image, level: u32, offset: u64) -> vk::BufferImageCopy {
     let side = |pixels: u32| (pixels >> level).max(1);
+    let desc = image.desc();
     vk::BufferImageCopy {
         buffer_offset: offset,
         image_subresource: vk::ImageSubresourceLayers {
             aspect_mask: image.aspect(),
             mip_level: level,
             base_array_layer: 0,
-            layer_count: image.desc().layers,
+            layer_count: desc.layers,
         },
-        image_extent: vk::Extent3D { width: side(image.desc().width), height: side(image.desc().height), depth: 1 },
+        image_extent: vk::Extent3D { width: side(desc.width), height: side(desc.height), depth: side(desc.depth) },
         ..Default::default()
     }
 }

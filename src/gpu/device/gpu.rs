@@ -140,6 +140,21 @@ impl Gpu {
         self.properties.limits.max_image_dimension2_d
     }
 
+    /// Largest width and height of a cube map's face, in pixels.
+    pub fn max_cube_size(&self) -> u32 {
+        self.properties.limits.max_image_dimension_cube
+    }
+
+    /// Largest width, height and depth of a volume, in texels.
+    pub fn max_volume_size(&self) -> u32 {
+        self.properties.limits.max_image_dimension3_d
+    }
+
+    /// Largest number of layers of an array.
+    pub fn max_layers(&self) -> u32 {
+        self.properties.limits.max_image_array_layers
+    }
+
     /// The number of sampled textures that one stage can have.
     pub fn max_textures(&self) -> usize {
         let limits = &self.properties.limits;

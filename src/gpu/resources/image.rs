@@ -19,6 +19,8 @@ pub struct ImageDesc {
     pub height: u32,
     /// Mip levels.
     pub mips: u32,
+    /// Slices of a volume at level 0; 1 for all other images.
+    pub depth: u32,
     /// Layers: 1, the six faces of a cube, or any number of an array.
     pub layers: u32,
     /// How shaders sample the image.
@@ -35,13 +37,19 @@ impl ImageDesc {
     /// A single-sampled image with one level.
     pub fn new(width: u32, height: u32, format: vk::Format, usage: vk::ImageUsageFlags) -> Self {
         let view = vk::ImageViewType::TYPE_2D;
-        Self { width, height, mips: 1, layers: 1, view, samples: 1, format, usage }
+        Self { width, height, depth: 1, mips: 1, layers: 1, view, samples: 1, format, usage }
     }
 
     /// The same as an array of `layers` images, for a shader's `sampler2DArray`.
     #[must_use]
     pub fn array(self, layers: u32) -> Self {
         Self { layers, view: vk::ImageViewType::TYPE_2D_ARRAY, ..self }
+    }
+
+    /// The same as a volume of `depth` slices, for a shader's `sampler3D`.
+    #[must_use]
+    pub fn volume(self, depth: u32) -> Self {
+        Self { depth, view: vk::ImageViewType::TYPE_3D, ..self }
     }
 
     /// A cube map, `side` texels wide, with `mips` levels.
@@ -54,10 +62,10 @@ impl ImageDesc {
         (0..self.mips).map(|level| self.level_bytes(level)).sum()
     }
 
-    /// Bytes of one level with all its layers, tightly packed.
+    /// Bytes of one level with all its layers and slices, tightly packed.
     pub fn level_bytes(&self, level: u32) -> u64 {
         let side = |pixels: u32| u64::from((pixels >> level).max(1));
-        side(self.width) * side(self.height) * u64::from(self.layers) * texel_bytes(self.format)
+        side(self.width) * side(self.height) * side(self.depth) * u64::from(self.layers) * texel_bytes(self.format)
     }
 }
 
@@ -90,11 +98,12 @@ impl Image {
     pub fn new(gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Arc<Self>, GpuError> {
         let is_cube = desc.view == vk::ImageViewType::CUBE;
         let flags = if is_cube { vk::ImageCreateFlags::CUBE_COMPATIBLE } else { vk::ImageCreateFlags::empty() };
+        let is_volume = desc.view == vk::ImageViewType::TYPE_3D;
         let info = vk::ImageCreateInfo::default()
             .flags(flags)
-            .image_type(vk::ImageType::TYPE_2D)
+            .image_type(if is_volume { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D })
             .format(desc.format)
-            .extent(vk::Extent3D { width: desc.width, height: desc.height, depth: 1 })
+            .extent(vk::Extent3D { width: desc.width, height: desc.height, depth: desc.depth })
             .mip_levels(desc.mips)
             .array_layers(desc.layers)
             .samples(vk::SampleCountFlags::from_raw(desc.samples))

@@ -22,6 +22,8 @@ pub struct SamplerDesc {
     pub wrap_u: vk::SamplerAddressMode,
     /// Vertical addressing.
     pub wrap_v: vk::SamplerAddressMode,
+    /// Addressing of the third coordinate, of volumes.
+    pub wrap_w: vk::SamplerAddressMode,
     /// Largest number of anisotropic samples; 1 disables them.
     pub anisotropy: u32,
 }
@@ -35,6 +37,7 @@ impl SamplerDesc {
         mips: false,
         wrap_u: vk::SamplerAddressMode::CLAMP_TO_EDGE,
         wrap_v: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+        wrap_w: vk::SamplerAddressMode::CLAMP_TO_EDGE,
         anisotropy: 1,
     };
     /// Blends texels of level 0, clamped to the edge.
@@ -68,7 +71,7 @@ impl Sampler {
             .mipmap_mode(desc.mip)
             .address_mode_u(desc.wrap_u)
             .address_mode_v(desc.wrap_v)
-            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(desc.wrap_w)
             .anisotropy_enable(gpu.anisotropy && anisotropy > 1.0)
             .max_anisotropy(anisotropy.max(1.0))
             // With 0 the magnification filter would apply everywhere. The Vulkan specification gives 0.25 for OpenGL's

@@ -66,6 +66,7 @@ fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>
             mips: sampler.mip != model::Mip::None,
             wrap_u: wrap(sampler.wrap_u),
             wrap_v: wrap(sampler.wrap_v),
+            wrap_w: vk::SamplerAddressMode::CLAMP_TO_EDGE,
             anisotropy,
         },
     )

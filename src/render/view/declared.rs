@@ -6,6 +6,7 @@ mod reads;
 mod reuse;
 mod sets;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::passes::{ModelDraws, instances};
@@ -18,7 +19,7 @@ use crate::interface::{Frame, SET_TASK};
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::Dispatch;
-use crate::shader::graph::{Input, Part};
+use crate::shader::graph::{Input, Part, TextureKind};
 pub(super) use blocks::Blocks;
 use images::Images;
 pub(super) use reads::Given;
@@ -36,6 +37,8 @@ pub(super) struct DeclaredPasses {
     nearest: Arc<Sampler>,
     /// Reads as 0. Passes read it in place of a missing image, such as that of a pass that is switched off.
     blank: Arc<Image>,
+    /// The same in place of missing textures, by their kind.
+    blanks: BTreeMap<TextureKind, Arc<Image>>,
     /// The set of tasks, through which compute stages report endless loops.
     task_set: Arc<DescriptorSet>,
     images: Images,
@@ -68,12 +71,15 @@ impl DeclaredPasses {
         linear: &Arc<Sampler>,
         nearest: &Arc<Sampler>,
     ) -> Result<Self, GpuError> {
+        let blanks = TextureKind::ALL.map(|kind| Ok((kind, images::blank(gpu, kind)?)));
+        let blanks: BTreeMap<TextureKind, Arc<Image>> = blanks.into_iter().collect::<Result<_, GpuError>>()?;
         Ok(Self {
             gpu: gpu.clone(),
             layouts: layouts.clone(),
             linear: linear.clone(),
             nearest: nearest.clone(),
-            blank: images::blank(gpu)?,
+            blank: blanks[&TextureKind::Flat].clone(),
+            blanks,
             task_set: DescriptorSet::new(layouts, SET_TASK, SetWriter::default())?,
             images: Images::default(),
             sets: Sets::default(),

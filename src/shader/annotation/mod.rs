@@ -12,7 +12,7 @@
 //! //@texture noise "noise.png" linear repeat
 //! ```
 //!
-//! `//@pass` and `//@texture` stand anywhere in their file ([`pass`]). Any other annotation follows its declaration on
+//! `//@pass` and `//@texture` stand anywhere in their file ([`pass`], [`texture`]). Any other annotation follows its declaration on
 //! the same line, or is on the line before it.
 
 mod cursor;
@@ -21,6 +21,7 @@ mod parameter;
 mod parse;
 pub mod pass;
 mod resolve;
+pub mod texture;
 mod ui;
 mod value;
 
@@ -34,8 +35,9 @@ use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
 use cursor::Place;
 use parse::{Found, parse_file};
-use pass::{PassNote, TextureNote};
+use pass::PassNote;
 use resolve::resolve;
+use texture::TextureNote;
 use ui::Ui;
 
 pub use mode::{DrawAs, Encode, Mode, PATHS_STAGE};

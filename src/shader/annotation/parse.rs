@@ -2,7 +2,8 @@
 
 use super::cursor::{Cursor, Place};
 use super::mode::{Mode, mode};
-use super::pass::{self, PassNote, TextureNote};
+use super::pass::{self, PassNote};
+use super::texture::{self, TextureNote};
 use super::ui::{Ui, ui};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, lines};
@@ -55,7 +56,7 @@ fn parse(place: Place, start: usize, declaration: Option<&Line<'_>>) -> Result<F
             Ok(Found::Ui(Ui { place, ..ui }))
         }
         "pass" => pass::pass(&mut cursor).map(Found::Pass),
-        "texture" => pass::texture(&mut cursor).map(Found::Texture),
+        "texture" => texture::texture(&mut cursor).map(Found::Texture),
         _ => {
             let message = format!("expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@{kind}`");
             Err(cursor.error(start..bytes.end, message))

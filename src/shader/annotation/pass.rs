@@ -1,4 +1,4 @@
-//! Parses `//@pass` and `//@texture`, with which a shader tree adds passes and their textures to a frame.
+//! Parses `//@pass`, with which a shader tree adds passes to a frame.
 
 use std::ops::Range;
 
@@ -43,7 +43,7 @@ impl std::hash::Hash for NotePlace {
 }
 
 impl NotePlace {
-    fn of(place: &Place) -> Self {
+    pub(super) fn of(place: &Place) -> Self {
         let Place { file, line, raw, bytes } = place.clone();
         Self { file, line, raw, bytes }
     }
@@ -219,44 +219,6 @@ impl PassNote {
     }
 }
 
-/// The addressing mode of a texture, for coordinates beyond its edges.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Wrap {
-    /// The texture repeats.
-    #[default]
-    Repeat,
-    /// The texels at the edge continue.
-    Clamp,
-}
-
-/// A declared texture: an image file of the tree.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
-pub struct TextureNote {
-    /// Name in GLSL.
-    pub name: String,
-    /// Path of the image, relative to the file with the annotation or to the tree's root.
-    pub image: String,
-    /// Path of the file with the annotation, relative to the tree's root.
-    pub declared_in: String,
-    /// Whether its colors are sRGB-encoded, so that a shader reads linear light.
-    pub srgb: bool,
-    /// Addressing mode.
-    pub wrap: Wrap,
-    /// Whether it has mip levels.
-    pub mips: bool,
-    /// Whether its first row is at the bottom of the image, as in OpenGL.
-    pub flip: bool,
-    /// Location of the annotation.
-    #[serde(skip)]
-    pub place: NotePlace,
-}
-
-/// Whether a file with this extension may be the image of a `//@texture`.
-pub fn is_image_extension(extension: &str) -> bool {
-    ["png", "jpg", "jpeg", "hdr", "exr", "cube"].iter().any(|known| known.eq_ignore_ascii_case(extension))
-}
-
 /// Parses the rest of a `//@pass`.
 pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
     let name = name(cursor, "pass")?;
@@ -323,43 +285,8 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
     Ok(note)
 }
 
-/// Parses the rest of a `//@texture`.
-pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> {
-    let name = name(cursor, "texture")?;
-    let Some(image) = cursor.string()? else {
-        return Err(cursor.expected("the image's file in quotes"));
-    };
-    let place = NotePlace::of(cursor.place());
-    let mut note = TextureNote {
-        name,
-        image,
-        declared_in: String::new(),
-        srgb: true,
-        wrap: Wrap::Repeat,
-        mips: false,
-        flip: false,
-        place,
-    };
-    while !cursor.at_end() {
-        let (bytes, word) = cursor.word();
-        match word {
-            "srgb" => note.srgb = true,
-            "linear" => note.srgb = false,
-            "repeat" => note.wrap = Wrap::Repeat,
-            "clamp" => note.wrap = Wrap::Clamp,
-            "mips" => note.mips = true,
-            "flip" => note.flip = true,
-            other => {
-                let message = format!("expected srgb, linear, repeat, clamp, mips or flip, found `{other}`");
-                return Err(cursor.error(bytes, message));
-            }
-        }
-    }
-    Ok(note)
-}
-
 /// Parses the name after `//@pass` or `//@texture`: a GLSL identifier.
-fn name(cursor: &mut Cursor<'_>, what: &str) -> Result<String, Box<Diagnostic>> {
+pub(super) fn name(cursor: &mut Cursor<'_>, what: &str) -> Result<String, Box<Diagnostic>> {
     let (bytes, name) = cursor.word();
     let is_first = |c: char| c.is_ascii_lowercase();
     let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';

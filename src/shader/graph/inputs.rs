@@ -1,9 +1,10 @@
 //! Finds the resources that a pass reads and writes, by the names of its declarations.
 
-use super::{Input, Inputs, PassStage};
+use super::{Input, Inputs, PassStage, TextureKind};
 use crate::interface::SET_PASS;
 use crate::message::did_you_mean;
-use crate::shader::annotation::pass::{PassFormat, PassNote, Target, TextureNote};
+use crate::shader::annotation::pass::{PassFormat, PassNote, Target};
+use crate::shader::annotation::texture::TextureNote;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::spirv::reflect::Descriptor;
@@ -18,6 +19,9 @@ const PASS_BLOCK: &str = "Pass";
 /// The members that it may have, and their types in GLSL.
 const PASS_MEMBERS: [(&str, &str); 5] =
     [("size_px", "vec2"), ("mouse_px", "vec4"), ("time_s", "float"), ("delta_s", "float"), ("frame_index", "uint")];
+
+/// The samplers that a stage can have.
+const SAMPLERS: &str = "sampler2D, samplerCube, sampler3D, sampler2DArray";
 
 /// The names that a pass can read.
 pub struct Names<'a> {
@@ -113,11 +117,13 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
             let message = format!("`{name}` is not the image of this pass, which is `{}`", note.name);
             Err((message, "a pass writes its own image; it reads those of others as `uniform sampler2D`".into()))
         }
-        other => {
-            let message = format!("a pass cannot have {other} `{name}`");
-            let help = "it can have sampler2D, its own image2D, a buffer block or a uniform block".to_owned();
-            Err((message, help))
-        }
+        other => match TextureKind::of(other) {
+            Some(kind) => texture(name, kind, names),
+            None => {
+                let message = format!("a pass cannot have {other} `{name}`");
+                Err((message, format!("it can have {SAMPLERS}, its own image2D, a buffer block or a uniform block")))
+            }
+        },
     }
 }
 
@@ -168,9 +174,26 @@ fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
         Some(_) => Some(Ok(Input::Image(name.to_owned()))),
         None => {
             let is_texture = names.textures.iter().any(|texture| texture.name == name);
-            is_texture.then(|| Ok(Input::Texture(name.to_owned())))
+            is_texture.then(|| Ok(Input::Texture(name.to_owned(), TextureKind::Flat)))
         }
     }
+}
+
+/// A texture that is no `sampler2D`. Only files of the tree are such textures.
+fn texture(name: &str, kind: TextureKind, names: &Names<'_>) -> Result<Input, Refusal> {
+    if names.textures.iter().any(|texture| texture.name == name) {
+        return Ok(Input::Texture(name.to_owned(), kind));
+    }
+    let glsl = kind.glsl();
+    let drawn = name.strip_prefix("before_").unwrap_or(name);
+    if ["picture", "depth", "behind"].contains(&name) || names.passes.iter().any(|pass| pass.name == drawn) {
+        let message = format!("`{name}` is drawn, so it is no {glsl}");
+        return Err((message, format!("declare it as `uniform sampler2D {name};`")));
+    }
+    let known: Vec<&str> = names.textures.iter().map(|texture| texture.name.as_str()).collect();
+    let message = format!("no texture is named `{name}`.{}", did_you_mean(name, known.iter().copied()));
+    let example = if kind == TextureKind::Cube { "_*.png\"" } else { ".png\" layers=8" };
+    Err((message, format!("declare it: //@texture {name} \"{name}{example}")))
 }
 
 /// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.

@@ -25,8 +25,8 @@ use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
 pub use roles::missing_passes;
-pub use textures::Texture;
-use textures::{read_texture, texture_name};
+use textures::read_texture;
+pub use textures::{Texture, TextureFile, TextureKind};
 
 /// The resource that a pass reads or writes at a binding of `interface::SET_PASS`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -41,8 +41,8 @@ pub enum Input {
     Image(String),
     /// The image of a pass one frame ago.
     Before(String),
-    /// A texture of the tree.
-    Texture(String),
+    /// A texture of the tree, as the kind that the stage declares.
+    Texture(String, TextureKind),
     /// The image of this pass, written by a compute shader.
     Output,
     /// A storage buffer that all passes share by the name of its block, with its size in bytes. It lasts from frame to frame.
@@ -148,8 +148,8 @@ impl GraphPass {
 pub struct Graph {
     /// In the order in which they are drawn.
     pub passes: Vec<Arc<GraphPass>>,
-    /// The textures that the stages read, by name.
-    pub textures: BTreeMap<String, Arc<Texture>>,
+    /// The textures that the stages read, by name and kind.
+    pub textures: BTreeMap<(String, TextureKind), Arc<Texture>>,
 }
 
 /// A stage that declares a pass.
@@ -220,13 +220,14 @@ impl Graph {
             }
         }
         errors.extend(different_buffers(&passes));
-        let inputs = passes.iter().map(|pass| &pass.inputs);
-        let used: BTreeSet<&str> = inputs.flat_map(BTreeMap::values).filter_map(texture_name).collect();
+        let inputs = passes.iter().flat_map(|pass| pass.inputs.values());
+        let used: BTreeSet<(&str, TextureKind)> = inputs.filter_map(texture_of).collect();
         let mut textures = BTreeMap::new();
-        for note in annotations.textures.iter().filter(|note| used.contains(note.name.as_str())) {
-            match read_texture(note, snapshot) {
+        for (name, kind) in used {
+            let Some(note) = annotations.textures.iter().find(|note| note.name == name) else { continue };
+            match read_texture(note, kind, snapshot) {
                 Ok(texture) => {
-                    textures.insert(note.name.clone(), Arc::new(texture));
+                    textures.insert((name.to_owned(), kind), Arc::new(texture));
                 }
                 Err(error) => errors.push(*error),
             }
@@ -236,11 +237,6 @@ impl Graph {
         }
         let passes = order::ordered(passes)?.into_iter().map(Arc::new).collect();
         Ok(Self { passes, textures })
-    }
-
-    /// The paths of the image files, which are watched with the tree.
-    pub fn texture_paths(&self) -> impl Iterator<Item = &str> {
-        self.textures.values().map(|texture| texture.path.as_str())
     }
 
     /// The pass of this name.
@@ -328,6 +324,14 @@ impl Graph {
 fn with(mut inputs: Inputs, vertex: Option<Result<Inputs, Vec<Diagnostic>>>) -> Result<Inputs, Vec<Diagnostic>> {
     inputs.extend(vertex.transpose()?.into_iter().flatten());
     Ok(inputs)
+}
+
+/// The texture that an input reads.
+fn texture_of(input: &Input) -> Option<(&str, TextureKind)> {
+    match input {
+        Input::Texture(name, kind) => Some((name, *kind)),
+        _ => None,
+    }
 }
 
 /// Whether an input may change while nothing else does.

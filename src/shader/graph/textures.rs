@@ -1,77 +1,237 @@
-//! The textures that a tree declares: image files, read as bytes.
+//! The textures that a tree declares: finds their image files and reads the bytes.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::Input;
-use crate::shader::annotation::pass::{TextureNote, Wrap};
+use serde::Serialize;
+
+use crate::shader::annotation::texture::TextureNote;
 use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::pattern::{FACES, Pattern};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
 
-/// An image file of the tree that passes sample.
+/// The kind of an image, by the sampler that reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TextureKind {
+    /// `sampler2D`: one picture.
+    Flat,
+    /// `samplerCube`: six faces.
+    Cube,
+    /// `sampler3D`: slices of a volume.
+    Volume,
+    /// `sampler2DArray`: layers.
+    Array,
+}
+
+impl TextureKind {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::Flat, Self::Cube, Self::Volume, Self::Array];
+
+    /// The sampler in GLSL.
+    pub fn glsl(self) -> &'static str {
+        match self {
+            Self::Flat => "sampler2D",
+            Self::Cube => "samplerCube",
+            Self::Volume => "sampler3D",
+            Self::Array => "sampler2DArray",
+        }
+    }
+
+    /// The kind that a sampler in GLSL reads. `None` for samplers that Specula has no textures for.
+    pub fn of(glsl: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.glsl() == glsl)
+    }
+}
+
+/// A file of a texture.
+#[derive(Clone, PartialEq, Eq)]
+pub struct TextureFile {
+    /// Path for messages.
+    pub path: String,
+    /// Its content.
+    pub bytes: Arc<[u8]>,
+}
+
+/// An image of the tree that stages sample.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
-    /// Name in GLSL.
-    pub name: String,
-    /// Path in the tree.
-    pub path: String,
-    /// Whether its colors are sRGB-encoded.
-    pub srgb: bool,
-    /// Addressing mode.
-    pub wrap: Wrap,
-    /// Whether it has mip levels.
-    pub mips: bool,
-    /// The content of the file.
-    pub bytes: Arc<[u8]>,
+    /// The kind that a stage declares. A texture that is declared as several kinds is several textures.
+    pub kind: TextureKind,
+    /// Its files, at least one: with a `*` six faces in the order +X -X +Y -Y +Z -Z, or all layers or slices.
+    pub files: Vec<TextureFile>,
     /// The parsed `//@texture`.
     pub note: TextureNote,
 }
 
-impl std::fmt::Debug for Texture {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Texture").field("name", &self.name).field("path", &self.path).finish_non_exhaustive()
+impl Texture {
+    /// Whether its only file is a table of colors.
+    pub fn is_table(&self) -> bool {
+        is_table(&self.note)
     }
 }
 
-/// The name of the texture that an input reads.
-pub(super) fn texture_name(input: &Input) -> Option<&str> {
-    match input {
-        Input::Texture(name) => Some(name),
+impl std::fmt::Debug for Texture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Texture").field("name", &self.note.name).field("kind", &self.kind).finish_non_exhaustive()
+    }
+}
+
+fn is_table(note: &TextureNote) -> bool {
+    note.image.rsplit_once('.').is_some_and(|(_, extension)| extension.eq_ignore_ascii_case("cube"))
+}
+
+/// Finds and reads the files of a texture.
+///
+/// # Errors
+/// The annotation does not fit the kind, or a file does not exist, cannot be read, or lies outside of the tree: at the line of
+/// the annotation.
+pub(super) fn read_texture(
+    note: &TextureNote,
+    kind: TextureKind,
+    snapshot: &Snapshot<'_>,
+) -> Result<Texture, Box<Diagnostic>> {
+    let refuse = |message: String| Box::new(note.place.error(message));
+    if let Some((message, help)) = contradiction(note, kind) {
+        return Err(Box::new(note.place.error(message).with_help(help)));
+    }
+    let beside = TreePath::from(note.declared_in.as_str()).sibling(&note.image);
+    let mut candidates: Vec<TreePath> = beside.into_iter().chain(TreePath::parse(&note.image)).collect();
+    candidates.dedup();
+    if candidates.is_empty() {
+        return Err(refuse(format!("\"{}\" leaves the shader tree; images must stay inside its root", note.image)));
+    }
+    let paths = match Pattern::of(&note.image) {
+        None => candidates.clone(),
+        Some(pattern) if kind == TextureKind::Cube => faces(note, pattern, &candidates, snapshot).map_err(refuse)?,
+        Some(pattern) => parts(note, pattern, &candidates, snapshot).map_err(refuse)?,
+    };
+    let is_pattern = Pattern::of(&note.image).is_some();
+    let read = |path: &TreePath| {
+        let shown = snapshot.display_path(path);
+        match snapshot.source().read_bytes(path) {
+            Ok(bytes) => Some(Ok(TextureFile { path: shown, bytes: bytes.into() })),
+            Err(SourceError::Missing) if !is_pattern => None,
+            Err(error) => Some(Err(refuse(format!("{shown} {error}")))),
+        }
+    };
+    // Without a `*`, the paths are places of the same file.
+    let most = if is_pattern { paths.len() } else { 1 };
+    let files: Vec<TextureFile> = paths.iter().filter_map(read).take(most).collect::<Result<_, _>>()?;
+    if files.is_empty() {
+        return Err(refuse(format!("\"{}\" not found; looked for {}", note.image, shown(&candidates, snapshot))));
+    }
+    Ok(Texture { kind, files, note: note.clone() })
+}
+
+fn shown(paths: &[TreePath], snapshot: &Snapshot<'_>) -> String {
+    let shown: Vec<String> = paths.iter().map(|path| snapshot.display_path(path)).collect();
+    shown.join(" and ")
+}
+
+/// A message and a help text if the options of an annotation do not fit the kind of the texture.
+fn contradiction(note: &TextureNote, kind: TextureKind) -> Option<(String, String)> {
+    let (name, glsl) = (&note.name, kind.glsl());
+    let stars = note.image.matches('*').count();
+    let told = |message: String, help: &str| Some((message, help.to_owned()));
+    if stars > 1 || (stars == 1 && Pattern::of(&note.image).is_none()) {
+        let message = format!("\"{}\": expected one `*`, in the name of the file", note.image);
+        return told(message, "the name of a folder is written out");
+    }
+    let several = [note.layers.map(|count| format!("layers={count}")), (stars == 1).then(|| "a `*`".to_owned())];
+    let several: Vec<String> = several.into_iter().flatten().collect();
+    match (kind, several.as_slice()) {
+        (TextureKind::Flat, [what, ..]) => told(
+            format!("`{name}` has {what}, but it is declared as sampler2D, which reads one picture"),
+            "declare it as sampler2DArray, sampler3D or, for six faces, samplerCube",
+        ),
+        (TextureKind::Cube, [what, ..]) if note.layers.is_some() => told(
+            format!("`{name}` has {what}, but it is declared as samplerCube, which has six faces"),
+            "name six files with a `*`, or one file that holds all faces",
+        ),
+        (_, [_, _]) => told(
+            format!("`{name}` has layers= and a `*`"),
+            "use layers= for one file that holds all of them, or a `*` for a file each",
+        ),
+        (TextureKind::Volume, [what]) if is_table(note) => {
+            told(format!("`{name}` has {what}, but a .cube file has a size of its own"), "leave that out")
+        }
+        (TextureKind::Cube | TextureKind::Array, _) if is_table(note) => told(
+            format!("`{name}` is declared as {glsl}, but a .cube file is a table of colors"),
+            "declare it as sampler3D, or as sampler2D, which sees its slices side by side",
+        ),
+        (TextureKind::Array, []) => told(
+            format!("`{name}` is declared as sampler2DArray, but nothing says how many layers it has"),
+            "add layers=8 for one file that holds all of them, or name a file each with a `*`",
+        ),
         _ => None,
     }
 }
 
-/// Reads the file of a texture.
-///
-/// # Errors
-/// The file does not exist, cannot be read, or lies outside of the tree: at the line of the annotation.
-pub(super) fn read_texture(note: &TextureNote, snapshot: &Snapshot<'_>) -> Result<Texture, Box<Diagnostic>> {
-    let source = snapshot.source();
-    let beside = TreePath::from(note.declared_in.as_str()).sibling(&note.image);
-    let mut candidates: Vec<TreePath> = beside.into_iter().chain(TreePath::parse(&note.image)).collect();
-    candidates.dedup();
-    let refuse = |message: String| Err(Box::new(note.place.error(message)));
-    if candidates.is_empty() {
-        return refuse(format!("\"{}\" leaves the shader tree; images must stay inside its root", note.image));
-    }
-    for path in &candidates {
-        match source.read_bytes(path) {
-            Ok(bytes) => {
-                let TextureNote { name, srgb, wrap, mips, .. } = note.clone();
-                return Ok(Texture {
-                    name,
-                    path: path.to_string(),
-                    srgb,
-                    wrap,
-                    mips,
-                    bytes: bytes.into(),
-                    note: note.clone(),
-                });
+/// The files that match a pattern, by what is in place of the `*`.
+fn matching(pattern: Pattern<'_>, path: &TreePath, snapshot: &Snapshot<'_>) -> BTreeMap<String, TreePath> {
+    let folder = path.as_str().rsplit_once('/').map_or("", |(folder, _)| folder);
+    let names = snapshot.source().folder(folder);
+    let found = names.iter().filter_map(|name| {
+        let part = pattern.part(name)?;
+        Some((part.to_owned(), path.sibling(name)?))
+    });
+    found.collect()
+}
+
+/// The six faces of a cube map. The first complete set of names counts.
+fn faces(
+    note: &TextureNote,
+    pattern: Pattern<'_>,
+    candidates: &[TreePath],
+    snapshot: &Snapshot<'_>,
+) -> Result<Vec<TreePath>, String> {
+    let folders: Vec<_> = candidates.iter().map(|path| matching(pattern, path, snapshot)).collect();
+    // The set of which most files exist, and among equals the first.
+    let mut best: (Vec<TreePath>, [&str; 6]) = (Vec::new(), FACES[0]);
+    for found in &folders {
+        for set in FACES {
+            let paths: Vec<TreePath> = set.iter().filter_map(|part| found.get(*part).cloned()).collect();
+            if paths.len() > best.0.len() {
+                best = (paths, set);
             }
-            Err(SourceError::Missing) => {}
-            Err(error) => return refuse(format!("{} {error}", snapshot.display_path(path))),
         }
     }
-    let looked: Vec<String> = candidates.iter().map(|path| snapshot.display_path(path)).collect();
-    refuse(format!("\"{}\" not found; looked for {}", note.image, looked.join(" and ")))
+    let (paths, set) = best;
+    if paths.len() == set.len() {
+        return Ok(paths);
+    }
+    let looked = shown(candidates, snapshot);
+    if paths.is_empty() {
+        let sets: Vec<String> = FACES[..3].iter().map(|set| set.join(" ")).collect();
+        let sets = sets.join(", or ");
+        return Err(format!(
+            "no face of \"{}\" found; looked for {looked} with {sets} in place of the `*`",
+            note.image
+        ));
+    }
+    let is_there = |part: &str| folders.iter().any(|found| found.get(part).is_some_and(|path| paths.contains(path)));
+    let missing: Vec<String> = set.iter().filter(|part| !is_there(part)).map(|part| pattern.with(part)).collect();
+    Err(format!("\"{}\" has no {}; expected the six faces {}", note.image, missing.join(", no "), set.join(" ")))
+}
+
+/// The files of layers or slices, in the order of what is in place of the `*`: numbers by their value, then others by the
+/// alphabet.
+fn parts(
+    note: &TextureNote,
+    pattern: Pattern<'_>,
+    candidates: &[TreePath],
+    snapshot: &Snapshot<'_>,
+) -> Result<Vec<TreePath>, String> {
+    let found = candidates.iter().map(|path| matching(pattern, path, snapshot)).find(|found| !found.is_empty());
+    let Some(found) = found else {
+        return Err(format!("no file matches \"{}\"; looked for {}", note.image, shown(candidates, snapshot)));
+    };
+    let mut found: Vec<(String, TreePath)> = found.into_iter().collect();
+    found.sort_by_cached_key(|(part, _)| {
+        let number: Option<u64> = part.parse().ok();
+        (number.is_none(), number, part.clone())
+    });
+    Ok(found.into_iter().map(|(_, path)| path).collect())
 }

@@ -14,7 +14,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::shader::annotation::pass::is_image_extension;
+use crate::shader::annotation::texture::is_image_extension;
 use crate::shader::annotation::{Constant, Mode, Parameter};
 use crate::shader::compile::Compiler;
 use crate::shader::contract;

@@ -3,6 +3,7 @@
 pub(super) mod directory;
 pub mod embedded;
 pub mod held;
+pub mod pattern;
 pub mod snapshot;
 pub(super) mod text;
 mod toy;
@@ -228,6 +229,24 @@ impl Source {
         }
     }
 
+    /// The names of the files in a folder, sorted, without hidden files. An empty path is the root.
+    pub fn folder(&self, folder: &str) -> Vec<String> {
+        let mut names = match self {
+            Self::Disk(root) => names_in(&root.join(folder)),
+            Self::Held(held) => held.tree().folder(folder),
+            Self::Toy(toy) => toy.names_in(folder),
+            Self::Embedded(_) | Self::Memory(_) => {
+                let in_folder = |path: &TreePath| {
+                    let (parent, name) = path.as_str().rsplit_once('/').unwrap_or(("", path.as_str()));
+                    (parent == folder).then(|| name.to_owned())
+                };
+                self.list().iter().filter_map(in_folder).collect()
+            }
+        };
+        names.sort();
+        names
+    }
+
     /// The directory of a tree that is one on disk. All of it is watched.
     pub fn root(&self) -> Option<&Path> {
         match self {
@@ -279,6 +298,14 @@ impl Source {
 /// Whether a directory looks like a Specula shader tree: it holds an `interface.glsl`.
 pub fn is_specula_tree(directory: &Path) -> bool {
     directory.join("interface.glsl").is_file()
+}
+
+/// The names of the files in a directory, without hidden files.
+fn names_in(directory: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(directory).into_iter().flatten().flatten();
+    let files = entries.filter(|entry| entry.path().is_file());
+    let names = files.filter_map(|entry| entry.file_name().into_string().ok());
+    names.filter(|name| !name.starts_with('.')).collect()
 }
 
 fn read_file(path: &Path) -> Result<String, SourceError> {

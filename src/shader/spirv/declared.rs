@@ -45,7 +45,7 @@ enum Type {
     Float { bits: u32 },
     Vector { of: Id, count: u32 },
     Matrix { column: Id, count: u32 },
-    Image { sampled: Id, dim: u32, arrayed: bool, storage: bool, format: u32 },
+    Image { sampled: Id, dim: u32, depth: bool, arrayed: bool, multi: bool, storage: bool, format: u32 },
     Sampler,
     SampledImage { image: Id },
     Array { of: Id, length: Id },
@@ -324,7 +324,7 @@ impl Module {
                 Some(Type::Vector { of, count: rows }) => format!("{}mat{count}x{rows}", self.prefix(*of)),
                 _ => "?".to_owned(),
             },
-            Type::Image { sampled, dim, arrayed, storage, format } => {
+            Type::Image { sampled, dim, depth, arrayed, multi, storage, format } => {
                 let dimension = match dim {
                     0 => "1D",
                     1 => "2D",
@@ -336,7 +336,9 @@ impl Module {
                 let kind = if *storage { "image" } else { "texture" };
                 // Only storage images have a format; the contract uses rgba16f only.
                 let format = if *format == RGBA16F { "rgba16f " } else { "" };
-                format!("{format}{}{kind}{dimension}{}", self.prefix(*sampled), if *arrayed { "Array" } else { "" })
+                let suffixes = [(*multi, "MS"), (*arrayed, "Array"), (*depth, "Shadow")];
+                let suffix: String = suffixes.iter().filter(|(is, _)| *is).map(|(_, suffix)| *suffix).collect();
+                format!("{format}{}{kind}{dimension}{suffix}", self.prefix(*sampled))
             }
             Type::Sampler => "sampler".to_owned(),
             Type::SampledImage { image } => self.type_name(*image).replacen("texture", "sampler", 1),
@@ -372,7 +374,8 @@ fn type_of(opcode: u32, operands: &[u32]) -> Option<Option<Type>> {
         op::TYPE_VECTOR => Type::Vector { of: at(1)?, count: at(2)? },
         op::TYPE_MATRIX => Type::Matrix { column: at(1)?, count: at(2)? },
         op::TYPE_IMAGE => {
-            Type::Image { sampled: at(1)?, dim: at(2)?, arrayed: at(4)? != 0, storage: at(6)? == 2, format: at(7)? }
+            let (depth, arrayed, multi) = (at(3)? == 1, at(4)? != 0, at(5)? != 0);
+            Type::Image { sampled: at(1)?, dim: at(2)?, depth, arrayed, multi, storage: at(6)? == 2, format: at(7)? }
         }
         op::TYPE_SAMPLER => Type::Sampler,
         op::TYPE_SAMPLED_IMAGE => Type::SampledImage { image: at(1)? },

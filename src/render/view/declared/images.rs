@@ -10,7 +10,7 @@ use crate::render::bound_frame::BoundFrame;
 use crate::scene::mips;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::Target;
-use crate::shader::graph::{Graph, Input, Part};
+use crate::shader::graph::{Graph, Input, Part, TextureKind};
 
 /// The properties of a pass that determine its images.
 #[derive(Clone, Copy, PartialEq)]
@@ -72,10 +72,18 @@ pub(super) struct Images {
     fresh: (Vec<Arc<Image>>, Vec<Arc<Buffer>>),
 }
 
-/// An image that reads as 0.
-pub(super) fn blank(gpu: &Arc<Gpu>) -> Result<Arc<Image>, GpuError> {
+/// An image of this kind that reads as 0.
+pub(super) fn blank(gpu: &Arc<Gpu>, kind: TextureKind) -> Result<Arc<Image>, GpuError> {
     let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
-    let image = Image::new(gpu, "blank pass", ImageDesc::new(1, 1, vk::Format::R16G16B16A16_SFLOAT, usage))?;
+    let format = vk::Format::R16G16B16A16_SFLOAT;
+    let flat = ImageDesc::new(1, 1, format, usage);
+    let desc = match kind {
+        TextureKind::Flat => flat,
+        TextureKind::Cube => ImageDesc::cube(1, 1, format, usage),
+        TextureKind::Volume => flat.volume(1),
+        TextureKind::Array => flat.array(1),
+    };
+    let image = Image::new(gpu, &format!("blank {}", kind.glsl()), desc)?;
     one_shot(gpu, |encoder| {
         encoder.transition(&image, Use::Undefined, Use::CopyTo);
         encoder.clear_image(&image);

@@ -48,8 +48,8 @@ impl DeclaredPasses {
                 Input::Depth => PassResource::Texture(given.depth.unwrap_or(&self.blank), &self.nearest),
                 Input::Image(name) => self.sampled(self.images.current(name).unwrap_or(&self.blank)),
                 Input::Before(name) => self.sampled(self.images.before(name).unwrap_or(&self.blank)),
-                Input::Texture(name) => {
-                    let (image, sampler) = textures.get(name).unwrap_or((&self.blank, &self.linear));
+                Input::Texture(name, kind) => {
+                    let (image, sampler) = textures.get(name, *kind).unwrap_or((&self.blanks[kind], &self.linear));
                     PassResource::Texture(image, sampler)
                 }
                 Input::Output => PassResource::Storage(given.target.ok_or_else(missing)?),

@@ -57,8 +57,8 @@ impl DrawnFrom {
                     return None;
                 }
                 Input::Image(name) => from.images.push(images.drawn_at(name)),
-                Input::Texture(name) => {
-                    frame.pipelines.textures().get(name).into_iter().for_each(|(i, _)| from.object(i))
+                Input::Texture(name, kind) => {
+                    frame.pipelines.textures().get(name, *kind).into_iter().for_each(|(i, _)| from.object(i))
                 }
                 Input::Parameters(..) | Input::Pass(..) => {
                     from.bytes.extend(state.pass_blocks().get(&(index, *binding)).into_iter().flatten());

@@ -9,9 +9,44 @@ pub(super) enum Channel {
     This,
     /// Another file that draws an image, relative to the folder.
     Drawing(String),
-    /// An image file, relative to the folder.
-    Image(String),
+    /// An image file, relative to the folder, with a `*` for the faces or slices if it has several files.
+    Image(String, Sampler),
 }
+
+/// The sampler of a channel, as a line `#iChannel0::Type "CubeMap"` names it. Without such a line, it is flat.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Sampler {
+    #[default]
+    Flat,
+    Cube,
+    Volume,
+}
+
+impl Sampler {
+    /// The names of the samplers in the file.
+    const NAMES: [(&str, Self); 3] = [("Texture2D", Self::Flat), ("CubeMap", Self::Cube), ("Volume", Self::Volume)];
+
+    /// The name in GLSL.
+    pub(super) fn glsl(self) -> &'static str {
+        match self {
+            Self::Flat => "sampler2D",
+            Self::Cube => "samplerCube",
+            Self::Volume => "sampler3D",
+        }
+    }
+
+    /// How Shadertoy reads such an image: it turns pictures upside down, but neither faces nor slices.
+    fn options(self) -> &'static str {
+        match self {
+            Self::Flat => "linear mips flip",
+            Self::Cube => "linear mips clamp",
+            Self::Volume => "linear mips",
+        }
+    }
+}
+
+/// Shadertoy has four channels.
+const CHANNELS: usize = 4;
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
 pub(super) const COMMON: &str = "common";
@@ -33,7 +68,31 @@ pub(super) fn uses(text: &str, word: &str) -> bool {
 
 /// The channels that a text names, with their numbers.
 pub(super) fn channels(text: &str) -> Vec<(usize, Channel)> {
-    text.lines().filter_map(channel).collect()
+    let samplers = samplers(text);
+    let with_sampler = |line| {
+        let (number, channel) = channel(line)?;
+        Some((number, channel.with(samplers[number])))
+    };
+    text.lines().filter_map(with_sampler).collect()
+}
+
+impl Channel {
+    fn with(self, sampler: Sampler) -> Self {
+        match self {
+            // The file has {} where Specula has a `*`.
+            Self::Image(file, _) if sampler != Sampler::Flat => Self::Image(file.replacen("{}", "*", 1), sampler),
+            other => other,
+        }
+    }
+}
+
+/// The samplers of the channels.
+fn samplers(text: &str) -> [Sampler; CHANNELS] {
+    let mut out = [Sampler::Flat; CHANNELS];
+    for (number, sampler) in text.lines().filter_map(channel_type) {
+        out[number] = sampler.unwrap_or_default();
+    }
+    out
 }
 
 /// The names of the outputs that a text declares.
@@ -45,17 +104,17 @@ pub(super) fn outputs(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The files that a text names in its channels and includes.
+/// The files that a text names in its channels and includes. A name may have a `*`.
 pub(super) fn named_files(text: &str) -> Vec<String> {
-    let of_channel = |line| match channel(line)?.1 {
+    let of_channel = |(_, channel)| match channel {
         Channel::This => None,
-        Channel::Drawing(file) | Channel::Image(file) => Some(file),
+        Channel::Drawing(file) | Channel::Image(file, _) => Some(file),
     };
     let included = |line: &str| {
         let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
         Some(rest.trim().trim_matches(['"', '<', '>']).to_owned())
     };
-    text.lines().filter_map(|line| of_channel(line).or_else(|| included(line))).collect()
+    channels(text).into_iter().filter_map(of_channel).chain(text.lines().filter_map(included)).collect()
 }
 
 /// The name of the texture of a channel.
@@ -67,12 +126,17 @@ pub(super) fn texture_name(pass: &str, channel: usize) -> String {
 pub(super) fn adapted(text: &str, pass: &str) -> String {
     let is_shadertoy = is_shadertoy(text);
     let has_main = !is_shadertoy && uses(text, "main");
+    let (samplers, channels) = (samplers(text), channels(text));
     let mut out = String::with_capacity(text.len() + 64);
     for line in text.split_inclusive('\n') {
-        match channel(line) {
-            Some((number, Channel::Image(file))) => {
+        if let Some(message) = channel_type(line).and_then(|found| wrong_type(found, &channels)) {
+            out += &format!("#error {message}\n");
+            continue;
+        }
+        match channel(line).map(|(number, channel)| (number, channel.with(samplers[number]))) {
+            Some((number, Channel::Image(file, sampler))) => {
                 let name = texture_name(pass, number);
-                out += &format!("//@texture {name} \"{file}\" linear mips flip\n");
+                out += &format!("//@texture {name} \"{file}\" {}\n", sampler.options());
             }
             Some(_) => out += &format!("//{line}"),
             None if is_replaced(line) => out += &format!("//{line}"),
@@ -86,18 +150,48 @@ pub(super) fn adapted(text: &str, pass: &str) -> String {
     out
 }
 
+/// A message if a channel cannot have the sampler that a line names for it.
+fn wrong_type((number, sampler): (usize, Option<Sampler>), channels: &[(usize, Channel)]) -> Option<String> {
+    let Some(sampler) = sampler else {
+        let names: Vec<&str> = Sampler::NAMES.iter().map(|(name, _)| *name).collect();
+        return Some(format!("expected #iChannel{number}::Type {}", names.join(", ")));
+    };
+    let is_image = channels.iter().any(|(other, channel)| *other == number && matches!(channel, Channel::Image(..)));
+    let message = format!("iChannel{number} names no image, so it is no {}", sampler.glsl());
+    (sampler != Sampler::Flat && !is_image).then_some(message)
+}
+
+/// The number of the channel that a line begins with, and the rest of the line.
+fn numbered(line: &str) -> Option<(usize, &str)> {
+    let rest = line.trim().strip_prefix("#iChannel")?;
+    let number = rest.chars().next()?.to_digit(10).map(|number| number as usize).filter(|number| *number < CHANNELS)?;
+    Some((number, &rest[1..]))
+}
+
+/// The text in quotes that begins here.
+fn quoted(text: &str) -> Option<&str> {
+    text.trim().strip_prefix('"')?.split('"').next()
+}
+
+/// Parses `#iChannel0::Type "CubeMap"`. Without a sampler if there is none of that name.
+fn channel_type(line: &str) -> Option<(usize, Option<Sampler>)> {
+    let (number, rest) = numbered(line)?;
+    let name = quoted(rest.strip_prefix("::Type")?).unwrap_or_default();
+    let known = Sampler::NAMES.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+    Some((number, known.map(|(_, sampler)| *sampler)))
+}
+
 /// Parses `#iChannel0 "file"`. Other lines of that kind, as `#iChannel0::WrapMode`, name no file.
 fn channel(line: &str) -> Option<(usize, Channel)> {
-    let rest = line.trim().strip_prefix("#iChannel")?;
-    let number = rest.chars().next()?.to_digit(10).filter(|number| *number < 4)? as usize;
-    let name = rest[1..].trim().strip_prefix('"')?.split('"').next()?;
+    let (number, rest) = numbered(line)?;
+    let name = quoted(rest)?;
     let file = name.strip_prefix("file://").unwrap_or(name);
     let file = file.strip_prefix("./").unwrap_or(file).to_owned();
     let is_shader = [".glsl", ".frag", ".fs"].iter().any(|ending| file.ends_with(ending));
     let channel = match name {
         "self" => Channel::This,
         _ if is_shader => Channel::Drawing(file),
-        _ => Channel::Image(file),
+        _ => Channel::Image(file, Sampler::Flat),
     };
     Some((number, channel))
 }
@@ -150,12 +244,31 @@ mod tests {
     fn channels_name_files() {
         let text = "#iChannel0 \"file://./a.png\"\n#iChannel1 \"self\"\n  #iChannel2 \"blur.glsl\"\n\
                     #iChannel0::WrapMode \"Repeat\"\n#iChannel7 \"x.png\"\n";
-        let expected =
-            [(0, Channel::Image("a.png".into())), (1, Channel::This), (2, Channel::Drawing("blur.glsl".into()))];
+        let expected = [
+            (0, Channel::Image("a.png".into(), Sampler::Flat)),
+            (1, Channel::This),
+            (2, Channel::Drawing("blur.glsl".into())),
+        ];
         assert_eq!(channels(text), expected);
         assert_eq!(named_files(text), ["a.png", "blur.glsl"]);
         let found = adapted(text, "image");
         assert!(found.starts_with("//@texture image_channel0 \"a.png\" linear mips flip\n"), "{found}");
         assert!(found.lines().take(5).all(|line| line.starts_with("//")), "{found}");
+    }
+
+    #[test]
+    fn channels_are_cube_maps_and_volumes() {
+        let text = "#iChannel0 \"file://sky/day_{}.png\"\n#iChannel0::Type \"CubeMap\"\n\
+                    #iChannel1::Type \"Volume\"\n#iChannel1 \"noise.png\"\n";
+        let found = adapted(text, "image");
+        let lines: Vec<&str> = found.lines().collect();
+        assert_eq!(lines[0], "//@texture image_channel0 \"sky/day_*.png\" linear mips clamp");
+        assert_eq!(lines[3], "//@texture image_channel1 \"noise.png\" linear mips");
+        assert!(lines[1].starts_with("//#") && lines[2].starts_with("//#"), "{found}");
+        assert_eq!(named_files(text), ["sky/day_*.png", "noise.png"]);
+        let wrong = adapted("#iChannel0 \"self\"\n#iChannel0::Type \"CubeMap\"\n#iChannel0::Type \"Cube\"\n", "image");
+        let lines: Vec<&str> = wrong.lines().collect();
+        assert_eq!(lines[1], "#error iChannel0 names no image, so it is no samplerCube");
+        assert_eq!(lines[2], "#error expected #iChannel0::Type Texture2D, CubeMap, Volume");
     }
 }

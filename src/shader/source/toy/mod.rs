@@ -9,8 +9,9 @@ mod noise;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
-use super::{MAX_IMAGE_BYTES, SourceError, TreePath, embedded, read_bytes, read_file};
-use adapt::{COMMON, Channel, adapted, channels, is_shadertoy, uses};
+use super::pattern::{FACES, Pattern};
+use super::{MAX_IMAGE_BYTES, SourceError, TreePath, embedded, names_in, read_bytes, read_file};
+use adapt::{COMMON, Channel, Sampler, adapted, channels, is_shadertoy, uses};
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
@@ -86,6 +87,14 @@ impl Toy {
         }
     }
 
+    /// The names of the files in a folder of the tree, without hidden files.
+    pub fn names_in(&self, folder: &str) -> Vec<String> {
+        match folder == OPENED {
+            true => names_in(self.folder()),
+            false => below(folder, OPENED).map(|relative| names_in(&self.folder().join(relative))).unwrap_or_default(),
+        }
+    }
+
     /// The files of the tree that a stage can be, or a library in the binary, sorted.
     pub fn list(&self) -> Vec<TreePath> {
         let drawings = self.drawings();
@@ -109,7 +118,7 @@ impl Toy {
         let mut names: Vec<String> = self.candidates(COMMON).into();
         names.extend(BUFFERS.iter().flat_map(|buffer| self.candidates(buffer)));
         for drawing in self.drawings() {
-            names.extend(adapt::named_files(&drawing.text));
+            names.extend(adapt::named_files(&drawing.text).iter().flat_map(|file| self.files_of(file)));
             names.push(drawing.file);
         }
         names.push(self.name());
@@ -123,6 +132,16 @@ impl Toy {
         let Some(relative) = file.strip_prefix(self.folder()).ok().and_then(slashes) else { return Vec::new() };
         let stages = self.drawings().into_iter().map(|drawing| drawing.pass).chain(BUFFERS.map(str::to_owned));
         std::iter::once(opened_path(&relative)).chain(stages.map(|pass| stage_path(&pass))).collect()
+    }
+
+    /// The files that a name with a `*` stands for: those that exist, and the faces of a cube map, which may not exist yet.
+    fn files_of(&self, name: &str) -> Vec<String> {
+        let Some(pattern) = Pattern::of(name) else { return vec![name.to_owned()] };
+        let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
+        let faces = FACES.iter().flatten().map(|part| pattern.with(part));
+        let found = names_in(&self.folder().join(folder)).into_iter().filter(|name| pattern.part(name).is_some());
+        let place = |name: String| if folder.is_empty() { name } else { format!("{folder}/{name}") };
+        faces.chain(found).map(place).collect()
     }
 
     fn name(&self) -> String {
@@ -212,7 +231,7 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
             sizes.push("vec3(0.0)".to_owned());
             continue;
         }
-        sizes.push(format!("vec3(textureSize({name}, 0), 1.0)"));
+        let mut kind = Sampler::Flat;
         // A channel reads what was drawn before it in this frame, or else in the frame before.
         let of_frame = |place: usize| match place < index {
             true => drawings[place].pass.clone(),
@@ -222,14 +241,21 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
         let sampler = match named.iter().find(|(channel, _)| *channel == number).map(|(_, channel)| channel) {
             Some(Channel::This) => Some(format!("before_{pass}")),
             Some(Channel::Drawing(file)) => drawn(&|drawing| drawing.file == *file),
-            Some(Channel::Image(_)) => Some(adapt::texture_name(pass, number)),
+            Some(Channel::Image(_, sampler)) => {
+                kind = *sampler;
+                Some(adapt::texture_name(pass, number))
+            }
             None => drawn(&|drawing| drawing.pass == *buffer),
         };
         let sampler = sampler.unwrap_or_else(|| {
             lines.insert(format!("//@texture {pass}_noise \"{NOISE}\" linear mips\n"));
             format!("{pass}_noise")
         });
-        lines.insert(format!("uniform sampler2D {sampler};\n"));
+        sizes.push(match kind {
+            Sampler::Volume => format!("vec3(textureSize({name}, 0))"),
+            Sampler::Flat | Sampler::Cube => format!("vec3(textureSize({name}, 0), 1.0)"),
+        });
+        lines.insert(format!("uniform {} {sampler};\n", kind.glsl()));
         lines.insert(format!("#define {name} {sampler}\n"));
     }
     lines.insert(format!("#define iChannelResolution vec3[4]({})\n", sizes.join(", ")));

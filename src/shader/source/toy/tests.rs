@@ -64,6 +64,23 @@ fn named_files_are_drawn_before_those_that_read_them() {
 }
 
 #[test]
+fn all_files_of_a_cube_map_are_watched() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("maps")).unwrap();
+    fs::write(folder.path().join("maps/a_7.png"), "").unwrap();
+    let text = "#iChannel0 \"maps/a_{}.png\"\n#iChannel0::Type \"Volume\"\n".to_owned() + IMAGE;
+    let toy = toy(folder.path(), &[("t.glsl", &text)]);
+    // The faces may not exist yet; a slice does.
+    let watched = toy.watched();
+    ["maps/a_px.png", "maps/a_negz.png", "maps/a_7.png"].iter().for_each(|name| {
+        assert!(watched.contains(&folder.path().join(name)), "{name}");
+    });
+    assert_eq!(toy.names_in("opened/maps"), ["a_7.png"]);
+    assert!(stage(&toy, "image").contains("uniform sampler3D image_channel0;"));
+    assert!(toy.changed(&folder.path().join("maps/a_px.png")).contains(&TreePath::from("opened/maps/a_px.png")));
+}
+
+#[test]
 fn a_file_in_a_tree_is_no_toy() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("passes")).unwrap();

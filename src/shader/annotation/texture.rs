@@ -1,0 +1,93 @@
+//! Parses `//@texture`, with which a shader tree adds image files to a frame.
+
+use serde::Serialize;
+
+use super::cursor::Cursor;
+use super::pass::{NotePlace, name};
+use crate::shader::diagnostic::Diagnostic;
+
+/// The addressing mode of a texture, for coordinates beyond its edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Wrap {
+    /// The texture repeats.
+    #[default]
+    Repeat,
+    /// The texels at the edge continue.
+    Clamp,
+}
+
+/// A declared texture: one or more image files of the tree.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize)]
+pub struct TextureNote {
+    /// Name in GLSL.
+    pub name: String,
+    /// Path of the image, relative to the file with the annotation or to the tree's root. A `*` in the file's name stands for
+    /// the faces, layers or slices.
+    pub image: String,
+    /// Path of the file with the annotation, relative to the tree's root.
+    pub declared_in: String,
+    /// Whether its colors are sRGB-encoded, so that a shader reads linear light.
+    pub srgb: bool,
+    /// Addressing mode.
+    pub wrap: Wrap,
+    /// Whether it has mip levels.
+    pub mips: bool,
+    /// Whether the first row of each picture, face, layer and slice is at the bottom, as in OpenGL.
+    pub flip: bool,
+    /// Number of layers or slices that lie in one image, 1 to 65536.
+    pub layers: Option<u32>,
+    /// Location of the annotation.
+    #[serde(skip)]
+    pub place: NotePlace,
+}
+
+/// Whether a file with this extension may be the image of a `//@texture`.
+pub fn is_image_extension(extension: &str) -> bool {
+    ["png", "jpg", "jpeg", "hdr", "exr", "cube"].iter().any(|known| known.eq_ignore_ascii_case(extension))
+}
+
+/// Parses the rest of a `//@texture`.
+pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> {
+    let name = name(cursor, "texture")?;
+    let Some(image) = cursor.string()? else {
+        return Err(cursor.expected("the image's file in quotes"));
+    };
+    let place = NotePlace::of(cursor.place());
+    let mut note = TextureNote {
+        name,
+        image,
+        declared_in: String::new(),
+        srgb: true,
+        wrap: Wrap::Repeat,
+        mips: false,
+        flip: false,
+        layers: None,
+        place,
+    };
+    while !cursor.at_end() {
+        let (bytes, word) = cursor.key();
+        match word {
+            "srgb" => note.srgb = true,
+            "linear" => note.srgb = false,
+            "repeat" => note.wrap = Wrap::Repeat,
+            "clamp" => note.wrap = Wrap::Clamp,
+            "mips" => note.mips = true,
+            "flip" => note.flip = true,
+            "layers" => note.layers = Some(layers(cursor)?),
+            other => {
+                let message = format!("expected srgb, linear, repeat, clamp, mips, flip or layers=, found `{other}`");
+                return Err(cursor.error(bytes, message));
+            }
+        }
+    }
+    Ok(note)
+}
+
+fn layers(cursor: &mut Cursor<'_>) -> Result<u32, Box<Diagnostic>> {
+    /// More than any device has.
+    const MOST: u32 = 65536;
+    let (bytes, value) = cursor.value("layers")?;
+    let count = value.parse().ok().filter(|count| (1..=MOST).contains(count));
+    count.ok_or_else(|| cursor.error(bytes, format!("expected layers=1 to layers={MOST}, found `{value}`")))
+}
