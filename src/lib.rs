@@ -7,7 +7,7 @@
 //! - [`interface`]: the contract between Rust and GLSL.
 //! - [`settings`]: all settings of the user.
 //! - [`shader`]: compiles files to SPIR-V. Has no device and no scene.
-//! - [`gpu`]: Vulkan objects, the only `unsafe` code. Reads no files and no glTF.
+//! - [`gpu`]: Vulkan objects, the only `unsafe` code but for the local time (`app`). Reads no files and no glTF.
 //! - [`scene`]: CPU data: glTF, tangents, camera, lights.
 //! - [`frame`]: a picture as a value: the frame state, a pure function of settings, shaders and scene.
 //! - [`pipeline`]: pipelines of a shader generation, and the reload that makes the next.

@@ -113,7 +113,7 @@ fn a_pass_is_drawn_again_when_one_that_it_reads_was() {
     // The time reaches a pass that reads it, and what reads that.
     let body = "color = vec4(frame.time_s);";
     ready(&session.save("passes/first.frag", &pass("first size=4x4", slider, body)));
-    session.headless.set_sequence(Sequence { frames: 2, start_s: 0.4, fps: 10.0 });
+    session.headless.set_sequence(Sequence { frames: 2, start_s: 0.4, fps: 10.0, ..Sequence::default() });
     assert_eq!(gray(&mut session), 64);
     assert_eq!(states(&session), [Some(false); 2]);
     assert_validated();
@@ -131,7 +131,7 @@ fn temporal_antialiasing_smooths_edges_and_follows_the_camera() {
     session.set("camera.azimuth=30");
     let jagged = session.render();
     session.set("TEMPORAL_ANTIALIASING=true");
-    session.headless.set_sequence(Sequence { frames: 48, start_s: 0.0, fps: 30.0 });
+    session.headless.set_sequence(Sequence { frames: 48, start_s: 0.0, fps: 30.0, ..Sequence::default() });
     let turned = |session: &mut Session| {
         session.set("camera.azimuth=30");
         let still = session.render();
@@ -169,7 +169,7 @@ fn a_mean_goes_on_while_only_what_follows_the_model_moves() {
     session.headless.settings_mut().mode = "monte-carlo".to_owned();
     let truth = session.render();
     session.set("view.frames=1");
-    session.headless.set_sequence(Sequence { frames: 1, start_s: 0.0, fps: 30.0 });
+    session.headless.set_sequence(Sequence { frames: 1, start_s: 0.0, fps: 30.0, ..Sequence::default() });
     let pass = "//@pass flicker to=picture after=tonemap\n#version 460\n#include \"pass.glsl\"\n\
         uniform sampler2D picture;\nvoid main() { color = texture(picture, uv) * (frame.time_s < 0.0 ? 0.0 : 1.0); }\n";
     ready(&session.save("passes/flicker.frag", pass));

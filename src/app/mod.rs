@@ -5,6 +5,8 @@
 
 mod command;
 mod input;
+mod keys;
+mod local_time;
 mod panels;
 mod playback;
 mod screen;

@@ -158,6 +158,14 @@ blocks! {
         clip_from_world_before: mat4,
         /// The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
         light_clip_from_world: [mat4; MAX_LIGHT_VIEWS],
+        /// Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
+        date: vec4,
+        /// Keys that are down: bit key % 32 of element key / 32. common/keys.glsl has the numbers and functions that read this.
+        keys_down: [uint; 8],
+        /// Keys that went down since the frame before, in the same way.
+        keys_pressed: [uint; 8],
+        /// Keys that went down an odd number of times, in the same way.
+        keys_toggled: [uint; 8],
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.
