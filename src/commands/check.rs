@@ -93,7 +93,7 @@ fn build_choices(
         PipelineRequest { materials: materials.clone(), ..request }
     };
     let plain = request(&settings);
-    let problems = beyond_limits(&gpu, &shaders.graph);
+    let problems = beyond_limits(&gpu, shaders, &args.common.source()?);
     if !problems.is_empty() {
         diagnostics.extend(problems);
         return Ok(None);

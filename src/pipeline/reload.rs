@@ -164,7 +164,7 @@ impl Reloader {
             return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Unchanged { cleared: false } };
         }
         let start = Instant::now();
-        let problems = beyond_limits(&self.gpu, &shaders.graph);
+        let problems = beyond_limits(&self.gpu, &shaders, self.library.source());
         if !problems.is_empty() {
             return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(problems) };
         }

@@ -89,7 +89,10 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
             tell(&args, &diagnostics);
             eprintln!("specula: no picture yet; waiting for the next save");
         }
-        result => result?,
+        result => {
+            result?;
+            hint_at_frames(&headless, &args)?;
+        }
     }
     warn_of_bakes(&headless);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
@@ -214,6 +217,19 @@ fn take_environment(headless: &mut Headless, args: &Args) -> bool {
         Err(error) => message::tell(format_args!("{error}\nspecula: the last good environment stays")),
     }
     baked.is_ok()
+}
+
+/// Says that passes continue from frame to frame, if the number of frames was not given.
+fn hint_at_frames(headless: &Headless, args: &Args) -> Result<(), Failure> {
+    let passes: Vec<String> = headless.continuing_passes()?.iter().map(|name| format!("`{name}`")).collect();
+    let subject = match passes.as_slice() {
+        [one] => format!("the pass {one} continues"),
+        all => format!("the passes {} continue", all.join(", ")),
+    };
+    if args.frames.is_none() && !passes.is_empty() {
+        message::tell(format_args!("hint: {subject} from frame to frame, and this is the first; --frames 60 draws 60"));
+    }
+    Ok(())
 }
 
 /// Warns of functions of the BRDF whose values the tables or the prefilter could not use.
