@@ -122,7 +122,7 @@ pub const CLOCK: [Range<usize>; 5] = [
 ];
 
 /// The bytes of [`Frame`] that change when a key is pressed or released.
-pub const KEYS: Range<usize> = offset_of!(Frame, keys_down)..offset_of!(Frame, keys_toggled) + size_of::<[u32; 8]>();
+pub const KEYS: Range<usize> = offset_of!(Frame, keys)..offset_of!(Frame, keys) + size_of::<[u32; 24]>();
 
 /// The bytes of [`Frame`] that tell how the camera has moved.
 pub const MOTION: Range<usize> =

@@ -5,7 +5,10 @@ mod support;
 use specula::headless::{Headless, Sequence};
 use specula::render::Capture;
 use specula::shader::Source;
-use support::{SIZE, Session, assert_differ, assert_same, assert_validated, compiler, glb, gpu, load, ready, settings};
+use support::process::run;
+use support::{
+    SIZE, Session, Tree, assert_differ, assert_same, assert_validated, compiler, glb, gpu, load, ready, settings,
+};
 
 /// A matte sphere over a slab.
 fn model() -> specula::scene::Model {
@@ -189,4 +192,31 @@ fn a_mean_goes_on_while_only_what_follows_the_model_moves() {
     let (first, last) = after(&mut session);
     assert!(last > 0.8 * first, "{last} of {first}");
     assert_validated();
+}
+
+/// A picture of one frame says that its passes go on, unless the number of frames was given.
+#[test]
+fn one_frame_of_what_continues_has_a_hint() {
+    let tree = Tree::new();
+    let render = |more: &[&str]| {
+        let args = ["render", "--size", "32x32", "--events", "json"];
+        let done = run(&tree.beside(""), &[&args[..], more].concat());
+        done.expect(0, &[]);
+        assert!(done.stdout.lines().all(|line| line.starts_with('{')), "{done:#?}");
+        done.stderr
+    };
+    assert_eq!(render(&[]), "", "nothing continues");
+    let hint = "specula: hint: the pass `temporal_mean` continues from frame to frame, and this is the first; \
+        --frames 60 draws 60\n";
+    assert_eq!(render(&["--set", "TEMPORAL_ANTIALIASING=true"]), hint);
+    for frames in ["1", "2"] {
+        assert_eq!(render(&["--set", "TEMPORAL_ANTIALIASING=true", "--frames", frames]), "");
+    }
+    let buffer = "buffer Counts { uint count; };";
+    let text = format!(
+        "//@pass counts to=picture\n#version 460\n#include \"pass.glsl\"\n{buffer}\n\
+         void main() {{ count = 1u; color = vec4(count); }}\n"
+    );
+    tree.write("passes/counts.frag", &text);
+    assert!(render(&[]).contains("`counts` continues"));
 }

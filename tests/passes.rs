@@ -5,7 +5,6 @@ mod support;
 use specula::headless::Sequence;
 use specula::render::Capture;
 use specula::shader::{Diagnostic, Library, Source, check};
-use support::process::run;
 use support::{
     SIZE, Session, assert_differ, assert_same, assert_validated, compiler, failed, glb, lines, load, ready, settings,
     srgb, stages,
@@ -527,27 +526,4 @@ fn random_graphs_are_drawn_without_a_message() {
     }
     assert_eq!(drawn, 2 * graphs);
     assert_validated();
-}
-
-/// A picture of one frame says that its passes go on, unless the number of frames was given.
-#[test]
-fn one_frame_of_what_continues_has_a_hint() {
-    let tree = support::Tree::new();
-    let render = |more: &[&str]| {
-        let args = ["render", "--size", "32x32", "--events", "json"];
-        let done = run(&tree.beside(""), &[&args[..], more].concat());
-        done.expect(0, &[]);
-        assert!(done.stdout.lines().all(|line| line.starts_with('{')), "{done:#?}");
-        done.stderr
-    };
-    assert_eq!(render(&[]), "", "nothing continues");
-    let hint = "specula: hint: the pass `temporal_mean` continues from frame to frame, and this is the first; \
-        --frames 60 draws 60\n";
-    assert_eq!(render(&["--set", "TEMPORAL_ANTIALIASING=true"]), hint);
-    for frames in ["1", "2"] {
-        assert_eq!(render(&["--set", "TEMPORAL_ANTIALIASING=true", "--frames", frames]), "");
-    }
-    let buffer = "buffer Counts { uint count; };";
-    tree.write("passes/counts.frag", &pass("counts to=picture", buffer, "count = 1u; color = vec4(count);"));
-    assert!(render(&[]).contains("`counts` continues"));
 }

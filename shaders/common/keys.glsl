@@ -101,19 +101,23 @@ const uint KEY_BACKSLASH = 220u;
 const uint KEY_BRACKET_RIGHT = 221u;
 const uint KEY_QUOTE = 222u;
 
+bool key_bit(uint key, uint first) {
+    return key < 256u && (frame.keys[first + key / 32u] & (1u << (key % 32u))) != 0u;
+}
+
 // Whether the key is down.
 bool key_down(uint key) {
-    return key < 256u && (frame.keys_down[key / 32u] & (1u << (key % 32u))) != 0u;
+    return key_bit(key, 0u);
 }
 
 // Whether the key went down since the frame before.
 bool key_pressed(uint key) {
-    return key < 256u && (frame.keys_pressed[key / 32u] & (1u << (key % 32u))) != 0u;
+    return key_bit(key, 8u);
 }
 
 // Whether the key went down an odd number of times: each press flips it.
 bool key_toggled(uint key) {
-    return key < 256u && (frame.keys_toggled[key / 32u] & (1u << (key % 32u))) != 0u;
+    return key_bit(key, 16u);
 }
 
 #endif

@@ -102,6 +102,11 @@ impl Keys {
         Self { down: std::array::from_fn(|i| self.down[i] | self.pressed[i]), ..self }
     }
 
+    /// `interface::Frame::keys`. One array, since a block with several arrays of the same type is compiled whole at each edit.
+    pub(crate) fn words(&self) -> [u32; 24] {
+        bytemuck::cast([self.down, self.pressed, self.toggled])
+    }
+
     /// Whether a key went down since the frame before.
     pub fn any_pressed(&self) -> bool {
         self.pressed != Bits::default()

@@ -160,12 +160,8 @@ blocks! {
         light_clip_from_world: [mat4; MAX_LIGHT_VIEWS],
         /// Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
         date: vec4,
-        /// Keys that are down: bit key % 32 of element key / 32. common/keys.glsl has the numbers and functions that read this.
-        keys_down: [uint; 8],
-        /// Keys that went down since the frame before, in the same way.
-        keys_pressed: [uint; 8],
-        /// Keys that went down an odd number of times, in the same way.
-        keys_toggled: [uint; 8],
+        /// Keys, 32 in an element: 8 elements tell which are down, 8 which went down in this frame, 8 which are toggled. See common/keys.glsl.
+        keys: [uint; 24],
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.
