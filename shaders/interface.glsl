@@ -183,6 +183,8 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     vec4 mouse_px;                     // Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
     mat4 clip_from_world_before;       // clip_from_world of the last picture before this one; in the first the same as now.
     mat4 light_clip_from_world[MAX_LIGHT_VIEWS]; // The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
+    vec4 date;                         // Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
+    uint keys[24];                     // Keys, 32 in an element: 8 elements tell which are down, 8 which went down in this frame, 8 which are toggled. See common/keys.glsl.
 } frame;
 
 struct Light {

@@ -12,6 +12,7 @@
 #define PASS_GLSL
 
 #include "interface.glsl"
+#include "common/keys.glsl"
 
 #ifndef COMPUTE_STAGE
 // Position in this pass's image, 0..1 from the upper left corner.

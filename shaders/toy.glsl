@@ -13,6 +13,7 @@ layout(location = 0) out vec4 toy_color;
 uniform Pass {
     vec2 size_px;
     vec4 mouse_px;
+    vec4 date;
     float time_s;
     float delta_s;
     uint frame_index;
@@ -24,7 +25,7 @@ float iTimeDelta;              // seconds since the frame before
 float iFrameRate;              // frames a second
 int iFrame;                    // frames before this one
 vec4 iMouse;                   // xy: last place of the mouse while it was down; zw: where it went down, z < 0 once it is up
-vec4 iDate;                    // year, month from 0, day, seconds: the clock starts on January 1, 2000
+vec4 iDate;                    // year, month from 0, day from 1, seconds of the day
 float iChannelTime[4];
 const float iSampleRate = 44100.0;
 
@@ -51,7 +52,7 @@ void toy_begin() {
     vec4 mouse = toy.mouse_px;
     bool was_down = mouse != vec4(0.0);
     iMouse = was_down ? vec4(mouse.x, toy.size_px.y - mouse.y, mouse.z, toy.size_px.y - mouse.w) : vec4(0.0);
-    iDate = vec4(2000.0, 0.0, 1.0, iTime);
+    iDate = toy.date;
     iChannelTime = float[4](iTime, iTime, iTime, iTime);
     toyFragCoord = gl_FragCoord;
     toyFragColor = vec4(0.0, 0.0, 0.0, 1.0);

@@ -113,12 +113,16 @@ pub const BINDING_LEVEL_ABOVE: u32 = 4;
 pub const LOOPS: [(u32, u32); 2] = [(SET_FRAME, 20), (SET_TASK, 8)];
 
 /// The bytes of [`Frame`] that change while the time runs.
-pub const CLOCK: [Range<usize>; 4] = [
+pub const CLOCK: [Range<usize>; 5] = [
     offset_of!(Frame, time_s)..offset_of!(Frame, time_s) + size_of::<f32>(),
     offset_of!(Frame, delta_s)..offset_of!(Frame, delta_s) + size_of::<f32>(),
     offset_of!(Frame, frame_index)..offset_of!(Frame, frame_index) + size_of::<u32>(),
     offset_of!(Frame, mouse_px)..offset_of!(Frame, mouse_px) + size_of::<[f32; 4]>(),
+    offset_of!(Frame, date)..offset_of!(Frame, date) + size_of::<[f32; 4]>(),
 ];
+
+/// The bytes of [`Frame`] that change when a key is pressed or released.
+pub const KEYS: Range<usize> = offset_of!(Frame, keys)..offset_of!(Frame, keys) + size_of::<[u32; 24]>();
 
 /// The bytes of [`Frame`] that tell how the camera has moved.
 pub const MOTION: Range<usize> =

@@ -12,7 +12,7 @@ fn draw(example: Option<Example>, frames: u32) -> specula::render::Capture {
     let ball = model("shader-ball");
     let opened = Headless::new(gpu(), compiler(), Source::Embedded(example), ball, settings(&["view.msaa=1"]), SIZE);
     let Ok((mut headless, _)) = opened else { panic!("an example does not open") };
-    headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0 });
+    headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0, ..Sequence::default() });
     support::render(&mut headless, "final")
 }
 

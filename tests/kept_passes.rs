@@ -5,7 +5,10 @@ mod support;
 use specula::headless::{Headless, Sequence};
 use specula::render::Capture;
 use specula::shader::Source;
-use support::{SIZE, Session, assert_differ, assert_same, assert_validated, compiler, glb, gpu, load, ready, settings};
+use support::process::run;
+use support::{
+    SIZE, Session, Tree, assert_differ, assert_same, assert_validated, compiler, glb, gpu, load, ready, settings,
+};
 
 /// A matte sphere over a slab.
 fn model() -> specula::scene::Model {
@@ -113,7 +116,7 @@ fn a_pass_is_drawn_again_when_one_that_it_reads_was() {
     // The time reaches a pass that reads it, and what reads that.
     let body = "color = vec4(frame.time_s);";
     ready(&session.save("passes/first.frag", &pass("first size=4x4", slider, body)));
-    session.headless.set_sequence(Sequence { frames: 2, start_s: 0.4, fps: 10.0 });
+    session.headless.set_sequence(Sequence { frames: 2, start_s: 0.4, fps: 10.0, ..Sequence::default() });
     assert_eq!(gray(&mut session), 64);
     assert_eq!(states(&session), [Some(false); 2]);
     assert_validated();
@@ -131,7 +134,7 @@ fn temporal_antialiasing_smooths_edges_and_follows_the_camera() {
     session.set("camera.azimuth=30");
     let jagged = session.render();
     session.set("TEMPORAL_ANTIALIASING=true");
-    session.headless.set_sequence(Sequence { frames: 48, start_s: 0.0, fps: 30.0 });
+    session.headless.set_sequence(Sequence { frames: 48, start_s: 0.0, fps: 30.0, ..Sequence::default() });
     let turned = |session: &mut Session| {
         session.set("camera.azimuth=30");
         let still = session.render();
@@ -169,7 +172,7 @@ fn a_mean_goes_on_while_only_what_follows_the_model_moves() {
     session.headless.settings_mut().mode = "monte-carlo".to_owned();
     let truth = session.render();
     session.set("view.frames=1");
-    session.headless.set_sequence(Sequence { frames: 1, start_s: 0.0, fps: 30.0 });
+    session.headless.set_sequence(Sequence { frames: 1, start_s: 0.0, fps: 30.0, ..Sequence::default() });
     let pass = "//@pass flicker to=picture after=tonemap\n#version 460\n#include \"pass.glsl\"\n\
         uniform sampler2D picture;\nvoid main() { color = texture(picture, uv) * (frame.time_s < 0.0 ? 0.0 : 1.0); }\n";
     ready(&session.save("passes/flicker.frag", pass));
@@ -189,4 +192,31 @@ fn a_mean_goes_on_while_only_what_follows_the_model_moves() {
     let (first, last) = after(&mut session);
     assert!(last > 0.8 * first, "{last} of {first}");
     assert_validated();
+}
+
+/// A picture of one frame says that its passes go on, unless the number of frames was given.
+#[test]
+fn one_frame_of_what_continues_has_a_hint() {
+    let tree = Tree::new();
+    let render = |more: &[&str]| {
+        let args = ["render", "--size", "32x32", "--events", "json"];
+        let done = run(&tree.beside(""), &[&args[..], more].concat());
+        done.expect(0, &[]);
+        assert!(done.stdout.lines().all(|line| line.starts_with('{')), "{done:#?}");
+        done.stderr
+    };
+    assert_eq!(render(&[]), "", "nothing continues");
+    let hint = "specula: hint: the pass `temporal_mean` continues from frame to frame, and this is the first; \
+        --frames 60 draws 60\n";
+    assert_eq!(render(&["--set", "TEMPORAL_ANTIALIASING=true"]), hint);
+    for frames in ["1", "2"] {
+        assert_eq!(render(&["--set", "TEMPORAL_ANTIALIASING=true", "--frames", frames]), "");
+    }
+    let buffer = "buffer Counts { uint count; };";
+    let text = format!(
+        "//@pass counts to=picture\n#version 460\n#include \"pass.glsl\"\n{buffer}\n\
+         void main() {{ count = 1u; color = vec4(count); }}\n"
+    );
+    tree.write("passes/counts.frag", &text);
+    assert!(render(&[]).contains("`counts` continues"));
 }

@@ -40,7 +40,7 @@ fn passes_check(session: &Session) {
 }
 
 fn sequence(session: &mut Session, frames: u32) -> Capture {
-    session.headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0 });
+    session.headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0, ..Sequence::default() });
     session.render()
 }
 

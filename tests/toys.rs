@@ -100,6 +100,65 @@ fn channels_read_images_and_other_files() {
     assert!(found.len() > 15, "{found:?}");
 }
 
+/// Column x of the picture shows key x, in three bands: down, pressed in this frame, toggled.
+const KEYBOARD: &str = "#iChannel1 \"keyboard\"\nvoid mainImage(out vec4 c, in vec2 p) {\n    \
+    int row = int(p.y / 11.0);\n    float texel = texelFetch(iChannel1, ivec2(p.x + 32.0, row), 0).x;\n    \
+    c = vec4(texel, texture(iChannel1, vec2((p.x + 32.0) / 256.0, (float(row) + 0.5) / 3.0)).x, \
+    iChannelResolution[1].y / 255.0, 1.0);\n}\n";
+
+#[test]
+fn the_keyboard_is_a_channel() {
+    for name in ["keyboard", "file://keyboard"] {
+        let folder = tempfile::tempdir().unwrap();
+        let files = [("keys.glsl", KEYBOARD.replace("keyboard", name))];
+        let files = files.each_ref().map(|(name, text)| (*name, text.as_str()));
+        let down = |options: &[&str]| {
+            render(folder.path(), &files, options).expect(0, &[]);
+            // Space (32), the left arrow (37) and A (65), from the lowest band up.
+            [0, 5, 33].map(|x| [28, 16, 4].map(|y| pixel(folder.path(), x, y)))
+        };
+        let (on, off) = ([255, 255, 3, 255], [0, 0, 3, 255]);
+        assert_eq!(down(&[]), [[off; 3]; 3]);
+        assert_eq!(down(&["--keys", "A, Space"]), [[on; 3], [off; 3], [on; 3]]);
+        assert_eq!(down(&["--keys", "Left", "--frames", "2"]), [[off; 3], [on, off, on], [off; 3]]);
+    }
+}
+
+#[test]
+fn keys_are_read_by_functions() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) {\n    c = vec4(isKeyDown(Key_A), isKeyPressed(Key_A), \
+        isKeyToggled(Key_LeftArrow), 1.0);\n}\n";
+    let toy = format!("#iKeyboard\n{text}");
+    render(folder.path(), &[("t.glsl", &toy)], &["--keys", "a,left", "--frames", "2"]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 3, 3), [255, 0, 255, 255]);
+    render(folder.path(), &[("t.glsl", &toy)], &["--keys", "A"]).expect(0, &[]);
+    assert_eq!(pixel(folder.path(), 3, 3), [255, 255, 0, 255]);
+    // The line may stand in the file that all share, and errors keep their lines.
+    let common = ("common.glsl", "#iKeyboard\nconst float ONE = 1.0;\n");
+    let wrong = text.replacen("Key_A)", "Key_Ae)", 1);
+    render(folder.path(), &[("t.glsl", text), common], &["--keys", "A"]).expect(0, &[]);
+    render(folder.path(), &[("t.glsl", &wrong), common], &[]).expect(1, &["t.glsl:2:", "'Key_Ae'"]);
+    render(folder.path(), &[("t.glsl", text), ("common.glsl", "")], &[]).expect(1, &["t.glsl:2:"]);
+    run(folder.path(), &["render", "t.glsl", "--keys", "A,Spcae"]).expect(2, &["`Spcae`. Did you mean `Space`?"]);
+}
+
+#[test]
+fn the_date_is_that_of_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) {\n    \
+        c = vec4(iDate.x - 2000.0, 10.0 * iDate.y + iDate.z, iDate.w / 3600.0, 255.0) / 255.0;\n}\n";
+    let shown = |options: &[&str]| {
+        render(folder.path(), &[("t.glsl", text)], options).expect(0, &[]);
+        pixel(folder.path(), 0, 0)
+    };
+    assert_eq!(shown(&[]), [0, 1, 0, 255]);
+    assert_eq!(shown(&["--time", "7200"]), [0, 1, 2, 255]);
+    assert_eq!(shown(&["--date", "2026-11-23T16:00:00"]), [26, 123, 16, 255]);
+    assert_eq!(shown(&["--date", "2026-12-31T23:00", "--time", "7200"]), [27, 1, 1, 255]);
+    run(folder.path(), &["render", "t.glsl", "--date", "2026-02-29"]).expect(2, &["--date", "2026-11-23T16:00:00"]);
+}
+
 #[test]
 fn channels_read_cube_maps_and_volumes() {
     let folder = tempfile::tempdir().unwrap();

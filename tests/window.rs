@@ -6,6 +6,7 @@ mod window {
     mod controls;
     mod endurance;
     mod faults;
+    mod keys;
     mod losses;
     mod panels;
     mod passes;

@@ -1,10 +1,12 @@
-//! Keys and mouse. Events that egui does not consume control the camera, the modes and the viewer.
+//! Keys and mouse. Events that egui does not consume control the camera, the modes and the viewer. While the picture reads keys,
+//! those that type a character go to its shaders instead.
 
 use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
 use super::command::Command;
+use super::keys;
 use super::screen::Screen;
 use super::viewer::Viewer;
 use crate::scene::CameraController;
@@ -31,15 +33,25 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             screen.mouse.modifiers = modifiers.state();
             false
         }
-        WindowEvent::KeyboardInput { event, .. } => {
+        WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
             let pressed = event.state == ElementState::Pressed;
             if let PhysicalKey::Code(code) = event.physical_key
                 && fly_key(&mut screen.camera, code, pressed && screen.mouse.right)
             {
                 return true;
             }
+            let reads_keys = viewer.reads_keys();
+            if !pressed || (reads_keys && !is_shortcut(&event.logical_key, screen.mouse.modifiers)) {
+                // A press that winit makes up when the window gets the focus is none for shaders.
+                let counts = !pressed || !(taken || event.repeat || *is_synthetic);
+                return counts && shader_key(viewer, event.physical_key, pressed) && reads_keys;
+            }
             let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
-            pressed && !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
+            !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
+        }
+        WindowEvent::Focused(false) => {
+            viewer.playback.keys().release_all();
+            viewer.reads_keys()
         }
         WindowEvent::MouseInput { state, button, .. } => {
             let pressed = *state == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
@@ -128,6 +140,31 @@ fn fly_key(camera: &mut CameraController, code: KeyCode, pressed: bool) -> bool 
     pressed
 }
 
+/// Whether a key remains Specula's while the picture reads keys.
+fn is_shortcut(key: &Key, modifiers: ModifiersState) -> bool {
+    match key {
+        Key::Named(named) => {
+            matches!(named, NamedKey::F5 | NamedKey::F12 | NamedKey::Escape | NamedKey::Home)
+        }
+        Key::Character(_) => modifiers.control_key(),
+        _ => false,
+    }
+}
+
+/// Tells the shaders that a key went down or up. Returns whether they know the key. A key's release always counts, so that no
+/// key gets stuck.
+fn shader_key(viewer: &mut Viewer, key: PhysicalKey, pressed: bool) -> bool {
+    let PhysicalKey::Code(code) = key else { return false };
+    let Some(number) = keys::number(code) else { return false };
+    let keys = viewer.playback.keys();
+    if pressed {
+        keys.press(number)
+    } else {
+        keys.release(number)
+    }
+    true
+}
+
 fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
     match key {
         Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
@@ -143,11 +180,13 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
     true
 }
 
+/// A key that types a character. While the picture reads keys, `control` is what tells it from the picture's.
 fn on_character(viewer: &mut Viewer, key: char, control: bool) -> bool {
+    let is_ignored = control && !viewer.reads_keys();
     let session = &mut viewer.session;
     match key {
         'q' if control => viewer.execute(Command::Quit),
-        _ if control => return false,
+        _ if is_ignored => return false,
         '[' => step_mode(session, -1),
         ']' => step_mode(session, 1),
         'h' => viewer.panels.visible = !viewer.panels.visible,

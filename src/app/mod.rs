@@ -5,6 +5,7 @@
 
 mod command;
 mod input;
+mod keys;
 mod panels;
 mod playback;
 mod screen;

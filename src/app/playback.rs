@@ -1,8 +1,9 @@
-//! The clock of animated shaders in a window, which can run, pause, advance by single frames, and restart.
+//! The clock of animated shaders in a window, which can run, pause, advance by single frames, and restart; and the mouse and
+//! the keys that shaders read.
 
 use std::time::Instant;
 
-use crate::frame::Clock;
+use crate::frame::{Clock, Date, Keys};
 
 /// Length of a single step, seconds.
 const STEP_S: f32 = 1.0 / 60.0;
@@ -18,11 +19,24 @@ pub(super) struct Playback {
     pub(super) speed: f32,
     step: bool,
     restarted: bool,
+    /// The keys now. The clock has those of the last frame.
+    keys: Keys,
+    /// The date of still pictures: when the window was opened.
+    opened: Date,
 }
 
 impl Default for Playback {
     fn default() -> Self {
-        Self { clock: Clock::default(), last: None, paused: false, speed: 1.0, step: false, restarted: false }
+        Self {
+            clock: Clock::default(),
+            last: None,
+            paused: false,
+            speed: 1.0,
+            step: false,
+            restarted: false,
+            keys: Keys::default(),
+            opened: Date::now(),
+        }
     }
 }
 
@@ -39,7 +53,7 @@ impl Playback {
 
     /// Sets the clock back to 0.
     pub(super) fn restart(&mut self) {
-        self.clock = Clock { mouse_px: self.clock.mouse_px, ..Clock::default() };
+        self.clock = Clock { mouse_px: self.clock.mouse_px, date: self.clock.date, ..Clock::default() };
         (self.last, self.restarted) = (None, true);
     }
 
@@ -53,20 +67,28 @@ impl Playback {
         self.clock.time_s
     }
 
-    /// The time of the next frame. While nothing is animated, the time stands still and the frame gets the clock of the
-    /// start, so that a still picture need not be redrawn.
-    pub(super) fn next(&mut self, is_animated: bool) -> Clock {
-        self.next_at(is_animated, Instant::now())
+    /// The clock of the next frame. While nothing is animated, the time stands still and the frame gets the clock of the
+    /// start, so that a still picture need not be redrawn. Its keys are those that are down now, unless the clock is paused. A
+    /// picture that does not read keys gets none.
+    pub(super) fn next(&mut self, is_animated: bool, reads_keys: bool) -> Clock {
+        self.next_at(is_animated, reads_keys, (Instant::now(), Date::now()))
     }
 
-    fn next_at(&mut self, is_animated: bool, now: Instant) -> Clock {
+    fn next_at(&mut self, is_animated: bool, reads_keys: bool, (now, date): (Instant, Date)) -> Clock {
         let before = self.last.replace(now);
         let step = std::mem::take(&mut self.step);
-        if !is_animated || (self.paused && !step) {
+        if is_animated && self.paused && !step {
             self.last = None;
             // An unchanged clock gives the same picture, which is not drawn again.
-            return if is_animated { self.clock } else { Clock::default() };
+            return self.clock;
         }
+        self.clock.keys = if reads_keys { self.keys.in_frame() } else { Keys::default() };
+        self.keys = self.keys.held();
+        if !is_animated {
+            self.last = None;
+            return Clock { date: self.opened, keys: self.clock.keys, ..Clock::default() };
+        }
+        self.clock.date = date;
         self.clock.delta_s = match before {
             _ if step => STEP_S,
             Some(before) => (now - before).as_secs_f32() * self.speed,
@@ -76,6 +98,17 @@ impl Playback {
         self.clock.time_s += self.clock.delta_s;
         self.clock.frame_index = self.clock.frame_index.wrapping_add(1);
         self.clock
+    }
+
+    /// Whether the next frame differs from the last one because a key counts as pressed in one frame only. Says nothing about
+    /// an animated picture.
+    pub(super) fn ends_press(&self) -> bool {
+        self.clock.keys.any_pressed()
+    }
+
+    /// The keys, which events change.
+    pub(super) fn keys(&mut self) -> &mut Keys {
+        &mut self.keys
     }
 
     /// The left button went down over the picture.
@@ -110,12 +143,12 @@ mod tests {
 
     impl Frames {
         fn new() -> Self {
-            Self { playback: Playback::default(), now: Instant::now() }
+            Self { playback: Playback { opened: Date::default(), ..Playback::default() }, now: Instant::now() }
         }
 
         fn next(&mut self, is_animated: bool) -> Clock {
             self.now += Duration::from_millis(250);
-            self.playback.next_at(is_animated, self.now)
+            self.playback.next_at(is_animated, true, (self.now, Date::default()))
         }
 
         /// Time and index of the next frame of an animated picture.
@@ -205,6 +238,51 @@ mod tests {
             assert_eq!(frames.next(true), last);
             assert_eq!(frames.animated().0, if paused { 0.25 } else { 0.5 });
         }
+    }
+
+    #[test]
+    fn a_press_lasts_one_frame() {
+        for is_animated in [false, true] {
+            let mut frames = Frames::new();
+            frames.next(is_animated);
+            frames.playback.keys().press(65);
+            frames.playback.keys().release(65);
+            let keys = frames.next(is_animated).keys;
+            let bit = [0, 0, 2, 0, 0, 0, 0, 0];
+            assert_eq!(keys, Keys { down: bit, pressed: bit, toggled: bit });
+            assert!(frames.playback.ends_press());
+            let keys = frames.next(is_animated).keys;
+            assert_eq!(keys, Keys { toggled: bit, ..Keys::default() });
+            assert!(!frames.playback.ends_press());
+            // A picture that does not read keys is the same whatever they are.
+            frames.playback.keys().press(66);
+            let clock = frames.playback.next_at(is_animated, false, (frames.now, Date::default()));
+            assert_eq!(clock.keys, Keys::default());
+        }
+    }
+
+    /// While the clock is paused, keys change nothing. The next step shows what was pressed meanwhile.
+    #[test]
+    fn a_pause_keeps_the_keys() {
+        let mut frames = Frames::new();
+        frames.animated();
+        let last = frames.next(true);
+        frames.playback.paused = true;
+        frames.playback.keys().press(32);
+        assert_eq!(frames.next(true), last);
+        frames.playback.step();
+        let stepped = frames.next(true);
+        assert!(stepped.keys.any_pressed());
+        assert_eq!(frames.next(true), stepped);
+    }
+
+    #[test]
+    fn the_date_runs_with_an_animated_picture_only() {
+        let mut playback = Playback::default();
+        let (now, opened, later) = (Instant::now(), playback.opened, playback.opened.after(5.0));
+        assert!(opened > Date::default());
+        assert_eq!(playback.next_at(false, false, (now, later)).date, opened);
+        assert_eq!(playback.next_at(true, false, (now, later)).date, later, "from the first frame on");
     }
 
     #[test]

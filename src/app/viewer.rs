@@ -147,9 +147,16 @@ impl Viewer {
         Ok(viewer)
     }
 
-    /// Whether the picture is animated: the lights orbit, or a shader or a pass moves while the time runs.
+    /// Whether the next picture differs: the lights orbit, a shader or a pass moves while the time runs, or a key has just been
+    /// pressed.
     pub(super) fn moves(&self) -> bool {
-        self.session.settings.lights.spin != 0.0 || (self.is_animated() && self.playback.runs())
+        let runs = if self.is_animated() { self.playback.runs() } else { self.playback.ends_press() };
+        self.session.settings.lights.spin != 0.0 || runs
+    }
+
+    /// Whether a shader of the picture reads keys.
+    pub(super) fn reads_keys(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.frame.reads_keys())
     }
 
     /// Whether a shader of the picture, or a pass that is drawn, reads the time or what it drew before.

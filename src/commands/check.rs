@@ -93,7 +93,7 @@ fn build_choices(
         PipelineRequest { materials: materials.clone(), ..request }
     };
     let plain = request(&settings);
-    let mut problems = beyond_limits(&gpu, &shaders.graph);
+    let mut problems = beyond_limits(&gpu, shaders, &args.common.source()?);
     let textures = PassTextures::load(&gpu, &shaders.graph, None).unwrap_or_else(|errors| {
         problems.extend(errors);
         Arc::default()

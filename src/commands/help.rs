@@ -1,13 +1,17 @@
 //! `specula help`: a command's help, or the list of all settings; and the answer to a command that does not exist.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Command, CommandFactory as _};
 use specula::message::nearest;
 use specula::scene::BUILT_IN;
 use specula::settings::{Setting, catalog};
+use specula::shader::annotation::ParameterType;
+use specula::shader::spirv::reflect::Scalar;
+use specula::shader::{Change, Library, ShaderSet, Update, is_specula_tree};
 
 use super::common::names::is_word;
+use super::common::{compiler, source};
 use super::{Cli, Failure, print};
 
 /// Topic that is not a command.
@@ -20,13 +24,15 @@ const MEANING: usize = 60;
 pub struct Args {
     /// A command, as `render` or `brdf plot`; or `set`, for the list of all settings
     topic: Vec<String>,
+    /// For `set`: also list the settings of the shader tree in this folder [default: ./shaders if it is one]
+    #[arg(long, value_name = "DIR|FILE")]
+    shaders: Option<PathBuf>,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if args.topic == [SETTINGS] {
-        print_settings(&catalog());
-        return Ok(());
+        return print_settings(args.shaders.as_deref());
     }
     let mut command = Cli::command();
     command.build();
@@ -73,10 +79,84 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-fn print_settings(settings: &[Setting]) {
+fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
     out!("Settings, for --set PATH=VALUE and for look files (--look FILE.toml).");
     out!("Several numbers are joined by commas, as --set lights.ambient_color=1,0.8,0.6.");
     out!("In a look file, view.ev is the line `ev = 1` below `[view]`.\n");
+    print_rows(&catalog());
+    if tree.is_none() && !is_specula_tree(Path::new("shaders")) {
+        out!("\nThe constants and parameters of the shader tree are set by their names, as --set NDF=Beckmann.");
+        out!("`specula modes` lists them. A pass of the tree is switched by its name, as --set passes.outline=true.");
+        return Ok(());
+    }
+    let source = source(tree)?;
+    let name = source.name();
+    match Library::new(source, compiler()?, &specula::frame::stages::stages()).update(&Change::All) {
+        Update::Ready(shaders, _) => {
+            out!("\nSettings of the shader tree {name}\n");
+            print_rows(&of_tree(&shaders));
+        }
+        _ => out!("\nThe shader tree {name} does not compile, so its own settings are unknown: see `specula check`."),
+    }
+    Ok(())
+}
+
+/// The constants, parameters and passes of a tree.
+fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
+    let range = |range: Option<(f64, f64)>| range.map(|(low, high)| format!("{low} to {high}")).unwrap_or_default();
+    let setting = |path: &str, takes: &'static str, default: String, range: String, doc: String| Setting {
+        path: path.to_owned(),
+        takes,
+        default,
+        range,
+        unit: "",
+        doc,
+    };
+    let with_names = |label: &str, choices: &[(String, i64)]| {
+        let names: Vec<&str> = choices.iter().map(|(name, _)| name.as_str()).collect();
+        if names.is_empty() { label.to_owned() } else { format!("{label}: {}", names.join(", ")) }
+    };
+    let named = |choices: &[(String, i64)], value: i64| {
+        choices.iter().find(|(_, known)| *known == value).map(|(name, _)| name.clone())
+    };
+    let constants = shaders.constants.iter().map(|constant| {
+        let (takes, default) = match constant.scalar {
+            Scalar::Bool => ("true or false", (constant.default != 0).to_string()),
+            Scalar::Float => ("number", f32::from_bits(constant.default).to_string()),
+            Scalar::Int => ("whole number", constant.default.cast_signed().to_string()),
+            Scalar::Uint => ("whole number", constant.default.to_string()),
+        };
+        let chosen = named(&constant.choices, constant.default.into());
+        let takes = if constant.choices.is_empty() { takes } else { "name" };
+        let doc = with_names(&constant.label, &constant.choices);
+        setting(&constant.name, takes, chosen.unwrap_or(default), range(constant.range), doc)
+    });
+    let parameters = shaders.parameters.iter().map(|parameter| {
+        let is_bool = parameter.kind == ParameterType::Bool;
+        let takes = match parameter.kind {
+            _ if !parameter.choices.is_empty() => "name",
+            ParameterType::Float => "number",
+            ParameterType::Int | ParameterType::Uint => "whole number",
+            ParameterType::Bool => "true or false",
+            ParameterType::Vec2 => "2 numbers",
+            ParameterType::Vec3 => "3 numbers",
+            ParameterType::Vec4 => "4 numbers",
+        };
+        let number = |value: &f64| if is_bool { (*value != 0.0).to_string() } else { value.to_string() };
+        let numbers: Vec<String> = parameter.default.iter().map(number).collect();
+        let chosen = parameter.default.first().and_then(|value| named(&parameter.choices, *value as i64));
+        let doc = with_names(&parameter.label, &parameter.choices);
+        setting(&parameter.name, takes, chosen.unwrap_or(numbers.join(",")), range(parameter.range), doc)
+    });
+    let passes = shaders.graph.passes.iter().map(|pass| {
+        let doc = if pass.note.doc.is_empty() { &pass.note.label } else { &pass.note.doc };
+        let path = format!("passes.{}", pass.name());
+        setting(&path, "true or false", pass.note.on.to_string(), String::new(), doc.clone())
+    });
+    constants.chain(parameters).chain(passes).collect()
+}
+
+fn print_rows(settings: &[Setting]) {
     let heading = ["Setting", "Value", "Default", "Range", "Unit", "Meaning"].map(str::to_owned);
     let row = |setting: &Setting| {
         let Setting { path, takes, default, range, unit, doc } = setting.clone();
@@ -96,6 +176,4 @@ fn print_settings(settings: &[Setting]) {
         let doc = wrapped(doc).join(&format!("\n{:indent$}", ""));
         out!("{path:a$}  {takes:b$}  {default:c$}  {range:d$}  {unit:e$}  {doc}");
     }
-    out!("\nThe constants and parameters of the shader tree are set by their names, as --set NDF=Beckmann.");
-    out!("`specula modes` lists them. A pass of the tree is switched by its name, as --set passes.outline=true.");
 }

@@ -4,7 +4,9 @@
 //! shaders or resources.
 
 mod baked;
+mod date;
 mod formats;
+mod keys;
 mod pipelines;
 mod scene;
 pub mod stages;
@@ -15,8 +17,10 @@ use std::sync::Arc;
 
 pub(crate) use baked::BakeStage;
 pub use baked::{EnvironmentKey, TablesKey};
+pub use date::Date;
 pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
+pub use keys::{Keys, key_names};
 pub(crate) use pipelines::PipelineKey;
 pub use pipelines::{MaterialVariant, PipelineRequest};
 pub(crate) use scene::Appearance;
@@ -47,7 +51,7 @@ pub struct FrameInputs<'a> {
     pub scene: Option<&'a Scene>,
     /// How often the files of `settings.environment.name` and `settings.measured` have changed.
     pub revisions: Revisions,
-    /// The time, for animated shaders.
+    /// The time, for animated shaders, and the input.
     pub clock: Clock,
     /// Width and height of the picture, pixels.
     pub size: (u32, u32),
@@ -55,7 +59,7 @@ pub struct FrameInputs<'a> {
     pub target: TargetFormat,
 }
 
-/// The time of a frame.
+/// The time of a frame, and the state of mouse and keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clock {
     /// Seconds since the start.
@@ -66,6 +70,10 @@ pub struct Clock {
     pub frame_index: u32,
     /// The mouse over the picture: `interface::Frame::mouse_px`.
     pub mouse_px: [f32; 4],
+    /// The date and the time of the day.
+    pub date: Date,
+    /// The keys.
+    pub keys: Keys,
 }
 
 /// Counts the changes of watched files on disk, so that the same name is loaded again after a change.
@@ -150,6 +158,8 @@ impl FrameState {
             delta_s: clock.delta_s,
             frame_index: clock.frame_index,
             mouse_px: clock.mouse_px,
+            date: clock.date.parts(),
+            keys: clock.keys.words(),
             background: settings.view.background_linear().unwrap_or_default(),
             scene_center_ws: bounds.center().to_array(),
             scene_radius: bounds.radius(),
@@ -204,8 +214,14 @@ impl FrameState {
 
     /// Whether nothing differs but the time, and the parameters of passes that follow the model.
     pub fn is_same_model(&self, other: &Self) -> bool {
-        let timeless =
-            |frame: &Frame| Frame { time_s: 0.0, delta_s: 0.0, frame_index: 0, mouse_px: [0.0; 4], ..*frame };
+        let timeless = |frame: &Frame| Frame {
+            time_s: 0.0,
+            delta_s: 0.0,
+            frame_index: 0,
+            mouse_px: [0.0; 4],
+            date: [0.0; 4],
+            ..*frame
+        };
         let blocks = |state: &Self| -> PassBlocks {
             let passes = &state.pipelines.passes;
             let is_read = |index: usize| passes.get(index).is_some_and(|pass| pass.part == Part::BeforeModel);
@@ -287,6 +303,7 @@ fn properties((width, height): (u32, u32), clock: Clock, bytes: u32, members: &[
         let value = match name.as_str() {
             "size_px" => [width as f32, height as f32].map(f32::to_le_bytes).concat(),
             "mouse_px" => clock.mouse_px.map(f32::to_le_bytes).concat(),
+            "date" => clock.date.parts().map(f32::to_le_bytes).concat(),
             "time_s" => clock.time_s.to_le_bytes().to_vec(),
             "delta_s" => clock.delta_s.to_le_bytes().to_vec(),
             "frame_index" => clock.frame_index.to_le_bytes().to_vec(),

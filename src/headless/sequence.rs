@@ -1,6 +1,6 @@
-//! The times of the frames that a command renders.
+//! The times of the frames that a command renders, and the keys that are down in them.
 
-use crate::frame::Clock;
+use crate::frame::{Clock, Date, Keys};
 
 /// Frames at even distances in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,17 +11,23 @@ pub struct Sequence {
     pub start_s: f32,
     /// Frames a second.
     pub fps: f32,
+    /// The date at time 0.
+    pub date: Date,
+    /// The keys that are down in all frames. They go down in the first.
+    pub keys: Keys,
 }
 
 impl Default for Sequence {
     fn default() -> Self {
-        Self { frames: 1, start_s: 0.0, fps: 60.0 }
+        Self { frames: 1, start_s: 0.0, fps: 60.0, date: Date::default(), keys: Keys::default() }
     }
 }
 
 impl Sequence {
     pub(super) fn clock(&self, frame_index: u32) -> Clock {
         let delta_s = if frame_index == 0 { 0.0 } else { 1.0 / self.fps };
-        Clock { time_s: self.start_s + frame_index as f32 / self.fps, delta_s, frame_index, ..Clock::default() }
+        let time_s = self.start_s + frame_index as f32 / self.fps;
+        let keys = if frame_index == 0 { self.keys } else { self.keys.held() };
+        Clock { time_s, delta_s, frame_index, date: self.date.after(time_s), keys, ..Clock::default() }
     }
 }

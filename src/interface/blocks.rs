@@ -158,6 +158,10 @@ blocks! {
         clip_from_world_before: mat4,
         /// The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
         light_clip_from_world: [mat4; MAX_LIGHT_VIEWS],
+        /// Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
+        date: vec4,
+        /// Keys, 32 in an element: 8 elements tell which are down, 8 which went down in this frame, 8 which are toggled. See common/keys.glsl.
+        keys: [uint; 24],
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.

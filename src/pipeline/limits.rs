@@ -2,16 +2,19 @@
 
 use crate::gpu::Gpu;
 use crate::shader::annotation::pass::PassSize;
-use crate::shader::{Diagnostic, Graph};
+use crate::shader::contract::Texts;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::{Diagnostic, ShaderSet, Source, StageKind};
 
-/// Passes whose images are too large for the device.
-pub fn beyond_limits(gpu: &Gpu, graph: &Graph) -> Vec<Diagnostic> {
+/// Passes whose images are too large for the device, and buffers that a stage cannot write. `source` is the tree of the shaders.
+pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
+    let graph = &shaders.graph;
     let most = gpu.max_image_size();
     let too_large = |(width, height): (u32, u32)| {
         let message = format!("has {width} x {height} pixels; this device has at most {most} a side");
         (width > most || height > most).then_some(message)
     };
-    let mut out = Vec::new();
+    let mut out = unwritable_buffers(gpu.graphics_stores(), shaders, source);
     for pass in &graph.passes {
         if let PassSize::Pixels(width, height) = pass.note.size {
             let message = too_large((width, height));
@@ -19,4 +22,61 @@ pub fn beyond_limits(gpu: &Gpu, graph: &Graph) -> Vec<Diagnostic> {
         }
     }
     out
+}
+
+/// Buffers without `readonly` in the stages of a device that lets only compute shaders write. `stores`: whether vertex stages and
+/// fragment stages can write.
+fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    let snapshot = Snapshot::new(source);
+    for stage in shaders.stages.values() {
+        let name = match stage.kind {
+            StageKind::Vertex if !stores.0 => "vertex",
+            StageKind::Fragment if !stores.1 => "fragment",
+            _ => continue,
+        };
+        let texts = Texts { snapshot: &snapshot, stage: &stage.path, dependencies: &stage.dependencies };
+        for buffer in stage.reflection.descriptors.iter().filter(|descriptor| descriptor.is_written) {
+            let message = format!("this device cannot write the buffer `{}` in a {name} stage", buffer.name);
+            let error = texts.error(&[buffer.name.as_str(), "buffer"], message);
+            out.push(error.with_help("declare it `readonly buffer`; a compute pass can write it"));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::shader::{Change, Compiler, Library, Update};
+
+    #[test]
+    fn buffers_that_a_stage_cannot_write_have_their_line() {
+        let buffer = |name: &str, readonly: &str| {
+            format!("layout(set = 0, binding = 14, std430)\n{readonly} buffer {name} {{ uint a; uint b; }};\n")
+        };
+        let vertex =
+            format!("#version 460\n{}void main() {{ b = a; gl_Position = vec4(0.0); }}\n", buffer("OfVertices", ""));
+        let fragment = |readonly: &str, body: &str| {
+            let color = "layout(location = 0) out vec4 color;";
+            format!("#version 460\n{color}\n{}void main() {{ {body} }}\n", buffer("OfPixels", readonly))
+        };
+        let (writes, reads) = (fragment("", "b = a; color = vec4(1.0);"), fragment("readonly", "color = vec4(a + b);"));
+        let source =
+            Source::memory([("v.vert", vertex.as_str()), ("w.frag", writes.as_str()), ("r.frag", reads.as_str())]);
+        let compiler = Arc::new(Compiler::new().unwrap());
+        let mut library = Library::new(source.clone(), compiler, &["v.vert", "w.frag", "r.frag"]);
+        let update = library.update(&Change::All);
+        let Update::Ready(shaders, _) = &update else { panic!("{update:?}") };
+        let found = |stores: (bool, bool)| -> Vec<String> {
+            unwritable_buffers(stores, shaders, &source).iter().map(Diagnostic::one_line).collect()
+        };
+        assert_eq!(found((true, true)), [""; 0]);
+        let of_vertices = "v.vert:3:9: error: this device cannot write the buffer `OfVertices` in a vertex stage";
+        let of_pixels = "w.frag:4:9: error: this device cannot write the buffer `OfPixels` in a fragment stage";
+        assert_eq!(found((false, true)), [of_vertices]);
+        assert_eq!(found((false, false)), [of_vertices, of_pixels]);
+    }
 }

@@ -161,7 +161,7 @@ impl Reloader {
         }
         let start = Instant::now();
         let before = self.current.as_deref();
-        let mut problems = beyond_limits(&self.gpu, &shaders.graph);
+        let mut problems = beyond_limits(&self.gpu, &shaders, self.library.source());
         let textures = PassTextures::load(&self.gpu, &shaders.graph, before).unwrap_or_else(|errors| {
             problems.extend(errors);
             Arc::default()

@@ -8,7 +8,7 @@ use super::paths::Traced;
 use super::scene::GpuScene;
 use crate::frame::FrameState;
 use crate::gpu::Buffer;
-use crate::interface::{CLOCK, MOTION};
+use crate::interface::{CLOCK, KEYS, MOTION};
 use crate::pipeline::BoundPipelines;
 use crate::shader::graph::Part;
 
@@ -49,6 +49,11 @@ impl BoundFrame {
     /// Whether the picture changes while the time runs: a stage reads the clock, or a pass what it drew before.
     pub fn is_animated(&self) -> bool {
         self.pipelines.read_frame(&CLOCK) || self.state.pipelines.passes.iter().any(|pass| pass.moves)
+    }
+
+    /// Whether a stage asks for keys.
+    pub fn reads_keys(&self) -> bool {
+        self.pipelines.read_frame(std::slice::from_ref(&KEYS))
     }
 
     /// Whether the model, or a pass that it reads, changes while the time runs.

@@ -229,6 +229,27 @@ fn help_set_lists_every_setting() {
         assert!(parts.iter().all(|part| row.contains(part)), "{row} lacks one of {parts:?}");
     }
     assert!(help.stdout.contains("specula modes"), "the shader's own are listed elsewhere: {help:#?}");
+    run(directory.path(), &["new", "shaders", "--template", "life"]).expect(0, &[]);
+    for more in [&["help", "set"][..], &["help", "set", "--shaders", "shaders"]] {
+        let help = run(directory.path(), more);
+        help.expect(0, &[]);
+        let rows: Vec<&str> = help.stdout.lines().collect();
+        let place = |path: &str, parts: &[&str]| {
+            let is_row = |row: &&str| row.split_whitespace().next() == Some(path);
+            let at = rows.iter().position(is_row).unwrap_or_else(|| panic!("no {path}: {help:#?}"));
+            assert!(parts.iter().all(|part| rows[at].contains(part)), "{} lacks one of {parts:?}", rows[at]);
+            at
+        };
+        let last = place("view.bounces", &[]);
+        assert!(place("NDF", &["name", "GGX", "Beckmann"]) > last);
+        assert!(place("TEMPORAL_ANTIALIASING", &["true or false", "false"]) > last);
+        assert!(place("bloom_strength", &["number", "0 to 1"]) > last);
+        assert!(place("passes.outline", &["true or false", "false"]) > last);
+    }
+    std::fs::write(directory.path().join("shaders/user.glsl"), "broken").unwrap();
+    let help = run(directory.path(), &["help", "set"]);
+    assert!(help.expect(0, &[]).stdout.contains("does not compile"), "{help:#?}");
+    std::fs::remove_dir_all(directory.path().join("shaders")).unwrap();
     let render = run(directory.path(), &["help", "render"]);
     assert!(render.expect(0, &[]).stdout.contains("Usage: specula render"), "{render:#?}");
     let plot = run(directory.path(), &["help", "brdf", "plot"]);

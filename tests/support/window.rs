@@ -147,7 +147,20 @@ impl Viewer {
         let found = self.display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "^Specula"]);
         found.stdout.lines().next().unwrap().clone_into(&mut self.window);
         // Without a window manager, nothing else gives the window the keyboard focus.
+        self.give_focus();
+    }
+
+    /// Gives the window the keyboard focus.
+    #[track_caller]
+    pub fn give_focus(&self) {
         self.display.xdotool(&["windowfocus", "--sync", &self.window]);
+    }
+
+    /// Gives the keyboard focus to the root window.
+    #[track_caller]
+    pub fn take_focus_away(&self) {
+        let root = self.display.xdotool(&["search", "--maxdepth", "0", "--name", ".*"]).stdout;
+        self.display.xdotool(&["windowfocus", root.trim()]);
     }
 
     /// Moves the window.

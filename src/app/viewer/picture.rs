@@ -24,7 +24,7 @@ impl Viewer {
         mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
     ) -> Result<Option<BoundFrame>, GpuError> {
         let is_animated = self.is_animated();
-        let clock = self.playback.next(is_animated);
+        let clock = self.playback.next(is_animated, self.reads_keys());
         let target = target(&self.gpu, &self.session.settings);
         let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
         let state = Arc::new(state);

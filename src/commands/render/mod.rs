@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use specula::events::{CompletedEvent, Event, ReloadEvent, emit};
+use specula::frame::{Date, Keys};
 use specula::headless::{Headless, Sequence};
 use specula::message;
 use specula::picture;
@@ -28,15 +29,21 @@ pub struct Args {
     /// Stay, and render again whenever a shader or the model is saved
     #[arg(long)]
     watch: bool,
-    /// Draw this many frames, and write the last: for passes that read the frame before
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    frames: u32,
+    /// Draw this many frames, and write the last: for passes that read the frame before [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: Option<u32>,
     /// Time of the first frame for animated shaders, seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     time: f32,
     /// Frames a second, for animated shaders
     #[arg(long, value_name = "N", default_value_t = 60.0)]
     fps: f32,
+    /// Keys that are down in all frames, for shaders that read keys, as A,Space,Left; they go down in the first
+    #[arg(long, value_name = "NAMES")]
+    keys: Option<Keys>,
+    /// Date at time 0 for shaders that read it, as 2026-11-23T16:00:00 [default: 2000-01-01]
+    #[arg(long, value_name = "DATE")]
+    date: Option<Date>,
     #[command(flatten)]
     common: Common,
 }
@@ -61,7 +68,13 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     let gpu = args.common.gpu()?;
     let read = || args.common.model(args.model.as_deref());
     let (mut headless, reload) = Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
-    headless.set_sequence(Sequence { frames: args.frames, start_s: args.time, fps: args.fps });
+    headless.set_sequence(Sequence {
+        frames: args.frames.unwrap_or(1),
+        start_s: args.time,
+        fps: args.fps,
+        date: args.date.unwrap_or_default(),
+        keys: args.keys.unwrap_or_default(),
+    });
     if let Some(watch) = &mut watch {
         watch.follow(&headless);
     }
@@ -76,7 +89,10 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
             tell(&args, &diagnostics);
             eprintln!("specula: no picture yet; waiting for the next save");
         }
-        result => result?,
+        result => {
+            result?;
+            hint_at_frames(&headless, &args)?;
+        }
     }
     warn_of_bakes(&headless);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
@@ -203,6 +219,19 @@ fn take_environment(headless: &mut Headless, args: &Args) -> bool {
         Err(error) => message::tell(format_args!("{error}\nspecula: the last good environment stays")),
     }
     baked.is_ok()
+}
+
+/// Says that passes continue from frame to frame, if the number of frames was not given.
+fn hint_at_frames(headless: &Headless, args: &Args) -> Result<(), Failure> {
+    let passes: Vec<String> = headless.continuing_passes()?.iter().map(|name| format!("`{name}`")).collect();
+    let subject = match passes.as_slice() {
+        [one] => format!("the pass {one} continues"),
+        all => format!("the passes {} continue", all.join(", ")),
+    };
+    if args.frames.is_none() && !passes.is_empty() {
+        message::tell(format_args!("hint: {subject} from frame to frame, and this is the first; --frames 60 draws 60"));
+    }
+    Ok(())
 }
 
 /// Warns of functions of the BRDF whose values the tables or the prefilter could not use.

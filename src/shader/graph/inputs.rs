@@ -17,8 +17,14 @@ const LARGEST_BLOCK: u32 = 16 << 10;
 /// The block with the properties of a pass's image and the clock, in pass.glsl and toy.glsl.
 const PASS_BLOCK: &str = "Pass";
 /// The members that it may have, and their types in GLSL.
-const PASS_MEMBERS: [(&str, &str); 5] =
-    [("size_px", "vec2"), ("mouse_px", "vec4"), ("time_s", "float"), ("delta_s", "float"), ("frame_index", "uint")];
+const PASS_MEMBERS: [(&str, &str); 6] = [
+    ("size_px", "vec2"),
+    ("mouse_px", "vec4"),
+    ("date", "vec4"),
+    ("time_s", "float"),
+    ("delta_s", "float"),
+    ("frame_index", "uint"),
+];
 
 /// The samplers that a stage can have.
 const SAMPLERS: &str = "sampler2D, samplerCube, sampler3D, sampler2DArray";

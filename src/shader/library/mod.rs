@@ -22,6 +22,7 @@ use crate::shader::diagnostic::{Diagnostic, unique};
 use crate::shader::graph::Graph;
 use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::is_same_code;
 use crate::shader::source::{Source, TreePath};
 use link::Linked;
 use passes::fragment_of;
@@ -329,10 +330,10 @@ impl Library {
         }
     }
 
-    /// The files, as displayed, whose text differs from the last good one and that no diagnostic is about.
+    /// The files, as displayed, whose code differs from the last good one and that no diagnostic is about.
     fn waiting(&self, diagnostics: &[Diagnostic], snapshot: &Snapshot<'_>) -> Vec<String> {
         let texts = self.set.iter().flat_map(|set| &set.texts);
-        let edited = texts.filter(|(path, text)| snapshot.read(path).is_ok_and(|now| *now != ***text));
+        let edited = texts.filter(|(path, text)| snapshot.read(path).is_ok_and(|now| !is_same_code(&now, text)));
         let shown = edited.map(|(path, _)| self.source.display_path(path));
         shown.filter(|path| diagnostics.iter().all(|diagnostic| diagnostic.file != *path)).collect()
     }

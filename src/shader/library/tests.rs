@@ -55,6 +55,8 @@ fn edits_that_wait_for_a_repair_are_named() {
         let Update::Failed(diagnostics, _) = update else { panic!("expected a failure, found {update:?}") };
         diagnostics.iter().flat_map(|diagnostic| diagnostic.notes.clone()).collect()
     };
+    // An edit of comments has nothing to wait for.
+    edit(&mut library, "lib/color.glsl", Some("// Gray.\nfloat color() { return 0.5; }\n"));
     let broken = edit(&mut library, "b.frag", Some(&format!("{HEAD}void main() {{ o = vec4(1.0) }}\n")));
     assert_eq!(notes(&broken), [""; 0], "nothing else was edited");
     let held = edit(&mut library, "lib/color.glsl", Some("float color() { return 0.6; }\n"));

@@ -51,6 +51,19 @@ pub fn lines(text: &str) -> Vec<Line<'_>> {
     out
 }
 
+/// Whether two texts differ in comments and white space at most. Annotations count as code.
+pub fn is_same_code(a: &str, b: &str) -> bool {
+    let code = |text: &str| -> Vec<(String, String)> {
+        let parts = |line: Line<'_>| {
+            let code = line.code.split_whitespace().collect::<Vec<_>>().join(" ");
+            (code, line.annotation.map_or("", |at| line.raw[at..].trim_end()).to_owned())
+        };
+        let all = lines(text).into_iter().map(parts);
+        all.filter(|(code, annotation)| !code.is_empty() || !annotation.is_empty()).collect()
+    };
+    a == b || code(a) == code(b)
+}
+
 /// Whether a character may be part of an identifier.
 pub fn is_word(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
@@ -92,6 +105,20 @@ pub fn tokens(code: &str) -> Vec<(Range<usize>, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn comments_are_no_code() {
+        let text = "float f() { return 1.0; }\n//@ui \"A\" 0..1\n";
+        for same in [
+            "// New.\n\nfloat f() {   return 1.0; } // Why.\n//@ui \"A\" 0..1\n",
+            "/* a\n b */ float f() { return 1.0; }\n  //@ui \"A\" 0..1",
+        ] {
+            assert!(is_same_code(text, same), "{same}");
+        }
+        for other in [text.replace("1.0", "2.0"), text.replace("0..1", "0..2"), text.replace("float", "//float")] {
+            assert!(!is_same_code(text, &other), "{other}");
+        }
+    }
 
     #[test]
     fn comments_become_spaces_and_annotations_are_found() {

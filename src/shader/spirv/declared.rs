@@ -17,6 +17,7 @@ mod decoration {
     pub const ARRAY_STRIDE: u32 = 6;
     pub const MATRIX_STRIDE: u32 = 7;
     pub const BUILT_IN: u32 = 11;
+    pub const NON_WRITABLE: u32 = 24;
     pub const LOCATION: u32 = 30;
     pub const BINDING: u32 = 33;
     pub const DESCRIPTOR_SET: u32 = 34;
@@ -215,8 +216,17 @@ impl Module {
             glsl,
             name: self.name(if is_block { to } else { variable }),
             block: if is_block { self.block(to) } else { None },
+            is_written: is_block && storage && !self.is_read_only(variable, to),
             image_format: if let Type::Image { format, .. } = declared { *format } else { 0 },
         })
+    }
+
+    /// Whether a storage buffer is declared `readonly`, which glslang writes to each member.
+    fn is_read_only(&self, variable: Id, to: Id) -> bool {
+        let Some(Type::Struct { members }) = self.types.get(&to) else { return false };
+        let mut members = (0..).zip(members).map(|(index, _)| (to, index, decoration::NON_WRITABLE));
+        self.decoration(variable, decoration::NON_WRITABLE).is_some()
+            || members.all(|member| self.member_decorations.contains_key(&member))
     }
 
     fn block(&self, id: Id) -> Option<Block> {

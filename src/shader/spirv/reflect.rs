@@ -48,6 +48,8 @@ pub struct Descriptor {
     pub name: String,
     /// The layout, if it is a block.
     pub block: Option<Block>,
+    /// Whether it is a storage buffer that the stage may write: one that is not `readonly`.
+    pub is_written: bool,
     /// The SPIR-V image format of a storage image; 0 is none.
     pub image_format: u32,
 }

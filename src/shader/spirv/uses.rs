@@ -7,6 +7,7 @@ use super::bindings::{BINDING, DESCRIPTOR_SET, HEADER, instruction};
 use super::opcode as op;
 
 const OFFSET: u32 = 35;
+const ARRAY_STRIDE: u32 = 6;
 
 /// The bindings in `set` that functions of the module use.
 pub fn used_bindings(words: &[u32], set: u32) -> BTreeSet<u32> {
@@ -31,11 +32,13 @@ pub fn used_bindings(words: &[u32], set: u32) -> BTreeSet<u32> {
 }
 
 /// The bytes that functions of the module may read of the block at this set and binding. Members that they do not name are left
-/// out; the last member ends at `usize::MAX`, since its size follows from the block.
+/// out. The last member ends at `usize::MAX`, unless it is an array: trees may leave out what follows it in the contract.
 pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
     let (mut in_set, mut at_binding, mut structs) = (HashSet::new(), HashSet::new(), HashMap::new());
     let (mut offsets, mut constants): (HashMap<u32, BTreeMap<u32, usize>>, _) = (HashMap::new(), HashMap::new());
     let (mut pointers, mut block) = (HashMap::new(), None);
+    // The types of the members of structs, the length of arrays, and the distance of their elements.
+    let (mut members_of, mut lengths, mut strides) = (HashMap::new(), HashMap::new(), HashMap::new());
     let mut at = HEADER;
     while let Some((opcode, length)) = instruction(words, at) {
         match (opcode, &words[at + 1..at + length]) {
@@ -47,6 +50,15 @@ pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
             }
             (op::MEMBER_DECORATE, [id, member, OFFSET, bytes]) => {
                 offsets.entry(*id).or_default().insert(*member, *bytes as usize);
+            }
+            (op::DECORATE, [id, ARRAY_STRIDE, bytes]) => {
+                strides.insert(*id, *bytes as usize);
+            }
+            (op::TYPE_STRUCT, [id, types @ ..]) => {
+                members_of.insert(*id, types);
+            }
+            (op::TYPE_ARRAY, [id, _, length]) => {
+                lengths.insert(*id, *length);
             }
             (op::CONSTANT, [_, id, value]) => {
                 constants.insert(*id, *value);
@@ -67,7 +79,8 @@ pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
     }
     let Some(block) = block else { return Vec::new() };
     let everything = vec![Range { start: 0, end: usize::MAX }];
-    let Some(offsets) = structs.get(&block).and_then(|of| offsets.get(of)) else { return everything };
+    let Some(of) = structs.get(&block) else { return everything };
+    let Some(offsets) = offsets.get(of) else { return everything };
     let mut members = BTreeSet::new();
     while let Some(first) = words.get(at) {
         let (opcode, length) = (first & 0xffff, (first >> 16) as usize);
@@ -85,7 +98,13 @@ pub fn used_bytes(words: &[u32], set: u32, binding: u32) -> Vec<Range<usize>> {
         }
         at += length;
     }
-    let end_of = |start: usize| offsets.values().copied().filter(|other| *other > start).min().unwrap_or(usize::MAX);
+    let last_end = members_of.get(of).and_then(|types| types.last()).and_then(|array| {
+        let length = *constants.get(lengths.get(array)?)? as usize;
+        Some(offsets.values().max()? + length * strides.get(array)?)
+    });
+    let end_of = |start: usize| {
+        offsets.values().copied().filter(|other| *other > start).min().or(last_end).unwrap_or(usize::MAX)
+    };
     let start_of = |member: &u32| offsets.get(member).copied();
     match members.iter().map(start_of).collect::<Option<Vec<usize>>>() {
         Some(starts) => starts.into_iter().map(|start| start..end_of(start)).collect(),
@@ -126,7 +145,7 @@ mod tests {
         assert_eq!(used("void main() { color = block.a[n]; }"), [(0, 64)]);
         assert_eq!(
             used("float f() { return block.d[n].y; } void main() { color = vec4(block.b, f()); }"),
-            [(64, 76), (80, usize::MAX)]
+            [(64, 76), (80, 96)]
         );
     }
 

@@ -11,6 +11,8 @@ pub(super) enum Channel {
     Drawing(String),
     /// An image file, relative to the folder, with a `*` for the faces or slices if it has several files.
     Image(String, Sampler),
+    /// The state of the keys.
+    Keyboard,
 }
 
 /// The sampler of a channel, as a line `#iChannel0::Type "CubeMap"` names it. Without such a line, it is flat.
@@ -50,6 +52,9 @@ const CHANNELS: usize = 4;
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
 pub(super) const COMMON: &str = "common";
+
+/// The line that declares functions about keys. The form is that of editors' Shadertoy extensions.
+const KEY_FUNCTIONS: &str = "#iKeyboard";
 
 /// The uniforms of glslViewer and of the Book of Shaders, which toy.glsl defines.
 const UNIFORMS: [&str; 6] = ["u_time", "u_delta", "u_frame", "u_date", "u_resolution", "u_mouse"];
@@ -95,6 +100,16 @@ fn samplers(text: &str) -> [Sampler; CHANNELS] {
     out
 }
 
+/// Whether a text reads keys by functions: it has a line `#iKeyboard`.
+pub(super) fn has_key_functions(text: &str) -> bool {
+    text.lines().any(|line| line.trim().starts_with(KEY_FUNCTIONS))
+}
+
+/// Whether a text reads the image with the state of the keys.
+pub(super) fn reads_keyboard(text: &str) -> bool {
+    has_key_functions(text) || channels(text).iter().any(|(_, channel)| *channel == Channel::Keyboard)
+}
+
 /// The names of the outputs that a text declares.
 pub(super) fn outputs(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| is_replaced(line)).filter_map(|line| {
@@ -107,7 +122,7 @@ pub(super) fn outputs(text: &str) -> impl Iterator<Item = &str> {
 /// The files that a text names in its channels and includes. A name may have a `*`.
 pub(super) fn named_files(text: &str) -> Vec<String> {
     let of_channel = |(_, channel)| match channel {
-        Channel::This => None,
+        Channel::This | Channel::Keyboard => None,
         Channel::Drawing(file) | Channel::Image(file, _) => Some(file),
     };
     let included = |line: &str| {
@@ -190,6 +205,7 @@ fn channel(line: &str) -> Option<(usize, Channel)> {
     let is_shader = [".glsl", ".frag", ".fs"].iter().any(|ending| file.ends_with(ending));
     let channel = match name {
         "self" => Channel::This,
+        _ if file == "keyboard" => Channel::Keyboard,
         _ if is_shader => Channel::Drawing(file),
         _ => Channel::Image(file, Sampler::Flat),
     };
@@ -204,6 +220,7 @@ fn is_replaced(line: &str) -> bool {
     let is_global = || code.ends_with(';') && (code.starts_with("layout") || !code.contains('('));
     code.starts_with("#version")
         || code.starts_with("#iChannel")
+        || code.starts_with(KEY_FUNCTIONS)
         || match words.clone().next() {
             Some("uniform") => is_uniform(),
             Some("varying") => true,
@@ -243,17 +260,18 @@ mod tests {
     #[test]
     fn channels_name_files() {
         let text = "#iChannel0 \"file://./a.png\"\n#iChannel1 \"self\"\n  #iChannel2 \"blur.glsl\"\n\
-                    #iChannel0::WrapMode \"Repeat\"\n#iChannel7 \"x.png\"\n";
+                    #iChannel0::WrapMode \"Repeat\"\n#iChannel7 \"x.png\"\n#iChannel3 \"file://keyboard\"\n#iKeyboard\n";
         let expected = [
             (0, Channel::Image("a.png".into(), Sampler::Flat)),
             (1, Channel::This),
             (2, Channel::Drawing("blur.glsl".into())),
+            (3, Channel::Keyboard),
         ];
         assert_eq!(channels(text), expected);
         assert_eq!(named_files(text), ["a.png", "blur.glsl"]);
         let found = adapted(text, "image");
         assert!(found.starts_with("//@texture image_channel0 \"a.png\" linear mips flip\n"), "{found}");
-        assert!(found.lines().take(5).all(|line| line.starts_with("//")), "{found}");
+        assert!(found.lines().take(7).all(|line| line.starts_with("//")), "{found}");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::pattern::{FACES, Pattern};
 use super::{MAX_IMAGE_BYTES, SourceError, TreePath, embedded, names_in, read_bytes, read_file};
-use adapt::{COMMON, Channel, Sampler, adapted, channels, is_shadertoy, uses};
+use adapt::{COMMON, Channel, Sampler, adapted, channels, has_key_functions, is_shadertoy, uses};
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
@@ -19,6 +19,8 @@ const OPENED: &str = "opened";
 const STAGES: &str = "passes";
 /// The image of a channel that names none.
 const NOISE: &str = "opened/noise.png";
+/// The pass that draws the state of the keys, for files that read it.
+const KEYBOARD: &str = "toy_keyboard";
 /// Shadertoy has four buffers.
 const BUFFERS: [&str; 4] = ["buffer_a", "buffer_b", "buffer_c", "buffer_d"];
 
@@ -73,6 +75,10 @@ impl Toy {
             if let Some(index) = drawings.iter().position(|drawing| stage_path(&drawing.pass) == *path) {
                 return Ok(self.stage(&drawings, index));
             }
+            if *path == stage_path(KEYBOARD) && self.reads_keyboard(&drawings) {
+                let annotation = format!("//@pass {KEYBOARD} \"Keyboard\" size=256x3 format=rgba8");
+                return Ok(format!("{annotation}\n#version 460\n#include \"toy/keyboard.glsl\"\n"));
+            }
         }
         let bytes = embedded::read(None, path).ok_or(SourceError::Missing)?;
         super::check_text(bytes.to_vec())
@@ -98,7 +104,8 @@ impl Toy {
     /// The files of the tree that a stage can be, or a library in the binary, sorted.
     pub fn list(&self) -> Vec<TreePath> {
         let drawings = self.drawings();
-        let stages = drawings.iter().map(|drawing| stage_path(&drawing.pass));
+        let keyboard = self.reads_keyboard(&drawings).then(|| stage_path(KEYBOARD));
+        let stages = drawings.iter().map(|drawing| stage_path(&drawing.pass)).chain(keyboard);
         let mut out: Vec<TreePath> = embedded::list(None).into_iter().chain(stages).collect();
         out.sort();
         out.dedup();
@@ -131,6 +138,7 @@ impl Toy {
     pub fn changed(&self, file: &Path) -> Vec<TreePath> {
         let Some(relative) = file.strip_prefix(self.folder()).ok().and_then(slashes) else { return Vec::new() };
         let stages = self.drawings().into_iter().map(|drawing| drawing.pass).chain(BUFFERS.map(str::to_owned));
+        let stages = stages.chain([KEYBOARD.to_owned()]);
         std::iter::once(opened_path(&relative)).chain(stages.map(|pass| stage_path(&pass))).collect()
     }
 
@@ -194,6 +202,17 @@ impl Toy {
         out.push(Drawing { pass: pass.to_owned(), file: file.to_owned(), text });
     }
 
+    /// The file that all drawings share, and its text.
+    fn common(&self) -> Option<(String, String)> {
+        self.beside(COMMON)
+    }
+
+    /// Whether a file reads the state of the keys.
+    fn reads_keyboard(&self, drawings: &[Drawing]) -> bool {
+        let common = self.common().map(|(_, text)| text);
+        drawings.iter().map(|drawing| &drawing.text).chain(&common).any(|text| adapt::reads_keyboard(text))
+    }
+
     /// The text of a stage.
     fn stage(&self, drawings: &[Drawing], index: usize) -> String {
         let Drawing { pass, file, text } = &drawings[index];
@@ -207,9 +226,12 @@ impl Toy {
             out += "#define TOY_MAIN\n";
         }
         out += "#include \"toy.glsl\"\n";
-        let common = self.beside(COMMON);
+        let common = self.common();
         let shared = common.as_ref().map_or("", |(_, text)| text);
         out += &declarations(drawings, index, shared);
+        if has_key_functions(text) || has_key_functions(shared) {
+            out += "#include \"toy/keys.glsl\"\n";
+        }
         for name in adapt::outputs(text) {
             out += &format!("#define {name} toyFragColor\n");
         }
@@ -245,6 +267,7 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
                 kind = *sampler;
                 Some(adapt::texture_name(pass, number))
             }
+            Some(Channel::Keyboard) => Some(KEYBOARD.to_owned()),
             None => drawn(&|drawing| drawing.pass == *buffer),
         };
         let sampler = sampler.unwrap_or_else(|| {
@@ -257,6 +280,9 @@ fn declarations(drawings: &[Drawing], index: usize, shared: &str) -> String {
         });
         lines.insert(format!("uniform {} {sampler};\n", kind.glsl()));
         lines.insert(format!("#define {name} {sampler}\n"));
+    }
+    if has_key_functions(text) || has_key_functions(shared) {
+        lines.insert(format!("uniform sampler2D {KEYBOARD};\n"));
     }
     lines.insert(format!("#define iChannelResolution vec3[4]({})\n", sizes.join(", ")));
     lines.into_iter().collect()
