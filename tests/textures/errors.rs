@@ -134,6 +134,6 @@ fn errors_have_their_line_and_the_picture_stays() {
     session.changed(&["passes/show.frag"]);
     let declared = "uniform isampler3D t;\nint used() { return texture(t, vec3(0.0)).x; }\nvoid user_surface(";
     let told = lines(failed(&session.edit("user.glsl", "void user_surface(", declared)));
-    let expected = "a stage cannot have isampler3D `t` by name";
+    let expected = "a pass cannot have isampler3D `t`";
     assert!(told.iter().any(|line| line.contains("user.glsl:") && line.contains(expected)), "{told:#?}");
 }
