@@ -15,7 +15,7 @@ const MOST_BYTES: u64 = 512 << 20;
 const BAKED: &str = "baked";
 const PIPELINES: &str = "pipelines";
 const ENDING: &str = "bake";
-/// Bytes of a driver's pipelines. A session of some hundred edits collects more; the next one then starts without any.
+/// Bytes of a driver's pipelines. A session of some hundred edits collects more, which are not stored.
 const MOST_PIPELINE_BYTES: usize = 32 << 20;
 /// Bytes of the checksum at the end of a file: XXH3 of all before it.
 const CHECKSUM: u64 = 8;
@@ -85,8 +85,9 @@ impl PipelineStore for Pipelines {
     }
 
     fn store(&self, driver: &[u8], data: &[u8]) {
-        let data = if data.len() > MOST_PIPELINE_BYTES { &[] } else { data };
-        store_in(PIPELINES, &key(&[driver]), data);
+        if data.len() <= MOST_PIPELINE_BYTES {
+            store_in(PIPELINES, &key(&[driver]), data);
+        }
     }
 }
 

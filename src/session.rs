@@ -109,6 +109,9 @@ fn unknown_pass(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
     let known: Vec<&str> =
         shaders.graph.passes.iter().filter(|pass| pass.has_switch()).map(|pass| pass.name()).collect();
     let unknown = settings.passes.keys().find(|name| !known.contains(&name.as_str()))?;
+    if shaders.graph.pass(unknown).is_some() {
+        return Some(format!("passes.{unknown}: this pass is a step of every picture, so it has no switch"));
+    }
     let hint = did_you_mean(unknown, known.iter().copied());
     let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
     Some(format!("passes.{unknown}: no pass is named `{unknown}`.{hint} Passes: {list}"))

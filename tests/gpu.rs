@@ -105,7 +105,7 @@ fn validation_messages_name_pipelines_after_their_stages() {
     let desc = PipelineDesc {
         vertex: &vertex,
         fragment: &fragment,
-        color: vk::Format::R16G16B16A16_SFLOAT,
+        colors: &[vk::Format::R16G16B16A16_SFLOAT],
         depth: true,
         raster: Raster::Solid,
         samples: 1,

@@ -316,6 +316,15 @@ fn a_pass_adds_to_the_model_in_the_picture() {
     // A debug mode shows the model alone.
     let mode = session.mode("geometric-normal");
     session.headless.settings_mut().mode = "final".to_owned();
+    // Even if a stage of that mode reads a buffer that the pass reads, too.
+    let shares = half.replace("void main", "readonly buffer Shared { float shared_value; };\nvoid main");
+    ready(&session.save("passes/red.frag", &shares.replace("0.5);", "0.5 + shared_value);")));
+    let user = session.tree.read("user.glsl");
+    let reads = "readonly buffer Shared { float shared_value; };\nvoid user_surface(inout Surface s) {\n    s.roughness += shared_value;";
+    ready(&session.save("user.glsl", &user.replace("void user_surface(inout Surface s) {", reads)));
+    assert_same(&mode, &session.mode("geometric-normal"), "the pass shares a buffer");
+    session.headless.settings_mut().mode = "final".to_owned();
+    ready(&session.save("user.glsl", &user));
     std::fs::remove_file(session.tree.path("passes/red.frag")).unwrap();
     ready(&session.changed(&["passes/red.frag"]));
     assert_same(&plain, &session.render(), "the pass is gone");
@@ -358,12 +367,29 @@ fn the_picture_is_declared_in_the_tree() {
         "{told}"
     );
     session.save("debug/modes.glsl", &declared("mine"));
+    // Words for people build nothing.
+    let text = session.tree.read("pbr.frag");
+    let reload = session.save("pbr.frag", &text.replace("\"Model\"", "\"The model\""));
+    ready(&reload);
+    assert_eq!((stages(&reload).len(), reload.pipelines), (0, 0), "a label");
+    ready(&session.save("pbr.frag", &text));
     // Without one of the steps there is no picture, so the last one stays.
-    for (file, pass) in [("tonemap.frag", "tonemap"), ("pbr.frag", "model")] {
+    std::fs::rename(session.tree.path("pbr.vert"), session.tree.path("away.vert")).unwrap();
+    let told = lines(failed(&session.changed(&["pbr.vert"]))).join("\n");
+    assert!(told.contains("pbr.frag:1:1: error: the pass `model` needs the vertex stage pbr.vert"), "{told}");
+    assert_same(&plain, &session.render(), "pbr.vert");
+    std::fs::rename(session.tree.path("away.vert"), session.tree.path("pbr.vert")).unwrap();
+    session.changed(&["pbr.vert"]);
+    for (file, expected) in [
+        ("tonemap.frag", "no stage of the tree declares the pass `tonemap`"),
+        ("pbr.frag", "no stage of the tree declares the pass `model`"),
+        ("average.frag", "accumulates, but no stage declares a pass with to=mean"),
+        ("debug.frag", "no pass draws the model with debug.frag for the mode"),
+    ] {
         let text = session.tree.read(file);
         let unsaid = text.replace("//@pass", "// pass");
         let told = lines(failed(&session.save(file, &unsaid))).join("\n");
-        assert!(told.contains(&format!("no stage of the tree declares the pass `{pass}`")), "{told}");
+        assert!(told.contains(expected), "{told}");
         assert_same(&plain, &session.render(), file);
         session.save(file, &text);
         std::fs::remove_file(session.tree.path(file)).unwrap();
@@ -412,6 +438,30 @@ fn contradictions_have_their_line() {
         ("passes/mine.frag", text.replace("draw=model", "instead=model"), "draws the model as well"),
         ("passes/mine.frag", text.replace("draw=model", "draw=background"), "draw=background to=picture"),
         ("passes/model.frag", text.replace("mine", "model"), "pass or texture `model` is given twice"),
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=model draw=background to=picture"),
+            "draws the model or the background, not both",
+        ),
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=model to=picture after=tonemap"),
+            "`mine` is drawn with the model, so it cannot come after `tonemap`",
+        ),
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=model to=picture instead=model off"),
+            "is a step of every picture, so off and when= do not go with it",
+        ),
+        (
+            "passes/mine.frag",
+            text.replace("draw=model", "draw=model to=picture").replace(
+                "void main() {\n    color =",
+                "uniform sampler2D depth;\nvoid main() {\n    color = texture(depth, vec2(0.5)) +",
+            ),
+            "`depth` is not there yet: `mine` is drawn together with the model",
+        ),
+        ("passes/behind.frag", text.replace("mine", "behind"), "`behind` names what Specula draws"),
         (
             "passes/mine.comp",
             "//@pass mine draw=model\n#version 460\nlayout(local_size_x = 1) in;\nvoid main() {}\n".into(),
@@ -504,5 +554,86 @@ fn the_ground_is_dark_under_the_model_alone() {
     let lit = session.render();
     session.set("SHADOWS=Hard");
     assert_differ(&lit, &session.render(), "the lights' shadows");
+    assert_validated();
+}
+
+/// One pass draws several images, each with a name, a format and, with `mips` and `keep`, levels and the frame before.
+#[test]
+fn a_pass_draws_several_images() {
+    let mut session = sphere();
+    let plain = session.render();
+    let text = model_pass(
+        "normals also=places:rgba32f,numbers:rg16f",
+        "color = vec4(normalize(fragment.normal_ws), 1.0);\n    places = vec4(fragment.position_ws, 1.0);\n    \
+         numbers = vec4(3.0, 4.0, 5.0, 6.0);",
+    );
+    let outputs = "out vec4 color;\nlayout(location = 1) out vec4 places;\nlayout(location = 2) out vec4 numbers;";
+    let text = text.replace("out vec4 color;", outputs);
+    ready(&session.save("passes/normals.frag", &text));
+    assert_same(&plain, &session.render(), "nobody reads them");
+    let shown = |session: &mut Session, image: &str| {
+        session.save("passes/show.frag", &show(image));
+        at(&session.render(), 0.5)
+    };
+    let normal = shown(&mut session, "normals");
+    let (place, numbers) = (shown(&mut session, "places"), shown(&mut session, "numbers"));
+    for axis in 0..3 {
+        assert!((normal[axis] - place[axis]).abs() < 0.01, "on a unit sphere: {normal:?} {place:?}");
+    }
+    assert_eq!(numbers[..3], [3.0, 4.0, 0.0], "two channels");
+    let all = "(texture(normals, uv) + 10.0 * texture(numbers, uv) * texture(places, uv).a)";
+    let together = show("normals")
+        .replace("texture(normals, uv)", all)
+        .replace("void main", "uniform sampler2D places, numbers;\nvoid main");
+    ready(&session.save("passes/show.frag", &together));
+    assert!((at(&session.render(), 0.5)[0] - normal[0] - 30.0).abs() < 0.05);
+    // Each is a debug mode.
+    assert!((at(&session.mode("pass:numbers"), 0.5)[1] - 4.0).abs() < 1e-3);
+    assert!((at(&session.mode("pass:places"), 0.5)[2] - place[2]).abs() < 0.01);
+    session.headless.settings_mut().mode = "final".to_owned();
+    passes_check(&session);
+
+    // Levels and frames, in a pass over the whole image.
+    let counts = |more: &str| {
+        format!(
+            "//@pass counts size=4x4 format=r32f keep mips {more}\n#version 460\n#include \"pass.glsl\"\n\
+             layout(location = 1) out vec4 twice;\nuniform sampler2D before_counts, before_twice;\n\
+             void main() {{\n    color = texture(before_counts, uv) + 1.0;\n    \
+             twice = texture(before_twice, uv) + (gl_FragCoord.x < 1.0 ? 8.0 : 0.0);\n}}\n"
+        )
+    };
+    ready(&session.save("passes/counts.frag", &counts("also=twice:r32f")));
+    let reader = show("counts")
+        .replace("void main", "uniform sampler2D twice;\nvoid main")
+        .replace("texture(counts, uv).rgb", "textureLod(counts, uv, 0.0).r, textureLod(twice, uv, 2.0).r, 0.0");
+    ready(&session.save("passes/show.frag", &reader));
+    session.headless.set_sequence(specula::headless::Sequence { frames: 3, ..Default::default() });
+    assert_eq!(at(&session.render(), 0.5)[..2], [3.0, 6.0], "three frames; a quarter of the texels have 24");
+
+    let mut told = |text: &str| lines(failed(&session.save("passes/counts.frag", text))).join("\n");
+    for (text, expected) in [
+        (
+            counts("also=thrice"),
+            "counts.frag:1:1: error: the pass draws the image `thrice`, but its stage has no output",
+        ),
+        (counts("also=twice,more"), "the pass draws the image `more`, but its stage has no output for it"),
+        (counts(""), "shader writes `vec4 twice` at location 1"),
+        (counts("also=a,b,c,d"), "a pass draws at most 4 images, this one 5"),
+        (counts("also=twice:rgb8"), "expected one of the formats rgba16f"),
+        (counts("also=normals"), "pass or texture `normals` is given twice"),
+        (counts("also=picture"), "`picture` names what Specula draws; choose another name for the image"),
+        (
+            counts("also=twice").replace("out vec4 twice", "out vec3 twice").replace("twice =", "twice = vec3(1);//"),
+            "the pass draws the image `twice`",
+        ),
+        (
+            counts("also=twice").replace("size=4x4 format=r32f keep mips", "to=picture"),
+            "the picture has its own size and format",
+        ),
+    ] {
+        let told = told(&text);
+        assert!(told.contains(expected), "{told}\nis not\n{expected}");
+    }
+    assert_eq!(at(&session.render(), 0.5)[..2], [3.0, 6.0], "the last good passes stay");
     assert_validated();
 }

@@ -24,7 +24,7 @@ use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
 use crate::disk_cache;
-use crate::gpu::{Gpu, GpuError, GpuOptions, SetLayouts};
+use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts};
 use crate::recovery::Recorder;
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
@@ -152,7 +152,8 @@ impl App {
             device: options.device.clone(),
             validation: options.validation,
             display: Some(display.as_raw()),
-            pipelines: Some(&disk_cache::Pipelines),
+            // After a loss, the stored pipelines are suspected, too.
+            pipelines: (!options.recorder.is_careful()).then_some(&disk_cache::Pipelines as &dyn PipelineStore),
         })?;
         let layouts = SetLayouts::new(&gpu)?;
         let screen = Screen::new(&gpu, &layouts, &window)?;

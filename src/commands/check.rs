@@ -68,7 +68,7 @@ fn build_choices(
     shaders: &Arc<ShaderSet>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<Option<usize>, Failure> {
-    let gpu = match args.common.gpu() {
+    let gpu = match args.common.gpu_without_pipelines() {
         Ok(gpu) => gpu,
         Err(_) if args.common.device.is_none() => return Ok(None),
         Err(failure) => return Err(failure),

@@ -148,7 +148,7 @@ fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
         let doc = with_names(&parameter.label, &parameter.choices);
         setting(&parameter.name, takes, chosen.unwrap_or(numbers.join(",")), range(parameter.range), doc)
     });
-    let passes = shaders.graph.passes.iter().map(|pass| {
+    let passes = shaders.graph.passes.iter().filter(|pass| pass.has_switch()).map(|pass| {
         let doc = if pass.note.doc.is_empty() { &pass.note.label } else { &pass.note.doc };
         let path = format!("passes.{}", pass.name());
         setting(&path, "true or false", pass.note.on.to_string(), String::new(), doc.clone())

@@ -224,7 +224,7 @@ impl FrameState {
         };
         let blocks = |state: &Self| -> PassBlocks {
             let passes = &state.pipelines.passes;
-            let is_read = |index: usize| passes.get(index).is_some_and(|pass| pass.part == Part::BeforeModel);
+            let is_read = |index: usize| passes.get(index).is_some_and(|pass| pass.part <= Part::Mean);
             state.pass_blocks.clone().into_iter().filter(|((index, _), _)| is_read(*index)).collect()
         };
         self.is_same_with(other, &timeless(&self.constants), &timeless(&other.constants))

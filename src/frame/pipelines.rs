@@ -1,6 +1,7 @@
 //! Selects the pipelines of a picture by debug mode, the author's constants, and the kinds of material in the scene.
 
 use std::collections::BTreeSet;
+use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use super::Scene;
@@ -13,7 +14,7 @@ use crate::interface::{
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::{MODEL, Target};
-use crate::shader::graph::{Graph, Input, Part};
+use crate::shader::graph::{Input, Part};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
@@ -64,11 +65,36 @@ pub struct PipelineRequest {
     pub shown_pass: Option<String>,
 }
 
+/// A pass as the key of a pipeline: what its annotation says to people does not count.
+#[derive(Clone, Debug)]
+pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
+
+impl KeyPass {
+    fn parts(&self) -> impl PartialEq + Hash + '_ {
+        let GraphPass { note, vertex, part, inputs, .. } = &*self.0;
+        (&note.stage, vertex, part, inputs, note.model.is_some(), &note.also)
+    }
+}
+
+impl PartialEq for KeyPass {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.parts() == other.parts()
+    }
+}
+
+impl Eq for KeyPass {}
+
+impl Hash for KeyPass {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.parts().hash(state);
+    }
+}
+
 /// One pipeline of a [`PipelineRequest`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
     /// The pass that it draws. It determines the stages.
-    pub(crate) pass: Arc<GraphPass>,
+    pub(crate) pass: KeyPass,
     pub(crate) raster: Raster,
     pub(crate) class: PrimitiveClass,
     pub(crate) format: vk::Format,
@@ -79,13 +105,14 @@ pub(crate) struct PipelineKey {
 impl PipelineKey {
     /// Paths of the vertex and fragment stages.
     pub(crate) fn stages(&self) -> [&str; 2] {
-        [&self.pass.vertex, &self.pass.note.stage]
+        [&self.pass.0.vertex, &self.pass.0.note.stage]
     }
 }
 
 /// The properties of the settings that select the passes of a picture.
 struct Selection<'a> {
-    graph: &'a Graph,
+    shaders: &'a ShaderSet,
+    constants: &'a Specialization,
     settings: &'a Settings,
     /// Path of the stage that draws the model.
     stage: &'a str,
@@ -99,12 +126,14 @@ struct Selection<'a> {
 impl Selection<'_> {
     /// Whether a pass is one of the built-in steps of this picture. Without `draws_model`, the model and the background are not.
     fn is_base(&self, pass: &GraphPass, draws_model: bool) -> bool {
-        let wanted = |name: &str| self.graph.pass(name).is_none_or(|pass| pass.is_wanted(&self.settings.passes));
+        let graph = &self.shaders.graph;
+        let wanted = |name: &str| graph.pass(name).is_none_or(|pass| pass.is_wanted(&self.settings.passes));
         match pass.part {
             Part::Tonemap => true,
             Part::Mean => self.accumulates,
             Part::Model if pass.note.background => {
-                draws_model && self.shows_background && pass.is_wanted(&self.settings.passes)
+                let is_on = is_switched_on(pass, self.shaders, self.constants);
+                draws_model && self.shows_background && is_on && pass.is_wanted(&self.settings.passes)
             }
             Part::Model if pass.note.is_built_in() => {
                 let draws = pass.note.stage == self.stage || (self.through && pass.name() == MODEL);
@@ -132,7 +161,8 @@ impl PipelineRequest {
             is_used && pass.is_wanted(&settings.passes)
         };
         let selection = Selection {
-            graph,
+            shaders,
+            constants: &constants,
             settings,
             stage: &stage,
             shows_light,
@@ -155,7 +185,7 @@ impl PipelineRequest {
         Self {
             mode: mode.map_or(0, |m| m.id),
             draw: mode.map(|m| m.draw).unwrap_or_default(),
-            constants,
+            constants: constants.clone(),
             tonemap: if mode.is_some_and(|m| m.tonemap) { settings.view.tonemap as u32 } else { TONEMAP_OFF },
             encode: mode.map_or(Encode::Color, |m| m.encode).id(),
             target,
@@ -183,6 +213,11 @@ impl PipelineRequest {
         self.passes.iter().filter(draws).find(|pass| pass.note.stage == self.stage)
     }
 
+    /// Whether a pixel depends on what is drawn at that pixel alone. Other passes than the built-in ones may read any pixel.
+    pub(crate) fn is_local(&self) -> bool {
+        self.passes.iter().all(|pass| pass.note.is_built_in() || pass.note.background)
+    }
+
     fn pass_of(&self, is_wanted: impl Fn(&GraphPass) -> bool) -> Option<&Arc<GraphPass>> {
         self.passes.iter().find(|pass| is_wanted(pass))
     }
@@ -205,7 +240,7 @@ impl PipelineRequest {
     /// A pipeline that draws a material to the multisampled picture.
     fn key_with_model(&self, pass: &Arc<GraphPass>, material: MaterialVariant, raster: Raster) -> PipelineKey {
         PipelineKey {
-            pass: pass.clone(),
+            pass: KeyPass(pass.clone()),
             raster,
             class: material.class,
             format: self.target.color,
@@ -273,7 +308,7 @@ impl PipelineRequest {
         specialization: Specialization,
     ) -> PipelineKey {
         let class = PrimitiveClass::Triangles;
-        PipelineKey { pass: pass.clone(), raster, class, format, samples: 1, specialization }
+        PipelineKey { pass: KeyPass(pass.clone()), raster, class, format, samples: 1, specialization }
     }
 
     /// The pipeline of the tone map.
@@ -353,7 +388,9 @@ impl PipelineRequest {
 
     /// Whether a picture needs stages that are still to be compiled.
     pub fn needs_pending(&self, shaders: &ShaderSet) -> bool {
-        !shaders.pending.is_empty() && self.stages().iter().any(|path| shaders.pending.contains(path))
+        let is_pending = |path: &String| shaders.pending.contains(path);
+        // A step that has never compiled is not in the graph yet.
+        !shaders.pending.is_empty() && (self.tonemap_key().is_none() || self.stages().iter().any(is_pending))
     }
 
     /// The pipelines of the model, of what is drawn with it, and of the mean.

@@ -319,7 +319,7 @@ impl Headless {
         let passes = self.frame_state()?.pipelines.passes;
         let inputs: Vec<&Input> = passes.iter().flat_map(|pass| pass.inputs.values()).collect();
         let continues = |pass: &&Arc<GraphPass>| {
-            inputs.iter().any(|input| matches!(input, Input::Before(name) if name == pass.name()))
+            inputs.iter().any(|input| matches!(input, Input::Before(name) if pass.note.draws(name)))
                 || pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
         };
         let own = passes.iter().filter(|pass| !pass.note.is_built_in());

@@ -45,8 +45,7 @@ impl Headless {
         };
         let state_of = |mode: &Mode| {
             let state = state_in(mode, &part);
-            // A declared pass may read the picture anywhere.
-            if state.pipelines.passes.is_empty() { state } else { state_in(mode, &all) }
+            if state.pipelines.is_local() { state } else { state_in(mode, &all) }
         };
         let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
         self.view.probe = Some(at);

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use rayon::prelude::*;
 
-use crate::frame::{PipelineKey, PipelineRequest};
+use crate::frame::{PipelineKey, PipelineRequest, pass_format};
 use crate::gpu::{
     ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, SetLayouts,
     ShaderModule, Specialization,
@@ -304,17 +304,19 @@ impl PipelineSet {
     }
 
     fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
-        let pass = &key.pass;
+        let pass = &key.pass.0;
         let is_on_display = matches!(pass.part, Part::Tonemap | Part::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
         let (vertex, fragment) = (module(&pass.vertex)?, module(&pass.note.stage)?);
         let draws_model = pass.note.model.is_some();
         let layout = self.layout(&pass.inputs, &[&vertex, &fragment], draws_model);
         let layout = layout.map_err(|error| of_pass(pass, error))?;
+        let more = pass.note.also.iter().map(|(_, format)| pass_format(*format));
+        let colors: Vec<_> = std::iter::once(key.format).chain(more).collect();
         let desc = PipelineDesc {
             vertex: &vertex,
             fragment: &fragment,
-            color: key.format,
+            colors: &colors,
             depth: draws_model || pass.part == Part::Model,
             raster: key.raster,
             samples: key.samples,

@@ -33,7 +33,9 @@ pub(super) fn show(
         let is_shown = |pass: &&Arc<GraphPass>| {
             pass.note.when.is_none()
                 && pass.has_switch()
-                && (!graph.is_read(pass.name()) || !pass.is_wanted(&settings.passes) || active.contains(pass))
+                && (!pass.note.images().any(|(name, _)| graph.is_read(name))
+                    || !pass.is_wanted(&settings.passes)
+                    || active.contains(pass))
         };
         for pass in graph.passes.iter().filter(is_shown).cloned().collect::<Vec<_>>() {
             show_pass(ui, shaders, &pass, settings);

@@ -97,6 +97,8 @@ impl Use {
 pub struct Attachments<'a> {
     /// Color target, in [`Use::Color`].
     pub color: &'a Arc<Image>,
+    /// Further color targets of the same size, in [`Use::Color`], at locations 1 and up.
+    pub more: &'a [Arc<Image>],
     /// Clear color; `None` keeps the contents.
     pub clear: Option<[f32; 4]>,
     /// Image in [`Use::Color`] that receives the average of the color samples.
@@ -118,7 +120,7 @@ impl<'a> Attachments<'a> {
     pub fn of(color: &'a Arc<Image>) -> Self {
         let area = Rect { x: 0, y: 0, width: color.desc().width, height: color.desc().height };
         let (clear, resolve, resolve_depth, depth) = (None, None, None, None);
-        Self { color, clear, resolve, resolve_depth, depth, keeps_depth: false, goes_on: false, area }
+        Self { color, more: &[], clear, resolve, resolve_depth, depth, keeps_depth: false, goes_on: false, area }
     }
 }
 
@@ -182,11 +184,14 @@ impl Encoder {
     pub fn begin_rendering(&mut self, to: &Attachments<'_>) {
         let load = if to.clear.is_some() { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
         let store = if to.goes_on { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::DONT_CARE };
-        let color = vk::RenderingAttachmentInfo::default()
-            .image_view(to.color.view)
-            .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-            .load_op(load)
-            .clear_value(vk::ClearValue { color: vk::ClearColorValue { float32: to.clear.unwrap_or_default() } });
+        let color_of = |image: &Image| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(image.view)
+                .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+                .load_op(load)
+                .clear_value(vk::ClearValue { color: vk::ClearColorValue { float32: to.clear.unwrap_or_default() } })
+        };
+        let color = color_of(to.color);
         self.keep(to.color);
         let color = match to.resolve {
             Some(resolve) => {
@@ -199,7 +204,9 @@ impl Encoder {
             }
             None => color.store_op(vk::AttachmentStoreOp::STORE),
         };
-        let colors = [color];
+        let more = to.more.iter().map(|image| color_of(image).store_op(vk::AttachmentStoreOp::STORE));
+        let colors: Vec<_> = std::iter::once(color).chain(more).collect();
+        to.more.iter().for_each(|image| self.keep(image));
         let depth = to.depth.map(|depth| {
             self.keep(depth);
             let info = vk::RenderingAttachmentInfo::default()

@@ -30,9 +30,12 @@ impl PipelineCache {
     ) -> Result<Self, GpuError> {
         let driver = identity(properties);
         let data = store.and_then(|store| store.load(&driver)).unwrap_or_default();
-        let info = vk::PipelineCacheCreateInfo::default().initial_data(&data);
-        // SAFETY: the device is live. The store returns the driver's own data: it is kept under the driver's identity.
-        let raw = unsafe { device.create_pipeline_cache(&info, None) }.context("creating the pipeline cache")?;
+        let with = |data: &[u8]| {
+            let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
+            // SAFETY: the device is live. The store returns the driver's own data: it is kept under the driver's identity.
+            unsafe { device.create_pipeline_cache(&info, None) }
+        };
+        let raw = with(&data).or_else(|_| with(&[])).context("creating the pipeline cache")?;
         Ok(Self { raw, store, driver, loaded: xxh3_64(&data) })
     }
 

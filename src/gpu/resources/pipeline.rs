@@ -94,8 +94,8 @@ pub struct PipelineDesc<'a> {
     pub vertex: &'a ShaderModule,
     /// Fragment stage.
     pub fragment: &'a ShaderModule,
-    /// Format of the color target.
-    pub color: vk::Format,
+    /// Formats of the color targets, by location.
+    pub colors: &'a [vk::Format],
     /// Whether there is a D32 depth target, with reversed depth (greater is nearer).
     pub depth: bool,
     /// How fragments are written.
@@ -165,7 +165,7 @@ impl Pipeline {
             .depth_write_enable(desc.depth && matches!(desc.raster, Raster::Solid | Raster::Lines))
             .depth_compare_op(vk::CompareOp::GREATER_OR_EQUAL);
         let attachment = blending(desc.raster).color_write_mask(vk::ColorComponentFlags::RGBA);
-        let attachments = [attachment];
+        let attachments = vec![attachment; desc.colors.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let mut dynamic_states = vec![vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         if desc.depth {
@@ -179,8 +179,7 @@ impl Pipeline {
             dynamic_states.push(vk::DynamicState::BLEND_CONSTANTS);
         }
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
-        let formats = [desc.color];
-        let mut rendering = vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default().color_attachment_formats(desc.colors);
         if desc.depth {
             rendering = rendering.depth_attachment_format(vk::Format::D32_SFLOAT);
         }

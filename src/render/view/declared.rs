@@ -130,10 +130,10 @@ impl DeclaredPasses {
         let last = self.run(encoder, drawn, picture, Part::Light)?;
         finish_buffers(encoder, drawn);
         self.picture = (!Arc::ptr_eq(&last, picture)).then_some(last);
-        let shown = shown_image(drawn.frame).filter(|pass| pass.part != Part::Display);
+        let shown = shown_image(drawn.frame).filter(|(_, pass)| pass.part != Part::Display);
         // The tone map reads an image of the picture's size.
-        if let Some(pass) = shown
-            && let (Some(from), Some(to)) = (self.images.current(pass.name()), self.images.shown())
+        if let Some((name, _)) = shown
+            && let (Some(from), Some(to)) = (self.images.current(name), self.images.shown())
         {
             scale(encoder, from, to);
             self.picture = Some(to.clone());
@@ -163,9 +163,9 @@ impl DeclaredPasses {
         encoder.pass("tone map", |encoder| tone_map(encoder, &first));
         encoder.transition(&first, Use::Color, Use::Sampled);
         let mut last = self.run(encoder, drawn, &first, Part::Display)?;
-        let shown = shown_image(drawn.frame).filter(|pass| pass.part == Part::Display);
-        if let Some(pass) = shown
-            && let Some(from) = self.images.current(pass.name())
+        let shown = shown_image(drawn.frame).filter(|(_, pass)| pass.part == Part::Display);
+        if let Some((name, _)) = shown
+            && let Some(from) = self.images.current(name)
             && let Some(to) = self.images.other_picture(Part::Display, &last)
         {
             scale(encoder, from, to);
@@ -198,8 +198,9 @@ impl DeclaredPasses {
         let mut sets = PassSets::default();
         for key in keys {
             let Some(pipeline) = drawn.frame.pipelines.get(&key) else { continue };
-            let index = passes.iter().position(|pass| Arc::ptr_eq(pass, &key.pass));
-            let reads = Reads { name: key.pass.name(), inputs: &key.pass.inputs, given, index };
+            let pass = &key.pass.0;
+            let index = passes.iter().position(|other| Arc::ptr_eq(other, pass));
+            let reads = Reads { name: pass.name(), inputs: &pass.inputs, given, index };
             sets.insert(pipeline, self.set(&pipeline.layout, drawn, &reads)?);
         }
         Ok(sets)
@@ -234,7 +235,7 @@ impl DeclaredPasses {
             })?;
             match pass.note.to_picture() {
                 true => picture = target,
-                false => self.images.finished(pass.name(), from),
+                false => pass.note.images().for_each(|(name, _)| self.images.finished(name, from.clone())),
             }
         }
         Ok(picture)
@@ -264,15 +265,20 @@ impl DeclaredPasses {
         if uses_buffers(pass) {
             encoder.buffers_done();
         }
-        let level = self.images.first_level(pass.name()).cloned();
-        let color = level.as_ref().unwrap_or(target);
-        encoder.transition(color, Use::Undefined, Use::Color);
+        // Every image with the one that the pass draws to: an attachment has one level, so levels are made of an image of its own.
+        let images: Vec<(Arc<Image>, Arc<Image>)> = match pass.note.to_picture() {
+            true => vec![(target.clone(), target.clone())],
+            false => self.images.targets(pass),
+        };
+        let colors: Vec<Arc<Image>> = images.iter().map(|(_, color)| color.clone()).collect();
+        let [color, more @ ..] = &*colors else { return Ok(()) };
+        colors.iter().for_each(|color| encoder.transition(color, Use::Undefined, Use::Color));
+        let attachments = Attachments { more, ..Attachments::of(color) };
         match pass.note.model {
             Some(_) => {
                 let Some(depth) = self.images.depth(pass.name()) else { return Ok(()) };
                 encoder.transition(depth, Use::Undefined, Use::Depth);
-                let attachments = Attachments { clear: Some([0.0; 4]), depth: Some(depth), ..Attachments::of(color) };
-                encoder.begin_rendering(&attachments);
+                encoder.begin_rendering(&Attachments { clear: Some([0.0; 4]), depth: Some(depth), ..attachments });
                 encoder.bind_set(&self.layouts, drawn.frame_set);
                 let instances = instances(drawn.frame, pass);
                 let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances, pass };
@@ -280,7 +286,7 @@ impl DeclaredPasses {
                 model.draw(encoder, draws, |material| Some(request.model_pass_key(pass, material)));
             }
             None => {
-                encoder.begin_rendering(&Attachments::of(color));
+                encoder.begin_rendering(&attachments);
                 if let Some(pipeline) = keys.first().and_then(|key| drawn.frame.pipelines.get(key)) {
                     encoder.bind_set(&self.layouts, drawn.frame_set);
                     sets.bind(encoder, pipeline);
@@ -289,15 +295,15 @@ impl DeclaredPasses {
             }
         }
         encoder.end_rendering();
-        match &level {
-            // An attachment has one level, so the pass draws to an image of its own, from which the levels are made.
-            Some(level) => {
-                encoder.transition(level, Use::Color, Use::CopyFrom);
-                encoder.transition(target, Use::Undefined, Use::CopyTo);
-                encoder.fill_levels(level, target);
-                encoder.transition(target, Use::CopyFrom, Use::Sampled);
+        for (target, color) in &images {
+            if Arc::ptr_eq(target, color) {
+                encoder.transition(target, Use::Color, Use::Sampled);
+                continue;
             }
-            None => encoder.transition(target, Use::Color, Use::Sampled),
+            encoder.transition(color, Use::Color, Use::CopyFrom);
+            encoder.transition(target, Use::Undefined, Use::CopyTo);
+            encoder.fill_levels(color, target);
+            encoder.transition(target, Use::CopyFrom, Use::Sampled);
         }
         Ok(())
     }
@@ -358,10 +364,11 @@ impl DeclaredPasses {
 }
 
 /// The pass whose own image the frame shows, if it shows one.
-fn shown_image(frame: &BoundFrame) -> Option<&Arc<GraphPass>> {
+fn shown_image(frame: &BoundFrame) -> Option<(&str, &Arc<GraphPass>)> {
     let request = &frame.state.pipelines;
     let shown = request.shown_pass.as_deref()?;
-    request.passes.iter().find(|pass| pass.name() == shown && !pass.note.to_picture())
+    let pass = request.passes.iter().find(|pass| pass.note.draws(shown))?;
+    Some((shown, pass))
 }
 
 /// Scales an image to the size of another. Leaves both in [`Use::Sampled`].

@@ -169,8 +169,7 @@ impl View {
         let has_display_passes = DeclaredPasses::has_display_passes(frame);
         let rect = if has_display_passes { Rect { x: 0, y: 0, ..at_output } } else { at_output };
         let only = match redraw {
-            // A pass may read any pixel.
-            Redraw::Pixel(..) if frame.state.pipelines.passes.iter().any(|pass| !pass.note.is_built_in()) => None,
+            Redraw::Pixel(..) if !frame.state.pipelines.is_local() => None,
             Redraw::Pixel(x, y) => Some(Rect { x, y, width: 1, height: 1 }),
             Redraw::IfChanged | Redraw::Always => None,
         };

@@ -161,7 +161,10 @@ impl Seen {
     fn pass(&mut self, note: &PassNote) -> Result<(), Box<Diagnostic>> {
         let error = |message| Box::new(note.place.error(message));
         self.only("//@pass of", &note.stage, (&note.place.file, note.place.line), error)?;
-        self.only("pass or texture", &note.name, (&note.place.file, note.place.line), error)
+        let names = std::iter::once(&note.name).chain(note.also.iter().map(|(name, _)| name));
+        names
+            .into_iter()
+            .try_for_each(|name| self.only("pass or texture", name, (&note.place.file, note.place.line), error))
     }
 
     fn texture(&mut self, note: &TextureNote) -> Result<(), Box<Diagnostic>> {

@@ -7,6 +7,9 @@ use serde::Serialize;
 use super::cursor::{Cursor, Place};
 use crate::shader::diagnostic::Diagnostic;
 
+/// Number of images that every device can draw to in one pass.
+const MOST_IMAGES: usize = 4;
+
 /// Largest side of a pass's image in pixels, if it is given in pixels. The device may offer less.
 const LARGEST_SIDE: u32 = 16384;
 
@@ -17,7 +20,7 @@ pub const TONEMAP: &str = "tonemap";
 pub const MODEL: &str = "model";
 
 /// Names that no pass or texture can have, since they name images that Specula gives to passes.
-const RESERVED: [&str; 2] = ["picture", "depth"];
+const RESERVED: [&str; 3] = ["picture", "depth", "behind"];
 
 /// The location of an annotation. All locations compare as equal, so that moving a line does not count as a change.
 #[derive(Clone, Debug, Default)]
@@ -168,6 +171,8 @@ pub struct PassNote {
     pub size: PassSize,
     /// Format of its image.
     pub format: PassFormat,
+    /// Further images that it draws, with their formats: those of the outputs at locations 1 and up.
+    pub also: Vec<(String, PassFormat)>,
     /// Whether its image has mip levels, which are made after the pass.
     pub mips: bool,
     /// Whether the image of the previous frame is kept, as `before_NAME`.
@@ -213,6 +218,17 @@ impl PassNote {
         matches!(self.to, Target::Mean | Target::Display) || self.instead.is_some() || self.name == MODEL
     }
 
+    /// Whether it draws an image of this name.
+    pub fn draws(&self, image: &str) -> bool {
+        self.to == Target::Image && self.images().any(|(name, _)| name == image)
+    }
+
+    /// The images that it draws if they are its own: names and formats, by location.
+    pub fn images(&self) -> impl Iterator<Item = (&str, PassFormat)> {
+        let also = self.also.iter().map(|(name, format)| (name.as_str(), *format));
+        std::iter::once((self.name.as_str(), self.format)).chain(also)
+    }
+
     /// Whether it draws to the multisampled picture, together with the model.
     pub fn is_drawn_with_model(&self) -> bool {
         self.to_picture() && (self.model.is_some() || self.background)
@@ -228,6 +244,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
         label,
         size: PassSize::Divided(1),
         format: PassFormat::default(),
+        also: Vec::new(),
         mips: false,
         keep: false,
         on: true,
@@ -258,6 +275,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             }
             "size" => note.size = size(cursor)?,
             "format" => note.format = format(cursor)?,
+            "also" => note.also = also(cursor)?,
             "after" => note.after = Some(cursor.value(key)?.1),
             "dispatch" => note.dispatch = dispatch(cursor)?,
             "when" => note.when = Some(cursor.value(key)?.1),
@@ -276,7 +294,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
                 note.to = cursor.one_of(key, &all)?;
             }
             other => {
-                let known = "to=picture, after=, size=, format=, draw=model, instances=, cull=, blend, dispatch=, when=, mips, \
+                let known = "to=picture, after=, size=, format=, also=, draw=model, instances=, cull=, blend, dispatch=, when=, mips, \
                              keep, off or doc=";
                 return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
             }
@@ -288,17 +306,21 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
 /// Parses the name after `//@pass` or `//@texture`: a GLSL identifier.
 pub(super) fn name(cursor: &mut Cursor<'_>, what: &str) -> Result<String, Box<Diagnostic>> {
     let (bytes, name) = cursor.word();
+    check_name(name, what).map_err(|message| cursor.error(bytes, message))?;
+    Ok(name.to_owned())
+}
+
+/// Checks the name of a pass, a texture or an image.
+fn check_name(name: &str, what: &str) -> Result<(), String> {
     let is_first = |c: char| c.is_ascii_lowercase();
     let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if !name.starts_with(is_first) || !name.chars().all(is_part) || name.starts_with("gl_") {
-        let message = format!("expected the {what}'s name in a-z, 0-9 and _, found `{name}`");
-        return Err(cursor.error(bytes, message));
+        return Err(format!("expected the {what}'s name in a-z, 0-9 and _, found `{name}`"));
     }
     if RESERVED.contains(&name) || name.starts_with("before_") {
-        let message = format!("`{name}` names what Specula draws; choose another name for the {what}");
-        return Err(cursor.error(bytes, message));
+        return Err(format!("`{name}` names what Specula draws; choose another name for the {what}"));
     }
-    Ok(name.to_owned())
+    Ok(())
 }
 
 fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {
@@ -325,11 +347,35 @@ fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {
 
 fn format(cursor: &mut Cursor<'_>) -> Result<PassFormat, Box<Diagnostic>> {
     let (bytes, value) = cursor.value("format")?;
-    let found = PassFormat::ALL.iter().find(|(name, _)| *name == value);
+    format_named(&value).map_err(|message| cursor.error(bytes, message))
+}
+
+fn format_named(name: &str) -> Result<PassFormat, String> {
+    let found = PassFormat::ALL.iter().find(|(known, _)| *known == name);
     found.map(|(_, format)| *format).ok_or_else(|| {
         let names: Vec<&str> = PassFormat::ALL.iter().map(|(name, _)| *name).collect();
-        cursor.error(bytes, format!("expected one of the formats {}, found `{value}`", names.join(", ")))
+        format!("expected one of the formats {}, found `{name}`", names.join(", "))
     })
+}
+
+/// Parses further images, as `also=normals:rgba16f,albedo`.
+fn also(cursor: &mut Cursor<'_>) -> Result<Vec<(String, PassFormat)>, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("also")?;
+    let images: Result<Vec<_>, String> = value
+        .split(',')
+        .map(|image| {
+            let (name, format) = image.split_once(':').unwrap_or((image, PassFormat::default().glsl()));
+            check_name(name, "image")?;
+            Ok((name.to_owned(), format_named(format)?))
+        })
+        .collect();
+    let images = images.map_err(|message| cursor.error(bytes.clone(), message))?;
+    // Every device draws to four images at a time.
+    if images.len() >= MOST_IMAGES {
+        let message = format!("a pass draws at most {MOST_IMAGES} images, this one {}", images.len() + 1);
+        return Err(cursor.error(bytes, message));
+    }
+    Ok(images)
 }
 
 fn dispatch(cursor: &mut Cursor<'_>) -> Result<Dispatch, Box<Diagnostic>> {

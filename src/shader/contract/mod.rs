@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::interface::{self, BindingKind, block};
 
-use crate::shader::compile::{StageKind, reads_by_name};
+use crate::shader::compile::{StageKind, declares_pass, reads_by_name};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -104,7 +104,10 @@ pub fn check(reflection: &Reflection, texts: Texts<'_>) -> Vec<Diagnostic> {
     out.extend(check_constants(reflection, texts));
     match StageKind::of(texts.stage) {
         Some(StageKind::Vertex) => out.extend(check_vertex_inputs(&reflection.inputs, texts)),
-        Some(StageKind::Fragment) => out.extend(check_fragment_outputs(&reflection.outputs, texts)),
+        // `graph` checks the outputs of passes, which depend on their annotations.
+        Some(StageKind::Fragment) if !texts.snapshot.read(texts.stage).is_ok_and(|text| declares_pass(&text)) => {
+            out.extend(check_fragment_outputs(&reflection.outputs, texts));
+        }
         _ => {}
     }
     out.extend(check_capabilities(&reflection.capabilities, texts));
@@ -125,7 +128,7 @@ fn check_vertex_inputs(inputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic>
 
 /// There is one color attachment. It needs all four components, since components that a shader does not write are
 /// undefined.
-fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
+pub fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Diagnostic> {
     const EXPECTED: &str = "`layout(location = 0) out vec4`";
     if outputs.is_empty() {
         let message = format!("shader writes no color, Specula draws to {EXPECTED}");

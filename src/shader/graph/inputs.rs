@@ -84,7 +84,7 @@ fn input(note: &PassNote, kind: StageKind, found: &Descriptor, names: &Names<'_>
     let Descriptor { name, glsl, .. } = found;
     match glsl.as_str() {
         "sampler2D" => sampled(note, name, names),
-        "uniform block" if note.is_built_in() || note.background => {
+        "uniform block" if note.is_built_in() && name != PASS_BLOCK => {
             let message = format!("the uniform block `{name}` has no binding");
             Err((message, "add its members to Params in user/params.glsl, which every stage reads".into()))
         }
@@ -148,7 +148,11 @@ fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refu
         return Ok(input.clone());
     }
     match name {
-        name if name == note.name => {
+        "picture" | "depth" if note.is_drawn_with_model() => {
+            let message = format!("`{name}` is not there yet: `{}` is drawn together with the model", note.name);
+            Err((message, "a pass with to=picture, without draw=, reads what is drawn so far".into()))
+        }
+        name if note.draws(name) => {
             let message = format!("a pass cannot read the image that it draws, `{name}`");
             Err((message, format!("write `keep` in its //@pass and read `before_{name}`, the image one frame ago")))
         }
@@ -161,11 +165,10 @@ fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refu
 
 /// The image of a pass, of now or one frame ago, or a texture. `None` if nothing has this name.
 fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
-    let find = |name: &str| names.passes.iter().find(|pass| pass.name == name);
-    if let Some(pass) = name.strip_prefix("before_").and_then(find) {
-        let before = &pass.name;
+    let find = |name: &str| names.passes.iter().find(|pass| pass.name == name || pass.draws(name));
+    if let Some((before, pass)) = name.strip_prefix("before_").and_then(|before| Some((before, find(before)?))) {
         return Some(match pass.keep {
-            true => Ok(Input::Before(before.clone())),
+            true => Ok(Input::Before(before.to_owned())),
             false => {
                 let message = format!("the image of `{before}` one frame ago is not kept");
                 Err((message, format!("write `keep` in its //@pass ({}:{})", pass.place.file, pass.place.line)))
@@ -205,8 +208,10 @@ fn texture(name: &str, kind: TextureKind, names: &Names<'_>) -> Result<Input, Re
 /// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.
 fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
     let mut known: Vec<String> = given.iter().map(|name| (*name).to_owned()).collect();
-    known.extend(names.passes.iter().filter(|pass| pass.to == Target::Image).map(|pass| pass.name.clone()));
-    known.extend(names.passes.iter().filter(|pass| pass.keep).map(|pass| format!("before_{}", pass.name)));
+    let images = |pass: &PassNote| -> Vec<String> { pass.images().map(|(name, _)| name.to_owned()).collect() };
+    known.extend(names.passes.iter().filter(|pass| pass.to == Target::Image).flat_map(images));
+    let kept = names.passes.iter().filter(|pass| pass.keep).flat_map(images);
+    known.extend(kept.map(|name| format!("before_{name}")));
     known.extend(names.textures.iter().map(|texture| texture.name.clone()));
     let hint = did_you_mean(name, known.iter().map(String::as_str));
     (format!("no pass or texture is named `{name}`.{hint}"), format!("there are {}", known.join(", ")))

@@ -108,6 +108,11 @@ impl GraphPass {
         &self.note.name
     }
 
+    /// Whether this is its name or that of one of its images.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name() == name || self.note.draws(name)
+    }
+
     /// Whether the user can switch it on and off.
     pub fn has_switch(&self) -> bool {
         self.note.name == MODEL || !self.note.is_built_in()
@@ -135,11 +140,6 @@ impl GraphPass {
     /// Whether the user wants the pass. `switched`: the passes that she switched on or off, by name.
     pub fn is_wanted(&self, switched: &BTreeMap<String, bool>) -> bool {
         switched.get(self.name()).copied().unwrap_or(self.note.on)
-    }
-
-    /// The slug of the debug mode that shows its image.
-    pub fn slug(&self) -> String {
-        format!("pass:{}", self.note.name)
     }
 }
 
@@ -181,6 +181,7 @@ impl Graph {
         if stages.contains_key(FULL_SCREEN) {
             errors.extend(missing_passes(&annotations.passes, &snapshot.source().name()));
             errors.extend(roles::undrawn_modes(annotations));
+            errors.extend(roles::no_mean(annotations));
         }
         let model = annotations.passes.iter().find(|note| note.name == MODEL).map(|note| vertex_of(&note.stage));
         let mut passes = Vec::new();
@@ -194,8 +195,13 @@ impl Graph {
                 (Some(model), true) => model.clone(),
                 _ => FULL_SCREEN.to_owned(),
             };
-            // It is still to be compiled.
             if !is_compute && !stages.contains_key(&vertex) {
+                // If it is there, it is still to be compiled.
+                if snapshot.read(&TreePath::from(vertex.as_str())) == Err(SourceError::Missing) {
+                    let message =
+                        format!("the pass `{}` needs the vertex stage {vertex}, which does not exist", note.name);
+                    errors.push(note.place.error(message));
+                }
                 continue;
             }
             if let Some(message) = note.when.as_deref().and_then(|name| annotations.unknown_constant(name)) {
@@ -206,6 +212,7 @@ impl Graph {
                 continue;
             }
             let of_vertex = (!is_compute).then(|| inputs::inputs(note, &stages[&vertex], &names));
+            errors.extend(roles::wrong_outputs(note, stage));
             match inputs::inputs(note, stage, &names).and_then(|inputs| with(inputs, of_vertex)) {
                 Ok(inputs) => passes.push(GraphPass {
                     moves: inputs.values().any(moves),
@@ -244,6 +251,11 @@ impl Graph {
         self.passes.iter().find(|pass| pass.name() == name)
     }
 
+    /// The pass that draws this image.
+    pub fn maker(&self, image: &str) -> Option<&Arc<GraphPass>> {
+        self.passes.iter().find(|pass| pass.note.draws(image))
+    }
+
     /// Whether another pass reads the image of the pass with this name.
     pub fn is_read(&self, name: &str) -> bool {
         let inputs = self.passes.iter().flat_map(|pass| pass.inputs.values());
@@ -261,7 +273,7 @@ impl Graph {
         is_on: impl Fn(usize) -> bool,
         shown: Option<&str>,
     ) -> Vec<Arc<GraphPass>> {
-        let last = shown.and_then(|name| self.passes.iter().position(|pass| pass.name() == name));
+        let last = shown.and_then(|name| self.passes.iter().position(|pass| pass.is_called(name)));
         let cover = if is_picture && last.is_none() { self.cover(&is_on).unwrap_or(0) } else { 0 };
         let mut open: Vec<usize> = (0..self.passes.len())
             .filter(|index| match last {
@@ -281,7 +293,7 @@ impl Graph {
 
     /// Indices of the pass `name` and of all passes whose images and buffers it needs.
     pub fn needed_by(&self, name: &str) -> BTreeSet<usize> {
-        let shown = self.passes.iter().position(|pass| pass.name() == name);
+        let shown = self.passes.iter().position(|pass| pass.is_called(name));
         self.with_inputs(shown.into_iter().collect(), |_| true)
     }
 
@@ -299,10 +311,10 @@ impl Graph {
 
     /// The passes that write an input.
     fn makers(&self, input: &Input) -> impl Iterator<Item = usize> {
-        // The model and the steps to the display are roots of their own, even if they declare a buffer.
-        let is_maker = |pass: &GraphPass| !pass.note.is_built_in() && !pass.note.background;
+        // What is drawn with the model and the steps to the display are roots of their own, even if they declare a buffer.
+        let is_maker = |pass: &GraphPass| !pass.note.is_built_in() && !pass.note.is_drawn_with_model();
         let shares = move |pass: &GraphPass| match input {
-            Input::Image(name) | Input::Before(name) => pass.name() == name,
+            Input::Image(name) | Input::Before(name) => pass.note.draws(name),
             // Vertex stages only read.
             Input::Buffer(name, _) => {
                 let mut inputs = pass.inputs.range(..VERTEX_BINDINGS);
@@ -350,11 +362,19 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
         return Some("a compute pass writes an image of its own; read that in a fragment pass with to=picture");
     }
     let given = note.size != PassSize::Divided(1) || note.format != PassFormat::default() || note.mips || note.keep;
-    if note.to != Target::Image && given {
-        return Some("the picture has its own size and format, so size=, format=, mips and keep do not go with to=");
+    if note.to != Target::Image && (given || !note.also.is_empty()) {
+        return Some(
+            "the picture has its own size and format, so size=, format=, also=, mips and keep do not go with to=",
+        );
+    }
+    if is_compute && !note.also.is_empty() {
+        return Some("a compute pass writes one image; also= is for .frag files");
     }
     if (note.model.is_some() || note.background) && is_compute {
         return Some("a compute pass cannot draw the model; draw=model is for .frag files");
+    }
+    if note.model.is_some() && note.background {
+        return Some("a pass draws the model or the background, not both");
     }
     if note.cull.is_some() && note.model.is_none() {
         return Some("only a pass that draws the model has cull=; write draw=model");

@@ -14,13 +14,17 @@ use crate::shader::diagnostic::Diagnostic;
 pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnostic>> {
     passes.sort_by(|a, b| a.name().cmp(b.name()));
     let index: BTreeMap<String, usize> =
-        passes.iter().enumerate().map(|(index, pass)| (pass.name().to_owned(), index)).collect();
+        passes.iter().enumerate().flat_map(|(index, pass)| names(pass).map(move |name| (name, index))).collect();
     let unknown: Vec<Diagnostic> = passes.iter().filter_map(|pass| unknown_after(pass, &index)).collect();
     if !unknown.is_empty() {
         return Err(unknown);
     }
     put_on_display(&mut passes, &index);
     put_before_model(&mut passes, &index)?;
+    let too_early: Vec<Diagnostic> = passes.iter().filter_map(|pass| after_later(pass, &passes, &index)).collect();
+    if !too_early.is_empty() {
+        return Err(too_early);
+    }
     let mut order = Order { passes: &passes, index: &index, state: vec![State::New; passes.len()], done: Vec::new() };
     for part in [Part::BeforeModel, Part::Model, Part::Mean, Part::Light, Part::Tonemap, Part::Display] {
         let in_part = |at: &usize| passes[*at].part == part;
@@ -33,6 +37,11 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     let done = order.done;
     let mut passes: Vec<Option<GraphPass>> = passes.into_iter().map(Some).collect();
     Ok(done.into_iter().filter_map(|at| passes[at].take()).collect())
+}
+
+/// The names of a pass and of its images.
+fn names(pass: &GraphPass) -> impl Iterator<Item = String> {
+    std::iter::once(pass.name().to_owned()).chain(pass.note.also.iter().map(|(name, _)| name.clone()))
 }
 
 /// A pass that follows the tone map, or reads the image of a pass that does, is drawn after the tone map itself.
@@ -58,7 +67,7 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
     let is_reader = |pass: &&GraphPass| matches!(pass.part, Part::Model | Part::Mean | Part::Tonemap);
     let readers: Vec<GraphPass> = passes.iter().filter(is_reader).cloned().collect();
     for reader in readers {
-        let is_model = reader.part == Part::Model;
+        let is_model = reader.part <= Part::Mean;
         let path = &reader.note.stage;
         let mut open: Vec<usize> = images(&reader.inputs).filter_map(|name| index.get(name).copied()).collect();
         while let Some(at) = open.pop() {
@@ -107,6 +116,21 @@ fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Di
     let hint = did_you_mean(name, known.iter().copied());
     let error = pass.note.place.error(format!("no pass is named `{name}`.{hint}"));
     Some(error.with_help(format!("there are {}", known.join(", "))))
+}
+
+/// An error if a pass is drawn in an earlier part of the frame than the pass that its `after=` names.
+fn after_later(pass: &GraphPass, passes: &[GraphPass], index: &BTreeMap<String, usize>) -> Option<Diagnostic> {
+    let other = &passes[*index.get(pass.note.after.as_deref()?)?];
+    if other.part <= pass.part {
+        return None;
+    }
+    let when = match pass.part {
+        Part::BeforeModel => "before the model, which reads its image",
+        Part::Model => "with the model",
+        _ => "before the tone map",
+    };
+    let message = format!("`{}` is drawn {when}, so it cannot come after `{}`", pass.name(), other.name());
+    Some(pass.note.place.error(message))
 }
 
 #[derive(Clone, Copy, PartialEq)]

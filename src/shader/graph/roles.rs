@@ -1,10 +1,14 @@
 //! The passes that make up the picture: the model, its background, the mean and the tone map. They are declared as all others;
 //! this module says what is asked of them.
 
-use super::Part;
+use std::collections::BTreeSet;
+
+use super::{Part, PassStage};
 use crate::message::did_you_mean;
 use crate::shader::annotation::Annotations;
 use crate::shader::annotation::pass::{MODEL, PassNote, TONEMAP, Target};
+use crate::shader::compile::StageKind;
+use crate::shader::contract::check_fragment_outputs;
 use crate::shader::diagnostic::Diagnostic;
 
 /// The part of the frame that an annotation itself determines.
@@ -36,12 +40,51 @@ pub fn missing_passes(passes: &[PassNote], tree: &str) -> Vec<Diagnostic> {
     missing.map(error).collect()
 }
 
-/// Errors about debug modes whose stage no pass draws the model with.
+/// Errors of a fragment stage whose outputs are not the images of its pass.
+pub(super) fn wrong_outputs(note: &PassNote, stage: &PassStage<'_>) -> Vec<Diagnostic> {
+    if stage.kind != StageKind::Fragment {
+        return Vec::new();
+    }
+    if note.also.is_empty() {
+        return check_fragment_outputs(&stage.reflection.outputs, stage.texts);
+    }
+    let outputs = &stage.reflection.outputs;
+    let mut errors = Vec::new();
+    for (location, (name, _)) in (0..).zip(note.images()) {
+        let found = outputs.iter().find(|output| output.location == location);
+        // The first output may have any name.
+        if !found.is_some_and(|output| output.type_name == "vec4" && (location == 0 || output.name == name)) {
+            let message = format!("the pass draws the image `{name}`, but its stage has no output for it");
+            let help = format!("write `layout(location = {location}) out vec4 {name};`");
+            errors.push(note.place.error(message).with_help(help));
+        }
+    }
+    for output in outputs.iter().filter(|output| output.location as usize > note.also.len()) {
+        let message = format!("the pass has no image for the output at location {}", output.location);
+        let error = stage.texts.error(&[output.name.as_str(), "out"], message);
+        errors.push(error.with_help(format!("add `{}` to its also=", output.name)));
+    }
+    errors
+}
+
+/// An error about the first debug mode that accumulates, if no pass makes the mean.
+pub(super) fn no_mean(annotations: &Annotations) -> Option<Diagnostic> {
+    let mode = annotations.modes.iter().find(|mode| mode.accumulate)?;
+    if annotations.passes.iter().any(|note| note.to == Target::Mean) {
+        return None;
+    }
+    let message = format!("the mode `{}` accumulates, but no stage declares a pass with to=mean", mode.slug);
+    let error = Diagnostic::error(&mode.file, message).on_line(mode.line, None);
+    Some(error.with_help("write `//@pass mean to=mean` in the fragment stage that adds a frame to the mean"))
+}
+
+/// Errors about debug modes whose stage no pass draws the model with, one for each stage.
 pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
     let draws = |note: &&PassNote| note.is_drawn_with_model() && note.is_built_in();
     let known: Vec<&str> = annotations.passes.iter().filter(draws).map(|note| note.stage.as_str()).collect();
+    let mut told = BTreeSet::new();
     annotations.modes.iter().filter_map(move |mode| {
-        if known.contains(&mode.stage.as_str()) {
+        if known.contains(&mode.stage.as_str()) || !told.insert(&mode.stage) {
             return None;
         }
         let stems: Vec<&str> = known.iter().map(|path| path.trim_end_matches(".frag")).collect();
@@ -60,6 +103,12 @@ fn misplacement(note: &PassNote, passes: &[PassNote]) -> Option<String> {
             return Some(format!("the pass `{TONEMAP}` brings the picture to the display: to=display"));
         }
         _ => {}
+    }
+    if note.is_built_in() && (!note.on || note.when.is_some()) {
+        return Some(format!(
+            "the pass `{}` is a step of every picture, so off and when= do not go with it",
+            note.name
+        ));
     }
     if note.to == Target::Display && note.name != TONEMAP {
         return Some(format!(

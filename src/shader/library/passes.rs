@@ -102,7 +102,7 @@ impl Library {
                 match !note.on || note.when.is_some() {
                     true => drop(off.insert(path.clone())),
                     false if note.to != Target::Image => {}
-                    false => on.push((path.clone(), note.name)),
+                    false => on.push((path.clone(), note.images().map(|(name, _)| name.to_owned()).collect())),
                 }
             }
         }
@@ -119,9 +119,9 @@ impl Library {
         // Others may share a buffer with a pass that has one.
         on.retain(|(path, _)| snapshot.read(path).is_ok_and(|text| !text.contains("buffer")));
         loop {
-            let is_read = |(own, name): &(TreePath, String)| {
+            let is_read = |(own, names): &(TreePath, Vec<String>)| {
                 let others = texts.iter().filter(|(path, _)| path != own && !off.contains(path));
-                others.into_iter().any(|(_, text)| mentions(text, name))
+                others.into_iter().any(|(_, text)| names.iter().any(|name| mentions(text, name)))
             };
             let (read, unread): (Vec<_>, Vec<_>) = on.into_iter().partition(is_read);
             on = read;
@@ -167,19 +167,21 @@ fn is_kind(path: &TreePath, kind: StageKind) -> bool {
     StageKind::of(path) == Some(kind)
 }
 
-/// A debug mode for the image of each pass.
+/// A debug mode for each image of a pass.
 pub(super) fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
     let shown = graph.passes.iter().filter(|pass| !pass.note.is_drawn_with_model() && !pass.note.is_built_in());
-    (interface::PASS_MODES..).zip(shown).map(|(id, pass)| Mode {
+    let images = shown.flat_map(|pass| pass.note.images().map(move |(name, _)| (pass, name)));
+    (interface::PASS_MODES..).zip(images).map(|(id, (pass, name))| Mode {
         id,
-        slug: pass.slug(),
-        name: pass.note.label.clone(),
+        slug: format!("pass:{name}"),
+        // Further images have no label of their own.
+        name: if name == pass.name() { pass.note.label.clone() } else { format!("{}: {name}", pass.note.label) },
         group: "Passes".to_owned(),
         components: 3,
         // A pass that changes the picture is shown like the picture.
         tonemap: pass.note.to_picture() || pass.part == Part::Display,
         stage: graph.pass(MODEL).map(|model| model.note.stage.clone()).unwrap_or_default(),
-        pass: Some(pass.name().to_owned()),
+        pass: Some(name.to_owned()),
         doc: pass.note.doc.clone(),
         file: pass.note.place.file.clone(),
         line: pass.note.place.line,

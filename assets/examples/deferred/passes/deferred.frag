@@ -13,7 +13,7 @@
 
 uniform sampler2D picture;
 uniform sampler2D deferred_light;
-uniform sampler2D gbuffer_color;
+uniform sampler2D gbuffer;
 uniform sampler2D gbuffer_normal;
 uniform sampler2D gbuffer_emission;
 uniform sampler2D gbuffer_distance;
@@ -27,7 +27,7 @@ uniform Deferred {
 // and black a third of their radius behind the center.
 vec3 view_at(bvec2 corner, vec2 at) {
     vec4 normal = texture(gbuffer_normal, at);
-    vec4 base = texture(gbuffer_color, at);
+    vec4 base = texture(gbuffer, at);
     if (normal.xyz == vec3(0.0)) return vec3(0.01);
     if (!corner.x && !corner.y) return base.rgb;
     if (!corner.y) return linear_from_srgb(0.5 + 0.5 * normal.xyz);

@@ -18,14 +18,14 @@
 //
 // Limits: half floats round the normal to 0.0005, so sharp reflections shift by as much. Derivatives of the model are gone.
 
-uniform sampler2D gbuffer_color;
+uniform sampler2D gbuffer;
 uniform sampler2D gbuffer_normal;
 uniform sampler2D gbuffer_emission;
 uniform sampler2D gbuffer_distance;
 
 // The surface at this pixel. `direction`: unit, from the eye through the pixel.
 Surface surface_at(ivec2 pixel, vec3 direction) {
-    vec4 base = texelFetch(gbuffer_color, pixel, 0);
+    vec4 base = texelFetch(gbuffer, pixel, 0);
     vec4 normal = texelFetch(gbuffer_normal, pixel, 0);
     vec4 emission = texelFetch(gbuffer_emission, pixel, 0);
     vec2 place = texelFetch(gbuffer_distance, pixel, 0).rg;

@@ -9,7 +9,7 @@ use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapc
 use crate::render::bound_frame::BoundFrame;
 use crate::scene::mips;
 use crate::shader::GraphPass;
-use crate::shader::annotation::pass::Target;
+use crate::shader::annotation::pass::{PassFormat, Target};
 use crate::shader::graph::{Graph, Input, Part, TextureKind};
 
 /// The properties of a pass that determine its images.
@@ -23,7 +23,7 @@ struct PassDesc {
     has_depth: bool,
 }
 
-/// The images of a pass.
+/// An image of a pass, with the one before.
 #[derive(Clone)]
 struct PassImages {
     desc: PassDesc,
@@ -58,6 +58,7 @@ struct Key {
 #[derive(Default)]
 pub(super) struct Images {
     key: Key,
+    /// By the names of the images.
     passes: BTreeMap<String, PassImages>,
     buffers: BTreeMap<String, Arc<Buffer>>,
     /// The images for the HDR picture between passes, at most two.
@@ -109,8 +110,10 @@ impl Images {
         }
         let mut next = Self { key, fresh: self.fresh.clone(), drawings: self.drawings, ..Self::default() };
         for pass in request.passes.iter().filter(|pass| pass.note.to == Target::Image) {
-            let images = next.images_of(gpu, pass, self.passes.get(pass.name()))?;
-            next.passes.insert(pass.name().to_owned(), images);
+            for (name, format) in pass.note.images() {
+                let images = next.images_of(gpu, pass, (name, format), self.passes.get(name))?;
+                next.passes.insert(name.to_owned(), images);
+            }
         }
         let inputs = request.passes.iter().map(|pass| &pass.inputs);
         for (name, bytes) in inputs.flat_map(|inputs| inputs.values()).filter_map(buffer_of) {
@@ -124,7 +127,7 @@ impl Images {
         }
         // Kept images and buffers survive while the user looks at another mode, or switches their pass off.
         let graph = &frame.state.shaders.graph;
-        for (name, images) in self.passes.iter().filter(|(name, _)| graph.pass(name).is_some_and(|p| p.note.keep)) {
+        for (name, images) in self.passes.iter().filter(|(name, _)| graph.maker(name).is_some_and(|p| p.note.keep)) {
             next.passes.entry(name.clone()).or_insert_with(|| images.clone());
         }
         for (name, buffer) in &self.buffers {
@@ -163,17 +166,19 @@ impl Images {
         &mut self,
         gpu: &Arc<Gpu>,
         pass: &GraphPass,
+        (name, format): (&str, PassFormat),
         known: Option<&PassImages>,
     ) -> Result<PassImages, GpuError> {
         use vk::ImageUsageFlags as Usage;
         let size = pass.note.size.pixels(self.key.size);
         let desc = PassDesc {
             size,
-            format: pass_format(pass.note.format),
+            format: pass_format(format),
             mips: if pass.note.mips { mips::count(size.0, size.1) } else { 1 },
             is_written: pass.inputs.values().any(|input| *input == Input::Output),
             keeps: pass.note.keep,
-            has_depth: pass.note.model.is_some(),
+            // All images of a pass share the depth of the first.
+            has_depth: pass.note.model.is_some() && name == pass.name(),
         };
         if let Some(known) = known.filter(|known| known.desc == desc) {
             return Ok(known.clone());
@@ -191,7 +196,7 @@ impl Images {
         let target = if desc.is_written { Usage::STORAGE } else { Usage::COLOR_ATTACHMENT };
         let usage = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST | target;
         let base = ImageDesc::new(size.0, size.1, desc.format, usage);
-        let image = |mips| Image::new(gpu, pass.name(), ImageDesc { mips, ..base });
+        let image = |mips| Image::new(gpu, name, ImageDesc { mips, ..base });
         let images = (0..if desc.keeps { 2 } else { 1 }).map(|_| image(desc.mips)).collect::<Result<Vec<_>, _>>()?;
         let first_level = if desc.mips > 1 { Some(image(1)?) } else { None };
         self.fresh.0.extend(images.iter().cloned());
@@ -257,9 +262,15 @@ impl Images {
         self.passes.get(name)?.depth.as_ref()
     }
 
-    /// The image that the pass draws to, if mip levels are made from it.
-    pub(super) fn first_level(&self, name: &str) -> Option<&Arc<Image>> {
-        self.passes.get(name)?.first_level.as_ref()
+    /// The images of a pass in this frame, by location, each with the image that the pass draws to: the same, or one of a single
+    /// level, from which levels are made.
+    pub(super) fn targets(&self, pass: &GraphPass) -> Vec<(Arc<Image>, Arc<Image>)> {
+        let of = |(name, _): (&str, PassFormat)| {
+            let target = self.target(name)?.clone();
+            let first_level = self.passes.get(name)?.first_level.clone();
+            Some((target.clone(), first_level.unwrap_or(target)))
+        };
+        pass.note.images().filter_map(of).collect()
     }
 
     /// Records that the pass has drawn its image, and what it was drawn from if a later frame may keep it.
@@ -284,7 +295,7 @@ impl Images {
 
     /// The images of a pass of this frame. Those that are kept of a pass that is off are not read.
     fn active(&self, name: &str) -> Option<&PassImages> {
-        let is_active = self.key.passes.iter().any(|pass| pass.name() == name);
+        let is_active = self.key.passes.iter().any(|pass| pass.note.draws(name));
         self.passes.get(name).filter(|_| is_active)
     }
 

@@ -1,4 +1,4 @@
-// Shared by the passes of the G-buffer.
+// What the G-buffer holds, and of which materials.
 #ifndef PASSES_GBUFFER_GLSL
 #define PASSES_GBUFFER_GLSL
 
