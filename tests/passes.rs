@@ -392,6 +392,33 @@ fn a_pass_that_is_off_or_unread_costs_nothing() {
     }
 }
 
+/// `render` and a window compile what is off later, so it must know what is off.
+#[test]
+fn a_pass_that_its_constant_switches_on_is_in_the_first_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let tree = folder.path().join("tree");
+    let picture = |name: &str| {
+        let args = ["render", "sphere-grid", "--shaders", "tree", "--env", "none", "--size", "64x48", "--out", name];
+        support::process::run(folder.path(), &args).expect(0, &[]);
+        support::open_image(&folder.path().join(name))
+    };
+    support::process::run(folder.path(), &["new", "tree"]).expect(0, &[]);
+    let plain = picture("plain.png");
+    let tint = |default: &str| {
+        let constant = format!(
+            "const uint NONE = 0u;\nconst uint SOME = 1u;\n\
+             layout(constant_id = USER_CONSTANTS + 40) const uint TINT = {default}; //@ui 0..1\n\
+             uniform sampler2D picture;"
+        );
+        let text = pass("tint to=picture when=TINT", &constant, "color = texture(picture, uv) * vec4(1, 0, 0, 1);");
+        std::fs::write(tree.join("passes/tint.frag"), text).unwrap();
+    };
+    for (default, is_on) in [("0u", false), ("1u", true), ("NONE", false), ("SOME", true)] {
+        tint(default);
+        assert_eq!(picture("out.png") != plain, is_on, "{default}");
+    }
+}
+
 #[test]
 fn what_ships_is_off_and_changes_what_it_says() {
     let mut session = Session::new(support::model("shader-ball"), settings(&[]));

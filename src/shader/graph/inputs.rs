@@ -152,7 +152,7 @@ fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refu
             let message = format!("`{name}` is not there yet: `{}` is drawn together with the model", note.name);
             Err((message, "a pass with to=picture, without draw=, reads what is drawn so far".into()))
         }
-        name if note.draws(name) => {
+        name if name == note.name || note.draws(name) => {
             let message = format!("a pass cannot read the image that it draws, `{name}`");
             Err((message, format!("write `keep` in its //@pass and read `before_{name}`, the image one frame ago")))
         }

@@ -96,16 +96,6 @@ impl Library {
     /// The stages of passes that are off unless the user switches them on, and of passes that only these read.
     pub(super) fn passes_off(&self, snapshot: &Snapshot<'_>) -> BTreeSet<TreePath> {
         let stages = self.slots.iter().skip(self.fixed).map(|slot| &slot.path);
-        let (mut off, mut on) = (BTreeSet::new(), Vec::new());
-        for path in stages.clone().map(fragment_of) {
-            for note in annotation::passes_of(snapshot, &path) {
-                match !note.on || note.when.is_some() {
-                    true => drop(off.insert(path.clone())),
-                    false if note.to != Target::Image => {}
-                    false => on.push((path.clone(), note.images().map(|(name, _)| name.to_owned()).collect())),
-                }
-            }
-        }
         let texts: Vec<(TreePath, Arc<str>)> = self
             .source
             .list()
@@ -116,6 +106,17 @@ impl Library {
                 Some((fragment_of(&path), text))
             })
             .collect();
+        let (mut off, mut on) = (BTreeSet::new(), Vec::new());
+        for path in stages.clone().map(fragment_of) {
+            for note in annotation::passes_of(snapshot, &path) {
+                let is_switched_off = |name: &String| texts.iter().any(|(_, text)| is_zero(text, name));
+                match !note.on || note.when.as_ref().is_some_and(is_switched_off) {
+                    true => drop(off.insert(path.clone())),
+                    false if note.to != Target::Image => {}
+                    false => on.push((path.clone(), note.images().map(|(name, _)| name.to_owned()).collect())),
+                }
+            }
+        }
         // Others may share a buffer with a pass that has one.
         on.retain(|(path, _)| snapshot.read(path).is_ok_and(|text| !text.contains("buffer")));
         loop {
@@ -150,6 +151,24 @@ pub(super) fn fragment_of(path: &TreePath) -> TreePath {
         Some(StageKind::Vertex) => TreePath::from(format!("{}.frag", path.stem()).as_str()),
         _ => path.clone(),
     }
+}
+
+/// Whether a text declares the constant `name` as false or 0, or as another constant that is.
+fn is_zero(text: &str, name: &str) -> bool {
+    let Some(line) = lines(text).into_iter().find(|line| declares(&line.code, name)) else { return false };
+    let value = line.code.rsplit('=').next().unwrap_or_default().trim().trim_end_matches(';').trim_end();
+    match value {
+        "false" | "0" | "0u" => true,
+        other => other != name && other.starts_with(|c: char| c.is_ascii_alphabetic()) && is_zero(text, other),
+    }
+}
+
+/// Whether a line is the declaration of the constant `name`.
+fn declares(code: &str, name: &str) -> bool {
+    let before_value = code.rsplit_once('=').map(|(before, _)| before.trim_end());
+    code.contains("const ")
+        && before_value.is_some_and(|before| before.ends_with(name))
+        && find_word(code, name).is_some()
 }
 
 fn is_text(path: &TreePath) -> bool {
