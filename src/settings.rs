@@ -144,6 +144,8 @@ pub struct ViewSettings {
     pub frames: u32,
     /// How often a random path goes on from the surface that it has hit, in the modes that trace the model. 0 leaves direct light.
     pub bounces: u32,
+    /// Memory that images and buffers of passes may take, MiB.
+    pub pass_memory: u32,
 }
 
 /// The default background. Modes that show data instead of light also use it if the background is `env`.
@@ -151,7 +153,8 @@ const BACKGROUND: &str = "#1b1d21";
 
 impl Default for ViewSettings {
     fn default() -> Self {
-        Self { tonemap: Tonemap::default(), ev: 0.0, background: BACKGROUND.into(), msaa: 4, frames: 64, bounces: 4 }
+        let (tonemap, background) = (Tonemap::default(), BACKGROUND.into());
+        Self { tonemap, ev: 0.0, background, msaa: 4, frames: 64, bounces: 4, pass_memory: 2048 }
     }
 }
 
@@ -221,6 +224,9 @@ impl Settings {
         }
         if self.view.bounces > 64 {
             return Err(format!("view.bounces is {}; it can be 0 to 64", self.view.bounces));
+        }
+        if !(1..=1 << 20).contains(&self.view.pass_memory) {
+            return Err(format!("view.pass_memory is {}; it can be 1 to {} MiB", self.view.pass_memory, 1 << 20));
         }
         match self.view.msaa {
             1 | 4 => Ok(()),

@@ -392,6 +392,44 @@ fn a_pass_that_is_off_or_unread_costs_nothing() {
     }
 }
 
+#[test]
+fn passes_take_no_more_memory_than_allowed() {
+    let mut session = sphere(&["view.pass_memory=6"]);
+    let before = session.render();
+    let image = |options: &str| pass(&format!("big {options}"), "", "color = vec4(0.5);");
+    ready(&session.save("passes/big.frag", &image("size=1024x1024 format=r32f")));
+    let shows = pass("show to=picture", "uniform sampler2D big;", "color = texture(big, uv);");
+    ready(&session.save("passes/show.frag", &shows));
+    let shown = session.render();
+    assert_differ(&before, &shown, "4 MiB of 6");
+    // A frame more, levels, a wider format, a buffer.
+    let with_buffer = pass(
+        "big size=1024x1024 format=r32f",
+        "buffer Many { float many[1048576]; };",
+        "color = vec4(0.5); many[0] = 1.0;",
+    );
+    for (text, taken) in [
+        (image("size=1024x1024 format=r32f keep"), 8),
+        (image("size=1024x1024 format=r32f mips"), 10),
+        (image("size=1024x1024"), 8),
+        (with_buffer, 8),
+    ] {
+        ready(&session.save("passes/big.frag", &text));
+        let error = match session.headless.render() {
+            Ok(_) => panic!("{text} fits"),
+            Err(error) => error.to_string(),
+        };
+        let expected = format!("big.frag:1): passes take {taken} MiB so far, and `--memory` allows 6");
+        assert!(error.contains(&expected), "{error}");
+    }
+    session.set("view.pass_memory=16");
+    session.render();
+    session.set("view.pass_memory=6");
+    ready(&session.save("passes/big.frag", &image("size=1024x1024 format=r32f")));
+    assert_same(&shown, &session.render(), "it fits again");
+    assert_validated();
+}
+
 /// `render` and a window compile what is off later, so it must know what is off.
 #[test]
 fn a_pass_that_its_constant_switches_on_is_in_the_first_picture() {

@@ -114,6 +114,8 @@ pub struct FrameState {
     pub lights: Vec<Light>,
     /// Width and height, pixels, at least 1.
     pub size: (u32, u32),
+    /// Bytes that images and buffers of passes may take.
+    pub pass_memory: u64,
     params: Vec<u8>,
     pass_blocks: PassBlocks,
     constants: Frame,
@@ -198,6 +200,7 @@ impl FrameState {
             camera,
             lights,
             size,
+            pass_memory: u64::from(settings.view.pass_memory) << 20,
             constants,
         }
     }

@@ -67,7 +67,7 @@ const DESCRIBED: [(&str, &str, &str); 38] = [
 ];
 
 /// The rest of [`DESCRIBED`]: what each can be is no range of floats.
-const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 4] = [
+const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 5] = [
     ("view.background", "", "", "none (transparent), env, or #rrggbb"),
     ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
     ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),
@@ -77,6 +77,7 @@ const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 4] = [
         "0 to 64",
         "Reflections of a random path after the first, in modes that trace the model",
     ),
+    ("view.pass_memory", "MiB", "1 to 1048576", "Memory that images and buffers of passes may take"),
 ];
 
 /// All settings, in the order in which they are documented.

@@ -60,6 +60,9 @@ pub struct Common {
     /// Background: none (transparent), env (the environment) or #rrggbb
     #[arg(long, value_name = "NAME|COLOR")]
     background: Option<String>,
+    /// Memory in MiB that images and buffers of passes may take; 2048 by default
+    #[arg(long, value_name = "MIB", allow_negative_numbers = true)]
+    memory: Option<u32>,
     /// Debug mode; `specula modes` lists them
     #[arg(long, value_name = "NAME")]
     pub mode: Vec<String>,
@@ -128,6 +131,7 @@ impl Common {
         if let Some(background) = &self.background {
             settings.view.background.clone_from(background);
         }
+        settings.view.pass_memory = self.memory.unwrap_or(settings.view.pass_memory);
         match self.mode.as_slice() {
             [] => {}
             [mode] => settings.mode.clone_from(mode),

@@ -109,6 +109,16 @@ impl PassFormat {
         ("r32f", Self::R32f),
     ];
 
+    /// Bytes of a texel.
+    pub fn bytes(self) -> u32 {
+        match self {
+            Self::Rgba32f => 16,
+            Self::Rgba16f | Self::Rg32f => 8,
+            Self::Rgba8 | Self::Rg16f | Self::R32f => 4,
+            Self::R16f => 2,
+        }
+    }
+
     /// The name in GLSL.
     pub fn glsl(self) -> &'static str {
         Self::ALL.iter().find(|(_, format)| *format == self).map_or("?", |(name, _)| name)

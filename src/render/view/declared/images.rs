@@ -94,6 +94,45 @@ pub(super) fn blank(gpu: &Arc<Gpu>, kind: TextureKind) -> Result<Arc<Image>, Gpu
     Ok(image)
 }
 
+/// Bytes of the images of a pass, with their levels, the frame before and the depth.
+fn bytes_of(pass: &GraphPass, picture: (u32, u32)) -> u64 {
+    let (width, height) = pass.note.size.pixels(picture);
+    let texels = u64::from(width) * u64::from(height);
+    // All levels together have a third more texels. They are made of an image of their own.
+    let (frames, levels) = (if pass.note.keep { 2 } else { 1 }, if pass.note.mips { 4 } else { 3 });
+    let first_level = if pass.note.mips { 3 } else { 0 };
+    let depth = if pass.note.model.is_some() { 4 } else { 0 };
+    let of = |(_, format): (&str, PassFormat)| texels * u64::from(format.bytes()) * (frames * levels + first_level) / 3;
+    pass.note.images().map(of).sum::<u64>() + texels * depth
+}
+
+/// Fails if the images and buffers of passes take more memory than the user allows.
+fn check_memory(frame: &BoundFrame) -> Result<(), GpuError> {
+    let (passes, limit) = (&frame.state.pipelines.passes, frame.state.pass_memory);
+    let mut buffers = BTreeMap::new();
+    let mut total = 0;
+    for pass in passes {
+        let images = if pass.note.to == Target::Image { bytes_of(pass, frame.state.size) } else { 0 };
+        let new = pass
+            .inputs
+            .values()
+            .filter_map(buffer_of)
+            .filter(|(name, bytes)| buffers.insert((*name).to_owned(), *bytes).is_none());
+        total += images + new.map(|(_, bytes)| u64::from(bytes)).sum::<u64>();
+        if total > limit {
+            let (name, place) = (pass.name(), &pass.note.place);
+            return Err(GpuError::OutOfMemory(format!(
+                "creating the images and buffers of the pass `{name}` ({}:{}): passes take {} MiB so far, and `--memory` allows {}",
+                place.file,
+                place.line,
+                total.div_ceil(1 << 20),
+                limit >> 20
+            )));
+        }
+    }
+    Ok(())
+}
+
 impl Images {
     /// The images for `frame`. Those of `self` that fit are reused. `None` if the needs are the same as before.
     pub(super) fn next(&self, gpu: &Arc<Gpu>, frame: &BoundFrame) -> Result<Option<Self>, GpuError> {
@@ -108,6 +147,7 @@ impl Images {
         if key == self.key {
             return Ok(None);
         }
+        check_memory(frame)?;
         let mut next = Self { key, fresh: self.fresh.clone(), drawings: self.drawings, ..Self::default() };
         for pass in request.passes.iter().filter(|pass| pass.note.to == Target::Image) {
             for (name, format) in pass.note.images() {
