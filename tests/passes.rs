@@ -393,6 +393,19 @@ fn a_pass_that_is_off_or_unread_costs_nothing() {
 }
 
 #[test]
+fn a_member_that_nothing_sets_is_warned_about() {
+    let mut session = sphere(&[]);
+    let block = "uniform Fog {\n    float density; //@ui \"Density\" 0..1 = 0.5\n    vec3 haze;\n};\nuniform sampler2D picture;";
+    ready(&session.save("passes/fog.frag", &pass("fog to=picture", block, "color = vec4(haze, density);")));
+    let warnings = lines(&session.headless.shaders().warnings);
+    assert_eq!(warnings.len(), 1, "{warnings:#?}");
+    assert!(
+        warnings[0].contains("fog.frag:1: warning: `haze` in a uniform block of the pass `fog` has no //@ui"),
+        "{warnings:#?}"
+    );
+}
+
+#[test]
 fn passes_take_no_more_memory_than_allowed() {
     let mut session = sphere(&["view.pass_memory=6"]);
     let before = session.render();

@@ -8,7 +8,7 @@ use specula::scene::BUILT_IN;
 use specula::settings::{Setting, catalog};
 use specula::shader::annotation::ParameterType;
 use specula::shader::spirv::reflect::Scalar;
-use specula::shader::{Change, Library, ShaderSet, Update, is_specula_tree};
+use specula::shader::{Change, Library, ShaderSet, Update};
 
 use super::common::names::is_word;
 use super::common::{compiler, source};
@@ -84,11 +84,6 @@ fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
     out!("Several numbers are joined by commas, as --set lights.ambient_color=1,0.8,0.6.");
     out!("In a look file, view.ev is the line `ev = 1` below `[view]`.\n");
     print_rows(&catalog());
-    if tree.is_none() && !is_specula_tree(Path::new("shaders")) {
-        out!("\nThe constants and parameters of the shader tree are set by their names, as --set NDF=Beckmann.");
-        out!("`specula modes` lists them. A pass of the tree is switched by its name, as --set passes.outline=true.");
-        return Ok(());
-    }
     let source = source(tree)?;
     let name = source.name();
     match Library::new(source, compiler()?, &specula::frame::stages::stages()).update(&Change::All) {

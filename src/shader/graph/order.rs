@@ -112,7 +112,7 @@ fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Di
     if name == TONEMAP || index.contains_key(name) {
         return None;
     }
-    let known: Vec<&str> = index.keys().map(String::as_str).chain([TONEMAP]).collect();
+    let known: Vec<&str> = index.keys().map(String::as_str).filter(|known| *known != pass.name()).collect();
     let hint = did_you_mean(name, known.iter().copied());
     let error = pass.note.place.error(format!("no pass is named `{name}`.{hint}"));
     Some(error.with_help(format!("there are {}", known.join(", "))))

@@ -10,7 +10,7 @@ use crate::shader::annotation::{self, Annotations};
 use crate::shader::compile::include::files_of;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
-use crate::shader::graph::{Graph, GraphPass, PassStage};
+use crate::shader::graph::{Graph, GraphPass, Input, PassStage};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
@@ -89,6 +89,10 @@ impl Library {
             return Err(errors);
         }
         annotations.modes.extend(modes_of(&graph));
+        // The parameters of a pass that is still to be compiled are unknown.
+        if !is_partial {
+            warnings.extend(graph.passes.iter().flat_map(|pass| silent_members(pass, &annotations)));
+        }
         Ok(Linked { annotations, graph, warnings: unique(warnings) })
     }
 
@@ -131,6 +135,23 @@ impl Library {
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)
     }
+}
+
+/// Warnings about members of a pass's own uniform block that nothing sets.
+fn silent_members(pass: &GraphPass, annotations: &Annotations) -> Vec<Diagnostic> {
+    let members = pass.inputs.values().filter_map(|input| match input {
+        Input::Parameters(_, members) => Some(members),
+        _ => None,
+    });
+    let is_set = |name: &str| annotations.parameters.iter().any(|parameter| parameter.name == name);
+    let silent = members.flatten().map(|(_, name)| name).filter(|name| !is_set(name));
+    let warning = |name: &String| {
+        let message =
+            format!("`{name}` in a uniform block of the pass `{}` has no //@ui, so it reads as 0", pass.name());
+        let help = format!("write it on a line of its own: `float {name}; //@ui \"Label\" 0..1 = 0.5`");
+        Diagnostic::warning(&pass.note.place.file, message).on_line(pass.note.place.line, None).with_help(help)
+    };
+    silent.map(warning).collect()
 }
 
 /// Errors of a pass whose vertex stage does not write what its fragment stage reads.
