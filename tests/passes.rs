@@ -499,7 +499,8 @@ impl Random {
     }
 }
 
-/// The passes of a random graph: each reads up to three of those before it, of any of them one frame ago, the picture and depth.
+/// The passes of a random graph: each reads up to three images of those before it, of any of them one frame ago, the picture and
+/// depth. What is drawn with the model reads images of the frame before alone, since the others may need the model.
 fn random_graph(random: &mut Random) -> Vec<(String, String)> {
     let count = 1 + random.below(6);
     let (mut kept, mut with_image): (Vec<String>, Vec<String>) = Default::default();
@@ -508,14 +509,17 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
         let name = format!("p{index}");
         let to_picture = random.below(3) == 0;
         let is_compute = !to_picture && random.below(4) == 0;
-        let draws_model = !to_picture && !is_compute && random.below(4) == 0;
+        let draws_model = !is_compute && random.below(4) == 0;
+        let with_model = draws_model && to_picture;
         let mut annotation = name.clone();
         // Every device can write the first four formats from a compute shader.
         let formats = ["rgba16f", "rgba32f", "rgba8", "r32f", "rg16f", "r16f", "rg32f"];
         let format = formats[random.below(if is_compute { 4 } else { 7 }) as usize];
         if to_picture {
             annotation += " to=picture";
-            annotation += ["", " after=tonemap"][random.below(2) as usize];
+            if !draws_model {
+                annotation += ["", " after=tonemap"][random.below(2) as usize];
+            }
         } else {
             let sizes = ["1", "1/2", "1/7", "16x16", "1x1", "33x9"];
             annotation += &format!(" size={} format={format}", sizes[random.below(6) as usize]);
@@ -529,15 +533,25 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
         if draws_model {
             annotation += [" draw=model", " instances=2", " draw=model instances=lights"][random.below(3) as usize];
         }
+        let mut also = None;
+        if !to_picture && !is_compute && random.below(3) == 0 {
+            also = Some(format!("{name}_also"));
+            kept.extend(also.clone().filter(|_| annotation.contains(" keep")));
+            annotation += &format!(" also={name}_also:{}", formats[random.below(7) as usize]);
+        }
+        if with_model {
+            annotation += ["", " blend", " cull=front", " cull=none blend"][random.below(4) as usize];
+        }
         annotation += ["", "", " off"][random.below(3) as usize];
         let mut reads: Vec<String> = Vec::new();
         for _ in 0..random.below(4) {
             let other = random.below(index + 1);
             reads.push(match random.below(4) {
+                0 | 1 if with_model => continue,
                 0 => "picture".into(),
                 1 => "depth".into(),
                 2 if !kept.is_empty() => format!("before_{}", kept[random.below(kept.len() as u32) as usize]),
-                _ if !with_image.is_empty() => with_image[other as usize % with_image.len()].clone(),
+                _ if !with_image.is_empty() && !with_model => with_image[other as usize % with_image.len()].clone(),
                 _ => continue,
             });
         }
@@ -547,7 +561,12 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
         let sum: String = reads.iter().map(|name| format!(" + 0.3 * textureLod({name}, at, 0.0)")).collect();
         if !to_picture {
             with_image.push(name.clone());
+            with_image.extend(also.clone());
         }
+        let (declared, written) = match &also {
+            Some(also) => (format!("layout(location = 1) out vec4 {also};\n"), format!(" {also} = color.bgra;")),
+            None => Default::default(),
+        };
         if is_compute {
             let head = "#version 460\n#include \"interface.glsl\"\nlayout(local_size_x = 8, local_size_y = 4) in;";
             let text = format!(
@@ -560,13 +579,13 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
             files.push((format!("passes/{name}.comp"), text));
         } else if draws_model {
             let text = format!(
-                "//@pass {annotation}\n#version 460\nlayout(location = 0) out vec4 color;\n{uniforms}\
-                 void main() {{\n    vec2 at = gl_FragCoord.xy / 64.0;\n    color = vec4(0.1){sum};\n}}\n"
+                "//@pass {annotation}\n#version 460\nlayout(location = 0) out vec4 color;\n{declared}{uniforms}\
+                 void main() {{\n    vec2 at = gl_FragCoord.xy / 64.0;\n    color = vec4(0.1){sum};{written}\n}}\n"
             );
             files.push((format!("passes/{name}.frag"), text));
         } else {
-            let body = format!("    vec2 at = uv;\n    color = vec4(0.1){sum};");
-            files.push((format!("passes/{name}.frag"), pass(&annotation, &uniforms, &body)));
+            let body = format!("    vec2 at = uv;\n    color = vec4(0.1){sum};{written}");
+            files.push((format!("passes/{name}.frag"), pass(&annotation, &(declared + &uniforms), &body)));
         }
     }
     files

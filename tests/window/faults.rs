@@ -31,6 +31,8 @@ fn a_panic_of_a_canceled_bake_leaves_the_new_one() {
     let left = viewer.screenshot().width();
     choose_environment(&viewer, left, 1);
     viewer.running.until("furnace", |event| event["event"] == "bake" && event["environment"] == "furnace");
+    // A thread that panics prints a backtrace first, which may take longer than the bake.
+    viewer.running.until_stderr("baker thread failed");
     let stderr = viewer.quit();
     assert_eq!(stderr.matches("baker thread failed").count(), 1, "{stderr}");
 }
