@@ -237,7 +237,7 @@ impl Viewer {
 
     /// Takes screenshots until `is` accepts one, because new content appears only once it is complete.
     #[track_caller]
-    pub fn until(&mut self, what: &str, is: impl Fn(&RgbaImage) -> bool) {
+    pub fn until(&mut self, what: &str, mut is: impl FnMut(&RgbaImage) -> bool) {
         let deadline = Instant::now() + PATIENCE;
         while !is(&self.screenshot()) {
             assert!(Instant::now() < deadline, "{what} never appeared. {}", self.running.story());
