@@ -1,4 +1,4 @@
-// What a line `#iKeyboard` declares in a file of Shadertoy's form: functions that read the keyboard, and the numbers of keys. The
+// Functions that read the keyboard, and the numbers of keys. A line `#iKeyboard` in a file of Shadertoy's form declares them. The
 // names are those of the Shader Toy extension of VS Code.
 #ifndef TOY_KEYS_GLSL
 #define TOY_KEYS_GLSL

@@ -145,7 +145,7 @@ pub enum Target {
     Picture,
     /// The mean of all frames, in modes that accumulate.
     Mean,
-    /// What the display shows.
+    /// The displayed picture.
     Display,
 }
 

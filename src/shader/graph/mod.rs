@@ -311,7 +311,7 @@ impl Graph {
 
     /// The passes that write an input.
     fn makers(&self, input: &Input) -> impl Iterator<Item = usize> {
-        // What is drawn with the model and the steps to the display are roots of their own, even if they declare a buffer.
+        // The built-in steps and the passes that add to the model are drawn for their own sake, not for a buffer that they declare.
         let is_maker = |pass: &GraphPass| !pass.note.is_built_in() && !pass.note.is_drawn_with_model();
         let shares = move |pass: &GraphPass| match input {
             Input::Image(name) | Input::Before(name) => pass.note.draws(name),
