@@ -1,11 +1,11 @@
 //! Selects the pipelines of a picture by debug mode, the author's constants, and the kinds of material in the scene.
 
 use std::collections::BTreeSet;
-use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use super::Scene;
 use super::formats::{MEAN_FORMAT, TargetFormat, pass_format};
+use super::pipeline_key::{KeyPass, PipelineKey};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
     self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
@@ -63,50 +63,6 @@ pub struct PipelineRequest {
     pub draws_model: bool,
     /// The pass whose image is shown instead of the picture.
     pub shown_pass: Option<String>,
-}
-
-/// A pass as the key of a pipeline: what its annotation says to people does not count.
-#[derive(Clone, Debug)]
-pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
-
-impl KeyPass {
-    fn parts(&self) -> impl PartialEq + Hash + '_ {
-        let GraphPass { note, vertex, part, inputs, .. } = &*self.0;
-        (&note.stage, vertex, part, inputs, note.model.is_some(), &note.also)
-    }
-}
-
-impl PartialEq for KeyPass {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0) || self.parts() == other.parts()
-    }
-}
-
-impl Eq for KeyPass {}
-
-impl Hash for KeyPass {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.parts().hash(state);
-    }
-}
-
-/// One pipeline of a [`PipelineRequest`].
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct PipelineKey {
-    /// The pass that it draws. It determines the stages.
-    pub(crate) pass: KeyPass,
-    pub(crate) raster: Raster,
-    pub(crate) class: PrimitiveClass,
-    pub(crate) format: vk::Format,
-    pub(crate) samples: u32,
-    pub(crate) specialization: Specialization,
-}
-
-impl PipelineKey {
-    /// Paths of the vertex and fragment stages.
-    pub(crate) fn stages(&self) -> [&str; 2] {
-        [&self.pass.0.vertex, &self.pass.0.note.stage]
-    }
 }
 
 /// The properties of the settings that select the passes of a picture.

@@ -1,0 +1,51 @@
+//! The key of a pipeline: everything that distinguishes it from others.
+
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
+use crate::shader::GraphPass;
+
+/// A pass as the key of a pipeline: what its annotation says to people does not count.
+#[derive(Clone, Debug)]
+pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
+
+impl KeyPass {
+    fn parts(&self) -> impl PartialEq + Hash + '_ {
+        let GraphPass { note, vertex, part, inputs, .. } = &*self.0;
+        (&note.stage, vertex, part, inputs, note.model.is_some(), &note.also)
+    }
+}
+
+impl PartialEq for KeyPass {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.parts() == other.parts()
+    }
+}
+
+impl Eq for KeyPass {}
+
+impl Hash for KeyPass {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.parts().hash(state);
+    }
+}
+
+/// One pipeline of a [`PipelineRequest`].
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct PipelineKey {
+    /// The pass that it draws. It determines the stages.
+    pub(crate) pass: KeyPass,
+    pub(crate) raster: Raster,
+    pub(crate) class: PrimitiveClass,
+    pub(crate) format: vk::Format,
+    pub(crate) samples: u32,
+    pub(crate) specialization: Specialization,
+}
+
+impl PipelineKey {
+    /// Paths of the vertex and fragment stages.
+    pub(crate) fn stages(&self) -> [&str; 2] {
+        [&self.pass.0.vertex, &self.pass.0.note.stage]
+    }
+}
