@@ -48,6 +48,20 @@ pub struct Settings {
     pub shader: BTreeMap<String, ShaderValue>,
 }
 
+/// The pass of the shipped tree that draws the model's shadow on the ground.
+pub const GROUND: &str = "ground";
+
+impl Settings {
+    /// What a window shows at first: the model over the shadow that it casts on the ground, in its environment, out of focus.
+    pub fn of_window() -> Self {
+        let mut settings = Self::default();
+        settings.view.background = "env".into();
+        settings.environment.blur = 0.3;
+        settings.passes.insert(GROUND.into(), true);
+        settings
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {

@@ -73,7 +73,7 @@ struct Selection<'a> {
     /// Path of the stage that draws the model.
     stage: &'a str,
     shows_light: bool,
-    shows_background: bool,
+    shows_environment: bool,
     /// Whether transmissive surfaces look up the final picture in this mode.
     through: bool,
     accumulates: bool,
@@ -88,8 +88,10 @@ impl Selection<'_> {
             Part::Tonemap => true,
             Part::Mean => self.accumulates,
             Part::Model if pass.note.background => {
-                let is_on = is_switched_on(pass, self.shaders, self.constants);
-                draws_model && self.shows_background && is_on && pass.is_wanted(&self.settings.passes)
+                let is_on = is_switched_on(pass, self.shaders, self.constants) && pass.is_wanted(&self.settings.passes);
+                // What blends lies over any background, a plain one too.
+                let is_seen = self.shows_light && (self.shows_environment || pass.note.blend);
+                draws_model && is_seen && is_on
             }
             Part::Model if pass.note.is_built_in() => {
                 let draws = pass.note.stage == self.stage || (self.through && pass.name() == MODEL);
@@ -122,7 +124,7 @@ impl PipelineRequest {
             settings,
             stage: &stage,
             shows_light,
-            shows_background: shows_light && settings.environment.is_shown(&settings.view),
+            shows_environment: settings.environment.is_shown(&settings.view),
             through: mode.is_some_and(|m| m.through),
             accumulates: mode.is_some_and(|m| m.accumulate),
         };
@@ -275,12 +277,16 @@ impl PipelineRequest {
         Some(self.triangle_key(pass, Raster::Solid, Swapchain::FORMAT, specialization))
     }
 
-    /// The pipelines of what lies behind the model.
+    /// The pipelines of what lies behind the model, in the order in which it is drawn: what blends lies over the rest.
     pub(crate) fn background_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let passes = self.passes.iter().filter(|pass| pass.part == Part::Model && pass.note.background);
-        passes.map(|pass| {
+        let passes = |blend| {
+            let is_drawn = move |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.background;
+            self.passes.iter().filter(is_drawn).filter(move |pass| pass.note.blend == blend)
+        };
+        passes(false).chain(passes(true)).map(|pass| {
             let specialization = [&[(SPEC_FEATURES, self.shared_features)], &*self.constants].concat();
-            let key = self.triangle_key(pass, Raster::Solid, self.target.color, specialization);
+            let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
+            let key = self.triangle_key(pass, raster, self.target.color, specialization);
             PipelineKey { samples: self.target.samples, ..key }
         })
     }

@@ -1,4 +1,4 @@
-//@pass temporal "Temporal antialiasing" to=picture after=ground when=TEMPORAL_ANTIALIASING doc="The mean of the last frames in place of the newest"
+//@pass temporal "Temporal antialiasing" to=picture when=TEMPORAL_ANTIALIASING doc="The mean of the last frames in place of the newest"
 #version 460
 #include "pass.glsl"
 #include "common/pixel.glsl"

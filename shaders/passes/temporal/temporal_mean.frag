@@ -1,4 +1,4 @@
-//@pass temporal_mean "Temporal antialiasing: mean" keep after=ground when=TEMPORAL_ANTIALIASING doc="Mean of the last frames, each seen from the newest camera: light, exposed and compressed to 0..1, and (1 + coverage) / 2"
+//@pass temporal_mean "Temporal antialiasing: mean" keep when=TEMPORAL_ANTIALIASING doc="Mean of the last frames, each seen from the newest camera: light, exposed and compressed to 0..1, and (1 + coverage) / 2"
 #version 460
 #include "pass.glsl"
 #include "common/jitter.glsl"

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
@@ -10,8 +11,8 @@ use crate::gpu::GpuError;
 use crate::message;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
-use crate::settings::LightSource;
-use crate::shader::{Diagnostic, Severity};
+use crate::settings::{GROUND, LightSource};
+use crate::shader::{Diagnostic, Severity, ShaderSet};
 use crate::threads::baker::BakeMessage;
 use crate::threads::loader::Loaded;
 use crate::threads::worker::WorkerMessage;
@@ -115,6 +116,11 @@ impl Viewer {
     /// Unknown names are reported once, when all stages have compiled: a stage that is pending may declare them.
     fn check_names(&mut self) {
         let is_complete = self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty());
+        // The window switches the ground on by itself, and a tree need not have one.
+        let lacks = |shaders: &Arc<ShaderSet>| shaders.graph.pass(GROUND).is_none();
+        if is_complete && !self.names_checked && self.session.shaders.as_ref().is_some_and(lacks) {
+            self.session.settings.passes.remove(GROUND);
+        }
         let mut problems = self.session.problems(is_complete && !self.names_checked);
         self.names_checked |= is_complete;
         if is_complete && self.session.mode().is_none() {

@@ -99,7 +99,23 @@ pub enum EventFormat {
 impl Common {
     /// The settings: defaults, then the look file, then options, then `--set` in order. Warns about options without effect.
     pub fn settings(&self) -> Result<Settings, Failure> {
-        let settings = self.settings_silently()?;
+        self.settings_over(Settings::default())
+    }
+
+    /// The same for a window, which begins with more in its picture.
+    pub fn settings_of_window(&self) -> Result<Settings, Failure> {
+        let mut first = Settings::of_window();
+        let plain = |set: &String| set.replace([' ', '"', '\''], "");
+        // Without an environment there is none to see.
+        if self.env.as_deref() == Some("none") || self.set.iter().any(|set| plain(set) == "environment.name=none") {
+            first.view.background = Settings::default().view.background;
+        }
+        self.settings_over(first)
+    }
+
+    /// The settings, with `first` in place of the defaults if there is no look file.
+    fn settings_over(&self, first: Settings) -> Result<Settings, Failure> {
+        let settings = self.settings_silently(first)?;
         warn_unmeasured(&settings.mode, &settings);
         let of_material = |set: &&String| {
             let path = set.split('=').next().unwrap_or_default().trim();
@@ -112,8 +128,8 @@ impl Common {
     }
 
     /// The same without the warnings.
-    fn settings_silently(&self) -> Result<Settings, Failure> {
-        let look = self.look.as_deref().map(read_look).transpose()?.unwrap_or_default();
+    fn settings_silently(&self, first: Settings) -> Result<Settings, Failure> {
+        let look = self.look.as_deref().map(read_look).transpose()?.unwrap_or(first);
         let mut settings = look.clone();
         let put = |to: &mut f32, from: Option<f32>| *to = from.unwrap_or(*to);
         settings.camera.eye = self.eye.or(settings.camera.eye);
@@ -176,7 +192,8 @@ impl Common {
         check_model_path(path)?;
         let loaded = scene::open(path, &LoadOptions { allow_outside: self.allow_outside });
         let model = loaded.map_err(|e| Failure::Input(e.to_string()))?;
-        let wants_its_lights = || self.settings_silently().is_ok_and(|s| s.lights.source == LightSource::Model);
+        let wants_its_lights =
+            || self.settings_silently(Settings::default()).is_ok_and(|s| s.lights.source == LightSource::Model);
         if model.lights.is_empty() && wants_its_lights() {
             warn_once(&format!("{} has no lights of its own for `--lights model`", model.name));
         }

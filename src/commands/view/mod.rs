@@ -56,8 +56,11 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         return Err(Failure::Usage(message));
     }
     let source = args.common.source()?;
-    let given =
-        Work { settings: args.common.settings()?, model: args.model, tree: source.location().map(Path::to_owned) };
+    let given = Work {
+        settings: args.common.settings_of_window()?,
+        model: args.model,
+        tree: source.location().map(Path::to_owned),
+    };
     let state = folder.as_deref().map(State::read).unwrap_or_default();
     let work = state.work.clone().unwrap_or(given);
     let good = folder.as_deref().map(|folder| GoodTexts::read(folder, work.tree.as_deref())).unwrap_or_default();

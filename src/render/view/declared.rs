@@ -1,7 +1,10 @@
 //! The passes of the shader tree: their images and buffers, and how a view draws those that make an image or a new picture.
 
 mod blocks;
+mod desc;
 mod images;
+mod lifetimes;
+mod memory;
 mod reads;
 mod reuse;
 mod sets;

@@ -379,8 +379,10 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
     if note.cull.is_some() && note.model.is_none() {
         return Some("only a pass that draws the model has cull=; write draw=model");
     }
-    if note.blend && !(note.model.is_some() && note.to_picture()) {
-        return Some("only a pass that draws the model to the picture has blend; write draw=model to=picture");
+    if note.blend && !note.is_drawn_with_model() {
+        return Some(
+            "only a pass that draws the model or the background to the picture has blend; write draw=model to=picture",
+        );
     }
     (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
 }

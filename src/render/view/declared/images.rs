@@ -3,33 +3,24 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::desc::{PassDesc, ScratchDesc};
 use super::reuse::DrawnFrom;
-use crate::frame::pass_format;
+use super::{lifetimes, memory};
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
 use crate::render::bound_frame::BoundFrame;
-use crate::scene::mips;
 use crate::shader::GraphPass;
 use crate::shader::annotation::pass::{PassFormat, Target};
 use crate::shader::graph::{Graph, Input, Part, TextureKind};
-
-/// The properties of a pass that determine its images.
-#[derive(Clone, Copy, PartialEq)]
-struct PassDesc {
-    size: (u32, u32),
-    format: vk::Format,
-    mips: u32,
-    is_written: bool,
-    keeps: bool,
-    has_depth: bool,
-}
 
 /// An image of a pass, with the one before.
 #[derive(Clone)]
 struct PassImages {
     desc: PassDesc,
+    /// Whether other passes of the frame may draw to the same image.
+    is_shared: bool,
     /// One image, or two if the image of the previous frame is kept.
     images: Vec<Arc<Image>>,
-    /// The image that the pass draws to, if mip levels are made from it.
+    /// The image that the pass draws to, if mip levels are made from it. Passes that need the same share it, and the depth.
     first_level: Option<Arc<Image>>,
     /// The depth of the model, if the pass draws it.
     depth: Option<Arc<Image>>,
@@ -94,45 +85,6 @@ pub(super) fn blank(gpu: &Arc<Gpu>, kind: TextureKind) -> Result<Arc<Image>, Gpu
     Ok(image)
 }
 
-/// Bytes of the images of a pass, with their levels, the frame before and the depth.
-fn bytes_of(pass: &GraphPass, picture: (u32, u32)) -> u64 {
-    let (width, height) = pass.note.size.pixels(picture);
-    let texels = u64::from(width) * u64::from(height);
-    // All levels together have a third more texels. They are made of an image of their own.
-    let (frames, levels) = (if pass.note.keep { 2 } else { 1 }, if pass.note.mips { 4 } else { 3 });
-    let first_level = if pass.note.mips { 3 } else { 0 };
-    let depth = if pass.note.model.is_some() { 4 } else { 0 };
-    let of = |(_, format): (&str, PassFormat)| texels * u64::from(format.bytes()) * (frames * levels + first_level) / 3;
-    pass.note.images().map(of).sum::<u64>() + texels * depth
-}
-
-/// Fails if the images and buffers of passes take more memory than the user allows.
-fn check_memory(frame: &BoundFrame) -> Result<(), GpuError> {
-    let (passes, limit) = (&frame.state.pipelines.passes, frame.state.pass_memory);
-    let mut buffers = BTreeMap::new();
-    let mut total = 0;
-    for pass in passes {
-        let images = if pass.note.to == Target::Image { bytes_of(pass, frame.state.size) } else { 0 };
-        let new = pass
-            .inputs
-            .values()
-            .filter_map(buffer_of)
-            .filter(|(name, bytes)| buffers.insert((*name).to_owned(), *bytes).is_none());
-        total += images + new.map(|(_, bytes)| u64::from(bytes)).sum::<u64>();
-        if total > limit {
-            let (name, place) = (pass.name(), &pass.note.place);
-            return Err(GpuError::OutOfMemory(format!(
-                "creating the images and buffers of the pass `{name}` ({}:{}): passes take {} MiB so far, and `--memory` allows {}",
-                place.file,
-                place.line,
-                total.div_ceil(1 << 20),
-                limit >> 20
-            )));
-        }
-    }
-    Ok(())
-}
-
 impl Images {
     /// The images for `frame`. Those of `self` that fit are reused. `None` if the needs are the same as before.
     pub(super) fn next(&self, gpu: &Arc<Gpu>, frame: &BoundFrame) -> Result<Option<Self>, GpuError> {
@@ -147,12 +99,16 @@ impl Images {
         if key == self.key {
             return Ok(None);
         }
-        check_memory(frame)?;
+        memory::check(frame)?;
         let mut next = Self { key, fresh: self.fresh.clone(), drawings: self.drawings, ..Self::default() };
+        let describe = |pass: &GraphPass, image: (&str, PassFormat)| PassDesc::new(pass, image, frame.state.size);
+        let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), describe);
+        let mut shared = BTreeMap::new();
         for pass in request.passes.iter().filter(|pass| pass.note.to == Target::Image) {
-            for (name, format) in pass.note.images() {
-                let images = next.images_of(gpu, pass, (name, format), self.passes.get(name))?;
-                next.passes.insert(name.to_owned(), images);
+            for image in pass.note.images() {
+                let slot = slots.get(image.0).map(|slot| shared.entry(*slot).or_default());
+                let images = next.images_of(gpu, (image.0, describe(pass, image)), self, slot)?;
+                next.passes.insert(image.0.to_owned(), images);
             }
         }
         let inputs = request.passes.iter().map(|pass| &pass.inputs);
@@ -202,52 +158,85 @@ impl Images {
         Ok(Some(next))
     }
 
+    /// The images with this name and these properties: those of `last` if they fit. `shared`: the image that other passes have
+    /// drawn to before, or `None` if this is the first.
     fn images_of(
         &mut self,
         gpu: &Arc<Gpu>,
-        pass: &GraphPass,
-        (name, format): (&str, PassFormat),
-        known: Option<&PassImages>,
+        (name, desc): (&str, PassDesc),
+        last: &Self,
+        shared: Option<&mut Option<Arc<Image>>>,
     ) -> Result<PassImages, GpuError> {
-        use vk::ImageUsageFlags as Usage;
-        let size = pass.note.size.pixels(self.key.size);
-        let desc = PassDesc {
-            size,
-            format: pass_format(format),
-            mips: if pass.note.mips { mips::count(size.0, size.1) } else { 1 },
-            is_written: pass.inputs.values().any(|input| *input == Input::Output),
-            keeps: pass.note.keep,
-            // All images of a pass share the depth of the first.
-            has_depth: pass.note.model.is_some() && name == pass.name(),
-        };
-        if let Some(known) = known.filter(|known| known.desc == desc) {
+        let is_shared = shared.is_some();
+        let fits = |known: &&PassImages| known.desc == desc && known.is_shared == is_shared;
+        let known = last.passes.get(name).filter(fits);
+        if !is_shared && let Some(known) = known {
             return Ok(known.clone());
         }
-        let most = gpu.max_image_size();
-        if size.0 > most || size.1 > most {
+        let ((width, height), most) = (desc.size, gpu.max_image_size());
+        if width > most || height > most {
             let message = format!(
-                "the image of the pass {} has {} x {} pixels; this device draws at most {most} a side",
-                pass.name(),
-                size.0,
-                size.1
+                "the image {name} of a pass has {width} x {height} pixels; this device draws at most {most} a side"
             );
             return Err(GpuError::Texture(message));
         }
-        let target = if desc.is_written { Usage::STORAGE } else { Usage::COLOR_ATTACHMENT };
-        let usage = Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST | target;
-        let base = ImageDesc::new(size.0, size.1, desc.format, usage);
-        let image = |mips| Image::new(gpu, name, ImageDesc { mips, ..base });
-        let images = (0..if desc.keeps { 2 } else { 1 }).map(|_| image(desc.mips)).collect::<Result<Vec<_>, _>>()?;
-        let first_level = if desc.mips > 1 { Some(image(1)?) } else { None };
-        self.fresh.0.extend(images.iter().cloned());
-        let depth = match desc.has_depth {
-            true => {
-                let (format, usage) = (vk::Format::D32_SFLOAT, Usage::DEPTH_STENCIL_ATTACHMENT);
-                Some(Image::new(gpu, "depth of a pass", ImageDesc::new(size.0, size.1, format, usage))?)
+        let new = ImageDesc { mips: desc.mips, ..ImageDesc::new(width, height, desc.format, desc.usage()) };
+        let first_level = desc.first_level().map(|desc| self.scratch(gpu, desc, last)).transpose()?;
+        let depth = desc.depth().map(|desc| self.scratch(gpu, desc, last)).transpose()?;
+        let images = match shared {
+            Some(Some(image)) => vec![image.clone()],
+            Some(first) => {
+                let is_free = |image: &&Arc<Image>| !self.uses(image);
+                let mut known =
+                    known.into_iter().chain(last.passes.values().filter(fits)).flat_map(|pass| &pass.images);
+                let known = known.find(is_free).cloned();
+                let image = match known {
+                    Some(image) => image,
+                    None => self.cleared(gpu, name, new)?,
+                };
+                vec![first.insert(image).clone()]
             }
-            false => None,
+            None => {
+                (0..if desc.keeps { 2 } else { 1 }).map(|_| self.cleared(gpu, name, new)).collect::<Result<_, _>>()?
+            }
         };
-        Ok(PassImages { desc, images, first_level, depth, newest: 0, is_drawn: false, drawing: 0, from: None })
+        Ok(PassImages {
+            desc,
+            is_shared,
+            images,
+            first_level,
+            depth,
+            newest: 0,
+            is_drawn: false,
+            drawing: 0,
+            from: None,
+        })
+    }
+
+    /// A new image, which the next frame clears to 0.
+    fn cleared(&mut self, gpu: &Arc<Gpu>, name: &str, desc: ImageDesc) -> Result<Arc<Image>, GpuError> {
+        let image = Image::new(gpu, name, desc)?;
+        self.fresh.0.push(image.clone());
+        Ok(image)
+    }
+
+    fn uses(&self, image: &Arc<Image>) -> bool {
+        self.passes.values().flat_map(|pass| &pass.images).any(|used| Arc::ptr_eq(used, image))
+    }
+
+    /// An image that passes need only while they draw: all that need the same share it.
+    fn scratch(&self, gpu: &Arc<Gpu>, desc: ScratchDesc, last: &Self) -> Result<Arc<Image>, GpuError> {
+        let known = self.passes.values().chain(last.passes.values());
+        let mut known = known.flat_map(|pass| {
+            let descs = [pass.desc.first_level(), pass.desc.depth()];
+            descs.into_iter().zip([&pass.first_level, &pass.depth])
+        });
+        match known.find_map(|(of, image)| image.as_ref().filter(|_| of == Some(desc))) {
+            Some(known) => Ok(known.clone()),
+            None => {
+                Image::new(gpu, "pass in progress", ImageDesc::new(desc.size.0, desc.size.1, desc.format, desc.usage()))
+            }
+        }
     }
 
     fn new_buffer(&mut self, gpu: &Arc<Gpu>, name: &str, bytes: u32) -> Result<Arc<Buffer>, GpuError> {
@@ -328,6 +317,11 @@ impl Images {
         self.passes.get(name).and_then(|pass| pass.from.as_ref()).is_some_and(|of| of == from)
     }
 
+    /// Whether another pass of the frame may draw to the image of this one.
+    pub(super) fn is_shared(&self, name: &str) -> bool {
+        self.passes.get(name).is_some_and(|pass| pass.is_shared)
+    }
+
     /// The number of the drawing that the image of a pass holds, which no other drawing of a pass has. `None`: it has no image.
     pub(super) fn drawn_at(&self, name: &str) -> Option<u64> {
         self.active(name).map(|pass| pass.drawing)
@@ -379,7 +373,8 @@ fn buffers(graph: &Graph) -> BTreeMap<String, u32> {
         .collect()
 }
 
-fn buffer_of(input: &Input) -> Option<(&str, u32)> {
+/// Name and size of a buffer, in bytes.
+pub(super) fn buffer_of(input: &Input) -> Option<(&str, u32)> {
     match input {
         Input::Buffer(name, bytes) => Some((name, *bytes)),
         _ => None,

@@ -38,6 +38,9 @@ impl DrawnFrom {
         if pass.is_compute || pass.note.to != Target::Image || pass.note.keep {
             return None;
         }
+        if pass.note.images().any(|(name, _)| images.is_shared(name)) {
+            return None;
+        }
         // Each frame reports the loops that it has cut short.
         if pipelines.iter().any(|pipeline| pipeline.names_loops()) {
             return None;

@@ -1,0 +1,74 @@
+//! The properties of the images of passes.
+
+use crate::frame::pass_format;
+use crate::gpu::vk;
+use crate::scene::mips;
+use crate::shader::GraphPass;
+use crate::shader::annotation::pass::PassFormat;
+use crate::shader::graph::Input;
+
+/// The properties of a pass that determine one of its images.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct PassDesc {
+    pub(super) size: (u32, u32),
+    pub(super) format: vk::Format,
+    pub(super) mips: u32,
+    is_written: bool,
+    pub(super) keeps: bool,
+    has_depth: bool,
+}
+
+/// The properties of an image that a pass needs only while it draws.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct ScratchDesc {
+    pub(super) size: (u32, u32),
+    pub(super) format: vk::Format,
+}
+
+impl PassDesc {
+    /// `picture`: the size of the picture, in pixels.
+    pub(super) fn new(pass: &GraphPass, (name, format): (&str, PassFormat), picture: (u32, u32)) -> Self {
+        let size = pass.note.size.pixels(picture);
+        Self {
+            size,
+            format: pass_format(format),
+            mips: if pass.note.mips { mips::count(size.0, size.1) } else { 1 },
+            is_written: pass.inputs.values().any(|input| *input == Input::Output),
+            keeps: pass.note.keep,
+            // All images of a pass share the depth of the first.
+            has_depth: pass.note.model.is_some() && name == pass.name(),
+        }
+    }
+
+    /// Number of texels in all levels, of the frame before too.
+    pub(super) fn texels(&self) -> u64 {
+        let level = |level: u32| u64::from((self.size.0 >> level).max(1)) * u64::from((self.size.1 >> level).max(1));
+        (0..self.mips).map(level).sum::<u64>() * if self.keeps { 2 } else { 1 }
+    }
+
+    /// The image that the pass draws to, if mip levels are made from it: an attachment has one level.
+    pub(super) fn first_level(&self) -> Option<ScratchDesc> {
+        (self.mips > 1).then_some(ScratchDesc { size: self.size, format: self.format })
+    }
+
+    /// The depth of the model, if the pass draws it.
+    pub(super) fn depth(&self) -> Option<ScratchDesc> {
+        self.has_depth.then_some(ScratchDesc { size: self.size, format: vk::Format::D32_SFLOAT })
+    }
+
+    pub(super) fn usage(&self) -> vk::ImageUsageFlags {
+        use vk::ImageUsageFlags as Usage;
+        let target = if self.is_written { Usage::STORAGE } else { Usage::COLOR_ATTACHMENT };
+        Usage::SAMPLED | Usage::TRANSFER_SRC | Usage::TRANSFER_DST | target
+    }
+}
+
+impl ScratchDesc {
+    pub(super) fn usage(&self) -> vk::ImageUsageFlags {
+        use vk::ImageUsageFlags as Usage;
+        match self.format {
+            vk::Format::D32_SFLOAT => Usage::DEPTH_STENCIL_ATTACHMENT,
+            _ => Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC,
+        }
+    }
+}

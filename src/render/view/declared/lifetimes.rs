@@ -1,0 +1,78 @@
+//! Which images of a frame can be one image of the device: those that are read for the last time before the other is drawn.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use crate::shader::GraphPass;
+use crate::shader::annotation::pass::{PassFormat, Target};
+use crate::shader::graph::Input;
+
+/// An image of the device, while passes are assigned to it.
+struct Slot<D> {
+    desc: D,
+    /// Index of the last pass that reads what the newest pass has drawn to it.
+    last_read: usize,
+}
+
+/// The images that need not outlive their frame, by name, each with the number of its slot. Images of the same slot have equal
+/// properties, and share an image of the device.
+///
+/// An image is left out if it lasts longer (`keep`, `before_NAME`), if a later frame may take it over because nothing that it
+/// depends on has changed, or if its pass may leave texels as they were (compute).
+///
+/// `passes`: those of the frame, in order. `shown`: the image that the frame shows in place of the picture.
+pub(super) fn slots<'a, D: PartialEq>(
+    passes: &'a [Arc<GraphPass>],
+    shown: Option<&str>,
+    describe: impl Fn(&'a GraphPass, (&'a str, PassFormat)) -> D,
+) -> BTreeMap<&'a str, usize> {
+    let mut last_reads = BTreeMap::new();
+    let mut outlive = BTreeSet::new();
+    for (index, input) in
+        passes.iter().enumerate().flat_map(|(i, pass)| pass.inputs.values().map(move |input| (i, input)))
+    {
+        match input {
+            Input::Image(name) => drop(last_reads.insert(name.as_str(), index)),
+            Input::Before(name) => drop(outlive.insert(name.as_str())),
+            _ => {}
+        }
+    }
+    last_reads.extend(shown.map(|name| (name, usize::MAX)));
+    let mut slots: Vec<Slot<D>> = Vec::new();
+    let mut slot_of = BTreeMap::new();
+    let mut redrawn = BTreeSet::new();
+    for (index, pass) in passes.iter().enumerate().filter(|(_, pass)| pass.note.to == Target::Image) {
+        if !is_redrawn(pass, &redrawn) {
+            continue;
+        }
+        redrawn.extend(pass.note.images().map(|(name, _)| name));
+        if pass.is_compute || pass.note.keep {
+            continue;
+        }
+        for image in pass.note.images().filter(|(name, _)| !outlive.contains(name)) {
+            let desc = describe(pass, image);
+            let last_read = last_reads.get(image.0).copied().unwrap_or(index);
+            let free = slots.iter().position(|slot| slot.last_read < index && slot.desc == desc);
+            let slot = free.unwrap_or(slots.len());
+            match slots.get_mut(slot) {
+                Some(taken) => taken.last_read = last_read,
+                None => slots.push(Slot { desc, last_read }),
+            }
+            slot_of.insert(image.0, slot);
+        }
+    }
+    slot_of
+}
+
+/// Whether a pass is drawn again with each picture, whatever has changed. `redrawn`: such images of passes before it.
+fn is_redrawn(pass: &GraphPass, redrawn: &BTreeSet<&str>) -> bool {
+    pass.is_compute
+        || pass.note.keep
+        || pass.inputs.values().any(|input| match input {
+            Input::Picture | Input::Behind | Input::Depth | Input::Before(_) | Input::Output | Input::Buffer(..) => {
+                true
+            }
+            Input::Image(name) => redrawn.contains(name.as_str()),
+            Input::Texture(..) | Input::Parameters(..) | Input::Pass(..) => false,
+        })
+}
