@@ -14,6 +14,10 @@ vec2 hammersley(uint i, uint count) {
     return vec2((float(i) + 0.5) / float(count), float(bitfieldReverse(i) >> 8) * exp2(-24.0));
 }
 
+// Azimuth of point i over 2 pi, in golden-ratio steps. On circles of growing radius such points are evenly spread,
+// whatever the radii are.
+float golden_turns(uint i) { return fract(float(i) * 0.618033988); }
+
 // Three random 32-bit words from three (pcg3d: Jarzynski & Olano 2020, section 3). Stateless: hash pixel and sample
 // index. x, y and z are updated one after the other, each from the newest values of the other two. Updated together,
 // they would stay equal for equal inputs.
