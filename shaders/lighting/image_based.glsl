@@ -3,7 +3,8 @@
 // lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp). Without an environment the radiance is the same from
 // everywhere, and the product is exact.
 //
-// The option REFLECTION_SAMPLES sums over directions for the specular lobe and the coat instead (lighting/sampled_reflections.glsl).
+// With REFLECTION_SAMPLES, the specular lobe and the coat are sums over directions instead
+// (lighting/sampled_reflections.glsl).
 //
 // Multiple scattering (Kulla & Conty 2017; Fdez-Aguera 2019) leaves the facets in all directions, so it uses the
 // irradiance, as the diffuse lobe does.

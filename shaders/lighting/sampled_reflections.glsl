@@ -11,7 +11,8 @@
 // reflections where the edit says, where the split sum only knows the lobe's albedo and its shape for v = n.
 //
 // Limits: the samples draw from GGX. Of a D with two peaks they may miss one. The mean around a sample near the horizon
-// includes light from below it. Both errors shrink with N. Multiple scattering and sheen stay as in image_based.glsl.
+// includes light from below it. Below 128, single samples show as faint streaks under small bright lights. All three shrink
+// with N. Multiple scattering and sheen stay as in image_based.glsl.
 #ifndef LIGHTING_SAMPLED_REFLECTIONS_GLSL
 #define LIGHTING_SAMPLED_REFLECTIONS_GLSL
 
@@ -31,13 +32,14 @@ layout(constant_id = USER_CONSTANTS + 14) const uint REFLECTION_SAMPLES = PREFIL
 // Under uniform light the split sum is exact.
 const bool REFLECTIONS_ARE_SAMPLED = REFLECTION_SAMPLES != PREFILTERED && HAS_ENVIRONMENT;
 
-// The width of the filter, as the alpha of a GGX around l whose peak is 1 / solid angle, times this: chosen by eye and by the
-// distance to random paths in the built-in environments. Larger values blur lobes, and light below the horizon leaks in;
-// smaller ones show single samples as spots.
-const float FILTER_WIDTH = 0.5;
+// The filter is the GGX lobe around l whose peak is 1 / solid angle, with its alpha times this factor. We chose it by eye and by
+// the distance to random paths in the built-in environments: a wider filter blurs the lobe and lets in light from below the
+// horizon, a narrower one shows single samples as spots.
+const float FILTER_WIDTH = 0.75;
 
-// How many levels above the level of roughness `width` the level lies whose lobe is as wide as GGX of that roughness. Levels
-// are baked with the selected D, which an edit may have widened. Two steps towards the root of ggx_roughness(r) = width; 1e-3: a D of 0.
+// Prefiltered levels are baked with the selected D, which an edit may have widened. This is the distance from the level of
+// roughness `width` to the level whose lobe is as wide as GGX of that roughness: two steps towards the root r of
+// ggx_roughness(r) = width. 1e-3: a D of 0.
 float level_offset(float width) {
     float roughness = width * width / max(ggx_roughness(width), 1e-3);
     roughness *= width / max(ggx_roughness(roughness), 1e-3);
@@ -60,14 +62,14 @@ vec3 weight_of(Surface s, vec3 v, vec3 l, bool is_coat) {
     return (is_coat ? brdf.clearcoat : brdf.specular) * abs(dot(s.n, l));
 }
 
-// The sum over samples. They draw from the GGX whose facets spread as widely as those of the selected D (ggx_roughness). Points
-// are a spiral on the spherical cap of visible normals, evenly spread.
+// The sum over samples. Their density is that of the GGX whose facets spread as widely as those of the selected D
+// (ggx_roughness). The points form a spiral, which covers the spherical cap of visible normals evenly.
 vec3 reflected_sky(Surface s, vec3 v, LobeFrame lobe, float roughness, bool is_coat) {
     float width = max(ggx_roughness(roughness), 1e-3);
     float ratio = width / max(roughness, 1e-3);
     lobe.alpha = clamp(lobe.alpha * (ratio * ratio), MIN_ALPHA, 1.0);
     float offset = level_offset(width * pow(float(REFLECTION_SAMPLES), -0.25));   // of the lobe's middle
-    v = lobe.world_from_lobe * lobe.v;   // a v below the horizon, raised to it
+    v = lobe.world_from_lobe * lobe.v;   // raised to the horizon if a normal map has turned n away
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < REFLECTION_SAMPLES; ++i) {
         vec2 u = vec2((float(i) + 0.5) / float(REFLECTION_SAMPLES), golden_turns(i));
@@ -93,10 +95,24 @@ vec3 sampled_reflection(Surface s, vec3 v, LobeFrame lobe, float roughness, bool
     return frame.environment_intensity * light;
 }
 
-vec3 sampled_specular(Surface s, vec3 v) { return sampled_reflection(s, v, specular_frame(s, v), s.roughness, false); }
+// A frame that turns the samples from pixel to pixel without a jump, which would show as a seam. In view space, no visible
+// surface has the normal (0, 0, -1), the only one where this basis jumps.
+LobeFrame seamless_frame(vec3 n, vec3 v, float roughness) {
+    mat3 view_from_world = mat3(frame.view_from_world);
+    mat3 world_from_lobe = transpose(view_from_world) * basis_around(view_from_world * n, 1.0);
+    return lobe_frame(world_from_lobe, v, vec2(alpha_from_roughness(roughness)));
+}
+
+vec3 sampled_specular(Surface s, vec3 v) {
+    bool is_round = (FEATURES & FEATURE_ANISOTROPY) == 0u;
+    LobeFrame lobe = specular_frame(s, v);
+    if (is_round) lobe = seamless_frame(s.n, v, s.roughness);
+    return sampled_reflection(s, v, lobe, s.roughness, false);
+}
 
 vec3 sampled_coat(Surface s, vec3 v) {
-    return sampled_reflection(s, v, coat_frame(s, v), s.clearcoat_roughness, true);
+    LobeFrame lobe = seamless_frame(s.clearcoat_n, v, s.clearcoat_roughness);
+    return sampled_reflection(s, v, lobe, s.clearcoat_roughness, true);
 }
 
 #endif
