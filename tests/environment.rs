@@ -235,6 +235,10 @@ fn a_white_metal_cannot_be_seen_in_a_furnace() {
     let n_dot_v = render(&mut headless, "n-dot-v");
     let split_sum = off_one(&on_model(&render(&mut headless, "final"), &n_dot_v));
     assert!(split_sum.0 < 0.005, "split sum: off 1 by up to {}", split_sum.0);
+    headless.settings_mut().assign("REFLECTION_SAMPLES=Sampled64").unwrap();
+    let sampled = off_one(&on_model(&render(&mut headless, "final"), &n_dot_v));
+    assert!(sampled.0 < 0.02 && sampled.1 < 0.005, "sampled: off 1 by up to {}, r.m.s. {}", sampled.0, sampled.1);
+    headless.settings_mut().assign("REFLECTION_SAMPLES=Prefiltered").unwrap();
     headless.settings_mut().assign("MULTI_SCATTER=None").unwrap();
     let single = off_one(&on_model(&render(&mut headless, "final"), &n_dot_v));
     assert!(single.1 > 0.1, "without multiple scattering: off 1 by {} (r.m.s.) only", single.1);
@@ -248,7 +252,7 @@ fn a_white_metal_cannot_be_seen_in_a_furnace() {
     assert!(noisy.1 > 3.0 * mean.1, "of one frame: off 1 by {}, of 64 by {}", noisy.1, mean.1);
 }
 
-/// Split sum against Monte Carlo, relative to the mean of Monte Carlo: the mean difference, and the mean absolute
+/// The picture against Monte Carlo, relative to the mean of Monte Carlo: the mean difference, and the mean absolute
 /// difference.
 fn split_sum_error(headless: &mut Headless, frames: u32) -> (f32, f32) {
     headless.settings_mut().view.frames = frames;
@@ -267,6 +271,51 @@ fn stretched_highlights_are_those_of_random_paths() {
     let mut headless = renderer(model("anisotropy"), settings(&chosen), (96, 54));
     let (bias, off) = split_sum_error(&mut headless, 32);
     assert!(bias.abs() < 0.02 && off < 0.13, "off by {off}, all in all by {bias}");
+}
+
+/// The mean error of a pixel against random paths, relative to the mean light; it includes the noise of the paths. The error
+/// left is that of light from below the horizon, so it grows with roughness.
+#[test]
+fn sampled_reflections_are_those_of_random_paths() {
+    let chosen = [
+        "view.msaa=1",
+        "view.background=none",
+        "lights.source=none",
+        "REFLECTION_SAMPLES=Sampled64",
+        "material.enabled=true",
+        "material.metallic=1",
+    ];
+    let mut headless = renderer(model("shader-ball"), settings(&chosen), (72, 48));
+    for (environment, roughness, most_bias, most_off) in [
+        ("studio", 0.2, 0.02, 0.06),
+        ("studio", 0.5, 0.02, 0.06),
+        ("studio", 1.0, 0.03, 0.06),
+        ("sky", 0.2, 0.02, 0.06),
+        ("sky", 0.5, 0.02, 0.06),
+        ("sky", 1.0, 0.03, 0.06),
+    ] {
+        headless.settings_mut().assign(&format!("environment.name={environment}")).unwrap();
+        headless.settings_mut().assign(&format!("material.roughness={roughness}")).unwrap();
+        let (bias, off) = split_sum_error(&mut headless, 32);
+        println!("{environment}, roughness {roughness}: off by {off}, all in all by {bias}");
+        assert!(
+            bias.abs() < most_bias && off < most_off,
+            "{environment}, {roughness}: off by {off}, all in all by {bias}"
+        );
+    }
+}
+
+/// The same for a coat and for a stretched highlight.
+#[test]
+fn sampled_coats_and_stretched_highlights_are_those_of_random_paths() {
+    let fixed = ["view.msaa=1", "view.background=none", "lights.source=none", "environment.name=studio"];
+    for name in ["clearcoat", "anisotropy"] {
+        let chosen = [&fixed[..], &["REFLECTION_SAMPLES=Sampled64"]].concat();
+        let mut headless = renderer(model(name), settings(&chosen), (96, 54));
+        let (bias, off) = split_sum_error(&mut headless, 32);
+        println!("{name}: off by {off}, all in all by {bias}");
+        assert!(bias.abs() < 0.02 && off < 0.08, "{name}: off by {off}, all in all by {bias}");
+    }
 }
 
 /// Where the base's bumps face away, the coat above them does not. Split sum and Monte Carlo must both light it.

@@ -14,6 +14,10 @@ vec2 hammersley(uint i, uint count) {
     return vec2((float(i) + 0.5) / float(count), float(bitfieldReverse(i) >> 8) * exp2(-24.0));
 }
 
+// Azimuth of point i over 2 pi, in golden-ratio steps. On circles of growing radius such points are evenly spread,
+// whatever the radii are.
+float golden_turns(uint i) { return fract(float(i) * 0.618033988); }
+
 // Three random 32-bit words from three (pcg3d: Jarzynski & Olano 2020, section 3). Stateless: hash pixel and sample
 // index. x, y and z are updated one after the other, each from the newest values of the other two. Updated together,
 // they would stay equal for equal inputs.
@@ -32,14 +36,16 @@ uvec3 random_words(uvec3 x) {
 // Uniform in 0 <= x < 1. 24 bits fit a float's mantissa; more could round up to 1.
 vec3 random_numbers(uvec3 seed) { return vec3(random_words(seed) >> 8) * exp2(-24.0); }
 
-// World from tangent space: columns t, b, n, right-handed (Duff et al. 2017, listing 3). Never divides by 0, since
-// |side + n.z| >= 1. t and b jump where n.z changes sign.
-mat3 basis_around(vec3 n) {
-    float side = n.z < 0.0 ? -1.0 : 1.0;
+// World from tangent space: columns t, b, n, right-handed (Duff et al. 2017, listing 3). side: 1 or -1; at n.z = -side there
+// is no such basis. basis_around chooses the side that never divides by 0, since |side + n.z| >= 1, so t and b jump where
+// n.z changes sign.
+mat3 basis_around(vec3 n, float side) {
     float a = -1.0 / (side + n.z);
     float b = n.x * n.y * a;
     return mat3(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x), vec3(b, side + n.y * n.y * a, -n.y), n);
 }
+
+mat3 basis_around(vec3 n) { return basis_around(n, n.z < 0.0 ? -1.0 : 1.0); }
 
 // The direction with the given cosine to z; `turns` is the azimuth over 2 pi. max: rounding can make 1 - cos^2
 // negative.

@@ -193,7 +193,7 @@ const uint MODE_LUMINANCE = 410u;
 // Environment light.
 //@mode ibl-diffuse "Environment, diffuse" group="Light" encode=color unit="cd/m^2" tonemap doc="Irradiance times the diffuse albedo."
 const uint MODE_IBL_DIFFUSE = 411u;
-//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Split sum: specular albedo times prefiltered radiance (Karis 2013)."
+//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Split sum: specular albedo times prefiltered radiance (Karis 2013); or the sum over samples (REFLECTION_SAMPLES)."
 const uint MODE_IBL_SPECULAR = 412u;
 //@mode irradiance "Irradiance" group="Light" encode=color unit="lux" tonemap doc="Environment irradiance for the normal, lux."
 const uint MODE_IRRADIANCE = 413u;
@@ -241,7 +241,7 @@ const uint MODE_F0_RANGE = 505u;
 // By random paths (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
 //@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths doc="The picture with an exact integral of the unoccluded environment."
 const uint MODE_MONTE_CARLO = 506u;
-//@mode ibl-error "Image-based light error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths doc="Exact integral of the unoccluded environment minus split sum."
+//@mode ibl-error "Image-based light error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths doc="Exact integral of the unoccluded environment minus the picture's: by split sum or by samples."
 const uint MODE_IBL_ERROR = 507u;
 //@mode energy "Energy" group="Truth" encode=data stage=paths doc="Albedo under uniform white light; red above 1.005."
 const uint MODE_ENERGY = 508u;

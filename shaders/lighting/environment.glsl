@@ -58,20 +58,25 @@ vec3 sun_radiance(vec3 d, float roughness) {
     return frame.sun_intensity * (weight / max(facing_albedo(roughness), 1e-3));   // 1e-3: a D of 0
 }
 
-// The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
-// (Karis 2013). It is interpolated between an even and an odd level (ibl/maps/levels.glsl). Level 0 shows the
-// sun itself.
-vec3 prefiltered_radiance(vec3 r, float roughness) {
-    if (!HAS_ENVIRONMENT) return frame.ambient;
-    float level = specular_level(roughness);
-    vec3 d = map_from_world(r);
+// The prefiltered radiance at a level, interpolated between an even and an odd one (ibl/maps/levels.glsl), without the sun and
+// without the environment's intensity. d: of any length, in the map.
+vec3 prefiltered_sky(vec3 d, float level) {
     vec2 p = octahedral_point(d);
     float odd_row = min(floor(0.5 * level), float(SPECULAR_LEVELS / 2u - 1u)) + 1.0;
     float even_row = floor(0.5 * level + 0.5);   // the same, or the one above
     float scale = scale_of_row(odd_row);
     vec3 odd = prefiltered_at(p, odd_tile(scale));
     vec3 even = prefiltered_at(p, even_tile(even_row, even_row < odd_row ? scale / ROW_RATIO : scale));
-    vec3 sky = between_levels(even, odd, 1.0 - abs(level - (2.0 * odd_row - 1.0)));
+    return between_levels(even, odd, 1.0 - abs(level - (2.0 * odd_row - 1.0)));
+}
+
+// The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
+// (Karis 2013). Level 0 shows the sun itself.
+vec3 prefiltered_radiance(vec3 r, float roughness) {
+    if (!HAS_ENVIRONMENT) return frame.ambient;
+    float level = specular_level(roughness);
+    vec3 d = map_from_world(r);
+    vec3 sky = prefiltered_sky(d, level);
     if ((FEATURES & FEATURE_SUN) != 0u) sky += sun_radiance(d, roughness) * min(level, 1.0);
     return frame.environment_intensity * sky;
 }

@@ -3,6 +3,9 @@
 // lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp). Without an environment the radiance is the same from
 // everywhere, and the product is exact.
 //
+// With REFLECTION_SAMPLES, the specular lobe and the coat are sums over directions instead
+// (lighting/sampled_reflections.glsl).
+//
 // Multiple scattering (Kulla & Conty 2017; Fdez-Aguera 2019) leaves the facets in all directions, so it uses the
 // irradiance, as the diffuse lobe does.
 #ifndef LIGHTING_IMAGE_BASED_GLSL
@@ -17,6 +20,7 @@
 #include "lighting/anisotropy.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/lobes.glsl"
+#include "lighting/sampled_reflections.glsl"
 
 // The direction in which to look up a lobe: the mirror direction, shifted towards n for rough lobes, since NoL weights
 // them (Lagarde & de Rousiers 2014, section 4.9.3). The weight of n is within 0.1 of the true mean's at most angles. A
@@ -60,11 +64,13 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
     Lobes light = no_light();
     light.diffuse = albedo.diffuse * irradiance;
     light.multiple = albedo.multiple * irradiance;
-    light.specular = albedo.specular * specular_radiance(s, v);
+    if (REFLECTIONS_ARE_SAMPLED) light.specular = sampled_specular(s, v);
+    else light.specular = albedo.specular * specular_radiance(s, v);
     light.specular *= specular_occlusion(n_dot_v, visibility, s.roughness);
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
         vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
-        light.clearcoat = albedo.clearcoat * prefiltered_radiance(direction, s.clearcoat_roughness);
+        if (REFLECTIONS_ARE_SAMPLED) light.clearcoat = sampled_coat(s, v);
+        else light.clearcoat = albedo.clearcoat * prefiltered_radiance(direction, s.clearcoat_roughness);
         light.clearcoat *= specular_occlusion(n_dot_v_of(s.clearcoat_n, v), visibility, s.clearcoat_roughness);
     }
     if ((FEATURES & FEATURE_SHEEN) != 0u) {

@@ -62,16 +62,17 @@ vec3 exact_mean(Kernel kernel, vec3 u) {
 }
 
 // One path's estimate of what exact lookups would add to the split sum without occlusion. Two lookups stay as baked, so
-// their errors count as the split sum's: that of sheen, and the row of lookups of an anisotropic lobe.
+// their errors count as the split sum's: that of sheen, and the row of lookups of an anisotropic lobe. So do the errors of
+// sampled reflections, which have no lookup to compare.
 vec3 lookup_difference(Surface s, vec3 v, Albedo albedo, uint path) {
     PathNumbers numbers = path_numbers(path);
     vec3 u = numbers_of(numbers, 0u, false);
     vec3 sum = (albedo.diffuse + albedo.multiple) * (exact_mean(cosine_kernel(s.n), u) - irradiance_over_pi(s.n));
-    if ((FEATURES & FEATURE_ANISOTROPY) == 0u) {
+    if ((FEATURES & FEATURE_ANISOTROPY) == 0u && !REFLECTIONS_ARE_SAMPLED) {
         Kernel kernel = lobe_kernel(lobe_direction(s.n, v, s.roughness), s.roughness);
         sum += albedo.specular * (exact_mean(kernel, u) - specular_radiance(s, v));
     }
-    if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
+    if ((FEATURES & FEATURE_CLEARCOAT) != 0u && !REFLECTIONS_ARE_SAMPLED) {
         vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
         vec3 baked = prefiltered_radiance(direction, s.clearcoat_roughness);
         sum += albedo.clearcoat * (exact_mean(lobe_kernel(direction, s.clearcoat_roughness), u) - baked);

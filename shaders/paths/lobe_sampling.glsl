@@ -11,6 +11,7 @@
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
+#include "lighting/lobe_frame.glsl"
 #include "lighting/lobes.glsl"
 
 const bool HAS_COAT = (FEATURES & FEATURE_CLEARCOAT) != 0u;
@@ -23,40 +24,6 @@ struct DirectionSample {
     vec3 l;                    // unit, world space
     float pdf;                 // 1/sr; 0: contributes nothing
 };
-
-// A lobe's tangent frame, and the eye in it.
-struct LobeFrame {
-    mat3 world_from_lobe;
-    vec3 v;
-    vec2 alpha;                // along the frame's x and y
-};
-
-// A normal map can turn n away from the eye; v is then clamped to a grazing angle. The estimate stays correct, since any
-// density above 0 will do.
-LobeFrame lobe_frame(mat3 world_from_lobe, vec3 v, vec2 alpha) {
-    vec3 v_lobe = v * world_from_lobe;
-    return LobeFrame(world_from_lobe, normalize(vec3(v_lobe.xy, max(v_lobe.z, 1e-4))), alpha);
-}
-
-LobeFrame specular_frame(Surface s, vec3 v) {
-    bool is_round = (FEATURES & FEATURE_ANISOTROPY) == 0u;
-    return lobe_frame(is_round ? basis_around(s.n) : mat3(s.t, s.b, s.n), v, alpha_sides(s));
-}
-
-LobeFrame coat_frame(Surface s, vec3 v) {
-    return lobe_frame(basis_around(s.clearcoat_n), v, vec2(alpha_from_roughness(s.clearcoat_roughness)));
-}
-
-vec3 sample_lobe(LobeFrame lobe, vec2 u) {
-    return lobe.world_from_lobe * reflect(-lobe.v, sample_ggx_vndf(u, lobe.v, lobe.alpha));
-}
-
-float pdf_lobe(LobeFrame lobe, vec3 l) {
-    vec3 l_lobe = l * lobe.world_from_lobe;
-    if (l_lobe.z <= 0.0) return 0.0;
-    vec3 h = safe_normalize(l_lobe + lobe.v, vec3(0.0, 0.0, 1.0));
-    return pdf_reflected(pdf_ggx_vndf(lobe.v, h, lobe.alpha), dot(lobe.v, h));
-}
 
 // Below the surface l contributes nothing, with two exceptions: transmission, and a coat whose normal is not the base's.
 bool can_contribute(float n_dot_l) { return n_dot_l > 0.0 || (n_dot_l < 0.0 && (LIGHT_PASSES || coat_lies_apart())); }

@@ -7,12 +7,9 @@
 
 #include "interface.glsl"
 #include "common/math.glsl"
+#include "common/sampling.glsl"
 
 layout(set = SET_TASK, binding = BINDING_SOURCE_CUBE) uniform samplerCube source_cube;
-
-// Azimuth of sample i over 2 pi, in golden-ratio steps. On circles of growing radius such points are evenly spread,
-// whatever the radii are.
-float golden_turns(uint i) { return fract(float(i) * 0.618033988); }
 
 // Solid angle of a texel of level 1 at the center of a face. Level 0 is not read, since it still has the small lights.
 float finest_footprint() {
