@@ -12,8 +12,8 @@ pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
 
 impl KeyPass {
     fn parts(&self) -> impl PartialEq + Hash + '_ {
-        let GraphPass { note, vertex, part, inputs, .. } = &*self.0;
-        (&note.stage, vertex, part, inputs, note.model.is_some(), &note.also)
+        let GraphPass { note, front, part, inputs, .. } = &*self.0;
+        (&note.stage, front, part, inputs, note.model.is_some(), &note.also)
     }
 }
 
@@ -44,8 +44,8 @@ pub(crate) struct PipelineKey {
 }
 
 impl PipelineKey {
-    /// Paths of the vertex and fragment stages.
-    pub(crate) fn stages(&self) -> [&str; 2] {
-        [&self.pass.0.vertex, &self.pass.0.note.stage]
+    /// Paths of the stages.
+    pub(crate) fn stages(&self) -> impl Iterator<Item = &str> {
+        self.pass.0.stages()
     }
 }

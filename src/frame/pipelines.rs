@@ -15,6 +15,7 @@ use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::{MODEL, Target};
 use crate::shader::graph::{Input, Part};
+use crate::shader::spirv::primitive::Primitive;
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
@@ -190,7 +191,8 @@ impl PipelineRequest {
             },
             DrawAs::Surfaces => Raster::Solid,
         };
-        self.model_pass().map(|pass| self.key_with_model(pass, material, raster))
+        let pass = self.model_pass().filter(|pass| takes(pass, material))?;
+        Some(self.key_with_model(pass, material, raster))
     }
 
     /// A pipeline that draws a material to the multisampled picture.
@@ -250,7 +252,7 @@ impl PipelineRequest {
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
-        let pass = self.pass_of(|pass| pass.name() == MODEL)?;
+        let pass = self.pass_of(|pass| pass.name() == MODEL).filter(|pass| takes(pass, material))?;
         let picture = Self { mode: interface::MODE_FINAL, ..self.clone() };
         Some(picture.key_with_model(pass, material, Raster::Solid))
     }
@@ -303,7 +305,8 @@ impl PipelineRequest {
             return Vec::new();
         }
         if pass.note.model.is_some() {
-            return self.materials.iter().map(|material| self.model_pass_key(pass, *material)).collect();
+            let materials = self.materials.iter().filter(|material| takes(pass, **material));
+            return materials.map(|material| self.model_pass_key(pass, *material)).collect();
         }
         let format = match pass.note.to {
             Target::Image => pass_format(pass.note.format),
@@ -338,7 +341,7 @@ impl PipelineRequest {
     pub(crate) fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading. Its stage may be still to be compiled.
         let model = self.draws_model.then(|| self.stage.clone());
-        let passes = self.passes.iter().flat_map(|pass| [&pass.vertex, &pass.note.stage]).cloned();
+        let passes = self.passes.iter().flat_map(|pass| pass.stages()).map(str::to_owned);
         passes.chain(model).collect()
     }
 
@@ -359,6 +362,17 @@ impl PipelineRequest {
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         let others = self.passes.iter().filter(|pass| pass.part != Part::Model);
         self.model_keys().chain(self.tonemap_key()).chain(others.flat_map(|pass| self.pass_keys(pass)))
+    }
+}
+
+/// Whether a pass draws the kind of primitive that a material is on.
+fn takes(pass: &GraphPass, material: MaterialVariant) -> bool {
+    match pass.front.takes {
+        None => true,
+        Some(Primitive::Points) => material.class == PrimitiveClass::Points,
+        Some(Primitive::Lines) => material.class == PrimitiveClass::Lines,
+        Some(Primitive::Triangles) => material.class == PrimitiveClass::Triangles,
+        Some(Primitive::WithNeighbors) => false,
     }
 }
 

@@ -25,6 +25,12 @@ use include::Includes;
 pub enum StageKind {
     /// `.vert`
     Vertex,
+    /// `.tesc`
+    TessellationControl,
+    /// `.tese`
+    TessellationEvaluation,
+    /// `.geom`
+    Geometry,
     /// `.frag`
     Fragment,
     /// `.comp`
@@ -36,15 +42,59 @@ impl StageKind {
     pub fn of(path: &TreePath) -> Option<Self> {
         match path.extension()? {
             "vert" => Some(Self::Vertex),
+            "tesc" => Some(Self::TessellationControl),
+            "tese" => Some(Self::TessellationEvaluation),
+            "geom" => Some(Self::Geometry),
             "frag" => Some(Self::Fragment),
             "comp" => Some(Self::Compute),
             _ => None,
         }
     }
 
+    /// The stages between the vertices of the mesh and the rasterizer, in the order in which they run.
+    pub const PRE_RASTERIZATION: [Self; 4] =
+        [Self::Vertex, Self::TessellationControl, Self::TessellationEvaluation, Self::Geometry];
+
+    /// The name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::TessellationControl => "tessellation control",
+            Self::TessellationEvaluation => "tessellation evaluation",
+            Self::Geometry => "geometry",
+            Self::Fragment => "fragment",
+            Self::Compute => "compute",
+        }
+    }
+
+    /// The extension of its files.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Vertex => "vert",
+            Self::TessellationControl => "tesc",
+            Self::TessellationEvaluation => "tese",
+            Self::Geometry => "geom",
+            Self::Fragment => "frag",
+            Self::Compute => "comp",
+        }
+    }
+
+    /// Whether its output goes to the rasterizer or to another stage before it.
+    pub fn is_pre_rasterization(self) -> bool {
+        Self::PRE_RASTERIZATION.contains(&self)
+    }
+
+    /// The first binding of what the stage reads by name, so that the stages of a pipeline share a set.
+    fn first_binding(self) -> u32 {
+        (1..).zip(Self::PRE_RASTERIZATION).find(|(_, kind)| *kind == self).map_or(0, |(at, _)| at * VERTEX_BINDINGS)
+    }
+
     fn shaderc(self) -> ShaderKind {
         match self {
             Self::Vertex => ShaderKind::Vertex,
+            Self::TessellationControl => ShaderKind::TessControl,
+            Self::TessellationEvaluation => ShaderKind::TessEvaluation,
+            Self::Geometry => ShaderKind::Geometry,
             Self::Fragment => ShaderKind::Fragment,
             Self::Compute => ShaderKind::Compute,
         }
@@ -100,7 +150,7 @@ impl Compiler {
         let failed =
             |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies, ms: 0.0 };
         let Some(kind) = StageKind::of(stage) else {
-            let message = "not a shader stage: the extension must be .vert, .frag or .comp";
+            let message = "not a shader stage: the extension must be .vert, .tesc, .tese, .geom, .frag or .comp";
             return failed(Diagnostic::error(file(), message));
         };
         match snapshot.read(stage) {
@@ -194,8 +244,7 @@ impl Compiler {
             Ok(artifact) => {
                 let mut words = artifact.as_binary().to_vec();
                 if reads_by_name(kind, text) {
-                    let first = if kind == StageKind::Vertex { VERTEX_BINDINGS } else { 0 };
-                    assign_set(&mut words, SET_PASS, first, &includes.unbound());
+                    assign_set(&mut words, SET_PASS, kind.first_binding(), &includes.unbound());
                 }
                 Ok((words, artifact.get_warning_messages()))
             }

@@ -37,11 +37,27 @@ pub struct Names<'a> {
     pub textures: &'a [TextureNote],
 }
 
-/// The inputs of a declared pass.
+/// The inputs of all stages of a declared pass.
+///
+/// # Errors
+/// Those of the first stage that has errors.
+pub fn inputs_of<'s, 't: 's>(
+    note: &PassNote,
+    stages: impl Iterator<Item = &'s PassStage<'t>>,
+    names: &Names<'_>,
+) -> Result<Inputs, Vec<Diagnostic>> {
+    let mut all = Inputs::new();
+    for stage in stages {
+        all.extend(inputs(note, stage, names)?);
+    }
+    Ok(all)
+}
+
+/// The inputs of a stage.
 ///
 /// # Errors
 /// A name that nothing has, or a declaration that does not fit what has the name.
-pub fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
+fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
     inputs_by(stage, |found| input(note, stage.kind, found, names))
 }
 
