@@ -25,9 +25,6 @@
 #include "common/place.glsl"
 
 layout(triangles) in;
-#ifdef LIBRARY_ALONE
-layout(points, max_vertices = 1) out;
-#endif
 
 layout(location = 0) in Fragment corners[];
 layout(location = 0) out Fragment fragment;

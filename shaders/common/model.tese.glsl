@@ -16,10 +16,6 @@
 #include "common/math.glsl"
 #include "common/place.glsl"
 
-#ifdef LIBRARY_ALONE
-layout(triangles) in;
-#endif
-
 layout(location = 0) in Fragment patch_corners[];
 layout(location = 0) out Fragment fragment;
 

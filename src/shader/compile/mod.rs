@@ -187,7 +187,9 @@ impl Compiler {
         // The wrapper has no text of the user. `rename` below keeps its name out of messages.
         let wrapper = TreePath::from("(library)");
         // A library may be for passes, which declare uniforms by name.
-        let text = format!("#version 460 //@pass\n#define LIBRARY_ALONE\n#include \"{library}\"\nvoid main() {{}}\n");
+        let layouts: String = library_layouts(snapshot, library, kind).collect();
+        let head = "#version 460 //@pass\n#define LIBRARY_ALONE\n";
+        let text = format!("{head}#include \"{library}\"\n{layouts}void main() {{}}\n");
         let mut compiled = self.compile_text(snapshot, &wrapper, &text, kind);
         compiled.dependencies.remove(&wrapper);
         // An error of the whole library is reported under the library's name.
@@ -252,6 +254,24 @@ impl Compiler {
             Err(error) => Err(error.to_string()),
         }
     }
+}
+
+/// The layouts of primitives that a stage of this kind must declare, without those that a library declares itself.
+fn library_layouts(snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> impl Iterator<Item = String> {
+    let needed: &[(&str, &str)] = match kind {
+        StageKind::TessellationControl => &[("vertices = 3", "out")],
+        StageKind::TessellationEvaluation => &[("triangles", "in")],
+        StageKind::Geometry => &[("triangles", "in"), ("points, max_vertices = 1", "out")],
+        StageKind::Vertex | StageKind::Fragment | StageKind::Compute => &[],
+    };
+    let texts = include::files_of(snapshot, library).into_iter().filter_map(|path| snapshot.read(&path).ok());
+    let texts: Vec<_> = texts.filter(|_| !needed.is_empty()).collect();
+    let declares = move |direction: &str| {
+        let is_layout = |code: &str| code.starts_with("layout") && code.ends_with(&format!(") {direction};"));
+        texts.iter().any(|text| lines(text).iter().any(|line| is_layout(line.code.trim())))
+    };
+    let missing = needed.iter().filter(move |(_, direction)| !declares(direction));
+    missing.map(|(layout, direction)| format!("layout({layout}) {direction};\n"))
 }
 
 /// Reports the first unbalanced conditional of each file. It may be the cause of all other errors of the stage. A stage that
