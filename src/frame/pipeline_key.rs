@@ -3,8 +3,23 @@
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
+use super::MaterialVariant;
 use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
 use crate::shader::GraphPass;
+use crate::shader::spirv::primitive::Primitive;
+
+impl MaterialVariant {
+    /// Whether a pass draws the kind of primitive that the material is on.
+    pub(crate) fn is_taken_by(self, pass: &GraphPass) -> bool {
+        match pass.front.takes {
+            None => true,
+            Some(Primitive::Points) => self.class == PrimitiveClass::Points,
+            Some(Primitive::Lines) => self.class == PrimitiveClass::Lines,
+            Some(Primitive::Triangles) => self.class == PrimitiveClass::Triangles,
+            Some(Primitive::WithNeighbors) => false,
+        }
+    }
+}
 
 /// A pass as the key of a pipeline: what its annotation says to people does not count.
 #[derive(Clone, Debug)]

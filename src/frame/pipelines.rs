@@ -15,7 +15,6 @@ use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings};
 use crate::shader::annotation::pass::{MODEL, Target};
 use crate::shader::graph::{Input, Part};
-use crate::shader::spirv::primitive::Primitive;
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
 
 /// The properties of a material and its primitive that select a pipeline.
@@ -191,7 +190,7 @@ impl PipelineRequest {
             },
             DrawAs::Surfaces => Raster::Solid,
         };
-        let pass = self.model_pass().filter(|pass| takes(pass, material))?;
+        let pass = self.model_pass().filter(|pass| material.is_taken_by(pass))?;
         Some(self.key_with_model(pass, material, raster))
     }
 
@@ -252,7 +251,7 @@ impl PipelineRequest {
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
-        let pass = self.pass_of(|pass| pass.name() == MODEL).filter(|pass| takes(pass, material))?;
+        let pass = self.pass_of(|pass| pass.name() == MODEL).filter(|pass| material.is_taken_by(pass))?;
         let picture = Self { mode: interface::MODE_FINAL, ..self.clone() };
         Some(picture.key_with_model(pass, material, Raster::Solid))
     }
@@ -305,7 +304,7 @@ impl PipelineRequest {
             return Vec::new();
         }
         if pass.note.model.is_some() {
-            let materials = self.materials.iter().filter(|material| takes(pass, **material));
+            let materials = self.materials.iter().filter(|material| material.is_taken_by(pass));
             return materials.map(|material| self.model_pass_key(pass, *material)).collect();
         }
         let format = match pass.note.to {
@@ -362,17 +361,6 @@ impl PipelineRequest {
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         let others = self.passes.iter().filter(|pass| pass.part != Part::Model);
         self.model_keys().chain(self.tonemap_key()).chain(others.flat_map(|pass| self.pass_keys(pass)))
-    }
-}
-
-/// Whether a pass draws the kind of primitive that a material is on.
-fn takes(pass: &GraphPass, material: MaterialVariant) -> bool {
-    match pass.front.takes {
-        None => true,
-        Some(Primitive::Points) => material.class == PrimitiveClass::Points,
-        Some(Primitive::Lines) => material.class == PrimitiveClass::Lines,
-        Some(Primitive::Triangles) => material.class == PrimitiveClass::Triangles,
-        Some(Primitive::WithNeighbors) => false,
     }
 }
 

@@ -1,6 +1,8 @@
 //! Finds the resources that a pass reads and writes, by the names of its declarations.
 
-use super::{Input, Inputs, PassStage, TextureKind};
+use std::collections::BTreeMap;
+
+use super::{GraphPass, Input, Inputs, PassStage, TextureKind};
 use crate::interface::SET_PASS;
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::{PassFormat, PassNote, Target};
@@ -266,4 +268,22 @@ fn written(note: &PassNote, found: &Descriptor) -> Result<Input, Refusal> {
     }
     let message = format!("the image of `{}` has the format {}", note.name, note.format.glsl());
     Err((message, format!("write `layout({}) uniform image2D {};`", note.format.glsl(), note.name)))
+}
+
+/// Errors of passes whose buffer another pass declares with another size.
+pub fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
+    let mut first: BTreeMap<&str, (u32, String)> = BTreeMap::new();
+    let mut errors = Vec::new();
+    for pass in passes {
+        for input in pass.inputs.values() {
+            let Input::Buffer(name, bytes) = input else { continue };
+            let (size, other) = first.entry(name).or_insert_with(|| (*bytes, format!("the pass `{}`", pass.name())));
+            if *size != *bytes {
+                let message =
+                    format!("the buffer `{name}` has {bytes} bytes here and {size} in {other}; both share it");
+                errors.push(pass.note.place.error(message).with_help("declare it once, in a file that both include"));
+            }
+        }
+    }
+    errors
 }

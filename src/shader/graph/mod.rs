@@ -236,7 +236,7 @@ impl Graph {
                 Err(found) => errors.extend(found),
             }
         }
-        errors.extend(different_buffers(&passes));
+        errors.extend(inputs::different_buffers(&passes));
         let inputs = passes.iter().flat_map(|pass| pass.inputs.values());
         let used: BTreeSet<(&str, TextureKind)> = inputs.filter_map(texture_of).collect();
         let mut textures = BTreeMap::new();
@@ -387,22 +387,4 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
         return Some("only a pass that draws the model to the picture has blend; write draw=model to=picture");
     }
     (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
-}
-
-/// Errors of passes whose buffer another pass declares with another size.
-fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
-    let mut first: BTreeMap<&str, (u32, String)> = BTreeMap::new();
-    let mut errors = Vec::new();
-    for pass in passes {
-        for input in pass.inputs.values() {
-            let Input::Buffer(name, bytes) = input else { continue };
-            let (size, other) = first.entry(name).or_insert_with(|| (*bytes, format!("the pass `{}`", pass.name())));
-            if *size != *bytes {
-                let message =
-                    format!("the buffer `{name}` has {bytes} bytes here and {size} in {other}; both share it");
-                errors.push(pass.note.place.error(message).with_help("declare it once, in a file that both include"));
-            }
-        }
-    }
-    errors
 }

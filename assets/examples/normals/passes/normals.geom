@@ -5,7 +5,7 @@
 // each of them.
 
 uniform Normals {
-    float normals_length;    //@ui "Length of normals" 0..0.3 = 0.05
+    float normals_length;    //@ui "Length of normals" 0..0.3 = 0.04
 };
 
 layout(line_strip, max_vertices = 6) out;
