@@ -36,7 +36,7 @@ impl FileKind {
             "hdr" | "exr" => Self::Environment,
             "binary" | "bin" => Self::Measured,
             "toml" => Self::Look,
-            "glsl" | "vert" | "frag" | "fs" | "comp" => Self::Shader,
+            "glsl" | "vert" | "tesc" | "tese" | "geom" | "frag" | "fs" | "comp" => Self::Shader,
             _ => Self::Other,
         }
     }

@@ -20,7 +20,23 @@ fn draw(example: Option<Example>, frames: u32) -> specula::render::Capture {
 fn examples_change_the_picture_and_repeat_themselves() {
     let plain = draw(None, 1);
     let names = Example::names();
-    assert_eq!(names, ["deferred", "fluid", "fur", "hatching", "hull", "life", "raymarch", "reaction", "swarm", "toy"]);
+    assert_eq!(
+        names,
+        [
+            "deferred",
+            "displacement",
+            "fluid",
+            "fur",
+            "hatching",
+            "hull",
+            "life",
+            "normals",
+            "raymarch",
+            "reaction",
+            "swarm",
+            "toy"
+        ]
+    );
     for name in names {
         let example = Example::named(name);
         let first = draw(example, 8);
@@ -52,7 +68,7 @@ fn examples_are_found_by_name_on_the_command_line() {
     let wrong = run(folder.path(), &["modes", "--shaders", "examples:live"]);
     wrong.expect(
         1,
-        &["there is no example `live`. Did you mean `life`? There are deferred, fluid, fur, hatching, hull, life"],
+        &["there is no example `live`. Did you mean `life`? There are deferred, displacement, fluid, fur, hatching, hull, life"],
     );
     run(folder.path(), &["new", "other", "--template", "live"]).expect(1, &["there is no example `live`."]);
     assert!(!folder.path().join("other").exists(), "nothing is written");

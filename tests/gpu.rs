@@ -104,6 +104,8 @@ fn validation_messages_name_pipelines_after_their_stages() {
     let fragment = module("two.frag", shaderc::ShaderKind::Fragment, fragment);
     let desc = PipelineDesc {
         vertex: &vertex,
+        tessellation: None,
+        geometry: None,
         fragment: &fragment,
         colors: &[vk::Format::R16G16B16A16_SFLOAT],
         depth: true,

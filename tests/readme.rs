@@ -67,3 +67,15 @@ fn the_edit_of_the_readme() {
     ready(&session.edit("brdf/ndf.glsl", "float a2 = alpha * alpha;", "float a2 = alpha;"));
     assert_differ(&before, &session.render(), "the roughness forgot to be squared");
 }
+
+#[test]
+fn the_geometry_stage_of_the_readme() {
+    let mut session = session();
+    let before = session.render();
+    ready(&session.save("passes/glow.frag", &snippet("//@pass glow")));
+    let glow = session.render();
+    assert_differ(&before, &glow, "the glow");
+    ready(&session.save("passes/glow.geom", &snippet("model.geom.glsl")));
+    assert_differ(&glow, &session.render(), "the glow, taken apart");
+    passes_check(&session);
+}

@@ -3,8 +3,23 @@
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
+use super::MaterialVariant;
 use crate::gpu::{PrimitiveClass, Raster, Specialization, vk};
 use crate::shader::GraphPass;
+use crate::shader::spirv::primitive::Primitive;
+
+impl MaterialVariant {
+    /// Whether a pass draws the kind of primitive that the material is on.
+    pub(crate) fn is_taken_by(self, pass: &GraphPass) -> bool {
+        match pass.front.takes {
+            None => true,
+            Some(Primitive::Points) => self.class == PrimitiveClass::Points,
+            Some(Primitive::Lines) => self.class == PrimitiveClass::Lines,
+            Some(Primitive::Triangles) => self.class == PrimitiveClass::Triangles,
+            Some(Primitive::WithNeighbors) => false,
+        }
+    }
+}
 
 /// A pass as the key of a pipeline: what its annotation says to people does not count.
 #[derive(Clone, Debug)]
@@ -12,8 +27,8 @@ pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
 
 impl KeyPass {
     fn parts(&self) -> impl PartialEq + Hash + '_ {
-        let GraphPass { note, vertex, part, inputs, .. } = &*self.0;
-        (&note.stage, vertex, part, inputs, note.model.is_some(), &note.also)
+        let GraphPass { note, front, part, inputs, .. } = &*self.0;
+        (&note.stage, front, part, inputs, note.model.is_some(), &note.also)
     }
 }
 
@@ -44,8 +59,8 @@ pub(crate) struct PipelineKey {
 }
 
 impl PipelineKey {
-    /// Paths of the vertex and fragment stages.
-    pub(crate) fn stages(&self) -> [&str; 2] {
-        [&self.pass.0.vertex, &self.pass.0.note.stage]
+    /// Paths of the stages.
+    pub(crate) fn stages(&self) -> impl Iterator<Item = &str> {
+        self.pass.0.stages()
     }
 }

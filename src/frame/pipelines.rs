@@ -192,7 +192,8 @@ impl PipelineRequest {
             },
             DrawAs::Surfaces => Raster::Solid,
         };
-        self.model_pass().map(|pass| self.key_with_model(pass, material, raster))
+        let pass = self.model_pass().filter(|pass| material.is_taken_by(pass))?;
+        Some(self.key_with_model(pass, material, raster))
     }
 
     /// A pipeline that draws a material to the multisampled picture.
@@ -252,7 +253,7 @@ impl PipelineRequest {
         if !is_opaque || !self.draws_opaque_twice() {
             return self.model_key(material);
         }
-        let pass = self.pass_of(|pass| pass.name() == MODEL)?;
+        let pass = self.pass_of(|pass| pass.name() == MODEL).filter(|pass| material.is_taken_by(pass))?;
         let picture = Self { mode: interface::MODE_FINAL, ..self.clone() };
         Some(picture.key_with_model(pass, material, Raster::Solid))
     }
@@ -309,7 +310,8 @@ impl PipelineRequest {
             return Vec::new();
         }
         if pass.note.model.is_some() {
-            return self.materials.iter().map(|material| self.model_pass_key(pass, *material)).collect();
+            let materials = self.materials.iter().filter(|material| material.is_taken_by(pass));
+            return materials.map(|material| self.model_pass_key(pass, *material)).collect();
         }
         let format = match pass.note.to {
             Target::Image => pass_format(pass.note.format),
@@ -344,7 +346,7 @@ impl PipelineRequest {
     pub(crate) fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading. Its stage may be still to be compiled.
         let model = self.draws_model.then(|| self.stage.clone());
-        let passes = self.passes.iter().flat_map(|pass| [&pass.vertex, &pass.note.stage]).cloned();
+        let passes = self.passes.iter().flat_map(|pass| pass.stages()).map(str::to_owned);
         passes.chain(model).collect()
     }
 

@@ -19,7 +19,7 @@ pub use commands::pass::PassTime;
 pub use commands::slot::Submission;
 pub use commands::upload::upload_images;
 pub use device::adapter::{AdapterInfo, adapters};
-pub use device::gpu::{Gpu, GpuOptions};
+pub use device::gpu::{Gpu, GpuOptions, OptionalStages};
 pub use device::pipeline_cache::PipelineStore;
 pub use error::GpuError;
 pub use heap::{return_freed_memory, return_large_blocks};

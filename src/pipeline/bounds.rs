@@ -28,8 +28,8 @@ const MARK_ON_DISPLAY: [f32; 4] = [1.0, 0.0, 1.0, 1.0];
 fn rounds(gpu: &Gpu, kind: StageKind) -> u32 {
     match kind {
         _ if gpu.info().kind == "cpu" => ROUNDS_ON_CPU,
-        StageKind::Vertex | StageKind::Fragment => ROUNDS,
         StageKind::Compute => ROUNDS_OF_BAKES,
+        _ => ROUNDS,
     }
 }
 
@@ -44,15 +44,15 @@ pub(super) fn shader_module(
     let mut words = stage.specialize(constants);
     let (path, kind) = (stage.path.as_str(), stage.kind);
     let stores = match kind {
-        StageKind::Vertex => gpu.graphics_stores().0,
-        StageKind::Fragment => gpu.graphics_stores().1,
         StageKind::Compute => true,
+        StageKind::Fragment => gpu.graphics_stores().1,
+        _ => gpu.graphics_stores().0,
     };
     let buffer = interface::LOOPS[usize::from(kind == StageKind::Compute)];
     let is = |id: u32, value: u32| constants.contains(&(id, value));
     let mark = match kind {
-        StageKind::Vertex | StageKind::Compute => None,
-        StageKind::Fragment if is_on_display => Some(MARK_ON_DISPLAY),
+        kind if kind != StageKind::Fragment => None,
+        _ if is_on_display => Some(MARK_ON_DISPLAY),
         // The blend unit takes alpha for coverage.
         _ if is(SPEC_ALPHA_MODE, ALPHA_BLEND) && is(SPEC_MODE, MODE_FINAL) => None,
         _ => Some(MARK),

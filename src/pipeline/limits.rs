@@ -1,12 +1,12 @@
 //! Errors about declarations that this device cannot have, each with its line.
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, OptionalStages};
 use crate::shader::annotation::pass::PassSize;
 use crate::shader::contract::Texts;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::{Diagnostic, ShaderSet, Source, StageKind};
 
-/// Passes whose images are too large for the device, and buffers that a stage cannot write. `source` is the tree of the shaders.
+/// Passes whose images are too large for the device, stages that it lacks, and buffers that a stage cannot write. `source` is the tree of the shaders.
 pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
     let graph = &shaders.graph;
     let most = gpu.max_image_size();
@@ -15,6 +15,7 @@ pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Dia
         (width > most || height > most).then_some(message)
     };
     let mut out = unwritable_buffers(gpu.graphics_stores(), shaders, source);
+    out.extend(missing_stages(gpu.optional_stages(), shaders, source));
     for pass in &graph.passes {
         if let PassSize::Pixels(width, height) = pass.note.size {
             let message = too_large((width, height));
@@ -31,8 +32,8 @@ fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source
     let snapshot = Snapshot::new(source);
     for stage in shaders.stages.values() {
         let name = match stage.kind {
-            StageKind::Vertex if !stores.0 => "vertex",
-            StageKind::Fragment if !stores.1 => "fragment",
+            StageKind::Fragment if !stores.1 => stage.kind.name(),
+            kind if kind.is_pre_rasterization() && !stores.0 => kind.name(),
             _ => continue,
         };
         let texts = Texts { snapshot: &snapshot, stage: &stage.path, dependencies: &stage.dependencies };
@@ -40,6 +41,31 @@ fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source
             let message = format!("this device cannot write the buffer `{}` in a {name} stage", buffer.name);
             let error = texts.error(&[buffer.name.as_str(), "buffer"], message);
             out.push(error.with_help("declare it `readonly buffer`; a compute pass can write it"));
+        }
+    }
+    out
+}
+
+/// Stages that the device lacks, and uses of `gl_PointSize` that it does not allow.
+fn missing_stages(has: OptionalStages, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
+    const TESSELLATION_POINT_SIZE: u32 = 23;
+    const GEOMETRY_POINT_SIZE: u32 = 24;
+    let mut out = Vec::new();
+    let snapshot = Snapshot::new(source);
+    for stage in shaders.stages.values() {
+        let texts = Texts { snapshot: &snapshot, stage: &stage.path, dependencies: &stage.dependencies };
+        let is_tessellation = matches!(stage.kind, StageKind::TessellationControl | StageKind::TessellationEvaluation);
+        let mut capabilities = stage.reflection.capabilities.iter();
+        if is_tessellation && !has.tessellation {
+            let message = "this device has no tessellation stages (tessellationShader)".to_owned();
+            out.push(texts.error(&["main", "void"], message).with_help("delete the .tesc and the .tese file"));
+        } else if !has.point_size
+            && capabilities.any(|number| matches!(*number, TESSELLATION_POINT_SIZE | GEOMETRY_POINT_SIZE))
+        {
+            let name = stage.kind.name();
+            let message =
+                format!("this device has no gl_PointSize in a {name} stage (shaderTessellationAndGeometryPointSize)");
+            out.push(texts.error(&["gl_PointSize"], message));
         }
     }
     out
@@ -78,5 +104,31 @@ mod tests {
         let of_pixels = "w.frag:4:9: error: this device cannot write the buffer `OfPixels` in a fragment stage";
         assert_eq!(found((false, true)), [of_vertices]);
         assert_eq!(found((false, false)), [of_vertices, of_pixels]);
+    }
+
+    #[test]
+    fn stages_that_a_device_lacks_have_their_line() {
+        let control = "#version 460\nlayout(vertices = 3) out;\nvoid main() { gl_TessLevelInner[0] = 1.0; }\n";
+        let geometry = "#version 460\nlayout(triangles) in;\nlayout(points, max_vertices = 1) out;\n\
+            void main() {\n    gl_Position = gl_in[0].gl_Position;\n    gl_PointSize = 2.0;\n    EmitVertex();\n}\n";
+        let source = Source::memory([("c.tesc", control), ("g.geom", geometry)]);
+        let mut library = Library::new(source.clone(), Arc::new(Compiler::new().unwrap()), &["c.tesc", "g.geom"]);
+        let update = library.update(&Change::All);
+        let Update::Ready(shaders, _) = &update else { panic!("{update:?}") };
+        let found = |tessellation: bool, point_size: bool| -> Vec<String> {
+            let has = OptionalStages { tessellation, point_size };
+            missing_stages(has, shaders, &source).iter().map(Diagnostic::one_line).collect()
+        };
+        assert_eq!(found(true, true), [""; 0]);
+        assert_eq!(
+            found(false, true),
+            ["c.tesc:3:6: error: this device has no tessellation stages (tessellationShader)"]
+        );
+        assert_eq!(
+            found(true, false),
+            [
+                "g.geom:6:5: error: this device has no gl_PointSize in a geometry stage (shaderTessellationAndGeometryPointSize)"
+            ]
+        );
     }
 }

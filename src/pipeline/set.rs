@@ -163,7 +163,7 @@ impl PipelineSet {
         };
         self.requests.store(before.requests.load(Ordering::SeqCst), Ordering::SeqCst);
         for (key, entry) in &lock(&before.graphics).entries {
-            if key.stages().iter().all(|path| is_same(path)) {
+            if key.stages().all(is_same) {
                 lock(&self.graphics).entries.insert(key.clone(), entry.clone());
             }
         }
@@ -190,7 +190,7 @@ impl PipelineSet {
             if old.0.names_loops() {
                 return;
             }
-            if key.stages().iter().all(|path| is_same(path, &key.specialization)) {
+            if key.stages().all(|path| is_same(path, &key.specialization)) {
                 lock(&self.graphics).entries.insert(key, old);
             }
         });
@@ -221,7 +221,7 @@ impl PipelineSet {
 
     /// Whether a stage of the pipeline is still to be compiled.
     fn is_pending(&self, key: &PipelineKey) -> bool {
-        key.stages().iter().any(|path| self.is_pending_stage(path))
+        key.stages().any(|path| self.is_pending_stage(path))
     }
 
     fn is_pending_stage(&self, path: &str) -> bool {
@@ -307,14 +307,28 @@ impl PipelineSet {
         let pass = &key.pass.0;
         let is_on_display = matches!(pass.part, Part::Tonemap | Part::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
-        let (vertex, fragment) = (module(&pass.vertex)?, module(&pass.note.stage)?);
+        let front = &pass.front;
+        let (vertex, fragment) = (module(&front.vertex)?, module(&pass.note.stage)?);
+        let geometry = front.geometry.as_deref().map(module).transpose()?;
+        let tessellation = match &front.tessellation {
+            Some([control, evaluation]) => Some([module(control)?, module(evaluation)?]),
+            None => None,
+        };
+        let modules: Vec<&ShaderModule> = [&vertex, &fragment]
+            .into_iter()
+            .chain(&geometry)
+            .chain(tessellation.iter().flatten())
+            .map(|m| &**m)
+            .collect();
         let draws_model = pass.note.model.is_some();
-        let layout = self.layout(&pass.inputs, &[&vertex, &fragment], draws_model);
+        let layout = self.layout(&pass.inputs, &modules, draws_model);
         let layout = layout.map_err(|error| of_pass(pass, error))?;
         let more = pass.note.also.iter().map(|(_, format)| pass_format(*format));
         let colors: Vec<_> = std::iter::once(key.format).chain(more).collect();
         let desc = PipelineDesc {
             vertex: &vertex,
+            tessellation: tessellation.as_ref().map(|[control, evaluation]| [&**control, &**evaluation]),
+            geometry: geometry.as_deref(),
             fragment: &fragment,
             colors: &colors,
             depth: draws_model || pass.part == Part::Model,

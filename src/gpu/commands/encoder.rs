@@ -32,7 +32,7 @@ impl Rect {
 
 /// The stages that read images and buffers.
 const SHADERS: vk::PipelineStageFlags2 = vk::PipelineStageFlags2::from_raw(
-    vk::PipelineStageFlags2::VERTEX_SHADER.as_raw()
+    vk::PipelineStageFlags2::PRE_RASTERIZATION_SHADERS.as_raw()
         | vk::PipelineStageFlags2::FRAGMENT_SHADER.as_raw()
         | vk::PipelineStageFlags2::COMPUTE_SHADER.as_raw(),
 );

@@ -26,6 +26,15 @@ pub struct GpuOptions {
     pub pipelines: Option<&'static dyn PipelineStore>,
 }
 
+/// Features of tessellation and geometry stages that not every device has. Each device that Specula takes has geometry stages.
+#[derive(Clone, Copy, Debug)]
+pub struct OptionalStages {
+    /// Whether there are tessellation stages.
+    pub tessellation: bool,
+    /// Whether tessellation and geometry stages can use `gl_PointSize`.
+    pub point_size: bool,
+}
+
 /// An open device with one graphics queue and one allocator.
 pub struct Gpu {
     // Fields are dropped in this order: the allocator before the device, the device before the instance.
@@ -43,6 +52,7 @@ pub struct Gpu {
     timestamp_bits: u32,
     pub(in crate::gpu) anisotropy: bool,
     pub(in crate::gpu) wireframe: bool,
+    optional_stages: OptionalStages,
     vertex_stores: bool,
     fragment_stores: bool,
     info: AdapterInfo,
@@ -96,6 +106,10 @@ impl Gpu {
             timestamp_bits: families.get(queue_family as usize).map_or(0, |family| family.timestamp_valid_bits),
             anisotropy: supported.sampler_anisotropy == vk::TRUE,
             wireframe: supported.fill_mode_non_solid == vk::TRUE,
+            optional_stages: OptionalStages {
+                tessellation: supported.tessellation_shader == vk::TRUE,
+                point_size: supported.shader_tessellation_and_geometry_point_size == vk::TRUE,
+            },
             vertex_stores: supported.vertex_pipeline_stores_and_atomics == vk::TRUE,
             fragment_stores: supported.fragment_stores_and_atomics == vk::TRUE,
             info,
@@ -128,6 +142,11 @@ impl Gpu {
         // SAFETY: the instance is live, and the device belongs to it.
         let properties = unsafe { self.instance.raw.get_physical_device_format_properties(self.physical, format) };
         properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR)
+    }
+
+    /// What the device has of tessellation and geometry stages.
+    pub fn optional_stages(&self) -> OptionalStages {
+        self.optional_stages
     }
 
     /// Whether vertex and fragment stages can write buffers. Compute stages always can.
@@ -238,6 +257,8 @@ fn create_device(
         vertex_pipeline_stores_and_atomics: supported.vertex_pipeline_stores_and_atomics,
         fragment_stores_and_atomics: supported.fragment_stores_and_atomics,
         geometry_shader: vk::TRUE,
+        tessellation_shader: supported.tessellation_shader,
+        shader_tessellation_and_geometry_point_size: supported.shader_tessellation_and_geometry_point_size,
         ..Default::default()
     };
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(true).scalar_block_layout(true);

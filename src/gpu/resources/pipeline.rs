@@ -54,6 +54,9 @@ impl Drop for ShaderModule {
     }
 }
 
+/// Control points of a patch: a triangle of the model.
+const PATCH_VERTICES: u32 = 3;
+
 /// Values of specialization constants: pairs of `constant_id` and the four bytes of the value.
 pub type Specialization = Vec<(u32, u32)>;
 
@@ -92,6 +95,10 @@ pub enum Raster {
 pub struct PipelineDesc<'a> {
     /// Vertex stage.
     pub vertex: &'a ShaderModule,
+    /// Tessellation control and tessellation evaluation. The primitives are patches of three vertices then.
+    pub tessellation: Option<[&'a ShaderModule; 2]>,
+    /// Geometry stage.
+    pub geometry: Option<&'a ShaderModule>,
     /// Fragment stage.
     pub fragment: &'a ShaderModule,
     /// Formats of the color targets, by location.
@@ -111,8 +118,21 @@ pub struct PipelineDesc<'a> {
 impl PipelineDesc<'_> {
     fn name(&self) -> String {
         let samples = if self.samples > 1 { format!(", {} samples", self.samples) } else { String::new() };
-        let Self { vertex, fragment, raster, class, .. } = self;
-        format!("{} + {} ({raster:?} {class:?}{samples})", vertex.name, fragment.name)
+        let Self { raster, class, .. } = self;
+        let names: Vec<&str> = self.modules().map(|(_, module)| module.name.as_str()).collect();
+        format!("{} ({raster:?} {class:?}{samples})", names.join(" + "))
+    }
+
+    /// The modules, in the order in which the stages run.
+    fn modules(&self) -> impl Iterator<Item = (vk::ShaderStageFlags, &ShaderModule)> {
+        use vk::ShaderStageFlags as S;
+        let tessellation = [S::TESSELLATION_CONTROL, S::TESSELLATION_EVALUATION];
+        let tessellation = self.tessellation.into_iter().flat_map(move |modules| tessellation.into_iter().zip(modules));
+        let geometry = self.geometry.map(|module| (S::GEOMETRY, module));
+        std::iter::once((S::VERTEX, self.vertex))
+            .chain(tessellation)
+            .chain(geometry)
+            .chain([(S::FRAGMENT, self.fragment)])
     }
 }
 
@@ -142,15 +162,21 @@ impl Pipeline {
         let stage = |stage, module: &ShaderModule| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module.raw).name(MAIN)
         };
-        let stages =
-            [stage(vk::ShaderStageFlags::VERTEX, desc.vertex), stage(vk::ShaderStageFlags::FRAGMENT, desc.fragment)];
+        let stages: Vec<_> = desc.modules().map(|(kind, module)| stage(kind, module)).collect();
 
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(match desc.class {
+            _ if desc.tessellation.is_some() => vk::PrimitiveTopology::PATCH_LIST,
             PrimitiveClass::Points => vk::PrimitiveTopology::POINT_LIST,
             PrimitiveClass::Lines => vk::PrimitiveTopology::LINE_LIST,
             PrimitiveClass::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
         });
+        // With this origin, triangles of the default order `ccw` face where the patch does.
+        let mut origin = vk::PipelineTessellationDomainOriginStateCreateInfo::default()
+            .domain_origin(vk::TessellationDomainOrigin::LOWER_LEFT);
+        let tessellation = vk::PipelineTessellationStateCreateInfo::default()
+            .patch_control_points(PATCH_VERTICES)
+            .push_next(&mut origin);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let lines = desc.raster == Raster::Lines && gpu.wireframe;
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).polygon_mode(if lines {
@@ -195,7 +221,8 @@ impl Pipeline {
             .dynamic_state(&dynamic)
             .layout(desc.layout.pipeline)
             .push_next(&mut rendering);
-        let mut parts = [vk::PipelineCreationFeedback::default(); 2];
+        let info = if desc.tessellation.is_some() { info.tessellation_state(&tessellation) } else { info };
+        let mut parts = vec![vk::PipelineCreationFeedback::default(); stages.len()];
         let mut whole = vk::PipelineCreationFeedback::default();
         let mut feedback = vk::PipelineCreationFeedbackCreateInfo::default()
             .pipeline_creation_feedback(&mut whole)
@@ -210,9 +237,9 @@ impl Pipeline {
         let raw = made.map_err(|(_, result)| result).context_of("creating the pipeline", &format!("`{name}`"))?[0];
         gpu.name(raw, &name);
         trace_feedback(&name, whole, &parts);
-        let names_loops = desc.vertex.names_loops || desc.fragment.names_loops;
+        let names_loops = desc.modules().any(|(_, module)| module.names_loops);
         let loops = names_loops.then(|| layouts.blank.loops.clone());
-        let uses = desc.vertex.uses.union(&desc.fragment.uses);
+        let uses = desc.modules().fold(Uses::default(), |uses, (_, module)| uses.union(&module.uses));
         Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, loops, raw }))
     }
 }

@@ -10,7 +10,7 @@ use glam::Mat3;
 use crate::frame::{Appearance, MaterialVariant, Scene};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
 use crate::interface::{Draw, Vertex};
-use crate::scene::{Instance, Model, TextureSource, Topology};
+use crate::scene::{Instance, Model, Primitive, TextureSource, Topology, triangles};
 use materials::{Textures, materials};
 use upload::{Range, Uploaded, upload};
 
@@ -65,6 +65,7 @@ impl GpuModel {
     /// # Errors
     /// An image that exceeds the device's limit, or no memory left.
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, mut model: Model) -> Result<Arc<Self>, UploadError> {
+        model.primitives.iter_mut().for_each(list_triangles);
         let Uploaded { vertices, indices, ranges, textures } = upload(gpu, &mut model)?;
         let materials = materials(gpu, layouts, &model, &textures)?;
         Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, textures }))
@@ -152,6 +153,16 @@ pub(crate) fn normals_from(linear: Mat3) -> Mat3 {
     let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
     let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
     Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
+}
+
+/// Makes a list of a strip or a fan of triangles: a tessellation stage takes triangles one by one.
+fn list_triangles(primitive: &mut Primitive) {
+    let list = triangles(primitive.topology, &primitive.indices);
+    // A strip may have no triangle with an area.
+    if primitive.topology != Topology::Triangles && !list.is_empty() {
+        primitive.indices = list.as_flattened().to_vec();
+        primitive.topology = Topology::Triangles;
+    }
 }
 
 fn topology(topology: Topology) -> vk::PrimitiveTopology {

@@ -230,8 +230,12 @@ impl ModelDraws<'_> {
             (None, true, _) => &[vk::CullModeFlags::NONE],
             (Some(Cull::Back), ..) | (None, false, _) => &[vk::CullModeFlags::BACK],
         };
+        let topology = match self.pass.front.tessellation {
+            Some(_) => vk::PrimitiveTopology::PATCH_LIST,
+            None => draw.topology,
+        };
         for cull in passes {
-            encoder.set_raster(draw.topology, *cull, draw.front);
+            encoder.set_raster(topology, *cull, draw.front);
             encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
         }
     }

@@ -25,6 +25,12 @@ use include::Includes;
 pub enum StageKind {
     /// `.vert`
     Vertex,
+    /// `.tesc`
+    TessellationControl,
+    /// `.tese`
+    TessellationEvaluation,
+    /// `.geom`
+    Geometry,
     /// `.frag`
     Fragment,
     /// `.comp`
@@ -36,15 +42,59 @@ impl StageKind {
     pub fn of(path: &TreePath) -> Option<Self> {
         match path.extension()? {
             "vert" => Some(Self::Vertex),
+            "tesc" => Some(Self::TessellationControl),
+            "tese" => Some(Self::TessellationEvaluation),
+            "geom" => Some(Self::Geometry),
             "frag" => Some(Self::Fragment),
             "comp" => Some(Self::Compute),
             _ => None,
         }
     }
 
+    /// The stages between the vertices of the mesh and the rasterizer, in the order in which they run.
+    pub const PRE_RASTERIZATION: [Self; 4] =
+        [Self::Vertex, Self::TessellationControl, Self::TessellationEvaluation, Self::Geometry];
+
+    /// The name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::TessellationControl => "tessellation control",
+            Self::TessellationEvaluation => "tessellation evaluation",
+            Self::Geometry => "geometry",
+            Self::Fragment => "fragment",
+            Self::Compute => "compute",
+        }
+    }
+
+    /// The extension of its files.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Vertex => "vert",
+            Self::TessellationControl => "tesc",
+            Self::TessellationEvaluation => "tese",
+            Self::Geometry => "geom",
+            Self::Fragment => "frag",
+            Self::Compute => "comp",
+        }
+    }
+
+    /// Whether its output goes to the rasterizer or to another stage before it.
+    pub fn is_pre_rasterization(self) -> bool {
+        Self::PRE_RASTERIZATION.contains(&self)
+    }
+
+    /// The first binding of what the stage reads by name, so that the stages of a pipeline share a set.
+    fn first_binding(self) -> u32 {
+        (1..).zip(Self::PRE_RASTERIZATION).find(|(_, kind)| *kind == self).map_or(0, |(at, _)| at * VERTEX_BINDINGS)
+    }
+
     fn shaderc(self) -> ShaderKind {
         match self {
             Self::Vertex => ShaderKind::Vertex,
+            Self::TessellationControl => ShaderKind::TessControl,
+            Self::TessellationEvaluation => ShaderKind::TessEvaluation,
+            Self::Geometry => ShaderKind::Geometry,
             Self::Fragment => ShaderKind::Fragment,
             Self::Compute => ShaderKind::Compute,
         }
@@ -100,7 +150,7 @@ impl Compiler {
         let failed =
             |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies, ms: 0.0 };
         let Some(kind) = StageKind::of(stage) else {
-            let message = "not a shader stage: the extension must be .vert, .frag or .comp";
+            let message = "not a shader stage: the extension must be .vert, .tesc, .tese, .geom, .frag or .comp";
             return failed(Diagnostic::error(file(), message));
         };
         match snapshot.read(stage) {
@@ -137,7 +187,9 @@ impl Compiler {
         // The wrapper has no text of the user. `rename` below keeps its name out of messages.
         let wrapper = TreePath::from("(library)");
         // A library may be for passes, which declare uniforms by name.
-        let text = format!("#version 460 //@pass\n#define LIBRARY_ALONE\n#include \"{library}\"\nvoid main() {{}}\n");
+        let layouts: String = library_layouts(snapshot, library, kind).collect();
+        let head = "#version 460 //@pass\n#define LIBRARY_ALONE\n";
+        let text = format!("{head}#include \"{library}\"\n{layouts}void main() {{}}\n");
         let mut compiled = self.compile_text(snapshot, &wrapper, &text, kind);
         compiled.dependencies.remove(&wrapper);
         // An error of the whole library is reported under the library's name.
@@ -194,8 +246,7 @@ impl Compiler {
             Ok(artifact) => {
                 let mut words = artifact.as_binary().to_vec();
                 if reads_by_name(kind, text) {
-                    let first = if kind == StageKind::Vertex { VERTEX_BINDINGS } else { 0 };
-                    assign_set(&mut words, SET_PASS, first, &includes.unbound());
+                    assign_set(&mut words, SET_PASS, kind.first_binding(), &includes.unbound());
                 }
                 Ok((words, artifact.get_warning_messages()))
             }
@@ -203,6 +254,24 @@ impl Compiler {
             Err(error) => Err(error.to_string()),
         }
     }
+}
+
+/// The layouts of primitives that a stage of this kind must declare, without those that a library declares itself.
+fn library_layouts(snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> impl Iterator<Item = String> {
+    let needed: &[(&str, &str)] = match kind {
+        StageKind::TessellationControl => &[("vertices = 3", "out")],
+        StageKind::TessellationEvaluation => &[("triangles", "in")],
+        StageKind::Geometry => &[("triangles", "in"), ("points, max_vertices = 1", "out")],
+        StageKind::Vertex | StageKind::Fragment | StageKind::Compute => &[],
+    };
+    let texts = include::files_of(snapshot, library).into_iter().filter_map(|path| snapshot.read(&path).ok());
+    let texts: Vec<_> = texts.filter(|_| !needed.is_empty()).collect();
+    let declares = move |direction: &str| {
+        let is_layout = |code: &str| code.starts_with("layout") && code.ends_with(&format!(") {direction};"));
+        texts.iter().any(|text| lines(text).iter().any(|line| is_layout(line.code.trim())))
+    };
+    let missing = needed.iter().filter(move |(_, direction)| !declares(direction));
+    missing.map(|(layout, direction)| format!("layout({layout}) {direction};\n"))
 }
 
 /// Reports the first unbalanced conditional of each file. It may be the cause of all other errors of the stage. A stage that

@@ -5,7 +5,10 @@
 const AVAILABLE: &[u32] = &[
     0,    // Matrix
     1,    // Shader
-    2,    // Geometry: gl_PrimitiveID in fragment shaders
+    2,    // Geometry: geometry stages, gl_PrimitiveID in fragment shaders
+    3,    // Tessellation: `pipeline::limits` asks the device
+    23,   // TessellationPointSize: the same
+    24,   // GeometryPointSize: the same
     40,   // InputAttachment
     43,   // Sampled1D
     44,   // Image1D
@@ -61,6 +64,7 @@ const KNOWN: &[(u32, &str, &[&str])] = &[
     (48, "ImageMSArray", &["image2DMSArray"]),
     (49, "StorageImageExtendedFormats", &[]),
     (52, "InterpolationFunction", &["interpolateAtCentroid", "interpolateAtSample", "interpolateAtOffset"]),
+    (54, "GeometryStreams", &["EmitStreamVertex", "EndStreamPrimitive", "stream"]),
     (55, "StorageImageReadWithoutFormat", &["imageLoad"]),
     (56, "StorageImageWriteWithoutFormat", &["imageStore"]),
     (57, "MultiViewport", &["gl_ViewportIndex"]),

@@ -1,6 +1,8 @@
 //! Finds the resources that a pass reads and writes, by the names of its declarations.
 
-use super::{Input, Inputs, PassStage, TextureKind};
+use std::collections::BTreeMap;
+
+use super::{GraphPass, Input, Inputs, PassStage, TextureKind};
 use crate::interface::SET_PASS;
 use crate::message::did_you_mean;
 use crate::shader::annotation::pass::{PassFormat, PassNote, Target};
@@ -37,11 +39,27 @@ pub struct Names<'a> {
     pub textures: &'a [TextureNote],
 }
 
-/// The inputs of a declared pass.
+/// The inputs of all stages of a declared pass.
+///
+/// # Errors
+/// Those of the first stage that has errors.
+pub fn inputs_of<'s, 't: 's>(
+    note: &PassNote,
+    stages: impl Iterator<Item = &'s PassStage<'t>>,
+    names: &Names<'_>,
+) -> Result<Inputs, Vec<Diagnostic>> {
+    let mut all = Inputs::new();
+    for stage in stages {
+        all.extend(inputs(note, stage, names)?);
+    }
+    Ok(all)
+}
+
+/// The inputs of a stage.
 ///
 /// # Errors
 /// A name that nothing has, or a declaration that does not fit what has the name.
-pub fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
+fn inputs(note: &PassNote, stage: &PassStage<'_>, names: &Names<'_>) -> Result<Inputs, Vec<Diagnostic>> {
     inputs_by(stage, |found| input(note, stage.kind, found, names))
 }
 
@@ -250,4 +268,22 @@ fn written(note: &PassNote, found: &Descriptor) -> Result<Input, Refusal> {
     }
     let message = format!("the image of `{}` has the format {}", note.name, note.format.glsl());
     Err((message, format!("write `layout({}) uniform image2D {};`", note.format.glsl(), note.name)))
+}
+
+/// Errors of passes whose buffer another pass declares with another size.
+pub fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
+    let mut first: BTreeMap<&str, (u32, String)> = BTreeMap::new();
+    let mut errors = Vec::new();
+    for pass in passes {
+        for input in pass.inputs.values() {
+            let Input::Buffer(name, bytes) = input else { continue };
+            let (size, other) = first.entry(name).or_insert_with(|| (*bytes, format!("the pass `{}`", pass.name())));
+            if *size != *bytes {
+                let message =
+                    format!("the buffer `{name}` has {bytes} bytes here and {size} in {other}; both share it");
+                errors.push(pass.note.place.error(message).with_help("declare it once, in a file that both include"));
+            }
+        }
+    }
+    errors
 }

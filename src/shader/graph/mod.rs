@@ -7,6 +7,7 @@
 
 mod inputs;
 mod order;
+mod pre_rasterization;
 mod roles;
 mod textures;
 
@@ -24,6 +25,7 @@ use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
+pub use pre_rasterization::{PreRasterization, at_main, stage_beside, unlike_neighbors};
 pub use roles::missing_passes;
 use textures::read_texture;
 pub use textures::{Texture, TextureFile, TextureKind};
@@ -89,8 +91,8 @@ pub struct GraphPass {
     pub note: PassNote,
     /// Whether its stage is a compute shader. Otherwise it is a fragment shader over the whole image.
     pub is_compute: bool,
-    /// The vertex stage of a pass that is no compute pass: its own, that of the model, or [`FULL_SCREEN`].
-    pub vertex: String,
+    /// The stages before the rasterizer, of a pass that is no compute pass.
+    pub front: PreRasterization,
     /// When it is drawn.
     pub part: Part,
     /// The images, textures and buffers that it reads and writes.
@@ -106,6 +108,12 @@ impl GraphPass {
     /// The name of the pass and its image.
     pub fn name(&self) -> &str {
         &self.note.name
+    }
+
+    /// The paths of its stages, in the order in which they run.
+    pub fn stages(&self) -> impl Iterator<Item = &str> {
+        let front = (!self.is_compute).then(|| self.front.stages());
+        front.into_iter().flatten().chain([self.note.stage.as_str()])
     }
 
     /// Whether this is its name or that of one of its images.
@@ -154,7 +162,7 @@ pub struct Graph {
 
 /// A stage that declares a pass.
 pub struct PassStage<'a> {
-    /// Vertex, fragment or compute.
+    /// The kind of stage.
     pub kind: StageKind,
     /// The declarations of its module.
     pub reflection: &'a Reflection,
@@ -183,20 +191,21 @@ impl Graph {
             errors.extend(roles::undrawn_modes(annotations));
             errors.extend(roles::no_mean(annotations));
         }
-        let model = annotations.passes.iter().find(|note| note.name == MODEL).map(|note| vertex_of(&note.stage));
+        let model = annotations.passes.iter().find(|note| note.name == MODEL).map(|note| note.stage.as_str());
         let mut passes = Vec::new();
         for note in notes {
             let stage = &stages[&note.stage];
             let is_compute = stage.kind == StageKind::Compute;
-            let own = vertex_of(&note.stage);
-            let has_own = snapshot.read(&TreePath::from(own.as_str())) != Err(SourceError::Missing);
-            let vertex = match (&model, note.model.is_some()) {
-                _ if has_own => own,
-                (Some(model), true) => model.clone(),
-                _ => FULL_SCREEN.to_owned(),
+            let mut front = match PreRasterization::find(note, model, snapshot) {
+                Ok(front) => front,
+                Err(error) => {
+                    errors.push(*error);
+                    continue;
+                }
             };
-            if !is_compute && !stages.contains_key(&vertex) {
+            if !is_compute && !front.stages().all(|path| stages.contains_key(path)) {
                 // If it is there, it is still to be compiled.
+                let vertex = &front.vertex;
                 if snapshot.read(&TreePath::from(vertex.as_str())) == Err(SourceError::Missing) {
                     let message =
                         format!("the pass `{}` needs the vertex stage {vertex}, which does not exist", note.name);
@@ -211,14 +220,15 @@ impl Graph {
                 errors.push(note.place.error(message));
                 continue;
             }
-            let of_vertex = (!is_compute).then(|| inputs::inputs(note, &stages[&vertex], &names));
+            errors.extend(front.connect(stages).err().map(|error| *error));
             errors.extend(roles::wrong_outputs(note, stage));
-            match inputs::inputs(note, stage, &names).and_then(|inputs| with(inputs, of_vertex)) {
+            let front_stages = front.stages().filter(|_| !is_compute).map(|path| &stages[path]);
+            match inputs::inputs_of(note, front_stages.chain([stage]), &names) {
                 Ok(inputs) => passes.push(GraphPass {
                     moves: inputs.values().any(moves),
                     note: note.clone(),
                     is_compute,
-                    vertex,
+                    front,
                     part: roles::part(note),
                     inputs,
                     local_size: stage.reflection.local_size,
@@ -226,7 +236,7 @@ impl Graph {
                 Err(found) => errors.extend(found),
             }
         }
-        errors.extend(different_buffers(&passes));
+        errors.extend(inputs::different_buffers(&passes));
         let inputs = passes.iter().flat_map(|pass| pass.inputs.values());
         let used: BTreeSet<(&str, TextureKind)> = inputs.filter_map(texture_of).collect();
         let mut textures = BTreeMap::new();
@@ -315,7 +325,7 @@ impl Graph {
         let is_maker = |pass: &GraphPass| !pass.note.is_built_in() && !pass.note.is_drawn_with_model();
         let shares = move |pass: &GraphPass| match input {
             Input::Image(name) | Input::Before(name) => pass.note.draws(name),
-            // Vertex stages only read.
+            // Stages before the rasterizer only read.
             Input::Buffer(name, _) => {
                 let mut inputs = pass.inputs.range(..VERTEX_BINDINGS);
                 inputs.any(|(_, other)| matches!(other, Input::Buffer(other, _) if other == name))
@@ -330,12 +340,6 @@ impl Graph {
         let is_own = !pass.note.is_drawn_with_model() || pass.adds_to_model();
         pass.note.to_picture() && is_own && is_on(index)
     }
-}
-
-/// The inputs of a fragment stage, and those of its vertex stage.
-fn with(mut inputs: Inputs, vertex: Option<Result<Inputs, Vec<Diagnostic>>>) -> Result<Inputs, Vec<Diagnostic>> {
-    inputs.extend(vertex.transpose()?.into_iter().flatten());
-    Ok(inputs)
 }
 
 /// The texture that an input reads.
@@ -385,27 +389,4 @@ fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
         );
     }
     (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
-}
-
-/// The path of the vertex stage that the stage of a pass may have beside it.
-pub fn vertex_of(stage: &str) -> String {
-    format!("{}.vert", stage.rsplit_once('.').map_or(stage, |(stem, _)| stem))
-}
-
-/// Errors of passes whose buffer another pass declares with another size.
-fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
-    let mut first: BTreeMap<&str, (u32, String)> = BTreeMap::new();
-    let mut errors = Vec::new();
-    for pass in passes {
-        for input in pass.inputs.values() {
-            let Input::Buffer(name, bytes) = input else { continue };
-            let (size, other) = first.entry(name).or_insert_with(|| (*bytes, format!("the pass `{}`", pass.name())));
-            if *size != *bytes {
-                let message =
-                    format!("the buffer `{name}` has {bytes} bytes here and {size} in {other}; both share it");
-                errors.push(pass.note.place.error(message).with_help("declare it once, in a file that both include"));
-            }
-        }
-    }
-    errors
 }

@@ -37,8 +37,10 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
             kinds.entry(file).or_default().extend(StageKind::of(stage));
         }
     }
-    let kind_of = |path: &TreePath| match kinds.get(path).map(Vec::as_slice) {
-        Some([first, others @ ..]) if others.iter().all(|kind| kind == first) => *first,
+    let kind_of = |path: &TreePath| match (StageKind::of(&path.stem().into()), kinds.get(path).map(Vec::as_slice)) {
+        // The name says it, as model.geom.glsl.
+        (Some(named), _) => named,
+        (None, Some([first, others @ ..])) if others.iter().all(|kind| kind == first) => *first,
         _ => StageKind::Fragment,
     };
     let found: Vec<Diagnostic> = rest

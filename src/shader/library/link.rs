@@ -10,7 +10,7 @@ use crate::shader::annotation::{self, Annotations};
 use crate::shader::compile::include::files_of;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
-use crate::shader::graph::{Graph, GraphPass, Input, PassStage};
+use crate::shader::graph::{Graph, GraphPass, Input, PassStage, unlike_neighbors};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
@@ -30,6 +30,8 @@ impl Library {
         let mut errors = Vec::new();
         let mut warnings = snapshot.source().refusals();
         warnings.extend(self.idle_warnings(snapshot));
+        warnings.extend(self.stray_warnings(snapshot));
+        errors.extend(self.mesh_stages(snapshot));
         let mut files = BTreeSet::new();
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
         // A stage that has never compiled adds the annotations of its files. One that draws an image of its own adds them once it
@@ -84,7 +86,8 @@ impl Library {
         });
         let declared: BTreeMap<String, PassStage<'_>> = declared.collect();
         let graph = Graph::new(&annotations, &declared, snapshot)?;
-        let errors: Vec<Diagnostic> = graph.passes.iter().flat_map(|pass| unlike_vertex(pass, &declared)).collect();
+        let pairs = |pass: &Arc<GraphPass>| unlike_neighbors(pass.stages(), &declared);
+        let errors: Vec<Diagnostic> = graph.passes.iter().flat_map(pairs).collect();
         if !errors.is_empty() {
             return Err(errors);
         }
@@ -152,13 +155,4 @@ fn silent_members(pass: &GraphPass, annotations: &Annotations) -> Vec<Diagnostic
         Diagnostic::warning(&pass.note.place.file, message).on_line(pass.note.place.line, None).with_help(help)
     };
     silent.map(warning).collect()
-}
-
-/// Errors of a pass whose vertex stage does not write what its fragment stage reads.
-fn unlike_vertex(pass: &GraphPass, stages: &BTreeMap<String, PassStage<'_>>) -> Vec<Diagnostic> {
-    let vertex = stages.get(&pass.vertex);
-    let (Some(vertex), Some(fragment), false) = (vertex, stages.get(&pass.note.stage), pass.is_compute) else {
-        return Vec::new();
-    };
-    contract::check_pair((vertex.reflection, vertex.texts), (fragment.reflection, fragment.texts))
 }

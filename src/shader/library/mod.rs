@@ -1,6 +1,7 @@
 //! The shader tree as a transaction: takes changed paths, and returns either a complete new set or diagnostics. In the
 //! second case the old set remains.
 
+mod beside;
 pub mod check;
 mod link;
 mod passes;
@@ -24,8 +25,8 @@ use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::text::is_same_code;
 use crate::shader::source::{Source, TreePath};
+use beside::fragment_of;
 use link::Linked;
-use passes::fragment_of;
 use slot::{Built, Done, Slot, build};
 
 pub use slot::Stage;
@@ -114,6 +115,8 @@ pub struct Library {
     fixed: usize,
     /// Stages in `passes/` that declare no pass, so that nothing draws them.
     idle: BTreeSet<TreePath>,
+    /// Files of tessellation, geometry, task and mesh stages.
+    beside: BTreeSet<TreePath>,
     set: Option<Arc<ShaderSet>>,
     failed: bool,
     /// Whether the next update links, even if no stage has changed: the source may refuse other texts.
@@ -125,8 +128,8 @@ impl Library {
     pub fn new(source: Source, compiler: Arc<Compiler>, stages: &[&str]) -> Self {
         let slots: Vec<Slot> = stages.iter().map(|path| Slot::new(TreePath::from(*path))).collect();
         let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
-        let fixed = slots.len();
-        Self { source, compiler, cache, slots, fixed, idle, set: None, failed: false, relink: false }
+        let (fixed, beside) = (slots.len(), BTreeSet::new());
+        Self { source, compiler, cache, slots, fixed, idle, beside, set: None, failed: false, relink: false }
     }
 
     /// The tree.

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::beside::{fragment_of, may_be_beside};
 use super::slot::Slot;
 use super::{Change, Library};
 use crate::interface;
@@ -10,7 +11,7 @@ use crate::shader::annotation::pass::{MODEL, PassNote, Target};
 use crate::shader::annotation::{self, Mode};
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::graph::{FULL_SCREEN, Graph, Part, missing_passes, vertex_of};
+use crate::shader::graph::{FULL_SCREEN, Graph, Part, missing_passes};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::text::{Line, find_word, lines};
 use crate::shader::source::{SourceError, TreePath};
@@ -35,7 +36,15 @@ impl Library {
         let is_seen = |path: &TreePath| !path.as_str().split('/').any(|name| name.starts_with('.'));
         let may_be_pass =
             |path: &TreePath| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute));
-        for path in paths.filter(|path| may_be_pass(path) && is_seen(path)) {
+        for path in paths.filter(|path| is_seen(path)) {
+            if may_be_beside(path) {
+                let is_there = snapshot.read(path) != Err(SourceError::Missing);
+                let changed = if is_there { self.beside.insert(path.clone()) } else { self.beside.remove(path) };
+                self.relink |= changed;
+            }
+            if !may_be_pass(path) {
+                continue;
+            }
             let place = self.slots.iter().position(|slot| slot.path == *path);
             let is_idle = path.as_str().starts_with("passes/") && snapshot.read(path).is_ok() && is_no_pass(path);
             let changed = if is_idle { self.idle.insert(path.clone()) } else { self.idle.remove(path) };
@@ -49,28 +58,7 @@ impl Library {
                 _ => {}
             }
         }
-        self.find_vertex_stages(snapshot);
-    }
-
-    /// Adds the vertex stages that lie beside the stages of passes, and removes those whose pass is gone.
-    fn find_vertex_stages(&mut self, snapshot: &Snapshot<'_>) {
-        let passes = self.slots.iter().skip(self.fixed).filter(|slot| is_kind(&slot.path, StageKind::Fragment));
-        let beside = passes.map(|slot| TreePath::from(vertex_of(slot.path.as_str()).as_str()));
-        let found: BTreeSet<TreePath> =
-            beside.filter(|path| snapshot.read(path) != Err(SourceError::Missing)).collect();
-        let known = self.slots.len();
-        let fixed: BTreeSet<TreePath> = self.slots.iter().take(self.fixed).map(|slot| slot.path.clone()).collect();
-        self.slots.retain(|slot| {
-            let is_own = is_kind(&slot.path, StageKind::Vertex) && !fixed.contains(&slot.path);
-            !is_own || found.contains(&slot.path)
-        });
-        self.relink |= self.slots.len() != known;
-        for path in found {
-            if self.slots.iter().all(|slot| slot.path != path) {
-                self.slots.push(Slot::new(path));
-                self.relink = true;
-            }
-        }
+        self.find_stages_beside(snapshot);
     }
 
     /// The stages that draw the model in debug modes, in place of the picture's.
@@ -145,14 +133,6 @@ impl Library {
     }
 }
 
-/// The stage that declares the pass of a stage: itself, or the fragment stage beside a vertex stage.
-pub(super) fn fragment_of(path: &TreePath) -> TreePath {
-    match StageKind::of(path) {
-        Some(StageKind::Vertex) => TreePath::from(format!("{}.frag", path.stem()).as_str()),
-        _ => path.clone(),
-    }
-}
-
 /// Whether a text declares the constant `name` as false or 0, or as another constant that is.
 fn is_zero(text: &str, name: &str) -> bool {
     let Some(line) = lines(text).into_iter().find(|line| declares(&line.code, name)) else { return false };
@@ -180,10 +160,6 @@ fn mentions(text: &str, name: &str) -> bool {
     let names = [name, &format!("before_{name}")];
     let is_named = |line: &Line<'_>| names.iter().any(|name| find_word(&line.code, name).is_some());
     text.contains(name) && lines(text).iter().any(is_named)
-}
-
-fn is_kind(path: &TreePath, kind: StageKind) -> bool {
-    StageKind::of(path) == Some(kind)
 }
 
 /// A debug mode for each image of a pass.

@@ -18,7 +18,7 @@ use crate::shader::spirv::{behavior_hash, specialize};
 pub struct Stage {
     /// The file with its `main()`.
     pub path: TreePath,
-    /// Vertex, fragment or compute.
+    /// The kind of stage.
     pub kind: StageKind,
     /// The unoptimized module.
     pub spirv: Vec<u32>,

@@ -7,7 +7,9 @@ use crate::interface::BindingKind;
 
 use super::conditions::missing_in_conditions;
 use super::opcode as op;
+use super::primitive;
 use super::reflect::{Block, Descriptor, Location, Member, Reflection, Scalar, SpecConstant};
+use super::types::{Type, type_of};
 
 type Id = u32;
 
@@ -17,6 +19,7 @@ mod decoration {
     pub const ARRAY_STRIDE: u32 = 6;
     pub const MATRIX_STRIDE: u32 = 7;
     pub const BUILT_IN: u32 = 11;
+    pub const PATCH: u32 = 15;
     pub const NON_WRITABLE: u32 = 24;
     pub const LOCATION: u32 = 30;
     pub const BINDING: u32 = 33;
@@ -39,22 +42,6 @@ const LOCAL_SIZE: u32 = 17;
 /// SPIR-V's value of the image format Rgba16f.
 const RGBA16F: u32 = 2;
 
-#[derive(Clone, Debug)]
-enum Type {
-    Bool,
-    Int { bits: u32, signed: bool },
-    Float { bits: u32 },
-    Vector { of: Id, count: u32 },
-    Matrix { column: Id, count: u32 },
-    Image { sampled: Id, dim: u32, depth: bool, arrayed: bool, multi: bool, storage: bool, format: u32 },
-    Sampler,
-    SampledImage { image: Id },
-    Array { of: Id, length: Id },
-    RuntimeArray { of: Id },
-    Struct { members: Vec<Id> },
-    Pointer { to: Id },
-}
-
 /// The declarations of one module.
 #[derive(Debug, Default)]
 pub struct Module {
@@ -69,6 +56,9 @@ pub struct Module {
     interface: Vec<Id>,
     capabilities: Vec<u32>,
     local_size: [u32; 3],
+    /// The execution model, and the execution modes.
+    model: u32,
+    modes: Vec<u32>,
     with_value: HashSet<Id>,
     without_value: Vec<Id>,
 }
@@ -124,9 +114,11 @@ impl Module {
             }
             op::ENTRY_POINT => {
                 let (_, words) = string(operands.get(2..)?);
+                self.model = at(0)?;
                 self.interface = operands.get(2 + words..)?.to_vec();
             }
             op::EXECUTION_MODE if at(1) == Some(LOCAL_SIZE) => self.local_size = [at(2)?, at(3)?, at(4)?],
+            op::EXECUTION_MODE => self.modes.push(at(1)?),
             op::CAPABILITY => self.capabilities.push(at(0)?),
             op::DECORATE => {
                 self.decorations.insert((at(0)?, at(1)?), at(2).unwrap_or(0));
@@ -161,6 +153,8 @@ impl Module {
         let mut out = Reflection {
             capabilities: self.capabilities.clone(),
             local_size: self.local_size,
+            takes: primitive::taken(self.model, &self.modes),
+            gives: primitive::given(self.model, &self.modes),
             ..Reflection::default()
         };
         for (pointer, variable, class) in &self.variables {
@@ -170,9 +164,13 @@ impl Module {
                     out.descriptors.extend(self.descriptor(*variable, *to, *class));
                 }
                 storage::PUSH_CONSTANT => out.push_constants = self.block(*to),
-                storage::INPUT if self.interface.contains(variable) => self.locations(*variable, *to, &mut out.inputs),
+                storage::INPUT if self.interface.contains(variable) => {
+                    out.reads_primitive_id |= self.is_primitive_id(*variable);
+                    self.locations(*variable, *to, primitive::has_arrays_of_inputs(self.model), &mut out.inputs);
+                }
                 storage::OUTPUT if self.interface.contains(variable) => {
-                    self.locations(*variable, *to, &mut out.outputs)
+                    out.writes_primitive_id |= self.is_primitive_id(*variable);
+                    self.locations(*variable, *to, primitive::has_arrays_of_outputs(self.model), &mut out.outputs);
                 }
                 _ => {}
             }
@@ -283,11 +281,29 @@ impl Module {
         Some(SpecConstant { id: self.decoration(id, decoration::SPEC_ID)?, name: self.name(id), scalar, default })
     }
 
-    /// Adds a variable's locations: one, or one per member of a block.
-    fn locations(&self, variable: Id, to: Id, out: &mut Vec<Location>) {
+    fn is_primitive_id(&self, variable: Id) -> bool {
+        const PRIMITIVE_ID: u32 = 7;
+        self.decoration(variable, decoration::BUILT_IN) == Some(PRIMITIVE_ID)
+    }
+
+    /// Adds a variable's locations: one, or one per member of a block. `has_array`: the variable has an element for each vertex,
+    /// unless it is one of a whole patch.
+    fn locations(&self, variable: Id, to: Id, has_array: bool, out: &mut Vec<Location>) {
+        let of_member = (to, 0, decoration::PATCH);
+        let is_patch =
+            self.decoration(variable, decoration::PATCH).is_some() || self.member_decorations.contains_key(&of_member);
+        let to = match self.types.get(&to) {
+            Some(Type::Array { of, .. }) if has_array && !is_patch => *of,
+            _ => to,
+        };
+        let patch = if is_patch { "patch " } else { "" };
         let Some(Type::Struct { members }) = self.types.get(&to) else {
             let Some(location) = self.decoration(variable, decoration::LOCATION) else { return };
-            out.push(Location { location, name: self.name(variable), type_name: self.type_name(to) });
+            out.push(Location {
+                location,
+                name: self.name(variable),
+                type_name: patch.to_owned() + &self.type_name(to),
+            });
             return;
         };
         let mut next = self.decoration(variable, decoration::LOCATION);
@@ -300,7 +316,7 @@ impl Module {
             next = Some(location.saturating_add(self.location_count(*member)));
             let member_name = self.member_names.get(&(to, index)).cloned().unwrap_or_default();
             let name = format!("{}.{member_name}", self.name(to));
-            out.push(Location { location, name, type_name: self.type_name(*member) });
+            out.push(Location { location, name, type_name: patch.to_owned() + &self.type_name(*member) });
         }
     }
 
@@ -372,29 +388,6 @@ impl Module {
             _ => "",
         }
     }
-}
-
-/// The type that an instruction declares, or `Some(None)` if it declares none; `None` if operands are missing.
-fn type_of(opcode: u32, operands: &[u32]) -> Option<Option<Type>> {
-    let at = |index: usize| operands.get(index).copied();
-    Some(Some(match opcode {
-        op::TYPE_BOOL => Type::Bool,
-        op::TYPE_INT => Type::Int { bits: at(1)?, signed: at(2)? != 0 },
-        op::TYPE_FLOAT => Type::Float { bits: at(1)? },
-        op::TYPE_VECTOR => Type::Vector { of: at(1)?, count: at(2)? },
-        op::TYPE_MATRIX => Type::Matrix { column: at(1)?, count: at(2)? },
-        op::TYPE_IMAGE => {
-            let (depth, arrayed, multi) = (at(3)? == 1, at(4)? != 0, at(5)? != 0);
-            Type::Image { sampled: at(1)?, dim: at(2)?, depth, arrayed, multi, storage: at(6)? == 2, format: at(7)? }
-        }
-        op::TYPE_SAMPLER => Type::Sampler,
-        op::TYPE_SAMPLED_IMAGE => Type::SampledImage { image: at(1)? },
-        op::TYPE_ARRAY => Type::Array { of: at(1)?, length: at(2)? },
-        op::TYPE_RUNTIME_ARRAY => Type::RuntimeArray { of: at(1)? },
-        op::TYPE_STRUCT => Type::Struct { members: operands.get(1..)?.to_vec() },
-        op::TYPE_POINTER => Type::Pointer { to: at(2)? },
-        _ => return Some(None),
-    }))
 }
 
 /// A literal string and its length in words.

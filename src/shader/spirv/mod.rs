@@ -10,8 +10,10 @@ pub mod loops;
 mod opcode;
 mod operands;
 mod optimize;
+pub mod primitive;
 pub mod reflect;
 mod specialize;
+mod types;
 pub mod uses;
 
 pub use hash::behavior_hash;

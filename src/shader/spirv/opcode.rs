@@ -59,6 +59,8 @@ pub const IEQUAL: u32 = 170;
 pub const INOT_EQUAL: u32 = 171;
 pub const UGREATER_THAN: u32 = 172;
 pub const UGREATER_THAN_EQUAL: u32 = 174;
+pub const EMIT_VERTEX: u32 = 218;
+pub const END_PRIMITIVE: u32 = 219;
 pub const ATOMIC_COMPARE_EXCHANGE: u32 = 230;
 pub const PHI: u32 = 245;
 pub const LOOP_MERGE: u32 = 246;
@@ -76,6 +78,6 @@ pub const COPY_LOGICAL: u32 = 400;
 pub const TERMINATE_INVOCATION: u32 = 4416;
 pub const DEMOTE_TO_HELPER_INVOCATION: u32 = 5380;
 
-/// Opcodes within functions that have no result id: stores, merges, branches, barriers.
-pub const WITHOUT_RESULT: [u32; 20] =
-    [0, 8, 62, 63, 99, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 254, 255, 317, 4416, 5380];
+/// Opcodes within functions that have no result id: stores, merges, branches, emitted vertices, barriers.
+pub const WITHOUT_RESULT: [u32; 22] =
+    [0, 8, 62, 63, 99, 218, 219, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 254, 255, 317, 4416, 5380];

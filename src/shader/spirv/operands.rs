@@ -10,7 +10,7 @@ pub(super) fn is_id(i: &[u32], at: usize) -> Option<bool> {
         // The model, then the function.
         op::ENTRY_POINT => return Some(at == 2),
         op::EXECUTION_MODE => 1,
-        op::NO_LINE | op::CAPABILITY => 0,
+        op::NO_LINE | op::CAPABILITY | op::EMIT_VERTEX | op::END_PRIMITIVE => 0,
         op::UNDEF | op::CONSTANT_TRUE | op::CONSTANT_FALSE | op::CONSTANT_COMPOSITE | op::CONSTANT_NULL => all,
         // The last is OpSpecConstantComposite.
         op::SPEC_CONSTANT_TRUE | op::SPEC_CONSTANT_FALSE | 51 => all,

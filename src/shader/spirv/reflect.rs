@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use crate::interface::BindingKind;
 
 use super::declared::Module;
+use super::primitive::Primitive;
 
 /// One member of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,9 +101,9 @@ pub struct Reflection {
     pub push_constants: Option<Block>,
     /// Specialization constants, ordered by id.
     pub constants: Vec<SpecConstant>,
-    /// Inputs that the stage uses, ordered by location.
+    /// Inputs that the stage uses, ordered by location. Arrays with an element for each vertex count as one element.
     pub inputs: Vec<Location>,
-    /// Outputs that the stage uses, ordered by location.
+    /// Outputs that the stage uses, ordered by location; arrays as in `inputs`.
     pub outputs: Vec<Location>,
     /// Every struct with member offsets, by name, including elements of arrays and targets of buffer references.
     pub structs: BTreeMap<String, Block>,
@@ -112,6 +113,14 @@ pub struct Reflection {
     pub capabilities: Vec<u32>,
     /// Invocations of a workgroup along x, y and z; 0 in stages without workgroups.
     pub local_size: [u32; 3],
+    /// The primitives that a geometry stage takes.
+    pub takes: Option<Primitive>,
+    /// The primitives that a geometry stage or a tessellation evaluation stage gives.
+    pub gives: Option<Primitive>,
+    /// Whether the stage reads `gl_PrimitiveID`, or `gl_PrimitiveIDIn`.
+    pub reads_primitive_id: bool,
+    /// Whether the stage writes `gl_PrimitiveID`.
+    pub writes_primitive_id: bool,
 }
 
 impl Reflection {
@@ -214,6 +223,56 @@ mod tests {
         let expected =
             [row(0, "id", "uint"), row(1, "normal", "vec3"), row(3, "Pair.a", "vec4"), row(4, "Pair.b", "vec2")];
         assert_eq!(names(&reflection.outputs), expected);
+    }
+
+    #[test]
+    fn stages_between_vertices_and_fragments() {
+        let names = |list: &[Location]| -> Vec<String> {
+            list.iter().map(|l| format!("{} {} {}", l.location, l.type_name, l.name)).collect()
+        };
+        let structure = "struct S { vec3 a; vec2 b; };";
+        let geometry = reflect(
+            "m.geom",
+            &format!(
+                "#version 460\n{structure}
+                 layout(triangles) in;
+                 layout(line_strip, max_vertices = 2) out;
+                 layout(location = 0) in S from[]; layout(location = 0) out S to; layout(location = 5) out float list[2];
+                 void main() {{
+                     to = from[1]; list[0] = 1.0; gl_Position = gl_in[0].gl_Position; gl_PrimitiveID = gl_PrimitiveIDIn;
+                     EmitVertex();
+                 }}"
+            ),
+        );
+        assert_eq!((geometry.takes, geometry.gives), (Some(Primitive::Triangles), Some(Primitive::Lines)));
+        assert!(geometry.reads_primitive_id && geometry.writes_primitive_id);
+        assert_eq!(names(&geometry.inputs), ["0 vec3 S.a", "1 vec2 S.b"]);
+        assert_eq!(names(&geometry.outputs), ["0 vec3 S.a", "1 vec2 S.b", "5 float[2] list"]);
+        let control = reflect(
+            "m.tesc",
+            &format!(
+                "#version 460\n{structure}
+                 layout(vertices = 3) out;
+                 layout(location = 0) in S from[]; layout(location = 0) out S to[]; layout(location = 2) patch out vec4 all;
+                 void main() {{ to[gl_InvocationID] = from[gl_InvocationID]; all = vec4(1.0); gl_TessLevelInner[0] = 2.0; }}"
+            ),
+        );
+        assert_eq!(names(&control.inputs), ["0 vec3 S.a", "1 vec2 S.b"]);
+        assert_eq!(names(&control.outputs), ["0 vec3 S.a", "1 vec2 S.b", "2 patch vec4 all"]);
+        let evaluation = |layout: &str| {
+            let text = format!(
+                "#version 460\n{structure}\nlayout({layout}) in;\nlayout(location = 0) in S from[];
+                 layout(location = 2) patch in vec4 all; layout(location = 0) out vec4 to;
+                 void main() {{ to = all + from[0].a.xxxx; gl_Position = gl_in[0].gl_Position; }}"
+            );
+            reflect("m.tese", &text)
+        };
+        let triangles = evaluation("triangles");
+        assert_eq!(names(&triangles.inputs), ["0 vec3 S.a", "1 vec2 S.b", "2 patch vec4 all"]);
+        assert_eq!(names(&triangles.outputs), ["0 vec4 to"]);
+        assert_eq!((triangles.takes, triangles.gives), (None, Some(Primitive::Triangles)));
+        assert_eq!(evaluation("isolines").gives, Some(Primitive::Lines));
+        assert_eq!(evaluation("quads, point_mode").gives, Some(Primitive::Points));
     }
 
     #[test]

@@ -6,6 +6,8 @@ use crate::shader::spirv::opcode as op;
 use crate::shader::spirv::specialize::opcode;
 
 const GEOMETRY: u32 = 2;
+const GEOMETRY_MODEL: u32 = 3;
+const FRAGMENT_MODEL: u32 = 4;
 const SAMPLE_RATE_SHADING: u32 = 35;
 const IMAGE_QUERY: u32 = 50;
 const DERIVATIVE_CONTROL: u32 = 51;
@@ -34,15 +36,23 @@ fn needed(i: &[u32]) -> Option<u32> {
     }
 }
 
-/// The capabilities of a linked module. `a`, `b`: the capabilities of its two sources. `instructions`: its decorations
-/// and functions. `None` if only glslang can tell.
-pub fn capabilities<'a>(a: &[u32], b: &[u32], instructions: impl Iterator<Item = &'a [u32]>) -> Option<Vec<u32>> {
+/// The capabilities of a linked module. `model`: its execution model. `a`, `b`: the capabilities of its two sources.
+/// `instructions`: its decorations and functions. `None` if only glslang can tell.
+pub fn capabilities<'a>(
+    model: u32,
+    a: &[u32],
+    b: &[u32],
+    instructions: impl Iterator<Item = &'a [u32]>,
+) -> Option<Vec<u32>> {
     let others = |list: &[u32]| list.iter().copied().filter(|c| !KNOWN.contains(c)).collect::<BTreeSet<u32>>();
     let mut all = others(a);
     if all != others(b) {
         return None;
     }
-    all.extend(instructions.filter_map(needed));
+    // Other stages than the fragment stage have gl_PrimitiveID anyway.
+    let is_needed = |capability: &u32| *capability != GEOMETRY || model == FRAGMENT_MODEL;
+    all.extend(instructions.filter_map(needed).filter(is_needed));
+    all.extend((model == GEOMETRY_MODEL).then_some(GEOMETRY));
     // glslang orders them by number, too.
     Some(all.into_iter().collect())
 }

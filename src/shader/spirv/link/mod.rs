@@ -75,8 +75,12 @@ pub fn link(Base(base): &Base<'_>, thin: &[u32], edited: &BTreeSet<Box<str>>, ca
     }
     let decorations = thin.decorations.all().chain(importer.decorations.iter().map(Vec::as_slice));
     let instructions = functions.iter().flat_map(|(function, _)| function.code.iter().copied());
-    let capabilities =
-        capability::capabilities(&base.capabilities, &thin.capabilities, decorations.chain(instructions))?;
+    let capabilities = capability::capabilities(
+        thin.entry[1],
+        &base.capabilities,
+        &thin.capabilities,
+        decorations.chain(instructions),
+    )?;
     write(&thin, &functions, importer, capabilities, code)
 }
 

@@ -1,0 +1,156 @@
+//! The stages of a pass before the rasterizer: which files they are, and whether they fit together.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::{FULL_SCREEN, PassStage};
+use crate::shader::annotation::pass::PassNote;
+use crate::shader::compile::StageKind;
+use crate::shader::contract::{Texts, check_pair};
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::{SourceError, TreePath};
+use crate::shader::spirv::primitive::Primitive;
+
+/// The stages of a pass before the rasterizer, by their paths.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+pub struct PreRasterization {
+    /// Its own vertex stage, that of the model, or [`FULL_SCREEN`].
+    pub vertex: String,
+    /// Tessellation control and tessellation evaluation.
+    pub tessellation: Option<[String; 2]>,
+    /// The geometry stage.
+    pub geometry: Option<String>,
+    /// The only primitives of the model that the stages take; `None` for all.
+    pub takes: Option<Primitive>,
+}
+
+impl PreRasterization {
+    /// The paths, in the order in which the stages run.
+    pub fn stages(&self) -> impl Iterator<Item = &str> {
+        let between = self.tessellation.iter().flatten().chain(&self.geometry);
+        std::iter::once(&self.vertex).chain(between).map(String::as_str)
+    }
+
+    /// The stages of a full-screen pass.
+    fn full_screen() -> Self {
+        Self { vertex: FULL_SCREEN.to_owned(), ..Self::default() }
+    }
+
+    /// Finds the files of a pass. Stages that lie beside its own stage are its own. A pass that draws the model takes what it
+    /// lacks from `model`, the stage of the model's pass: all stages if it has none of its own, otherwise the vertex stage.
+    ///
+    /// # Errors
+    /// A pass that draws no model has a tessellation or geometry stage, or half of the tessellation is missing.
+    pub(super) fn find(note: &PassNote, model: Option<&str>, snapshot: &Snapshot<'_>) -> Result<Self, Box<Diagnostic>> {
+        let own = |stage: &str, kind| Some(stage_beside(stage, kind)).filter(|path| exists(path, snapshot));
+        let has_own = StageKind::PRE_RASTERIZATION.iter().any(|kind| own(&note.stage, *kind).is_some());
+        let (stage, model) = match (note.model.is_some(), model) {
+            (true, Some(model)) => (if has_own { &note.stage } else { model }, Some(model)),
+            _ => (note.stage.as_str(), None),
+        };
+        let [vertex, control, evaluation, geometry] = StageKind::PRE_RASTERIZATION.map(|kind| own(stage, kind));
+        if note.model.is_none()
+            && let Some(path) = [&control, &evaluation, &geometry].into_iter().flatten().next()
+        {
+            let (name, kind) = (&note.name, stage_name(path));
+            let message = format!("the pass `{name}` draws no model, so it has no {kind} stage");
+            let help = format!("write draw=model in the //@pass of {}, or delete this file", note.stage);
+            return Err(Box::new(at_main(path, message, snapshot).with_help(help)));
+        }
+        let vertex = vertex.or_else(|| model.map(|model| stage_beside(model, StageKind::Vertex)));
+        let tessellation = match (control, evaluation) {
+            (Some(control), Some(evaluation)) => Some([control, evaluation]),
+            (None, None) => None,
+            (Some(found), None) => return Err(half(&found, StageKind::TessellationEvaluation, snapshot)),
+            (None, Some(found)) => return Err(half(&found, StageKind::TessellationControl, snapshot)),
+        };
+        let vertex = vertex.unwrap_or(Self::full_screen().vertex);
+        Ok(Self { vertex, tessellation, geometry, takes: None })
+    }
+
+    /// Sets which primitives the stages take. `stages`: the compiled stages.
+    ///
+    /// # Errors
+    /// The geometry stage takes other primitives than it gets.
+    pub(super) fn connect(&mut self, stages: &BTreeMap<String, PassStage<'_>>) -> Result<(), Box<Diagnostic>> {
+        let geometry = self.geometry.as_ref().and_then(|path| stages.get(path));
+        let taken = geometry.and_then(|stage| stage.reflection.takes);
+        let given = self.tessellation.as_ref().and_then(|[_, path]| stages.get(path)?.reflection.gives.zip(Some(path)));
+        self.takes = if self.tessellation.is_some() { Some(Primitive::Triangles) } else { taken };
+        let evaluation = self.tessellation.as_ref().and_then(|[_, path]| stages.get(path));
+        if let Some(last) = geometry.or(evaluation).filter(|stage| !has_point_size(stage)) {
+            let message = "the stage gives points of no size".to_owned();
+            return Err(Box::new(last.texts.error(&["main", "void"], message).with_help("write gl_PointSize")));
+        }
+        let (Some(stage), Some(taken)) = (geometry, taken) else { return Ok(()) };
+        let refuse =
+            |message: String, help: &str| Err(Box::new(stage.texts.error(&["in", "layout"], message).with_help(help)));
+        match given {
+            Some((given, path)) if given != taken => {
+                let message = format!("the geometry stage takes {}, but {path} gives {}", taken.glsl(), given.glsl());
+                refuse(message, &format!("write `layout({}) in;`", given.glsl()))
+            }
+            None if taken == Primitive::WithNeighbors => refuse(
+                "the model is drawn without the neighbors of its primitives".to_owned(),
+                "write `layout(triangles) in;`, or `points` or `lines` for models of points or lines",
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Errors of stages whose inputs are not the outputs of the stage before. `paths`: those of a pipeline, in their order.
+pub fn unlike_neighbors<'p>(
+    paths: impl Iterator<Item = &'p str>,
+    stages: &BTreeMap<String, PassStage<'_>>,
+) -> Vec<Diagnostic> {
+    let Some(all) = paths.map(|path| stages.get(path)).collect::<Option<Vec<_>>>() else { return Vec::new() };
+    let mut errors = Vec::new();
+    for pair in all.windows(2) {
+        let [writer, reader] = [pair[0], pair[1]].map(|stage| (stage.reflection, stage.texts));
+        errors.extend(check_pair(writer, reader));
+        let (is_geometry, reads) = (pair[0].kind == StageKind::Geometry, pair[1].reflection.reads_primitive_id);
+        if is_geometry && reads && !pair[0].reflection.writes_primitive_id {
+            let message = format!("{} reads gl_PrimitiveID, which this stage does not write", reader.1.stage);
+            let error = writer.1.error(&["main", "void"], message);
+            errors.push(error.with_help("write `gl_PrimitiveID = gl_PrimitiveIDIn;` before EmitVertex()"));
+        }
+    }
+    errors
+}
+
+/// The path of the stage of this kind that another stage may have beside it.
+pub fn stage_beside(stage: &str, kind: StageKind) -> String {
+    format!("{}.{}", stage.rsplit_once('.').map_or(stage, |(stem, _)| stem), kind.extension())
+}
+
+fn stage_name(path: &str) -> &'static str {
+    StageKind::of(&TreePath::from(path)).map_or("", StageKind::name)
+}
+
+/// Whether a stage that gives points uses `gl_PointSize`, as one that gives other primitives need not.
+fn has_point_size(stage: &PassStage<'_>) -> bool {
+    /// SPIR-V's capabilities TessellationPointSize and GeometryPointSize.
+    const POINT_SIZE: std::ops::RangeInclusive<u32> = 23..=24;
+    let reflection = stage.reflection;
+    reflection.gives != Some(Primitive::Points) || reflection.capabilities.iter().any(|c| POINT_SIZE.contains(c))
+}
+
+fn exists(path: &str, snapshot: &Snapshot<'_>) -> bool {
+    snapshot.read(&TreePath::from(path)) != Err(SourceError::Missing)
+}
+
+/// An error about a stage whose other half of the tessellation is missing.
+fn half(found: &str, missing: StageKind, snapshot: &Snapshot<'_>) -> Box<Diagnostic> {
+    let (kind, other) = (missing.name(), stage_beside(found, missing));
+    let message = format!("the {} stage needs a {kind} stage beside it, {other}", stage_name(found));
+    Box::new(at_main(found, message, snapshot))
+}
+
+/// An error at the line of `main` of a file.
+pub fn at_main(path: &str, message: String, snapshot: &Snapshot<'_>) -> Diagnostic {
+    let (stage, dependencies) = (TreePath::from(path), BTreeSet::new());
+    Texts { snapshot, stage: &stage, dependencies: &dependencies }.error(&["main", "void"], message)
+}
