@@ -5,6 +5,7 @@
 //! replaces the picture, or adds to it if it draws the model or the background. A pass follows the passes whose images it reads,
 //! and the pass that its `after=` names. Names break ties.
 
+mod contradiction;
 mod inputs;
 mod order;
 mod roles;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::annotation::Annotations;
-use super::annotation::pass::{Dispatch, MODEL, PassFormat, PassNote, PassSize, Target};
+use super::annotation::pass::{MODEL, PassNote};
 use super::compile::StageKind;
 use super::contract::Texts;
 use super::diagnostic::Diagnostic;
@@ -24,6 +25,7 @@ use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
+use contradiction::contradiction;
 pub use roles::missing_passes;
 use textures::read_texture;
 pub use textures::{Texture, TextureFile, TextureKind};
@@ -205,10 +207,10 @@ impl Graph {
                 continue;
             }
             if let Some(message) = note.when.as_deref().and_then(|name| annotations.unknown_constant(name)) {
-                errors.push(note.place.error(message).with_help(DECLARE_A_CONSTANT));
+                errors.push(note.place.error_at("when=", message).with_help(DECLARE_A_CONSTANT));
             }
-            if let Some(message) = contradiction(note, stage.kind) {
-                errors.push(note.place.error(message));
+            if let Some((word, message)) = contradiction(note, stage.kind) {
+                errors.push(note.place.error_at(word, message));
                 continue;
             }
             let of_vertex = (!is_compute).then(|| inputs::inputs(note, &stages[&vertex], &names));
@@ -353,36 +355,6 @@ fn moves(input: &Input) -> bool {
         Input::Pass(_, members) => members.iter().any(|(_, name)| name != "size_px"),
         _ => false,
     }
-}
-
-/// A message if the options of an annotation contradict each other, or do not apply to this kind of stage.
-fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
-    let is_compute = kind == StageKind::Compute;
-    if note.to != Target::Image && is_compute {
-        return Some("a compute pass writes an image of its own; read that in a fragment pass with to=picture");
-    }
-    let given = note.size != PassSize::Divided(1) || note.format != PassFormat::default() || note.mips || note.keep;
-    if note.to != Target::Image && (given || !note.also.is_empty()) {
-        return Some(
-            "the picture has its own size and format, so size=, format=, also=, mips and keep do not go with to=",
-        );
-    }
-    if is_compute && !note.also.is_empty() {
-        return Some("a compute pass writes one image; also= is for .frag files");
-    }
-    if (note.model.is_some() || note.background) && is_compute {
-        return Some("a compute pass cannot draw the model; draw=model is for .frag files");
-    }
-    if note.model.is_some() && note.background {
-        return Some("a pass draws the model or the background, not both");
-    }
-    if note.cull.is_some() && note.model.is_none() {
-        return Some("only a pass that draws the model has cull=; write draw=model");
-    }
-    if note.blend && !(note.model.is_some() && note.to_picture()) {
-        return Some("only a pass that draws the model to the picture has blend; write draw=model to=picture");
-    }
-    (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
 }
 
 /// The path of the vertex stage that the stage of a pass may have beside it.
