@@ -74,7 +74,7 @@ pub struct ReloadEvent {
     pub generation: u64,
     /// Changed files, as diagnostics name them.
     pub changed: Vec<String>,
-    /// Stages that were compiled.
+    /// Stages that were compiled, the slowest first.
     pub stages: Vec<String>,
     /// Whether the new shaders are on screen.
     pub ok: bool,
@@ -125,6 +125,17 @@ impl ReloadEvent {
             pipeline_ms: to_microseconds(reload.pipeline_ms),
             first_frame_ms: to_microseconds(first_frame_ms),
         }
+    }
+}
+
+/// The stages of a report in one line: the first few, and how many more there are.
+pub fn in_short(stages: &[String]) -> String {
+    /// More do not fit beside the names of the changed files.
+    const SHOWN: usize = 4;
+    match stages {
+        [] => "nothing to do".to_owned(),
+        few if few.len() <= SHOWN + 1 => few.join(" "),
+        many => format!("{} and {} more stages", many[..SHOWN].join(" "), many.len() - SHOWN),
     }
 }
 

@@ -1,6 +1,8 @@
 //! The commands as processes: exit codes, messages, files and JSON.
 
 mod cli {
+    mod passes;
+    mod progress;
     mod terminal;
     mod usage;
 }

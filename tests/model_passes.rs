@@ -118,7 +118,7 @@ fn the_model_reads_passes_textures_and_buffers_by_name() {
     let glow = "//@pass glow size=4x4 format=rgba32f when=GLOWS\n#version 460\n#include \"pass.glsl\"\n\
         void main() { color = vec4(0.0, 7.0, 0.0, 1.0); }\n";
     let told = lines(failed(&session.save("passes/glow.frag", glow))).join("\n");
-    assert!(told.contains("glow.frag:1:1: error: no constant with //@ui is named `GLOWS`"), "{told}");
+    assert!(told.contains("glow.frag:1:43: error: no constant with //@ui is named `GLOWS`"), "{told}");
     let user = session.tree.read("user.glsl");
     let lit = user.replace(
         "// A light before it shines",
@@ -150,7 +150,7 @@ fn the_model_reads_passes_textures_and_buffers_by_name() {
         "passes/glow.frag",
         &glow.replace("void main", "uniform sampler2D picture;\nvoid main").replace("7.0", "texture(picture, uv).g"),
     )));
-    let expected = "glow.frag:1:1: error: pbr.frag needs the image of the pass `glow`, but the model is drawn after it";
+    let expected = "glow.frag:1:9: error: pbr.frag needs the image of the pass `glow`, but the model is drawn after it";
     assert!(told.iter().any(|line| line.contains(expected)), "{told:#?}");
     let told =
         lines(failed(&session.save(
@@ -614,7 +614,7 @@ fn a_pass_draws_several_images() {
     for (text, expected) in [
         (
             counts("also=thrice"),
-            "counts.frag:1:1: error: the pass draws the image `thrice`, but its stage has no output",
+            "counts.frag:1:52: error: the pass draws the image `thrice`, but its stage has no output",
         ),
         (counts("also=twice,more"), "the pass draws the image `more`, but its stage has no output for it"),
         (counts(""), "shader writes `vec4 twice` at location 1"),

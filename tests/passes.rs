@@ -224,7 +224,7 @@ fn textures_of_the_tree_are_read_by_name_and_reloaded() {
     let text = pass("show to=picture", uniforms, "color = vec4(texture(paint, uv).rgb, 1.0);");
     let reload = session.save("passes/show.frag", &text);
     let missing = lines(failed(&reload));
-    assert!(missing[0].contains("show.frag:4:1: error: \"paint.png\" not found; looked for"), "{missing:#?}");
+    assert!(missing[0].contains("show.frag:4:19: error: \"paint.png\" not found; looked for"), "{missing:#?}");
     paint(&session, 51);
     ready(&session.changed(&["passes/paint.png"]));
     let shown = center(&session.render());
@@ -265,13 +265,13 @@ fn errors_have_their_line_and_the_picture_stays() {
             show("").replace("to=picture", "to=glow"),
             "show.frag:1:17: error: expected to=picture, to=mean or to=display, found `glow`",
         ),
-        (show("").replace("to=picture", "after=nobody"), "show.frag:1:1: error: no pass is named `nobody`."),
+        (show("").replace("to=picture", "after=nobody"), "show.frag:1:20: error: no pass is named `nobody`."),
         (show("").replace("show to", "picture to"), "show.frag:1:9: error: `picture` names what Specula draws"),
         (show("").replace("show to", "glow to"), "error: pass or texture `glow` is given twice"),
-        (show("").replace("to=picture", "to=picture size=1/2"), "show.frag:1:1: error: the picture has its own size"),
+        (show("").replace("to=picture", "to=picture size=1/2"), "show.frag:1:30: error: the picture has its own size"),
         (
             show("").replace("to=picture", "dispatch=8"),
-            "show.frag:1:1: error: only a compute pass (.comp) has dispatch=",
+            "show.frag:1:23: error: only a compute pass (.comp) has dispatch=",
         ),
         (
             show("//@texture t \"../../x.png\"")
@@ -403,7 +403,7 @@ fn a_member_that_nothing_sets_is_warned_about() {
     let warnings = lines(&session.headless.shaders().warnings);
     assert_eq!(warnings.len(), 1, "{warnings:#?}");
     assert!(
-        warnings[0].contains("fog.frag:1: warning: `haze` in a uniform block of the pass `fog` has no //@ui"),
+        warnings[0].contains("fog.frag:6:10: warning: `haze` in a uniform block of the pass `fog` has no //@ui"),
         "{warnings:#?}"
     );
 }

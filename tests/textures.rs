@@ -382,14 +382,14 @@ fn saving_one_face_changes_the_picture() {
     let good = session.render();
     std::fs::write(session.tree.path("passes/sky_nz.png"), "no image").unwrap();
     let told = lines(failed(&session.changed(&["passes/sky_nz.png"])));
-    assert!(told[0].contains("dome.frag:2:1: error:") && told[0].contains("sky_nz.png cannot be read"), "{told:#?}");
+    assert!(told[0].contains("dome.frag:2:17: error:") && told[0].contains("sky_nz.png cannot be read"), "{told:#?}");
     assert_same(&good, &session.render(), "a broken face");
     // The header is good, and the rest is missing.
     let mut bytes = Vec::new();
     face(5).write_to(&mut std::io::Cursor::new(&mut bytes), image::ImageFormat::Png).unwrap();
     std::fs::write(session.tree.path("passes/sky_nz.png"), &bytes[..40]).unwrap();
     let told = lines(failed(&session.changed(&["passes/sky_nz.png"])));
-    assert!(told[0].contains("dome.frag:2:1: error:") && told[0].contains("sky_nz.png cannot be read"), "{told:#?}");
+    assert!(told[0].contains("dome.frag:2:17: error:") && told[0].contains("sky_nz.png cannot be read"), "{told:#?}");
     std::fs::remove_file(session.tree.path("passes/sky_nz.png")).unwrap();
     let told = lines(failed(&session.changed(&["passes/sky_nz.png"])));
     assert!(told[0].contains("\"sky_*.png\" has no sky_nz.png; expected the six faces px nx py ny pz nz"), "{told:#?}");

@@ -93,9 +93,10 @@ fn build_choices(
         PipelineRequest { materials: materials.clone(), ..request }
     };
     let plain = request(&settings);
-    let mut problems = beyond_limits(&gpu, shaders, &args.common.source()?);
+    let source = args.common.source()?;
+    let mut problems = beyond_limits(&gpu, shaders, &source);
     let textures = PassTextures::load(&gpu, &shaders.graph, None).unwrap_or_else(|errors| {
-        problems.extend(errors);
+        problems.extend(errors.into_iter().map(|error| source.explained(error)));
         Arc::default()
     });
     if !problems.is_empty() {

@@ -6,6 +6,17 @@ use super::{Headless, HeadlessError};
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{BoundFrame, Capture, Output, Redraw, View};
 
+/// How far a picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Frames or paths that are drawn.
+    pub done: u64,
+    /// Frames or paths of the whole picture.
+    pub of: u64,
+    /// What is counted, for people.
+    pub unit: &'static str,
+}
+
 impl Headless {
     /// Random paths that [`Headless::render`] spends on each pixel; `None` if the mode does not accumulate.
     ///
@@ -23,19 +34,32 @@ impl Headless {
     /// # Errors
     /// Settings that do not fit, a bad file, a device error.
     pub fn render(&mut self) -> Result<Capture, HeadlessError> {
+        self.render_with(|_| ())
+    }
+
+    /// [`Headless::render`], which tells `progress` after each frame how far it is.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn render_with(&mut self, mut progress: impl FnMut(&Step)) -> Result<Capture, HeadlessError> {
         self.view.restart_passes();
-        let last = self.sequence.frames.saturating_sub(1);
+        let frames = self.sequence.frames.max(1);
+        let last = frames - 1;
         for index in 0..last {
             self.clock = self.sequence.clock(index);
             let frame = self.bind()?;
             self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
+            progress(&Step { done: u64::from(index) + 1, of: u64::from(frames), unit: "frames" });
         }
         self.clock = self.sequence.clock(last);
         self.view.restart_mean();
         let frame = self.bind()?;
         if frame.state.pipelines.accumulates {
-            for _ in 1..self.session.settings.view.frames {
+            let (samples, paths) = (self.session.settings.view.frames, frame.state.pipelines.paths_per_frame());
+            let [of, paths] = [u64::from(samples) * u64::from(paths), u64::from(paths)];
+            for sample in 1..samples {
                 self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
+                progress(&Step { done: u64::from(sample) * paths, of, unit: "paths per pixel" });
             }
         }
         let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;

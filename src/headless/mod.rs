@@ -2,6 +2,7 @@
 
 mod draw;
 mod error;
+mod hints;
 mod pixel;
 mod sequence;
 
@@ -17,9 +18,9 @@ use crate::render::{BakeError, BakeReport, BoundFrame, GpuModel, Resources, View
 use crate::scene::Model;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::graph::Input;
-use crate::shader::{Change, Compiler, GraphPass, ShaderSet, Source};
+use crate::shader::{Change, Compiler, ShaderSet, Source};
 
+pub use draw::Step;
 pub use error::HeadlessError;
 pub use sequence::Sequence;
 
@@ -309,21 +310,6 @@ impl Headless {
     /// As [`Headless::render`].
     pub fn is_animated(&mut self) -> Result<bool, HeadlessError> {
         Ok(self.bind()?.is_animated())
-    }
-
-    /// The names of the passes whose image or buffer continues from frame to frame.
-    ///
-    /// # Errors
-    /// As [`Headless::frame_state`].
-    pub fn continuing_passes(&self) -> Result<Vec<String>, HeadlessError> {
-        let passes = self.frame_state()?.pipelines.passes;
-        let inputs: Vec<&Input> = passes.iter().flat_map(|pass| pass.inputs.values()).collect();
-        let continues = |pass: &&Arc<GraphPass>| {
-            inputs.iter().any(|input| matches!(input, Input::Before(name) if pass.note.draws(name)))
-                || pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
-        };
-        let own = passes.iter().filter(|pass| !pass.note.is_built_in());
-        Ok(own.filter(continues).map(|pass| pass.name().to_owned()).collect())
     }
 
     fn bind(&mut self) -> Result<BoundFrame, HeadlessError> {

@@ -118,7 +118,7 @@ pub fn endless_loop(
             Diagnostic::error(snapshot.display_path(&stage.path), message)
         }
     };
-    Some(diagnostic.with_help(
+    Some(source.explained(diagnostic).with_help(
         "it was cut short, so the result is wrong. Repair its condition, or set back the value that it depends on",
     ))
 }

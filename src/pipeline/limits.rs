@@ -19,7 +19,10 @@ pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Dia
     for pass in &graph.passes {
         if let PassSize::Pixels(width, height) = pass.note.size {
             let message = too_large((width, height));
-            out.extend(message.map(|message| pass.note.place.error(format!("the pass `{}` {message}", pass.name()))));
+            out.extend(
+                message
+                    .map(|message| pass.note.place.error_at("size=", format!("the pass `{}` {message}", pass.name()))),
+            );
         }
     }
     out

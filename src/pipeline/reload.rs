@@ -163,7 +163,7 @@ impl Reloader {
         let before = self.current.as_deref();
         let mut problems = beyond_limits(&self.gpu, &shaders, self.library.source());
         let textures = PassTextures::load(&self.gpu, &shaders.graph, before).unwrap_or_else(|errors| {
-            problems.extend(errors);
+            problems.extend(errors.into_iter().map(|error| self.library.source().explained(error)));
             Arc::default()
         });
         if !problems.is_empty() {

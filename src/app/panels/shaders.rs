@@ -6,7 +6,7 @@ use egui::{Label, RichText, Ui};
 use super::{ERROR, QUIET, plural, section};
 use crate::app::command::Command;
 use crate::app::status::ShaderStatus;
-use crate::events::ReloadEvent;
+use crate::events::{ReloadEvent, in_short};
 use crate::shader::{Diagnostic, Severity};
 
 /// Shows the panel. `generation` is 0 before the first shaders. `cut_short`: a loop of the picture did not end.
@@ -54,7 +54,7 @@ fn lines(last: &ReloadEvent) -> (String, String, String) {
     let changed =
         if last.changed.is_empty() { vec!["start".to_owned()] } else { last.changed.iter().map(name).collect() };
     let stages = if last.stages.is_empty() { "nothing to do".to_owned() } else { last.stages.join(" ") };
-    let edit = format!("{} -> {stages}", changed.join(" "));
+    let edit = format!("{} -> {}", changed.join(" "), in_short(&last.stages));
     let times = match last.ok {
         true => format!(
             "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",

@@ -1,13 +1,15 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
+mod progress;
+mod warnings;
 mod watch;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
-use specula::events::{CompletedEvent, Event, ReloadEvent, emit};
+use specula::events::{CompletedEvent, Event, ReloadEvent, emit, in_short};
 use specula::frame::{Date, Keys};
-use specula::headless::{Headless, Sequence};
+use specula::headless::{Headless, Sequence, Step};
 use specula::message;
 use specula::picture;
 use specula::pipeline::{Outcome, Reload};
@@ -16,6 +18,8 @@ use specula::shader::Diagnostic;
 
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
 use super::{Failure, print_diagnostics};
+use progress::Progress;
+use warnings::Warnings;
 use watch::{Changes, Watch};
 
 /// Options of `render`.
@@ -84,6 +88,8 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     if settings.environment.is_lit() {
         emit(args.common.emits(), &Event::Bake(headless.bake_report()));
     }
+    let mut warnings = Warnings::default();
+    warnings.tell(&headless.shaders().warnings);
     match write(&mut headless, &args, all) {
         Err(Failure::Shaders(diagnostics)) if watch.is_some() => {
             tell(&args, &diagnostics);
@@ -92,15 +98,17 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         result => {
             result?;
             hint_at_frames(&headless, &args)?;
+            hint_at_background(&headless);
         }
     }
     warn_of_bakes(&headless);
     emit(args.common.emits(), &Event::Ready { device: &gpu.info().name, ms: start.elapsed().as_secs_f64() * 1e3 });
     complete(&mut headless, &args, watch.is_some())?;
+    warnings.tell(&headless.shaders().warnings);
     if let Some(mut watch) = watch {
         eprintln!("specula: wrote {}; watching, Ctrl+C ends", args.out.display());
         while let Some(changes) = watch.next() {
-            again(&mut headless, &args, all, &mut watch, &changes)?;
+            again(&mut headless, &args, all, &mut watch, &changes, &mut warnings)?;
             check_validation(&gpu)?;
         }
     }
@@ -137,7 +145,14 @@ fn first_picture(
 }
 
 /// Handles a batch of changes, and writes the picture again if it may have changed.
-fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, changes: &Changes) -> Result<(), Failure> {
+fn again(
+    headless: &mut Headless,
+    args: &Args,
+    all: bool,
+    watch: &mut Watch,
+    changes: &Changes,
+    warnings: &mut Warnings,
+) -> Result<(), Failure> {
     let detect_ms = changes.first_event.elapsed().as_secs_f64() * 1e3;
     let new_files = take_files(headless, args, watch, changes)?;
     let reload = headless.update_first(headless.reloader().library().change_of(&changes.paths));
@@ -160,8 +175,13 @@ fn again(headless: &mut Headless, args: &Args, all: bool, watch: &mut Watch, cha
         }
         warn_of_bakes(headless);
     }
+    if let Outcome::Ready(set) = &reload.outcome {
+        warnings.tell(&set.shaders.warnings);
+    }
     report(&reload, headless, args, detect_ms, first_frame_ms);
-    complete(headless, args, true)
+    complete(headless, args, true)?;
+    warnings.tell(&headless.shaders().warnings);
+    Ok(())
 }
 
 /// Compiles the stages that the picture did not need. Their errors end the command, unless it watches for the next save.
@@ -234,6 +254,13 @@ fn hint_at_frames(headless: &Headless, args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Says that the author's own background is not shown.
+fn hint_at_background(headless: &Headless) {
+    if let Some(file) = headless.hidden_background() {
+        message::tell(format_args!("hint: {file} changes the background, which `--background env` shows"));
+    }
+}
+
 /// Warns of functions of the BRDF whose values the tables or the prefilter could not use.
 fn warn_of_bakes(headless: &Headless) {
     for warning in headless.bake_warnings() {
@@ -256,13 +283,12 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
             tell(args, diagnostics);
             eprintln!("specula: the last good picture stays");
         }
-        Outcome::Ready(set) => {
-            print_diagnostics(&set.shaders.warnings);
+        Outcome::Ready(_) => {
             let report = &reload.report;
             message::tell(format_args!(
                 "{} -> {}  compile {:.0} ms + pipeline {:.0} ms + frame {first_frame_ms:.0} ms",
                 report.changed.join(" "),
-                report.stages.iter().map(|(stage, _)| stage.as_str()).collect::<Vec<_>>().join(" "),
+                in_short(&report.stages.iter().map(|(stage, _)| stage.clone()).collect::<Vec<_>>()),
                 report.compile_ms,
                 reload.pipeline_ms,
             ));
@@ -278,7 +304,7 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
     if !all {
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
-        let capture = capture(headless, args)?;
+        let capture = capture(headless, args, &mut Progress::new(!args.common.emits(), 1), 0)?;
         return picture::write(&capture, out).map_err(Failure::Input);
     }
     // The passes that are off, and their modes, are known when all stages have compiled.
@@ -286,12 +312,14 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
         return Err(Failure::Shaders(diagnostics));
     }
     let frames = headless.settings_mut().view.frames;
-    for mode in &headless.shaders().modes {
+    let shaders = headless.shaders();
+    let mut progress = Progress::new(!args.common.emits(), shaders.modes.len());
+    for (number, mode) in shaders.modes.iter().enumerate() {
         let settings = headless.settings_mut();
         settings.mode.clone_from(&mode.slug);
         // A frame of a mode that traces the model takes seconds on a software device.
         settings.view.frames = if mode.traces { 1 } else { frames };
-        let capture = capture(headless, args)?;
+        let capture = capture(headless, args, &mut progress, number)?;
         picture::write(&capture, &picture::path_of_mode(out, &mode.slug)).map_err(Failure::Input)?;
     }
     headless.settings_mut().view.frames = frames;
@@ -299,12 +327,15 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
 }
 
 /// Renders the picture, and reports the number of random paths behind it, if there are any.
-fn capture(headless: &mut Headless, args: &Args) -> Result<Capture, Failure> {
+fn capture(headless: &mut Headless, args: &Args, progress: &mut Progress, number: usize) -> Result<Capture, Failure> {
     let begin = Instant::now();
-    let capture = headless.render()?;
+    progress.begin(number, &headless.settings_mut().mode);
+    let capture = headless.render_with(|step| progress.step(step))?;
+    progress.step(&Step { done: 1, of: 1, unit: "" });
     if let Some(paths_per_pixel) = headless.paths_per_pixel()? {
         let ms = begin.elapsed().as_secs_f64() * 1e3;
         let mode = headless.settings_mut().mode.clone();
+        progress.clear();
         message::tell(format_args!("{mode}: {paths_per_pixel} paths per pixel in {:.1} s (view.frames)", ms * 1e-3));
         emit(args.common.emits(), &Event::Paths { mode: &mode, paths_per_pixel, ms });
     }

@@ -57,7 +57,7 @@ impl PassTextures {
             };
             match uploaded {
                 Ok(uploaded) => drop(textures.insert(key.clone(), uploaded)),
-                Err(message) => errors.push(of.note.place.error(message)),
+                Err(message) => errors.push(of.note.place.error_at(&of.note.image, message)),
             }
         }
         if errors.is_empty() { Ok(Arc::new(Self(textures))) } else { Err(errors) }

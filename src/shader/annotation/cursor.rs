@@ -2,29 +2,9 @@
 
 use std::ops::Range;
 
+use super::place::Place;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::is_word;
-
-/// Location of an annotation.
-#[derive(Clone, Debug)]
-pub struct Place {
-    /// Path of the file for messages.
-    pub file: String,
-    /// Line number, from 1.
-    pub line: u32,
-    /// The whole line.
-    pub raw: String,
-    /// Byte range of the annotation in `raw`.
-    pub bytes: Range<usize>,
-}
-
-impl Place {
-    /// An error on this line, with the caret under `bytes` or else under the whole annotation.
-    pub fn error(&self, bytes: Option<Range<usize>>, message: impl Into<String>) -> Box<Diagnostic> {
-        let bytes = bytes.unwrap_or_else(|| self.bytes.clone());
-        Box::new(Diagnostic::error(&self.file, message).on_line(self.line, Some(&self.raw)).under(bytes))
-    }
-}
 
 /// A position in an annotation.
 pub struct Cursor<'a> {
@@ -49,10 +29,11 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
-    /// An error under `bytes`, or under the whole annotation if `bytes` is empty.
+    /// An error under `bytes`, or behind the annotation if `bytes` is empty.
     pub fn error(&self, bytes: Range<usize>, message: impl Into<String>) -> Box<Diagnostic> {
-        // At the end of the line there is no word to mark.
-        self.place.error(Some(bytes).filter(|bytes| !bytes.is_empty()), message)
+        // White space may follow the last word.
+        let bytes = if bytes.is_empty() { self.place.end() } else { bytes };
+        Box::new(self.place.under(bytes, message))
     }
 
     /// An error at the next word.

@@ -20,6 +20,7 @@ mod mode;
 mod parameter;
 mod parse;
 pub mod pass;
+pub mod place;
 mod resolve;
 pub mod texture;
 mod ui;
@@ -33,9 +34,9 @@ use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::reflect::Reflection;
-use cursor::Place;
 use parse::{Found, parse_file};
 use pass::PassNote;
+use place::Place;
 use resolve::resolve;
 use texture::TextureNote;
 use ui::Ui;
@@ -159,34 +160,20 @@ impl Seen {
     }
 
     fn pass(&mut self, note: &PassNote) -> Result<(), Box<Diagnostic>> {
-        let error = |message| Box::new(note.place.error(message));
-        self.only("//@pass of", &note.stage, (&note.place.file, note.place.line), error)?;
+        self.first("//@pass of", &note.stage, &note.place)?;
         let names = std::iter::once(&note.name).chain(note.also.iter().map(|(name, _)| name));
-        names
-            .into_iter()
-            .try_for_each(|name| self.only("pass or texture", name, (&note.place.file, note.place.line), error))
+        names.into_iter().try_for_each(|name| self.first("pass or texture", name, &note.place))
     }
 
     fn texture(&mut self, note: &TextureNote) -> Result<(), Box<Diagnostic>> {
-        let place = (note.place.file.as_str(), note.place.line);
-        self.only("pass or texture", &note.name, place, |message| Box::new(note.place.error(message)))
+        self.first("pass or texture", &note.name, &note.place)
     }
 
     fn first(&mut self, what: &'static str, value: &str, place: &Place) -> Result<(), Box<Diagnostic>> {
-        self.only(what, value, (&place.file, place.line), |message| place.error(None, message))
-    }
-
-    fn only(
-        &mut self,
-        what: &'static str,
-        value: &str,
-        (file, line): (&str, u32),
-        error: impl Fn(String) -> Box<Diagnostic>,
-    ) -> Result<(), Box<Diagnostic>> {
-        match self.0.insert((what, value.to_owned()), (file.to_owned(), line)) {
+        match self.0.insert((what, value.to_owned()), (place.file.clone(), place.line)) {
             None => Ok(()),
             Some((file, line)) => {
-                let error = error(format!("{what} `{value}` is given twice"));
+                let error = place.error_at(value, format!("{what} `{value}` is given twice"));
                 Err(Box::new(error.with_note(format!("the other is at {file}:{line}"))))
             }
         }

@@ -210,5 +210,5 @@ fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<u32, B
     }
     let found = declaration.map_or("the end of the file", |line| line.raw.trim());
     let message = format!("expected `const uint NAME = NUMBER;` with the mode, found `{found}`");
-    Err(cursor.place().error(None, message))
+    Err(Box::new(cursor.place().error(message)))
 }

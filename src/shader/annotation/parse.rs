@@ -1,10 +1,12 @@
 //! Parses `//@` comments. An error has a column and says what was expected.
 
-use super::cursor::{Cursor, Place};
+use super::cursor::Cursor;
 use super::mode::{Mode, mode};
 use super::pass::{self, PassNote};
+use super::place::Place;
 use super::texture::{self, TextureNote};
 use super::ui::{Ui, ui};
+use crate::message::did_you_mean;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, lines};
 
@@ -58,8 +60,14 @@ fn parse(place: Place, start: usize, declaration: Option<&Line<'_>>) -> Result<F
         "pass" => pass::pass(&mut cursor).map(Found::Pass),
         "texture" => texture::texture(&mut cursor).map(Found::Texture),
         _ => {
-            let message = format!("expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@{kind}`");
-            Err(cursor.error(start..bytes.end, message))
+            let hint = did_you_mean(kind, ["mode", "ui", "pass", "texture"]);
+            let hint = hint.replace("mean `", "mean `//@");
+            let message = format!("expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@{kind}`.{hint}");
+            let error = *cursor.error(start..bytes.end, message);
+            Err(Box::new(match kind {
+                "buffer" => error.with_help("a buffer needs no annotation: `buffer Particles { vec4 at[1024]; };`"),
+                _ => error,
+            }))
         }
     }
 }

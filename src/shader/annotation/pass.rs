@@ -1,10 +1,10 @@
 //! Parses `//@pass`, with which a shader tree adds passes to a frame.
 
-use std::ops::Range;
-
 use serde::Serialize;
 
-use super::cursor::{Cursor, Place};
+use super::cursor::Cursor;
+use super::place::Place;
+use crate::message::did_you_mean;
 use crate::shader::diagnostic::Diagnostic;
 
 /// Number of images that every device can draw to in one pass.
@@ -12,6 +12,26 @@ const MOST_IMAGES: usize = 4;
 
 /// Largest side of a pass's image in pixels, if it is given in pixels. The device may offer less.
 const LARGEST_SIDE: u32 = 16384;
+
+/// The options, for suggestions.
+const OPTIONS: [&str; 16] = [
+    "to",
+    "after",
+    "size",
+    "format",
+    "also",
+    "draw",
+    "instances",
+    "cull",
+    "blend",
+    "dispatch",
+    "when",
+    "mips",
+    "keep",
+    "off",
+    "doc",
+    "instead",
+];
 
 /// The pass from the HDR picture to the displayed picture. Every tree declares it, with `to=display`.
 pub const TONEMAP: &str = "tonemap";
@@ -21,41 +41,6 @@ pub const MODEL: &str = "model";
 
 /// Names that no pass or texture can have, since they name images that Specula gives to passes.
 const RESERVED: [&str; 3] = ["picture", "depth", "behind"];
-
-/// The location of an annotation. All locations compare as equal, so that moving a line does not count as a change.
-#[derive(Clone, Debug, Default)]
-pub struct NotePlace {
-    /// File as printed.
-    pub file: String,
-    /// 1-based line.
-    pub line: u32,
-    raw: String,
-    bytes: Range<usize>,
-}
-
-impl PartialEq for NotePlace {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-impl Eq for NotePlace {}
-
-impl std::hash::Hash for NotePlace {
-    fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
-}
-
-impl NotePlace {
-    pub(super) fn of(place: &Place) -> Self {
-        let Place { file, line, raw, bytes } = place.clone();
-        Self { file, line, raw, bytes }
-    }
-
-    /// An error about the annotation.
-    pub fn error(&self, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::error(&self.file, message).on_line(self.line, Some(&self.raw)).under(self.bytes.clone())
-    }
-}
 
 /// The size of a pass's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -213,7 +198,7 @@ pub struct PassNote {
     pub stage: String,
     /// Location of the annotation.
     #[serde(skip)]
-    pub place: NotePlace,
+    pub place: Place,
 }
 
 impl PassNote {
@@ -248,7 +233,7 @@ impl PassNote {
 /// Parses the rest of a `//@pass`.
 pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
     let name = name(cursor, "pass")?;
-    let label = cursor.string()?.unwrap_or_else(|| name.clone());
+    let label = cursor.string()?.filter(|label| !label.trim().is_empty()).unwrap_or_else(|| name.clone());
     let mut note = PassNote {
         name,
         label,
@@ -269,7 +254,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
         when: None,
         doc: String::new(),
         stage: String::new(),
-        place: NotePlace::of(cursor.place()),
+        place: cursor.place().clone(),
     };
     while !cursor.at_end() {
         let (bytes, key) = cursor.key();
@@ -306,7 +291,8 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             other => {
                 let known = "to=picture, after=, size=, format=, also=, draw=model, instances=, cull=, blend, dispatch=, when=, mips, \
                              keep, off or doc=";
-                return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
+                let hint = did_you_mean(other, OPTIONS);
+                return Err(cursor.error(bytes, format!("expected {known}, found `{other}`.{hint}")));
             }
         }
     }
@@ -325,7 +311,11 @@ fn check_name(name: &str, what: &str) -> Result<(), String> {
     let is_first = |c: char| c.is_ascii_lowercase();
     let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if !name.starts_with(is_first) || !name.chars().all(is_part) || name.starts_with("gl_") {
-        return Err(format!("expected the {what}'s name in a-z, 0-9 and _, found `{name}`"));
+        let plain: String = name.chars().map(|c| if c == '-' { '_' } else { c.to_ascii_lowercase() }).collect();
+        let hint =
+            did_you_mean(&plain, check_name(&plain, what).is_ok().then_some(plain.as_str()).filter(|_| plain != name));
+        let found = if name.is_empty() { "the end of the line".to_owned() } else { format!("`{name}`.{hint}") };
+        return Err(format!("expected the {what}'s name, a letter a-z and then a-z, 0-9 or _; found {found}"));
     }
     if RESERVED.contains(&name) || name.starts_with("before_") {
         return Err(format!("`{name}` names what Specula draws; choose another name for the {what}"));

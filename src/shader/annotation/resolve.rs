@@ -1,6 +1,6 @@
 //! Completes a `//@ui` with the id, default or offset that its declaration has in the compiled modules.
 
-use super::cursor::Place;
+use super::place::Place;
 use super::ui::{Declared, Ui, outside_of_choices};
 use super::{Annotations, Constant, Parameter};
 use crate::interface;
@@ -15,14 +15,15 @@ pub(super) fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) ->
         Declared::Constant(_) => {
             let found = modules.iter().flat_map(|module| &module.constants).find(|constant| constant.name == name);
             let Some(found) = found else {
-                return Err(place.error(None, format!("`{name}` is in no compiled stage, so //@ui cannot set it")));
+                let message = format!("`{name}` is in no compiled stage, so //@ui cannot set it");
+                return Err(Box::new(place.error_at(&name, message)));
             };
             let value = match found.scalar {
                 Scalar::Int => f64::from(found.default.cast_signed()),
                 _ => f64::from(found.default),
             };
             if let Some(message) = outside_of_choices(&choices, value) {
-                return Err(place.error(None, message));
+                return Err(Box::new(place.error_at("choice", message)));
             }
             let (id, scalar, default) = (found.id, found.scalar, found.default);
             out.constants.push(Constant {
@@ -88,12 +89,12 @@ fn offset_in_params(name: &str, modules: &[&Reflection], place: &Place) -> Resul
         [] => {
             let message =
                 format!("`{name}` is no member of the block at SET_FRAME, BINDING_PARAMS in any compiled stage");
-            Err(place.error(None, message))
+            Err(Box::new(place.error_at(name, message)))
         }
         [first, other, ..] => {
             let message = format!("`{name}` is at byte {first} in one stage and at byte {other} in another");
             let help = "declare the Params block once, in a file that all stages include";
-            Err(Box::new(place.error(None, message).with_help(help)))
+            Err(Box::new(place.error_at(name, message).with_help(help)))
         }
     }
 }

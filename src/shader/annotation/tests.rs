@@ -115,7 +115,7 @@ fn claims_name_choices() {
 fn what_does_not_parse_says_what_was_expected() {
     refused(
         "//@mod d \"D\"\nint a;",
-        "m.frag:3:1: error: expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@mod`",
+        "m.frag:3:1: error: expected `//@mode`, `//@ui`, `//@pass` or `//@texture`, found `//@mod`. Did you mean `//@mode`?",
     );
     refused(
         "//@mode D \"D\"\nconst uint M = 1u;",
@@ -151,17 +151,17 @@ fn what_does_not_parse_says_what_was_expected() {
     refused(&format!("{PARAMS}\nfloat a; //@ui = x\n}};"), "m.frag:4:18: error: expected a number, found `x`");
     refused(
         &format!("{PARAMS}\nmat4 a; //@ui\n}};"),
-        "m.frag:4:9: error: expected float, int, uint, bool, vec2, vec3 or vec4 before the name, found `mat4`",
+        "m.frag:4:1: error: expected float, int, uint, bool, vec2, vec3 or vec4 before the name, found `mat4`",
     );
     refused(
         "float a; //@ui",
-        "m.frag:3:10: error: `a` is no member of the block at SET_FRAME, BINDING_PARAMS in any compiled stage",
+        "m.frag:3:7: error: `a` is no member of the block at SET_FRAME, BINDING_PARAMS in any compiled stage",
     );
     let ui = "layout(constant_id = 40) const uint C = 0u; //@ui";
     refused(&format!("{ui} choice A"), "m.frag:3:58: error: expected NAME=NUMBER after `choice`, found `A`");
     refused(
         &format!("{ui} = 1"),
-        "m.frag:3:45: error: a constant's default stands in its declaration, not after //@ui",
+        "m.frag:3:51: error: a constant's default stands in its declaration, not after //@ui",
     );
 }
 
@@ -189,7 +189,7 @@ fn values_must_fit_their_types_and_choices() {
     refused_constant(
         "uint",
         "choice A=1 B=2",
-        "m.frag:3:50: error: expected a default among the choices A=1 B=2, found 0",
+        "m.frag:3:56: error: expected a default among the choices A=1 B=2, found 0",
     );
     let negative = "layout(constant_id = 40) const int C = -1; //@ui choice A=-1 B=2";
     assert_eq!(read_text(negative).unwrap().constants[0].choices[0].1, -1);
@@ -229,7 +229,7 @@ fn keys_of_the_window_are_refused() {
 fn what_is_given_twice_names_both_places() {
     let text = "const uint A = 1u; //@mode a \"A\"\nconst uint B = 2u; //@mode a \"B\"";
     let errors = read_text(text).unwrap_err();
-    assert_eq!(errors[0].one_line(), "m.frag:4:20: error: mode slug `a` is given twice");
+    assert_eq!(errors[0].one_line(), "m.frag:4:28: error: mode slug `a` is given twice");
     assert_eq!(errors[0].notes, ["the other is at m.frag:3"]);
     let text = "const uint A = 1u; //@mode a \"A\"\nconst uint B = 1u; //@mode b \"B\"";
     assert_eq!(read_text(text).unwrap_err()[0].message, "mode id `1` is given twice");

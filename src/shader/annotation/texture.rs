@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::cursor::Cursor;
-use super::pass::{NotePlace, name};
+use super::pass::name;
+use super::place::Place;
 use crate::shader::diagnostic::Diagnostic;
 
 /// The addressing mode of a texture, for coordinates beyond its edges.
@@ -39,7 +40,7 @@ pub struct TextureNote {
     pub layers: Option<u32>,
     /// Location of the annotation.
     #[serde(skip)]
-    pub place: NotePlace,
+    pub place: Place,
 }
 
 /// Whether a file with this extension may be the image of a `//@texture`.
@@ -50,10 +51,15 @@ pub fn is_image_extension(extension: &str) -> bool {
 /// Parses the rest of a `//@texture`.
 pub fn texture(cursor: &mut Cursor<'_>) -> Result<TextureNote, Box<Diagnostic>> {
     let name = name(cursor, "texture")?;
+    cursor.at_end();
+    let start = cursor.position();
     let Some(image) = cursor.string()? else {
         return Err(cursor.expected("the image's file in quotes"));
     };
-    let place = NotePlace::of(cursor.place());
+    if image.trim().is_empty() {
+        return Err(cursor.error(start..cursor.position(), "expected the name of the image's file in the quotes"));
+    }
+    let place = cursor.place().clone();
     let mut note = TextureNote {
         name,
         image,

@@ -1,7 +1,8 @@
 //! Parses `//@ui` with the declaration that it belongs to.
 
 use super::ParameterType;
-use super::cursor::{Cursor, Place};
+use super::cursor::Cursor;
+use super::place::Place;
 use super::value::{choices, claim, claimed, default, range};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, is_word, tokens};
@@ -71,7 +72,7 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
         if cursor.peek('=') {
             let Declared::Member(kind) = declared else {
                 let message = "a constant's default stands in its declaration, not after //@ui";
-                return Err(cursor.place().error(None, message));
+                return Err(cursor.error(cursor.position()..cursor.position() + 1, message));
             };
             cursor.take('=');
             let (bytes, values) = default(cursor, kind)?;
@@ -118,7 +119,7 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
             };
         }
     };
-    Err(cursor.place().error(None, message))
+    Err(Box::new(cursor.place().error_at("color", message)))
 }
 
 /// A message if there are choices and `default` is not one of them.
@@ -132,7 +133,8 @@ pub fn outside_of_choices(choices: &[(String, i64)], default: f64) -> Option<Str
 
 /// Parses `layout(constant_id = ...) const TYPE NAME` or the member `TYPE NAME;`.
 fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(Declared, String), Box<Diagnostic>> {
-    let error = |message: String| Err(cursor.place().error(None, message));
+    // The declaration may be on the next line.
+    let error = |word: &str, message: String| Err(Box::new(cursor.place().error_at(word, message)));
     let words: Vec<&str> = declaration.map(|line| tokens(&line.code)).unwrap_or_default().iter().map(|t| t.1).collect();
     if words.contains(&"constant_id") {
         let at = words.iter().position(|word| *word == "const");
@@ -148,6 +150,7 @@ fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result
                 Ok((Declared::Constant(scalar), (*name).to_owned()))
             }
             _ => error(
+                "",
                 "expected `layout(constant_id = ...) const TYPE NAME = DEFAULT;` on one line with TYPE one of \
                  bool, int, uint and float"
                     .to_owned(),
@@ -158,7 +161,7 @@ fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result
     let (Some(kind), Some(name)) =
         (end.and_then(|end| words.get(end.checked_sub(2)?)), end.and_then(|end| words.get(end.checked_sub(1)?)))
     else {
-        return error("expected //@ui behind `TYPE NAME;` in Params, or behind a constant_id".to_owned());
+        return error("", "expected //@ui behind `TYPE NAME;` in Params, or behind a constant_id".to_owned());
     };
     let kind = match *kind {
         "float" => ParameterType::Float,
@@ -169,9 +172,9 @@ fn ui_declaration(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result
         "vec3" => ParameterType::Vec3,
         "vec4" => ParameterType::Vec4,
         other => {
-            return error(format!(
-                "expected float, int, uint, bool, vec2, vec3 or vec4 before the name, found `{other}`"
-            ));
+            let message =
+                format!("expected float, int, uint, bool, vec2, vec3 or vec4 before the name, found `{other}`");
+            return error(other, message);
         }
     };
     Ok((Declared::Member(kind), (*name).to_owned()))

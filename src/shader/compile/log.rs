@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::uniform;
 use crate::shader::diagnostic::{Diagnostic, Severity};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -31,7 +32,7 @@ pub fn parse(
         let path = dependencies.iter().find(|path| path.as_str() == file);
         let printed = path.map_or_else(|| file.to_owned(), |path| snapshot.display_path(path));
         let text = path.and_then(|path| snapshot.read(path).ok());
-        let diagnostic = diagnose(printed, line, message, text.as_deref());
+        let diagnostic = diagnose(printed, line, message, text.as_deref(), stage);
         let diagnostic = Diagnostic { severity, ..diagnostic };
         if !out.last().is_some_and(|last| is_consequence(last, &diagnostic)) {
             out.push(diagnostic);
@@ -72,7 +73,7 @@ fn is_consequence(first: &Diagnostic, next: &Diagnostic) -> bool {
         && conversion.iter().any(|text| next.message.contains(text))
 }
 
-fn diagnose(file: String, line: Option<u32>, message: &str, text: Option<&str>) -> Diagnostic {
+fn diagnose(file: String, line: Option<u32>, message: &str, text: Option<&str>, stage: &TreePath) -> Diagnostic {
     let lines = text.map(lines).unwrap_or_default();
     let (token, said) = split_token(message);
     let Some(line) = line else { return without_line(file, said, &lines) };
@@ -83,6 +84,11 @@ fn diagnose(file: String, line: Option<u32>, message: &str, text: Option<&str>) 
     }
     if let Some(rest) = said.strip_prefix("syntax error, unexpected ") {
         return syntax_error(file, line, rest, &lines, index);
+    }
+    if token == uniform::OUTSIDE
+        && let Some(diagnostic) = source.and_then(|line| uniform::outside_a_block(&file, line, stage))
+    {
+        return diagnostic;
     }
     if token == "#include" {
         let said = said.rsplit_once(" for header name: ").map_or(said, |(said, _)| said);

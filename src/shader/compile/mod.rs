@@ -4,6 +4,7 @@ mod balance;
 pub mod include;
 pub mod log;
 mod unbound;
+mod uniform;
 
 use std::collections::BTreeSet;
 use std::time::Instant;

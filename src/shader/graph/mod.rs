@@ -5,6 +5,7 @@
 //! replaces the picture, or adds to it if it draws the model or the background. A pass follows the passes whose images it reads,
 //! and the pass that its `after=` names. Names break ties.
 
+mod contradiction;
 mod inputs;
 mod order;
 mod pre_rasterization;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::annotation::Annotations;
-use super::annotation::pass::{Dispatch, MODEL, PassFormat, PassNote, PassSize, Target};
+use super::annotation::pass::{MODEL, PassNote};
 use super::compile::StageKind;
 use super::contract::Texts;
 use super::diagnostic::Diagnostic;
@@ -25,6 +26,7 @@ use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
+use contradiction::contradiction;
 pub use pre_rasterization::{PreRasterization, at_main, stage_beside, unlike_neighbors};
 pub use roles::missing_passes;
 use textures::read_texture;
@@ -214,10 +216,10 @@ impl Graph {
                 continue;
             }
             if let Some(message) = note.when.as_deref().and_then(|name| annotations.unknown_constant(name)) {
-                errors.push(note.place.error(message).with_help(DECLARE_A_CONSTANT));
+                errors.push(note.place.error_at("when=", message).with_help(DECLARE_A_CONSTANT));
             }
-            if let Some(message) = contradiction(note, stage.kind) {
-                errors.push(note.place.error(message));
+            if let Some((word, message)) = contradiction(note, stage.kind) {
+                errors.push(note.place.error_at(word, message));
                 continue;
             }
             errors.extend(front.connect(stages).err().map(|error| *error));
@@ -357,36 +359,4 @@ fn moves(input: &Input) -> bool {
         Input::Pass(_, members) => members.iter().any(|(_, name)| name != "size_px"),
         _ => false,
     }
-}
-
-/// A message if the options of an annotation contradict each other, or do not apply to this kind of stage.
-fn contradiction(note: &PassNote, kind: StageKind) -> Option<&'static str> {
-    let is_compute = kind == StageKind::Compute;
-    if note.to != Target::Image && is_compute {
-        return Some("a compute pass writes an image of its own; read that in a fragment pass with to=picture");
-    }
-    let given = note.size != PassSize::Divided(1) || note.format != PassFormat::default() || note.mips || note.keep;
-    if note.to != Target::Image && (given || !note.also.is_empty()) {
-        return Some(
-            "the picture has its own size and format, so size=, format=, also=, mips and keep do not go with to=",
-        );
-    }
-    if is_compute && !note.also.is_empty() {
-        return Some("a compute pass writes one image; also= is for .frag files");
-    }
-    if (note.model.is_some() || note.background) && is_compute {
-        return Some("a compute pass cannot draw the model; draw=model is for .frag files");
-    }
-    if note.model.is_some() && note.background {
-        return Some("a pass draws the model or the background, not both");
-    }
-    if note.cull.is_some() && note.model.is_none() {
-        return Some("only a pass that draws the model has cull=; write draw=model");
-    }
-    if note.blend && !note.is_drawn_with_model() {
-        return Some(
-            "only a pass that draws the model or the background to the picture has blend; write draw=model to=picture",
-        );
-    }
-    (!is_compute && note.dispatch != Dispatch::Size).then_some("only a compute pass (.comp) has dispatch=")
 }

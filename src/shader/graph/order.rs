@@ -82,10 +82,8 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
                 None
             };
             if let Some(reason) = refusal {
-                let error = pass
-                    .note
-                    .place
-                    .error(format!("{path} needs the image of the pass `{}`, but {reason}", pass.name()));
+                let message = format!("{path} needs the image of the pass `{}`, but {reason}", pass.name());
+                let error = pass.note.place.error_at(pass.name(), message);
                 errors.push(error.with_help("a pass with draw=model can draw depth and normals before the model"));
                 continue;
             }
@@ -114,7 +112,7 @@ fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Di
     }
     let known: Vec<&str> = index.keys().map(String::as_str).filter(|known| *known != pass.name()).collect();
     let hint = did_you_mean(name, known.iter().copied());
-    let error = pass.note.place.error(format!("no pass is named `{name}`.{hint}"));
+    let error = pass.note.place.error_at("after=", format!("no pass is named `{name}`.{hint}"));
     Some(error.with_help(format!("there are {}", known.join(", "))))
 }
 
@@ -130,7 +128,7 @@ fn after_later(pass: &GraphPass, passes: &[GraphPass], index: &BTreeMap<String, 
         _ => "before the tone map",
     };
     let message = format!("`{}` is drawn {when}, so it cannot come after `{}`", pass.name(), other.name());
-    Some(pass.note.place.error(message))
+    Some(pass.note.place.error_at("after=", message))
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -172,7 +170,8 @@ impl Order<'_> {
         let start = path.iter().position(|open| *open == at).unwrap_or(0);
         let names: Vec<&str> = path[start..].iter().chain([&at]).map(|at| self.passes[*at].name()).collect();
         let pass = &self.passes[at];
-        let error = pass.note.place.error(format!("each of these passes waits for the next: {}", names.join(" -> ")));
+        let message = format!("each of these passes waits for the next: {}", names.join(" -> "));
+        let error = pass.note.place.error_at(pass.name(), message);
         let help = format!(
             "let one of them read an image of the frame before: `keep` in its //@pass, and `before_{}`",
             pass.name()

@@ -24,7 +24,10 @@ pub(super) fn part(note: &PassNote) -> Part {
 /// Errors of passes with a name or an option that belongs to another kind of pass.
 pub(super) fn misplaced(annotations: &Annotations) -> impl Iterator<Item = Diagnostic> {
     let passes = &annotations.passes;
-    passes.iter().filter_map(|note| Some(note.place.error(misplacement(note, passes)?)))
+    passes.iter().filter_map(|note| {
+        let (word, message) = misplacement(note, passes)?;
+        Some(note.place.error_at(word, message))
+    })
 }
 
 /// Errors about passes that a picture needs and no stage declares. `tree`: the name of the tree.
@@ -56,7 +59,7 @@ pub(super) fn wrong_outputs(note: &PassNote, stage: &PassStage<'_>) -> Vec<Diagn
         if !found.is_some_and(|output| output.type_name == "vec4" && (location == 0 || output.name == name)) {
             let message = format!("the pass draws the image `{name}`, but its stage has no output for it");
             let help = format!("write `layout(location = {location}) out vec4 {name};`");
-            errors.push(note.place.error(message).with_help(help));
+            errors.push(note.place.error_at(name, message).with_help(help));
         }
     }
     for output in outputs.iter().filter(|output| output.location as usize > note.also.len()) {
@@ -95,38 +98,45 @@ pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = D
     })
 }
 
-fn misplacement(note: &PassNote, passes: &[PassNote]) -> Option<String> {
+/// The word of an annotation that is wrong, and a message.
+fn misplacement<'a>(note: &'a PassNote, passes: &[PassNote]) -> Option<(&'a str, String)> {
     let draws_model = note.model.is_some() && note.to_picture();
-    match note.name.as_str() {
-        MODEL if !draws_model => return Some(format!("the pass `{MODEL}` draws the model: draw=model to=picture")),
+    let name = note.name.as_str();
+    match name {
+        MODEL if !draws_model => {
+            return Some((name, format!("the pass `{MODEL}` draws the model: draw=model to=picture")));
+        }
         TONEMAP if note.to != Target::Display => {
-            return Some(format!("the pass `{TONEMAP}` brings the picture to the display: to=display"));
+            return Some((name, format!("the pass `{TONEMAP}` brings the picture to the display: to=display")));
         }
         _ => {}
     }
     if note.is_built_in() && (!note.on || note.when.is_some()) {
-        return Some(format!(
-            "the pass `{}` is a step of every picture, so off and when= do not go with it",
-            note.name
-        ));
+        let message = format!("the pass `{name}` is a step of every picture, so off and when= do not go with it");
+        return Some((if note.on { "when=" } else { "off" }, message));
     }
-    if note.to == Target::Display && note.name != TONEMAP {
-        return Some(format!(
-            "only the pass `{TONEMAP}` has to=display; a pass after it has to=picture after={TONEMAP}"
-        ));
+    if note.to == Target::Display && name != TONEMAP {
+        let message =
+            format!("only the pass `{TONEMAP}` has to=display; a pass after it has to=picture after={TONEMAP}");
+        return Some(("to=", message));
     }
     let is_other_mean = |other: &PassNote| other.to == Target::Mean && other.name < note.name;
     if note.to == Target::Mean && passes.iter().any(is_other_mean) {
-        return Some("there is another pass with to=mean; one pass makes the mean of all frames".into());
+        return Some(("to=", "there is another pass with to=mean; one pass makes the mean of all frames".into()));
     }
     if note.background && !note.to_picture() {
-        return Some("the background lies behind the model in the picture: draw=background to=picture".into());
+        let message = "the background lies behind the model in the picture: draw=background to=picture";
+        return Some(("draw=", message.into()));
     }
     match note.instead.as_deref() {
-        Some(MODEL) if !draws_model || note.name == MODEL => {
-            Some(format!("a pass with instead={MODEL} draws the model as well: draw=model to=picture"))
+        Some(MODEL) if !draws_model || name == MODEL => {
+            let message = format!("a pass with instead={MODEL} draws the model as well: draw=model to=picture");
+            Some(("instead=", message))
         }
         Some(MODEL) | None => None,
-        Some(other) => Some(format!("expected instead={MODEL}, found `{other}`: only the model has such passes")),
+        Some(other) => {
+            let message = format!("expected instead={MODEL}, found `{other}`: only the model has such passes");
+            Some(("instead=", message))
+        }
     }
 }

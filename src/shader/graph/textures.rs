@@ -92,9 +92,10 @@ pub(super) fn read_texture(
     kind: TextureKind,
     snapshot: &Snapshot<'_>,
 ) -> Result<Texture, Box<Diagnostic>> {
-    let refuse = |message: String| Box::new(note.place.error(message));
+    let refuse = |message: String| Box::new(note.place.error_at(&note.image, message));
     if let Some((message, help)) = contradiction(note, kind) {
-        return Err(Box::new(note.place.error(message).with_help(help)));
+        let word = if note.layers.is_some() { "layers=" } else { note.image.as_str() };
+        return Err(Box::new(note.place.error_at(word, message).with_help(help)));
     }
     let beside = TreePath::from(note.declared_in.as_str()).sibling(&note.image);
     let mut candidates: Vec<TreePath> = beside.into_iter().chain(TreePath::parse(&note.image)).collect();

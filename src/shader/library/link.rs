@@ -8,11 +8,12 @@ use super::slot::Slot;
 use super::{Library, Report, ShaderSet, Stage, Update};
 use crate::shader::annotation::{self, Annotations};
 use crate::shader::compile::include::files_of;
-use crate::shader::contract;
+use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
 use crate::shader::graph::{Graph, GraphPass, Input, PassStage, unlike_neighbors};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::lines;
 use crate::shader::spirv::reflect::Reflection;
 
 /// The parts of a set that all stages share.
@@ -27,7 +28,11 @@ impl Library {
     /// stages that have not compiled are left out, and their annotations are those in the files of their last good
     /// versions.
     pub(super) fn link(&self, snapshot: &Snapshot<'_>, is_partial: bool) -> Result<Linked, Vec<Diagnostic>> {
-        let mut errors = Vec::new();
+        // Other errors may be their consequences.
+        let mut errors = snapshot.source().problems();
+        if !errors.is_empty() {
+            return Err(errors);
+        }
         let mut warnings = snapshot.source().refusals();
         warnings.extend(self.idle_warnings(snapshot));
         warnings.extend(self.stray_warnings(snapshot));
@@ -86,7 +91,7 @@ impl Library {
         });
         let declared: BTreeMap<String, PassStage<'_>> = declared.collect();
         let graph = Graph::new(&annotations, &declared, snapshot)?;
-        let pairs = |pass: &Arc<GraphPass>| unlike_neighbors(pass.stages(), &declared);
+        let pairs = |pass: &Arc<GraphPass>| unlike_stages(pass, &declared);
         let errors: Vec<Diagnostic> = graph.passes.iter().flat_map(pairs).collect();
         if !errors.is_empty() {
             return Err(errors);
@@ -94,9 +99,10 @@ impl Library {
         annotations.modes.extend(modes_of(&graph));
         // The parameters of a pass that is still to be compiled are unknown.
         if !is_partial {
-            warnings.extend(graph.passes.iter().flat_map(|pass| silent_members(pass, &annotations)));
+            warnings.extend(graph.passes.iter().flat_map(|pass| silent_members(pass, &annotations, &declared)));
         }
-        Ok(Linked { annotations, graph, warnings: unique(warnings) })
+        let explained = warnings.into_iter().map(|warning| snapshot.source().explained(warning));
+        Ok(Linked { annotations, graph, warnings: unique(explained.collect()) })
     }
 
     /// Makes a set of the stages that have compiled. The others are pending.
@@ -141,7 +147,11 @@ impl Library {
 }
 
 /// Warnings about members of a pass's own uniform block that nothing sets.
-fn silent_members(pass: &GraphPass, annotations: &Annotations) -> Vec<Diagnostic> {
+fn silent_members(
+    pass: &GraphPass,
+    annotations: &Annotations,
+    stages: &BTreeMap<String, PassStage<'_>>,
+) -> Vec<Diagnostic> {
     let members = pass.inputs.values().filter_map(|input| match input {
         Input::Parameters(_, members) => Some(members),
         _ => None,
@@ -152,7 +162,43 @@ fn silent_members(pass: &GraphPass, annotations: &Annotations) -> Vec<Diagnostic
         let message =
             format!("`{name}` in a uniform block of the pass `{}` has no //@ui, so it reads as 0", pass.name());
         let help = format!("write it on a line of its own: `float {name}; //@ui \"Label\" 0..1 = 0.5`");
-        Diagnostic::warning(&pass.note.place.file, message).on_line(pass.note.place.line, None).with_help(help)
+        let at = stages.get(&pass.note.stage).map(|stage| stage.texts.error(&[name.as_str()], message.clone()));
+        let at = at.unwrap_or_else(|| pass.note.place.error(message));
+        Diagnostic { severity: Severity::Warning, ..at }.with_help(help)
     };
     silent.map(warning).collect()
+}
+
+/// Errors of a pass with a stage that reads what the stage before it does not write.
+fn unlike_stages(pass: &GraphPass, stages: &BTreeMap<String, PassStage<'_>>) -> Vec<Diagnostic> {
+    let errors = unlike_neighbors(pass.stages(), stages);
+    let Some(fragment) = stages.get(&pass.note.stage) else { return errors };
+    let covering = fragment.texts.snapshot.display_path(&TreePath::from(COVERING));
+    let is_about = |error: &Diagnostic| pass.note.model.is_some() && error.file == covering;
+    match errors.iter().any(is_about).then(|| includes_covering(pass, fragment.texts)) {
+        Some(error) => errors.into_iter().filter(|error| !is_about(error)).chain([error]).collect(),
+        None => errors,
+    }
+}
+
+/// The file that passes include that cover their image.
+const COVERING: &str = "pass.glsl";
+
+/// The error about a pass that draws the model and includes pass.glsl.
+fn includes_covering(pass: &GraphPass, texts: Texts<'_>) -> Diagnostic {
+    let message = format!(
+        "{COVERING} is for passes that cover their image: it reads `uv`, which {} does not write",
+        pass.front.vertex
+    );
+    let help = "this pass draws the model (draw=model), so include what the vertex stage of the model writes:\n\
+        #include \"interface.glsl\"\n#include \"common/fragment.glsl\"\n\
+        layout(location = 0) in Fragment fragment;\nlayout(location = 0) out vec4 color;";
+    let text = texts.snapshot.read(texts.stage).unwrap_or_default();
+    let found = lines(&text).into_iter().find_map(|line| {
+        let is_include = line.code.trim_start().starts_with('#') && line.code.contains("include");
+        let at = line.code.find(COVERING).filter(|_| is_include)?;
+        let error = Diagnostic::error(&pass.note.place.file, message.clone());
+        Some(error.on_line(line.number, Some(line.raw)).under(at..at + COVERING.len()))
+    });
+    found.unwrap_or_else(|| pass.note.place.error_at("draw=", message)).with_help(help)
 }

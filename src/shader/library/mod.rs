@@ -266,12 +266,14 @@ impl Library {
         let (compiler, cache) = (&self.compiler, &self.cache);
         let bases: Vec<Option<&Built>> =
             stages.iter().map(|(index, _)| self.slots[*index].base().filter(|_| !is_whole)).collect();
-        let compiled: Vec<(usize, Done)> = stages
+        let mut compiled: Vec<(usize, Done)> = stages
             .par_iter()
             .zip(bases)
             .filter(|_| !superseded())
             .map(|((index, path), base)| (*index, build(compiler, snapshot, cache, path, base)))
             .collect();
+        // The stage that took longest is the one to read about.
+        compiled.sort_by(|(_, a), (_, b)| b.ms.unwrap_or(0.0).total_cmp(&a.ms.unwrap_or(0.0)));
         for (index, Done { outcome, ms }) in compiled {
             let slot = &mut self.slots[index];
             report.stages.extend(ms.map(|ms| (slot.path.to_string(), ms)));
@@ -323,7 +325,8 @@ impl Library {
             Ok(linked) => self.commit(linked, generation, snapshot, report),
             Err(diagnostics) => {
                 self.failed = true;
-                let mut diagnostics = unique(diagnostics.into_iter().chain(self.source.refusals()).collect());
+                let explained = diagnostics.into_iter().map(|diagnostic| self.source.explained(diagnostic));
+                let mut diagnostics = unique(explained.chain(self.source.refusals()).collect());
                 let waiting = self.waiting(&diagnostics, snapshot);
                 if let Some(first) = diagnostics.first_mut().filter(|_| !waiting.is_empty()) {
                     first.notes.push(format!("other edits wait until this is repaired: {}", waiting.join(", ")));

@@ -9,6 +9,7 @@ use super::{Change, Library};
 use crate::interface;
 use crate::shader::annotation::pass::{MODEL, PassNote, Target};
 use crate::shader::annotation::{self, Mode};
+use crate::shader::compile::include::files_of;
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::graph::{FULL_SCREEN, Graph, Part, missing_passes};
@@ -34,21 +35,24 @@ impl Library {
             Err(error) => error == SourceError::Missing,
         };
         let is_seen = |path: &TreePath| !path.as_str().split('/').any(|name| name.starts_with('.'));
-        let may_be_pass =
-            |path: &TreePath| matches!(StageKind::of(path), Some(StageKind::Fragment | StageKind::Compute));
         for path in paths.filter(|path| is_seen(path)) {
             if may_be_beside(path) {
                 let is_there = snapshot.read(path) != Err(SourceError::Missing);
                 let changed = if is_there { self.beside.insert(path.clone()) } else { self.beside.remove(path) };
                 self.relink |= changed;
+                continue;
             }
-            if !may_be_pass(path) {
+            if StageKind::of(path).is_none() {
                 continue;
             }
             let place = self.slots.iter().position(|slot| slot.path == *path);
             let is_idle = path.as_str().starts_with("passes/") && snapshot.read(path).is_ok() && is_no_pass(path);
             let changed = if is_idle { self.idle.insert(path.clone()) } else { self.idle.remove(path) };
             self.relink |= changed;
+            // A vertex stage belongs to the pass beside it.
+            if StageKind::of(path) == Some(StageKind::Vertex) {
+                continue;
+            }
             match place {
                 Some(place) if place >= self.fixed && is_no_pass(path) => {
                     self.slots.remove(place);
@@ -122,15 +126,49 @@ impl Library {
         stages.filter(|path| off.contains(&fragment_of(path))).cloned().collect()
     }
 
-    /// A warning for each stage in `passes/` that declares no pass.
-    pub(super) fn idle_warnings(&self, snapshot: &Snapshot<'_>) -> impl Iterator<Item = Diagnostic> {
-        self.idle.iter().map(|path| {
-            let message = "nothing draws this file, since no line of it says //@pass";
-            let name = path.stem().rsplit('/').next().unwrap_or_default();
-            let help = format!("begin it with `//@pass {name} to=picture`");
-            Diagnostic::warning(snapshot.display_path(path), message).with_help(help)
-        })
+    /// A warning for each file in `passes/` that could be a stage, but declares no pass, and that no stage includes.
+    pub(super) fn idle_warnings(&self, snapshot: &Snapshot<'_>) -> Vec<Diagnostic> {
+        if self.idle.is_empty() {
+            return Vec::new();
+        }
+        let mut used = self.dependencies();
+        // What a stage includes that has not been compiled yet is known from its text alone.
+        let unseen = self.slots.iter().filter(|slot| slot.current.is_none() && slot.good.is_none());
+        used.extend(unseen.flat_map(|slot| files_of(snapshot, &slot.path)));
+        self.idle.iter().filter(|path| !used.contains(*path)).filter_map(|path| idle(path, snapshot)).collect()
     }
+}
+
+/// The warning about a file that nothing draws. `None` for a vertex stage beside a file that has the warning.
+fn idle(path: &TreePath, snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
+    let name = path.stem().rsplit('/').next().unwrap_or_default();
+    let warn = |message: &str| Diagnostic::warning(snapshot.display_path(path), message);
+    let options = match StageKind::of(path)? {
+        StageKind::Fragment => " to=picture",
+        StageKind::Compute => "",
+        StageKind::Vertex => {
+            let fragment = fragment_of(path);
+            let message = format!("nothing draws with this file, since there is no {fragment}");
+            let help = format!("write that file, with the line `//@pass {name} draw=model to=picture`");
+            return (snapshot.read(&fragment) == Err(SourceError::Missing)).then(|| warn(&message).with_help(help));
+        }
+        _ => return None,
+    };
+    let text = snapshot.read(path).ok()?;
+    // `// @pass` is an ordinary comment.
+    let spaced = lines(&text).into_iter().find_map(|line| {
+        let comment = line.raw.find("//").filter(|at| line.raw[*at + 2..].trim_start().starts_with("@pass"))?;
+        Some(
+            warn("nothing draws this file: `@pass` follows a space, so the line is a comment")
+                .on_line(line.number, Some(line.raw))
+                .under(comment..line.raw.find("@pass")? + "@pass".len())
+                .with_help("write `//@pass`"),
+        )
+    });
+    Some(spaced.unwrap_or_else(|| {
+        let help = format!("begin it with the line `//@pass {name}{options}`");
+        warn("nothing draws this file, since no line of it says //@pass").with_help(help)
+    }))
 }
 
 /// Whether a text declares the constant `name` as false or 0, or as another constant that is.

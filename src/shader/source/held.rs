@@ -64,6 +64,11 @@ impl Held {
         &self.tree
     }
 
+    /// Whether all texts are those on disk.
+    pub(super) fn is_released(&self) -> bool {
+        self.texts.is_empty()
+    }
+
     pub(super) fn text(&self, path: &TreePath) -> Option<&String> {
         self.texts.get(path)
     }

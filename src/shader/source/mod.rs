@@ -4,6 +4,7 @@ pub(super) mod directory;
 pub mod embedded;
 pub mod held;
 pub mod pattern;
+mod read;
 pub mod snapshot;
 pub(super) mod text;
 mod toy;
@@ -11,14 +12,16 @@ mod toy;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fmt;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
 
+use crate::shader::diagnostic::Diagnostic;
+
 use embedded::Example;
 use held::Held;
+use read::{check_text, names_in, read_bytes, read_file};
 use toy::Toy;
 
 /// Maximum size of a file in bytes. No shader is longer, and shaderc would hold several copies.
@@ -286,6 +289,26 @@ impl Source {
         }
     }
 
+    /// The errors of a single opened file that are known before anything is compiled.
+    pub fn problems(&self) -> Vec<Diagnostic> {
+        match self {
+            Self::Toy(toy) => toy.problems(),
+            // Its texts are not those on disk while some are held back.
+            Self::Held(held) if held.is_released() => held.tree().problems(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A diagnostic as the author of the tree should see it: with the author's line, also where another text is compiled.
+    #[must_use]
+    pub fn explained(&self, diagnostic: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Toy(toy) => toy.explained(diagnostic),
+            Self::Held(held) => held.tree().explained(diagnostic),
+            _ => diagnostic,
+        }
+    }
+
     /// The name of the tree in messages: its folder, or that it is built in.
     pub fn name(&self) -> String {
         match self {
@@ -298,58 +321,6 @@ impl Source {
 /// Whether a directory looks like a Specula shader tree: it holds an `interface.glsl`.
 pub fn is_specula_tree(directory: &Path) -> bool {
     directory.join("interface.glsl").is_file()
-}
-
-/// The names of the files in a directory, without hidden files.
-fn names_in(directory: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(directory).into_iter().flatten().flatten();
-    let files = entries.filter(|entry| entry.path().is_file());
-    let names = files.filter_map(|entry| entry.file_name().into_string().ok());
-    names.filter(|name| !name.starts_with('.')).collect()
-}
-
-fn read_file(path: &Path) -> Result<String, SourceError> {
-    check_text(read_bytes(path, MAX_FILE_BYTES)?)
-}
-
-fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, SourceError> {
-    let metadata = std::fs::metadata(path).map_err(io_error)?;
-    if metadata.is_dir() {
-        return Err(SourceError::Directory);
-    }
-    if !metadata.is_file() {
-        return Err(SourceError::Io("not a regular file".to_owned()));
-    }
-    if metadata.len() > most {
-        return Err(SourceError::TooBig { bytes: metadata.len(), most });
-    }
-    std::fs::read(path).map_err(io_error)
-}
-
-fn io_error(error: io::Error) -> SourceError {
-    match error.kind() {
-        // NotADirectory means that a part of the path is a file. To the user, the path does not exist.
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => SourceError::Missing,
-        io::ErrorKind::IsADirectory => SourceError::Directory,
-        _ => SourceError::Io(error.to_string()),
-    }
-}
-
-fn check_text(bytes: Vec<u8>) -> Result<String, SourceError> {
-    let line_of = |offset: usize, bytes: &[u8]| {
-        1 + u32::try_from(bytes[..offset].iter().filter(|byte| **byte == b'\n').count()).unwrap_or(u32::MAX - 1)
-    };
-    if let Some(offset) = bytes.iter().position(|byte| *byte == 0) {
-        return Err(SourceError::Nul { line: line_of(offset, &bytes) });
-    }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let line = line_of(error.utf8_error().valid_up_to(), error.as_bytes());
-        SourceError::NotUtf8 { line }
-    })?;
-    Ok(match text.strip_prefix('\u{feff}') {
-        Some(rest) => rest.to_owned(),
-        None => text,
-    })
 }
 
 #[cfg(test)]

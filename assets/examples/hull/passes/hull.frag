@@ -7,7 +7,7 @@
 // left of it lies behind the model and surrounds it.
 
 uniform Hull {
-    vec3 hull_color;     //@ui "Outline color" color = 1 0.35 0.05
+    vec3 hull_color;     //@ui "Hull color" color = 1 0.35 0.05
 };
 
 layout(location = 0) in Fragment fragment;

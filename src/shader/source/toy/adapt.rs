@@ -1,60 +1,13 @@
 //! Changes the text of an opened file so that it compiles in a pass. Each line keeps its number.
 
+use super::channel::{Channel, channel, channels, samplers};
 use crate::shader::source::text::{find_word, lines};
-
-/// The source of a channel, as a line `#iChannel0 "..."` names it. The form is that of editors' Shadertoy extensions.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Channel {
-    /// The image of this file, one frame ago.
-    This,
-    /// Another file that draws an image, relative to the folder.
-    Drawing(String),
-    /// An image file, relative to the folder, with a `*` for the faces or slices if it has several files.
-    Image(String, Sampler),
-    /// The state of the keys.
-    Keyboard,
-}
-
-/// The sampler of a channel, as a line `#iChannel0::Type "CubeMap"` names it. Without such a line, it is flat.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Sampler {
-    #[default]
-    Flat,
-    Cube,
-    Volume,
-}
-
-impl Sampler {
-    /// The names of the samplers in the file.
-    const NAMES: [(&str, Self); 3] = [("Texture2D", Self::Flat), ("CubeMap", Self::Cube), ("Volume", Self::Volume)];
-
-    /// The name in GLSL.
-    pub(super) fn glsl(self) -> &'static str {
-        match self {
-            Self::Flat => "sampler2D",
-            Self::Cube => "samplerCube",
-            Self::Volume => "sampler3D",
-        }
-    }
-
-    /// How Shadertoy reads such an image: it turns pictures upside down, but neither faces nor slices.
-    fn options(self) -> &'static str {
-        match self {
-            Self::Flat => "linear mips flip",
-            Self::Cube => "linear mips clamp",
-            Self::Volume => "linear mips",
-        }
-    }
-}
-
-/// Shadertoy has four channels.
-const CHANNELS: usize = 4;
 
 /// The file, beside a toy, that all its files share. Files that these include count as parts of it.
 pub(super) const COMMON: &str = "common";
 
 /// The line that declares functions about keys. The form is that of editors' Shadertoy extensions.
-const KEY_FUNCTIONS: &str = "#iKeyboard";
+pub(super) const KEY_FUNCTIONS: &str = "#iKeyboard";
 
 /// The uniforms of glslViewer and of the Book of Shaders, which toy.glsl defines.
 const UNIFORMS: [&str; 6] = ["u_time", "u_delta", "u_frame", "u_date", "u_resolution", "u_mouse"];
@@ -69,35 +22,6 @@ pub(super) fn is_shadertoy(text: &str) -> bool {
 /// Whether the code of a text has this word.
 pub(super) fn uses(text: &str, word: &str) -> bool {
     text.contains(word) && lines(text).iter().any(|line| find_word(&line.code, word).is_some())
-}
-
-/// The channels that a text names, with their numbers.
-pub(super) fn channels(text: &str) -> Vec<(usize, Channel)> {
-    let samplers = samplers(text);
-    let with_sampler = |line| {
-        let (number, channel) = channel(line)?;
-        Some((number, channel.with(samplers[number])))
-    };
-    text.lines().filter_map(with_sampler).collect()
-}
-
-impl Channel {
-    fn with(self, sampler: Sampler) -> Self {
-        match self {
-            // The file has {} where Specula has a `*`.
-            Self::Image(file, _) if sampler != Sampler::Flat => Self::Image(file.replacen("{}", "*", 1), sampler),
-            other => other,
-        }
-    }
-}
-
-/// The samplers of the channels.
-fn samplers(text: &str) -> [Sampler; CHANNELS] {
-    let mut out = [Sampler::Flat; CHANNELS];
-    for (number, sampler) in text.lines().filter_map(channel_type) {
-        out[number] = sampler.unwrap_or_default();
-    }
-    out
 }
 
 /// Whether a text reads keys by functions: it has a line `#iKeyboard`.
@@ -141,13 +65,9 @@ pub(super) fn texture_name(pass: &str, channel: usize) -> String {
 pub(super) fn adapted(text: &str, pass: &str) -> String {
     let is_shadertoy = is_shadertoy(text);
     let has_main = !is_shadertoy && uses(text, "main");
-    let (samplers, channels) = (samplers(text), channels(text));
+    let samplers = samplers(text);
     let mut out = String::with_capacity(text.len() + 64);
     for line in text.split_inclusive('\n') {
-        if let Some(message) = channel_type(line).and_then(|found| wrong_type(found, &channels)) {
-            out += &format!("#error {message}\n");
-            continue;
-        }
         match channel(line).map(|(number, channel)| (number, channel.with(samplers[number]))) {
             Some((number, Channel::Image(file, sampler))) => {
                 let name = texture_name(pass, number);
@@ -158,58 +78,7 @@ pub(super) fn adapted(text: &str, pass: &str) -> String {
             None => out += &with_own_names(line, has_main),
         }
     }
-    // The file that all others share needs no main.
-    if pass != COMMON && !is_shadertoy && !has_main {
-        out += "\n#error expected void mainImage(out vec4 fragColor, in vec2 fragCoord), or void main()\n";
-    }
     out
-}
-
-/// A message if a channel cannot have the sampler that a line names for it.
-fn wrong_type((number, sampler): (usize, Option<Sampler>), channels: &[(usize, Channel)]) -> Option<String> {
-    let Some(sampler) = sampler else {
-        let names: Vec<&str> = Sampler::NAMES.iter().map(|(name, _)| *name).collect();
-        return Some(format!("expected #iChannel{number}::Type {}", names.join(", ")));
-    };
-    let is_image = channels.iter().any(|(other, channel)| *other == number && matches!(channel, Channel::Image(..)));
-    let message = format!("iChannel{number} names no image, so it is no {}", sampler.glsl());
-    (sampler != Sampler::Flat && !is_image).then_some(message)
-}
-
-/// The number of the channel that a line begins with, and the rest of the line.
-fn numbered(line: &str) -> Option<(usize, &str)> {
-    let rest = line.trim().strip_prefix("#iChannel")?;
-    let number = rest.chars().next()?.to_digit(10).map(|number| number as usize).filter(|number| *number < CHANNELS)?;
-    Some((number, &rest[1..]))
-}
-
-/// The text in quotes that begins here.
-fn quoted(text: &str) -> Option<&str> {
-    text.trim().strip_prefix('"')?.split('"').next()
-}
-
-/// Parses `#iChannel0::Type "CubeMap"`. Without a sampler if there is none of that name.
-fn channel_type(line: &str) -> Option<(usize, Option<Sampler>)> {
-    let (number, rest) = numbered(line)?;
-    let name = quoted(rest.strip_prefix("::Type")?).unwrap_or_default();
-    let known = Sampler::NAMES.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
-    Some((number, known.map(|(_, sampler)| *sampler)))
-}
-
-/// Parses `#iChannel0 "file"`. Other lines of that kind, as `#iChannel0::WrapMode`, name no file.
-fn channel(line: &str) -> Option<(usize, Channel)> {
-    let (number, rest) = numbered(line)?;
-    let name = quoted(rest)?;
-    let file = name.strip_prefix("file://").unwrap_or(name);
-    let file = file.strip_prefix("./").unwrap_or(file).to_owned();
-    let is_shader = [".glsl", ".frag", ".fs"].iter().any(|ending| file.ends_with(ending));
-    let channel = match name {
-        "self" => Channel::This,
-        _ if file == "keyboard" => Channel::Keyboard,
-        _ if is_shader => Channel::Drawing(file),
-        _ => Channel::Image(file, Sampler::Flat),
-    };
-    Some((number, channel))
 }
 
 /// Whether the stage says this instead: a version, a uniform of toy.glsl, an input or output, or a channel's further line.
@@ -244,6 +113,7 @@ fn with_own_names(line: &str, has_main: bool) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::channel::Sampler;
     use super::*;
 
     #[test]
@@ -284,9 +154,5 @@ mod tests {
         assert_eq!(lines[3], "//@texture image_channel1 \"noise.png\" linear mips");
         assert!(lines[1].starts_with("//#") && lines[2].starts_with("//#"), "{found}");
         assert_eq!(named_files(text), ["sky/day_*.png", "noise.png"]);
-        let wrong = adapted("#iChannel0 \"self\"\n#iChannel0::Type \"CubeMap\"\n#iChannel0::Type \"Cube\"\n", "image");
-        let lines: Vec<&str> = wrong.lines().collect();
-        assert_eq!(lines[1], "#error iChannel0 names no image, so it is no samplerCube");
-        assert_eq!(lines[2], "#error expected #iChannel0::Type Texture2D, CubeMap, Volume");
     }
 }

@@ -4,14 +4,21 @@
 //! in `passes/`, which is written here and includes it. Everything else is the tree in the binary.
 
 mod adapt;
+mod beside;
+mod channel;
+mod explain;
 mod noise;
+mod problems;
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
 use super::pattern::{FACES, Pattern};
-use super::{MAX_IMAGE_BYTES, SourceError, TreePath, embedded, names_in, read_bytes, read_file};
-use adapt::{COMMON, Channel, Sampler, adapted, channels, has_key_functions, is_shadertoy, uses};
+use super::read::{check_text, names_in, read_bytes, read_file};
+use super::{MAX_IMAGE_BYTES, SourceError, TreePath, embedded};
+use crate::shader::diagnostic::Diagnostic;
+use adapt::{COMMON, adapted, has_key_functions, is_shadertoy, uses};
+use channel::{Channel, Sampler, channels};
 
 /// The folder of the opened files in the tree.
 const OPENED: &str = "opened";
@@ -81,7 +88,7 @@ impl Toy {
             }
         }
         let bytes = embedded::read(None, path).ok_or(SourceError::Missing)?;
-        super::check_text(bytes.to_vec())
+        check_text(bytes.to_vec())
     }
 
     /// The bytes of an image.
@@ -118,6 +125,30 @@ impl Toy {
             Some(relative) => self.folder().join(relative).display().to_string(),
             None => format!("embedded:{path}"),
         }
+    }
+
+    /// The errors of the opened files in lines that GLSL does not have, and of files without an entry point.
+    pub fn problems(&self) -> Vec<Diagnostic> {
+        let mut out = Vec::new();
+        for Drawing { file, text, .. } in self.drawings() {
+            let path = self.folder().join(&file);
+            let shown = path.display().to_string();
+            match read_file(&path) {
+                Ok(_) if !is_shadertoy(&text) && !uses(&text, "main") => {
+                    let message = "expected `void mainImage(out vec4 fragColor, in vec2 fragCoord)` or `void main()`";
+                    out.push(Diagnostic::error(shown.clone(), message));
+                }
+                // The line that names a file says that it is missing.
+                Err(SourceError::Missing) if file != self.name() => {}
+                Ok(_) => {}
+                Err(error) => out.push(Diagnostic::error(shown.clone(), format!("{shown} {error}"))),
+            }
+            out.extend(problems::problems(&shown, &text, self.folder()));
+        }
+        if let Some((file, text)) = self.common() {
+            out.extend(problems::problems(&self.folder().join(file).display().to_string(), &text, self.folder()));
+        }
+        out
     }
 
     /// The files whose change changes the tree. Some may not exist yet.

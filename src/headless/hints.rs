@@ -1,0 +1,42 @@
+//! What a command can tell about a picture besides its pixels.
+
+use std::sync::Arc;
+
+use super::{Headless, HeadlessError};
+use crate::shader::graph::Input;
+use crate::shader::{GraphPass, TreePath, embedded};
+
+impl Headless {
+    /// The names of the passes whose image or buffer continues from frame to frame.
+    ///
+    /// # Errors
+    /// As [`Headless::frame_state`].
+    pub fn continuing_passes(&self) -> Result<Vec<String>, HeadlessError> {
+        let passes = self.frame_state()?.pipelines.passes;
+        let inputs: Vec<&Input> = passes.iter().flat_map(|pass| pass.inputs.values()).collect();
+        let continues = |pass: &&Arc<GraphPass>| {
+            inputs.iter().any(|input| matches!(input, Input::Before(name) if pass.note.draws(name)))
+                || pass.inputs.values().any(|input| matches!(input, Input::Buffer(..)))
+        };
+        let own = passes.iter().filter(|pass| !pass.note.is_built_in());
+        Ok(own.filter(continues).map(|pass| pass.name().to_owned()).collect())
+    }
+
+    /// The file with the author's own background, if the settings show none although there is an environment. It is the first file
+    /// that only the background's stage uses and that differs from the shipped one.
+    pub fn hidden_background(&self) -> Option<String> {
+        let (settings, shaders) = (&self.session.settings, self.session.shaders.as_ref()?);
+        let is_hidden = settings.environment.is_lit() && !settings.environment.is_shown(&settings.view);
+        let pass = shaders.graph.passes.iter().find(|pass| pass.note.background).filter(|_| is_hidden)?;
+        let stage = shaders.stages.get(&pass.note.stage)?;
+        let is_wanted = pass.is_wanted(&settings.passes) && self.frame_state().ok()?.pipelines.draws_model;
+        let others = shaders.stages.values().filter(|other| other.path != stage.path);
+        let shared: Vec<_> = others.flat_map(|other| &other.dependencies).collect();
+        let is_own = |path: &&TreePath| {
+            let text = shaders.texts.get(*path);
+            text.is_some_and(|text| embedded::read(None, path) != Some(text.as_bytes())) && !shared.contains(path)
+        };
+        let file = stage.dependencies.iter().find(is_own).filter(|_| is_wanted)?;
+        Some(self.reloader.library().source().display_path(file))
+    }
+}

@@ -1,0 +1,97 @@
+//! Turns a diagnostic about the text that is compiled into one about the author's file: with the author's line, names and words.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::adapt::{COMMON, has_key_functions, outputs};
+use super::channel::{Channel, channel, samplers};
+use super::{STAGES, Toy, below, slashes};
+use crate::shader::diagnostic::Diagnostic;
+use crate::shader::source::read::read_file;
+use crate::shader::source::text::{find_word, lines};
+
+/// Shadertoy's entry point.
+const MAIN_IMAGE: &str = "void mainImage(out vec4 fragColor, in vec2 fragCoord)";
+/// The functions that `#iKeyboard` declares, and the beginning of its keys' names, as the compiler quotes them.
+const OF_KEYS: [&str; 4] = ["'isKeyDown'", "'isKeyPressed'", "'isKeyToggled'", "'Key_"];
+
+impl Toy {
+    /// The diagnostic as the author of the file should see it. Those about other files stay as they are.
+    pub fn explained(&self, diagnostic: Diagnostic) -> Diagnostic {
+        if let Some(stage) = diagnostic.file.strip_prefix("embedded:").and_then(|path| below(path, STAGES)) {
+            let drawings = self.drawings();
+            let drawing = drawings.into_iter().find(|drawing| stage.strip_suffix(".frag") == Some(&drawing.pass));
+            return drawing.map_or(diagnostic.clone(), |drawing| {
+                let file = self.folder().join(&drawing.file).display().to_string();
+                without_body(Diagnostic { file, line: None, column: None, excerpt: None, ..diagnostic }, &drawing.text)
+            });
+        }
+        let Some(file) = Path::new(&diagnostic.file).strip_prefix(self.folder()).ok().and_then(slashes) else {
+            return diagnostic;
+        };
+        let Ok(text) = read_file(&self.folder().join(&file)) else { return diagnostic };
+        let pass = self.drawings().into_iter().find(|drawing| drawing.file == file).map(|drawing| drawing.pass);
+        let pass = pass.as_deref().unwrap_or(COMMON);
+        self.with_help(with_words(quoted(diagnostic, &text, pass), &text), &text)
+    }
+
+    fn with_help(&self, diagnostic: Diagnostic, text: &str) -> Diagnostic {
+        let message = &diagnostic.message;
+        if OF_KEYS.iter().any(|word| message.contains(word)) {
+            let has_keys = has_key_functions(text) || self.common().is_some_and(|(_, text)| has_key_functions(&text));
+            let help = "write `#iKeyboard` on a line of its own: it declares isKeyDown, isKeyPressed and isKeyToggled, and the \
+                        keys, as Key_A and Key_LeftArrow";
+            return if has_keys { diagnostic } else { diagnostic.with_help(help) };
+        }
+        // The passes of the built-in tree are no business of a toy.
+        let unknown = message.strip_prefix("no pass or texture is named `").and_then(|rest| rest.split('`').next());
+        if let Some(name) = unknown.map(str::to_owned) {
+            let message = format!("nothing gives the image `{name}`");
+            let help = format!("name its file on a line of its own: `//@texture {name} \"image.png\"`");
+            return Diagnostic { message, ..diagnostic }.with_help(help);
+        }
+        diagnostic
+    }
+}
+
+/// The diagnostic with the author's line.
+fn quoted(diagnostic: Diagnostic, text: &str, pass: &str) -> Diagnostic {
+    let line = diagnostic.line.and_then(|line| text.lines().nth((line as usize).checked_sub(1)?));
+    let Some(line) = line.filter(|line| diagnostic.excerpt.as_deref() != Some(*line)) else { return diagnostic };
+    let diagnostic = Diagnostic { excerpt: Some(line.to_owned()), ..diagnostic };
+    let Some((number, Channel::Image(file, _))) = channel(line) else { return diagnostic };
+    // The compiled line is an annotation, whose words the author has not written.
+    let adapted = Channel::Image(file.clone(), super::channel::Sampler::Flat).with(samplers(text)[number]);
+    let Channel::Image(adapted, _) = adapted else { return diagnostic };
+    let message = diagnostic.message.replace(&super::adapt::texture_name(pass, number), &format!("iChannel{number}"));
+    let message = message.replace(&format!(" and embedded:{adapted}"), "");
+    let message = if adapted == file { message } else { message.replace(&adapted, &file).replace("`*`", "`{}`") };
+    let diagnostic = Diagnostic { message, ..diagnostic };
+    match name_in(line) {
+        Some(bytes) => diagnostic.under(bytes),
+        None => diagnostic,
+    }
+}
+
+/// The bytes between the quotes of a line.
+fn name_in(line: &str) -> Option<Range<usize>> {
+    let start = line.find('"')? + 1;
+    let length = line[start..].find('"').filter(|length| *length > 0)?;
+    Some(start..start + length)
+}
+
+/// The message with the names that the author has written.
+fn with_words(diagnostic: Diagnostic, text: &str) -> Diagnostic {
+    let color = outputs(text).next().unwrap_or("gl_FragColor");
+    let message = diagnostic.message.replace("toyFragColor", color).replace("toyFragCoord", "gl_FragCoord");
+    Diagnostic { message: message.replace("'Main'", "'main'"), ..diagnostic }
+}
+
+/// The linker's message about an entry point with other arguments, at the line of the entry point.
+fn without_body(diagnostic: Diagnostic, text: &str) -> Diagnostic {
+    let is_main = diagnostic.notes.iter().any(|note| note.starts_with("mainImage("));
+    let found = lines(text).into_iter().find_map(|line| Some((find_word(&line.code, "mainImage")?, line)));
+    let Some((bytes, line)) = found.filter(|_| is_main) else { return diagnostic };
+    let diagnostic = Diagnostic { message: format!("expected `{MAIN_IMAGE}`"), notes: Vec::new(), ..diagnostic };
+    diagnostic.on_line(line.number, Some(line.raw)).under(bytes)
+}
