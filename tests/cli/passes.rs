@@ -4,9 +4,9 @@ use crate::SMALL;
 use crate::support::Tree;
 use crate::support::process::{Finished, run};
 
-/// Renders a sphere with the tree.
+/// Renders a model with the tree.
 fn render(tree: &Tree, more: &[&str]) -> Finished {
-    let args = ["render", "sphere", "--shaders", "shaders", "--out", "out.png", SMALL[0], SMALL[1]];
+    let args = ["render", "metal-grid", "--shaders", "shaders", "--out", "out.png", SMALL[0], SMALL[1]];
     run(tree.beside("").as_path(), &[&args[..], more].concat())
 }
 
@@ -21,13 +21,21 @@ fn a_number_outside_a_block_becomes_a_slider() {
     let told = render(&tree, &["--env", "none"]).expect(1, &[told, "uniform Sliders {", "};"]).stderr.clone();
     let plain = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(plain(&told).contains(&plain(slider)), "{told}");
-    tree.write("passes/tint.frag", &text.replace("uniform highp float tint_strength;", "uniform Sliders {\nfloat tint_strength;   //@ui \"Tint strength\" 0..1 = 0.5\n};"));
+    tree.write(
+        "passes/tint.frag",
+        &text.replace(
+            "uniform highp float tint_strength;",
+            "uniform Sliders {\nfloat tint_strength;   //@ui \"Tint strength\" 0..1 = 0.5\n};",
+        ),
+    );
     render(&tree, &["--env", "none", "--set", "tint_strength=0.25"]).expect(0, &[]);
     // The stages of the picture share a block.
     std::fs::remove_file(tree.path("passes/tint.frag")).unwrap();
     tree.write("user.glsl", &format!("uniform vec3 rim_color;\n{}", tree.read("user.glsl")));
     let told = ["user.glsl:1:14: error: `rim_color` is a vec3 outside a block", "`Params` of user/params.glsl"];
-    render(&tree, &["--env", "none"]).expect(1, &told).expect(1, &["vec3 rim_color;   //@ui \"Rim color\" color = 1 1 1"]);
+    render(&tree, &["--env", "none"])
+        .expect(1, &told)
+        .expect(1, &["vec3 rim_color;   //@ui \"Rim color\" color = 1 1 1"]);
 }
 
 #[test]
@@ -50,12 +58,14 @@ fn files_that_nothing_draws_are_told_once() {
     let told = [
         "forgotten.frag: warning: nothing draws this file, since no line of it says //@pass",
         "begin it with the line `//@pass forgotten to=picture`",
-        "spaced.frag:1:1: warning: nothing draws this file: `@pass` follows a space",
+        "spaced.frag:1:1: warning: nothing draws this file: this line is a comment",
         "alone.vert: warning: nothing draws with this file, since there is no passes/alone.frag",
         "`//@pass alone draw=model to=picture`",
         "begin it with the line `//@pass lone`",
     ];
-    for told_by in [render(&tree, &["--env", "none"]), run(tree.beside("").as_path(), &["check", "--shaders", "shaders"])] {
+    for told_by in
+        [render(&tree, &["--env", "none"]), run(tree.beside("").as_path(), &["check", "--shaders", "shaders"])]
+    {
         let stderr = &told_by.expect(0, &told).stderr;
         assert_eq!(stderr.matches("forgotten.frag: warning").count(), 1, "{stderr}");
         assert_eq!(stderr.matches(": warning: ").count(), 4, "{stderr}");

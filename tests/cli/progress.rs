@@ -7,13 +7,24 @@ use crate::support::process::run;
 fn many_samples_show_progress_on_stderr() {
     let directory = directory();
     // Some ten seconds on a software device.
-    let long = ["render", "sphere", "--size", "320x200", "--mode", "path-traced", "--set", "view.frames=4096", "--timeout", "60"];
+    let long = [
+        "render",
+        "sphere",
+        "--size",
+        "320x200",
+        "--mode",
+        "path-traced",
+        "--set",
+        "view.frames=4096",
+        "--timeout",
+        "60",
+    ];
     let mut child = crate::support::process::specula(directory.path());
     let child = child.args(long).stderr(std::process::Stdio::piped()).spawn().unwrap();
     let line = first_line(child, "paths per pixel, about ");
     assert!(line.starts_with("specula: path-traced, ") && line.contains(" of "), "{line}");
     // Short pictures show none.
-    let short = ["render", "sphere", "--size", "16x16", "--mode", "path-traced", "--set", "view.frames=1"];
+    let short = ["render", "metal-grid", "--size", "16x16", "--mode", "path-traced", "--set", "view.frames=1"];
     let stderr = run(directory.path(), &short).expect(0, &[]).stderr.clone();
     assert!(!stderr.contains(" left"), "{stderr}");
 }
