@@ -4,9 +4,9 @@ use crate::SMALL;
 use crate::support::Tree;
 use crate::support::process::{Finished, run};
 
-/// Renders a sphere with the tree.
+/// Renders a model with the tree.
 fn render(tree: &Tree, more: &[&str]) -> Finished {
-    let args = ["render", "sphere", "--shaders", "shaders", "--out", "out.png", SMALL[0], SMALL[1]];
+    let args = ["render", "metal-grid", "--shaders", "shaders", "--out", "out.png", SMALL[0], SMALL[1]];
     run(tree.beside("").as_path(), &[&args[..], more].concat())
 }
 
@@ -58,7 +58,7 @@ fn files_that_nothing_draws_are_told_once() {
     let told = [
         "forgotten.frag: warning: nothing draws this file, since no line of it says //@pass",
         "begin it with the line `//@pass forgotten to=picture`",
-        "spaced.frag:1:1: warning: nothing draws this file: `@pass` follows a space",
+        "spaced.frag:1:1: warning: nothing draws this file: this line is a comment",
         "alone.vert: warning: nothing draws with this file, since there is no passes/alone.frag",
         "`//@pass alone draw=model to=picture`",
         "begin it with the line `//@pass lone`",

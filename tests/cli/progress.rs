@@ -24,7 +24,7 @@ fn many_samples_show_progress_on_stderr() {
     let line = first_line(child, "paths per pixel, about ");
     assert!(line.starts_with("specula: path-traced, ") && line.contains(" of "), "{line}");
     // Short pictures show none.
-    let short = ["render", "sphere", "--size", "16x16", "--mode", "path-traced", "--set", "view.frames=1"];
+    let short = ["render", "metal-grid", "--size", "16x16", "--mode", "path-traced", "--set", "view.frames=1"];
     let stderr = run(directory.path(), &short).expect(0, &[]).stderr.clone();
     assert!(!stderr.contains(" left"), "{stderr}");
 }

@@ -17,8 +17,9 @@ const IN_FILE: Duration = Duration::from_secs(5);
 pub struct Progress {
     is_shown: bool,
     is_terminal: bool,
-    /// Start of the picture, or of the first of several.
     start: Instant,
+    /// Start of the picture.
+    picture_start: Instant,
     last: Option<Instant>,
     /// The picture's name, as `path-traced`, or its number among several.
     what: String,
@@ -32,12 +33,21 @@ impl Progress {
     /// The progress of `pictures` pictures. Scripts that read events get none.
     pub fn new(is_shown: bool, pictures: usize) -> Self {
         let (is_terminal, start) = (std::io::stderr().is_terminal(), Instant::now());
-        Self { is_shown, is_terminal, start, last: None, what: String::new(), picture: (0, pictures), width: 0 }
+        Self {
+            is_shown,
+            is_terminal,
+            start,
+            last: None,
+            picture_start: start,
+            what: String::new(),
+            picture: (0, pictures),
+            width: 0,
+        }
     }
 
     /// Begins the picture with this number, of the mode `mode`.
     pub fn begin(&mut self, number: usize, mode: &str) {
-        self.picture.0 = number;
+        (self.picture.0, self.picture_start) = (number, Instant::now());
         let (mode, (number, of)) = (escape(mode), (number + 1, self.picture.1));
         self.what = if of == 1 { mode } else { format!("picture {number} of {of}: {mode}") };
     }
@@ -53,13 +63,14 @@ impl Progress {
             return;
         }
         self.last = Some(now);
-        let part = (number as f64 + step.done as f64 / step.of.max(1) as f64) / of.max(1) as f64;
-        let left = elapsed.as_secs_f64() * (1.0 - part) / part.max(1e-9);
-        let done = match step.of {
-            1 => String::new(),
-            of => format!(", {} of {of} {}", step.done, step.unit),
-        };
-        let line = format!("{}{done}, about {} left", self.what, in_words(left));
+        let mut line = self.what.clone();
+        // How long the other pictures take is not known: modes differ a hundredfold.
+        if step.of > 1 {
+            let left =
+                self.picture_start.elapsed().as_secs_f64() * (step.of - step.done) as f64 / step.done.max(1) as f64;
+            let of_it = if of > 1 { " of it" } else { "" };
+            line += &format!(", {} of {} {}, about {} left{of_it}", step.done, step.of, step.unit, in_words(left));
+        }
         if !self.is_terminal {
             tell(line);
             return;

@@ -31,8 +31,8 @@ use std::collections::BTreeMap;
 use crate::message::did_you_mean;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::{TreePath, embedded};
 use crate::shader::spirv::reflect::Reflection;
 use parse::{Found, parse_file};
 use pass::PassNote;
@@ -82,15 +82,20 @@ pub fn read<'p>(
     let mut out = Annotations::default();
     let mut errors = Vec::new();
     let mut seen = Seen::default();
+    let mut places: BTreeMap<(String, u32), Place> = BTreeMap::new();
     for path in files {
         let Ok(text) = snapshot.read(path) else { continue };
         let file = snapshot.display_path(path);
+        seen.is_shipped = embedded::read(None, path) == Some(text.as_bytes());
         let (found, bad) = parse_file(&file, &text);
         errors.extend(bad);
         for found in found {
             let added = match found {
                 Found::Mode(mode, place) => seen.mode(&mode, &place).map(|()| out.modes.push(mode)),
-                Found::Ui(ui) => seen.ui(&ui).and_then(|()| resolve(ui, modules, &mut out)),
+                Found::Ui(ui) => {
+                    places.insert((ui.place.file.clone(), ui.place.line), ui.place.clone());
+                    seen.ui(&ui).and_then(|()| resolve(ui, modules, &mut out))
+                }
                 Found::Pass(note) => {
                     let note = PassNote { stage: path.to_string(), ..note };
                     match StageKind::of(path) {
@@ -121,11 +126,13 @@ pub fn read<'p>(
     if let Some(pair) = out.constants.windows(2).find(|pair| pair[0].id == pair[1].id) {
         let message = format!("constant_id {} is given twice: `{}` and `{}`", pair[0].id, pair[0].name, pair[1].name);
         let note = format!("the other is at {}:{}", pair[0].file, pair[0].line);
-        errors.push(Diagnostic::error(&pair[1].file, message).on_line(pair[1].line, None).with_note(note));
+        let place = places.remove(&(pair[1].file.clone(), pair[1].line)).unwrap_or_default();
+        errors.push(place.error_at(&pair[1].name, message).with_note(note));
     }
     errors.extend(out.parameters.iter().filter_map(|parameter| {
         let message = out.unknown_constant(parameter.when.as_deref()?)?;
-        Some(Diagnostic::error(&parameter.file, message).on_line(parameter.line, None))
+        let place = places.get(&(parameter.file.clone(), parameter.line))?;
+        Some(place.error_at("when=", message))
     }));
     if errors.is_empty() { Ok(out) } else { Err(errors) }
 }
@@ -141,7 +148,12 @@ pub fn passes_of(snapshot: &Snapshot<'_>, stage: &TreePath) -> impl Iterator<Ite
 
 /// The first occurrence of each name.
 #[derive(Default)]
-struct Seen(BTreeMap<(&'static str, String), (String, u32)>);
+struct Seen {
+    /// Where it is, and whether that file is as it was shipped.
+    first: BTreeMap<(&'static str, String), (Place, bool)>,
+    /// Whether the file that is being read is as it was shipped.
+    is_shipped: bool,
+}
 
 impl Seen {
     fn mode(&mut self, mode: &Mode, place: &Place) -> Result<(), Box<Diagnostic>> {
@@ -170,13 +182,12 @@ impl Seen {
     }
 
     fn first(&mut self, what: &'static str, value: &str, place: &Place) -> Result<(), Box<Diagnostic>> {
-        match self.0.insert((what, value.to_owned()), (place.file.clone(), place.line)) {
-            None => Ok(()),
-            Some((file, line)) => {
-                let error = place.error_at(value, format!("{what} `{value}` is given twice"));
-                Err(Box::new(error.with_note(format!("the other is at {file}:{line}"))))
-            }
-        }
+        let now = (place.clone(), self.is_shipped);
+        let Some((first, was_shipped)) = self.first.insert((what, value.to_owned()), now) else { return Ok(()) };
+        // The author's file is the one to change.
+        let (wrong, other) = if self.is_shipped && !was_shipped { (&first, place) } else { (place, &first) };
+        let error = wrong.error_at(value, format!("{what} `{value}` is given twice"));
+        Err(Box::new(error.with_note(format!("the other is at {}:{}", other.file, other.line))))
     }
 }
 

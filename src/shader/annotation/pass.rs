@@ -291,6 +291,9 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             other => {
                 let known = "to=picture, after=, size=, format=, also=, draw=model, instances=, cull=, blend, dispatch=, when=, mips, \
                              keep, off or doc=";
+                if other.starts_with('=') {
+                    return Err(cursor.error(bytes, format!("the option before `{other}` takes no value")));
+                }
                 let hint = did_you_mean(other, OPTIONS);
                 return Err(cursor.error(bytes, format!("expected {known}, found `{other}`.{hint}")));
             }
@@ -308,12 +311,9 @@ pub(super) fn name(cursor: &mut Cursor<'_>, what: &str) -> Result<String, Box<Di
 
 /// Checks the name of a pass, a texture or an image.
 fn check_name(name: &str, what: &str) -> Result<(), String> {
-    let is_first = |c: char| c.is_ascii_lowercase();
-    let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-    if !name.starts_with(is_first) || !name.chars().all(is_part) || name.starts_with("gl_") {
+    if !is_name(name) {
         let plain: String = name.chars().map(|c| if c == '-' { '_' } else { c.to_ascii_lowercase() }).collect();
-        let hint =
-            did_you_mean(&plain, check_name(&plain, what).is_ok().then_some(plain.as_str()).filter(|_| plain != name));
+        let hint = did_you_mean(&plain, is_name(&plain).then_some(plain.as_str()));
         let found = if name.is_empty() { "the end of the line".to_owned() } else { format!("`{name}`.{hint}") };
         return Err(format!("expected the {what}'s name, a letter a-z and then a-z, 0-9 or _; found {found}"));
     }
@@ -321,6 +321,11 @@ fn check_name(name: &str, what: &str) -> Result<(), String> {
         return Err(format!("`{name}` names what Specula draws; choose another name for the {what}"));
     }
     Ok(())
+}
+
+fn is_name(name: &str) -> bool {
+    let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(is_part) && !name.starts_with("gl_")
 }
 
 fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {

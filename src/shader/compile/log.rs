@@ -34,11 +34,21 @@ pub fn parse(
         let text = path.and_then(|path| snapshot.read(path).ok());
         let diagnostic = diagnose(printed, line, message, text.as_deref(), stage);
         let diagnostic = Diagnostic { severity, ..diagnostic };
+        let with_pass = message.contains("overlapping use of location 0") && dependencies.iter().any(is_pass_glsl);
+        let diagnostic = if with_pass { diagnostic.with_help(OVERLAPPING) } else { diagnostic };
         if !out.last().is_some_and(|last| is_consequence(last, &diagnostic)) {
             out.push(diagnostic);
         }
     }
     out.into_iter().partition(|diagnostic| diagnostic.severity == Severity::Error)
+}
+
+/// What to do about a location that pass.glsl has, too.
+const OVERLAPPING: &str = "pass.glsl declares `in vec2 uv` and `out vec4 color` at location 0, too; a pass with draw=model does \
+    not include it";
+
+fn is_pass_glsl(path: &TreePath) -> bool {
+    path.as_str() == "pass.glsl"
 }
 
 /// `PLACE: error: MESSAGE`

@@ -155,15 +155,15 @@ fn idle(path: &TreePath, snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
         _ => return None,
     };
     let text = snapshot.read(path).ok()?;
-    // `// @pass` is an ordinary comment.
+    // `// @pass` and `//@Pass` are ordinary comments.
     let spaced = lines(&text).into_iter().find_map(|line| {
-        let comment = line.raw.find("//").filter(|at| line.raw[*at + 2..].trim_start().starts_with("@pass"))?;
-        Some(
-            warn("nothing draws this file: `@pass` follows a space, so the line is a comment")
-                .on_line(line.number, Some(line.raw))
-                .under(comment..line.raw.find("@pass")? + "@pass".len())
-                .with_help("write `//@pass`"),
-        )
+        let at = line.raw.find("//")?;
+        let comment = line.raw[at + 2..].trim_start();
+        let length = comment.get(.."@pass".len()).filter(|word| word.eq_ignore_ascii_case("@pass"))?.len();
+        let end = line.raw.len() - comment.len() + length;
+        let warning = warn("nothing draws this file: this line is a comment, since it does not begin with `//@pass`");
+        let warning = warning.on_line(line.number, Some(line.raw)).under(at..end);
+        Some(warning.with_help("write `//@pass`, without a space and in small letters"))
     });
     Some(spaced.unwrap_or_else(|| {
         let help = format!("begin it with the line `//@pass {name}{options}`");

@@ -1,7 +1,8 @@
 //! The files beside a toy, as suggestions for a name that does not exist.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::channel::SHADERS;
 use crate::message::{best, likeness};
 use crate::shader::source::pattern::Pattern;
 use crate::shader::source::read::names_in;
@@ -11,7 +12,7 @@ const SPECIAL: [&str; 2] = ["self", "keyboard"];
 /// The endings of files that a channel can name.
 const ENDINGS: [&str; 9] = ["png", "jpg", "jpeg", "hdr", "exr", "cube", "glsl", "frag", "fs"];
 /// Files that a help text lists at most.
-const LISTED: usize = 12;
+const LISTED: usize = 8;
 
 /// Whether a file exists, or with a `*` in its name one of several.
 pub(super) fn is_there(folder: &Path, file: &str) -> bool {
@@ -21,32 +22,39 @@ pub(super) fn is_there(folder: &Path, file: &str) -> bool {
     }
 }
 
-/// A message and a help text about a file that does not exist. `name`: as the author writes it.
-pub(super) fn not_found(folder: &Path, name: &str, file: &str) -> (String, String) {
+/// A message and a help text about a file that does not exist. `name`: as the author writes it in the file `own`.
+pub(super) fn not_found(folder: &Path, own: &str, name: &str, file: &str) -> (String, String) {
     let (prefix, inside) = folder_of(folder, file);
-    let mut files: Vec<String> = names_in(&inside).into_iter().filter(|name| can_be_named(name)).collect();
-    files.sort();
-    let files: Vec<String> = files.into_iter().map(|name| format!("{prefix}{name}")).collect();
-    let like = |candidate: &str| likeness(stem(file), stem(candidate));
-    let candidates = SPECIAL.into_iter().chain(files.iter().map(String::as_str));
-    let hint = best(candidates.map(|candidate| (like(candidate), candidate)));
+    let names = names_in(&inside).into_iter().filter(|name| can_be_named(name));
+    let mut files: Vec<String> = names.map(|name| format!("{prefix}{name}")).filter(|name| name != own).collect();
+    // Images first, or shaders if the name is one.
+    files.sort_by_cached_key(|other| (is_shader(other) != is_shader(file), other.clone()));
+    let like = |candidate: &&str| (likeness(stem(file), stem(candidate)), *candidate);
+    let special = best(SPECIAL.iter().map(|name| like(&name)));
+    let beside = best(files.iter().map(|name| like(&name.as_str())));
+    // A name without an ending is hardly one of a file.
+    let hint = if file.contains('.') { beside.or(special) } else { special.or(beside) };
     let hint = hint.map(|name| format!(" Did you mean \"{name}\"?")).unwrap_or_default();
     let message = format!("\"{name}\" not found in {}.{hint}", folder.display());
     let mut listed: Vec<String> = files.iter().take(LISTED).map(|name| format!("\"{name}\"")).collect();
     if files.len() > LISTED {
         listed.push(format!("{} more files", files.len() - LISTED));
     }
-    let listed = if listed.is_empty() { "no images or shaders".to_owned() } else { listed.join(", ") };
+    let listed = if listed.is_empty() { "no images or other shaders".to_owned() } else { listed.join(", ") };
     let help = format!("there are {listed}; \"self\", what this file drew one frame ago, and \"keyboard\", its keys");
     (message, help)
 }
 
 /// The folder part of a name, with its slash, and that folder.
-fn folder_of(folder: &Path, file: &str) -> (String, std::path::PathBuf) {
+fn folder_of(folder: &Path, file: &str) -> (String, PathBuf) {
     match file.rsplit_once('/') {
         Some((inside, _)) => (format!("{inside}/"), folder.join(inside)),
         None => (String::new(), folder.to_owned()),
     }
+}
+
+fn is_shader(name: &str) -> bool {
+    SHADERS.iter().any(|ending| name.ends_with(ending))
 }
 
 fn can_be_named(name: &str) -> bool {

@@ -46,6 +46,9 @@ impl Sampler {
     }
 }
 
+/// The endings of files that draw an image.
+pub(super) const SHADERS: [&str; 3] = [".glsl", ".frag", ".fs"];
+
 /// Shadertoy has four channels.
 pub(super) const CHANNELS: usize = 4;
 
@@ -104,7 +107,7 @@ pub(super) fn channel(line: &str) -> Option<(usize, Channel)> {
     let name = quoted(rest)?;
     let file = name.strip_prefix("file://").unwrap_or(name);
     let file = file.strip_prefix("./").unwrap_or(file).to_owned();
-    let is_shader = [".glsl", ".frag", ".fs"].iter().any(|ending| file.ends_with(ending));
+    let is_shader = SHADERS.iter().any(|ending| file.ends_with(ending));
     let channel = match name {
         "self" => Channel::This,
         _ if file == "keyboard" => Channel::Keyboard,

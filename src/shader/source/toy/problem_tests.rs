@@ -43,7 +43,11 @@ fn names_have_suggestions() {
     let special = "\"self\", what this file drew one frame ago, and \"keyboard\", its keys";
     refused("#iChannel0 \"keybord\"", "keybord", &["not found in FOLDER. Did you mean \"keyboard\"?", special]);
     refused("#iChannel0 \"Self\"", "Self", &["Did you mean \"self\"?"]);
-    refused("#iChannel0 \"brikcs.png\"", "brikcs.png", &["Did you mean \"bricks.png\"?", "there are \"blur.glsl\", "]);
+    refused(
+        "#iChannel0 \"brikcs.png\"",
+        "brikcs.png",
+        &["Did you mean \"bricks.png\"?", "there are \"bricks.png\", \"sky_px.png\", \"blur.glsl\";"],
+    );
     refused("#iChannel0 \"file://bricks.jpg\"", "file://bricks.jpg", &["Did you mean \"bricks.png\"?"]);
     refused("#iChannel0 \"blurr.glsl\"", "blurr.glsl", &["Did you mean \"blur.glsl\"?"]);
     refused("#iChannel0 \"maps/woods.jpg\"", "maps/woods.jpg", &["Did you mean \"maps/wood.jpg\"?"]);

@@ -24,7 +24,8 @@ type Problem = (Range<usize>, String, String);
 
 /// The errors of a text. `shown`: the path of its file, for messages; `folder`: what its names are relative to.
 pub(super) fn problems(shown: &str, text: &str, folder: &Path) -> Vec<Diagnostic> {
-    let known = Known { channels: channels(text), samplers: samplers(text), folder };
+    let own = shown.rsplit('/').next().unwrap_or_default();
+    let known = Known { channels: channels(text), samplers: samplers(text), folder, own };
     let mut first: BTreeMap<usize, u32> = BTreeMap::new();
     let mut out = Vec::new();
     for line in lines(text).iter().filter(|line| line.code.trim_start().starts_with("#i")) {
@@ -54,6 +55,8 @@ struct Known<'a> {
     channels: Vec<(usize, Channel)>,
     samplers: [Sampler; CHANNELS],
     folder: &'a Path,
+    /// The name of the file.
+    own: &'a str,
 }
 
 impl Known<'_> {
@@ -145,7 +148,7 @@ impl Known<'_> {
         if is_there(self.folder, &file.replacen("{}", "*", 1)) {
             return Ok(());
         }
-        let (message, help) = not_found(self.folder, name, &file);
+        let (message, help) = not_found(self.folder, self.own, name, &file);
         refuse(message, &help)
     }
 }
