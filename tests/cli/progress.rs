@@ -9,7 +9,7 @@ fn many_samples_show_progress_on_stderr() {
     // Some ten seconds on a software device.
     let long = [
         "render",
-        "sphere",
+        "sphere-grid",
         "--size",
         "320x200",
         "--mode",

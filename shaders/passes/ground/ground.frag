@@ -17,18 +17,12 @@ uniform Ground {
     float ground_strength;     //@ui "Ground shadow" 0..1 = 0.8
 };
 
+layout(location = 0) in vec3 position_ws;
 layout(location = 0) out vec4 color;
 
 void main() {
-    vec2 clip = gl_FragCoord.xy / frame.viewport_px * 2.0 - 1.0;
-    vec4 far = frame.world_from_clip * vec4(clip, 0.0, 1.0);
-    vec3 direction = far.xyz - far.w * frame.eye_ws;
-    float above = frame.eye_ws.y - ground_height();
-    if (direction.y >= 0.0 || above <= 0.0) discard;
-    vec3 position_ws = frame.eye_ws - direction * (above / direction.y);
     float away = length(position_ws.xz - frame.scene_center_ws.xz) / (0.5 * ground_width());
     float fade = ground_strength * (1.0 - smoothstep(0.6, 1.0, away));
-    if (fade <= 0.0) discard;
     float left = luminance(textureLod(ground_light, ground_uv(position_ws), 0.0).rgb);
     color = vec4(0.0, 0.0, 0.0, fade * saturate(1.0 - left));
 }

@@ -17,6 +17,7 @@
 
 mod cursor;
 mod mode;
+mod name;
 mod parameter;
 mod parse;
 pub mod pass;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::cursor::Cursor;
+use super::name::{check_name, name};
 use super::place::Place;
 use crate::message::did_you_mean;
 use crate::shader::diagnostic::Diagnostic;
@@ -38,9 +39,6 @@ pub const TONEMAP: &str = "tonemap";
 
 /// The pass that draws the model in the final picture. Every tree declares it, with `draw=model to=picture`.
 pub const MODEL: &str = "model";
-
-/// Names that no pass or texture can have, since they name images that Specula gives to passes.
-const RESERVED: [&str; 3] = ["picture", "depth", "behind"];
 
 /// The size of a pass's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -300,32 +298,6 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
         }
     }
     Ok(note)
-}
-
-/// Parses the name after `//@pass` or `//@texture`: a GLSL identifier.
-pub(super) fn name(cursor: &mut Cursor<'_>, what: &str) -> Result<String, Box<Diagnostic>> {
-    let (bytes, name) = cursor.word();
-    check_name(name, what).map_err(|message| cursor.error(bytes, message))?;
-    Ok(name.to_owned())
-}
-
-/// Checks the name of a pass, a texture or an image.
-fn check_name(name: &str, what: &str) -> Result<(), String> {
-    if !is_name(name) {
-        let plain: String = name.chars().map(|c| if c == '-' { '_' } else { c.to_ascii_lowercase() }).collect();
-        let hint = did_you_mean(&plain, is_name(&plain).then_some(plain.as_str()));
-        let found = if name.is_empty() { "the end of the line".to_owned() } else { format!("`{name}`.{hint}") };
-        return Err(format!("expected the {what}'s name, a letter a-z and then a-z, 0-9 or _; found {found}"));
-    }
-    if RESERVED.contains(&name) || name.starts_with("before_") {
-        return Err(format!("`{name}` names what Specula draws; choose another name for the {what}"));
-    }
-    Ok(())
-}
-
-fn is_name(name: &str) -> bool {
-    let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-    name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(is_part) && !name.starts_with("gl_")
 }
 
 fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {

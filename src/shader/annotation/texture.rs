@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::cursor::Cursor;
-use super::pass::name;
+use super::name::name;
 use super::place::Place;
 use crate::shader::diagnostic::Diagnostic;
 

@@ -29,8 +29,9 @@ pub(super) fn not_found(folder: &Path, own: &str, name: &str, file: &str) -> (St
     let mut files: Vec<String> = names.map(|name| format!("{prefix}{name}")).filter(|name| name != own).collect();
     // Images first, or shaders if the name is one.
     files.sort_by_cached_key(|other| (is_shader(other) != is_shader(file), other.clone()));
-    let special = best(SPECIAL.iter().map(|name| (likeness(stem(file), stem(name)), *name)));
-    let beside = best(files.iter().map(|name| (likeness(stem(file), stem(name)), name.as_str())));
+    let like = |candidate: &str| likeness(stem(file), stem(candidate));
+    let special = best(SPECIAL.into_iter().map(|name| (like(name), name)));
+    let beside = best(files.iter().map(|name| (like(name), name.as_str())));
     // A name without an ending is hardly one of a file.
     let hint = if file.contains('.') { beside.or(special) } else { special.or(beside) };
     let hint = hint.map(|name| format!(" Did you mean \"{name}\"?")).unwrap_or_default();

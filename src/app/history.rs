@@ -1,0 +1,145 @@
+//! Undo and redo of settings.
+
+use crate::settings::Settings;
+
+/// Most steps that are kept.
+const STEPS: usize = 100;
+
+/// The settings before and after each change, apart from the camera, the mode and what orbits by itself.
+#[derive(Default)]
+pub(super) struct History {
+    past: Vec<Settings>,
+    future: Vec<Settings>,
+    /// The settings when they were last recorded.
+    last: Option<Settings>,
+}
+
+impl History {
+    /// Records the settings of a frame as a step if they have changed. `is_held`: a control is being dragged, so the step goes on.
+    pub(super) fn record(&mut self, now: &Settings, is_held: bool) {
+        let Some(last) = &self.last else {
+            self.last = Some(now.clone());
+            return;
+        };
+        if is_held || with_view_of(last, now) == *now {
+            return;
+        }
+        self.past.extend(self.last.replace(now.clone()));
+        self.past.drain(..self.past.len().saturating_sub(STEPS));
+        self.future.clear();
+    }
+
+    /// Takes the last step back. Returns whether there was one.
+    pub(super) fn undo(&mut self, now: &mut Settings) -> bool {
+        self.record(now, false);
+        Self::step(&mut self.past, &mut self.future, &mut self.last, now)
+    }
+
+    /// Takes the last undo back. Returns whether there was one.
+    pub(super) fn redo(&mut self, now: &mut Settings) -> bool {
+        self.record(now, false);
+        Self::step(&mut self.future, &mut self.past, &mut self.last, now)
+    }
+
+    fn step(
+        from: &mut Vec<Settings>,
+        to: &mut Vec<Settings>,
+        last: &mut Option<Settings>,
+        now: &mut Settings,
+    ) -> bool {
+        let Some(settings) = from.pop() else { return false };
+        to.push(now.clone());
+        *now = with_view_of(&settings, now);
+        *last = Some(now.clone());
+        true
+    }
+}
+
+/// `settings` with the camera, the mode and the orbiting lights of `view`.
+fn with_view_of(settings: &Settings, view: &Settings) -> Settings {
+    let mut settings = Settings { camera: view.camera.clone(), mode: view.mode.clone(), ..settings.clone() };
+    if view.lights.spin != 0.0 {
+        for (light, seen) in settings.lights.orbit.iter_mut().zip(&view.lights.orbit) {
+            light.azimuth = seen.azimuth;
+        }
+    }
+    settings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with_ev(ev: f32) -> Settings {
+        let mut settings = Settings::default();
+        settings.view.ev = ev;
+        settings
+    }
+
+    #[test]
+    fn steps_go_back_and_forth() {
+        let (mut history, mut now) = (History::default(), with_ev(0.0));
+        history.record(&now, false);
+        for ev in [1.0, 2.0] {
+            now.view.ev = ev;
+            history.record(&now, false);
+        }
+        assert!(history.undo(&mut now) && now.view.ev == 1.0);
+        assert!(history.undo(&mut now) && now.view.ev == 0.0);
+        assert!(!history.undo(&mut now) && now.view.ev == 0.0, "nothing is left");
+        assert!(history.redo(&mut now) && history.redo(&mut now) && now.view.ev == 2.0);
+        assert!(!history.redo(&mut now));
+        // A change after an undo is a new future.
+        assert!(history.undo(&mut now));
+        now.view.ev = 5.0;
+        history.record(&now, false);
+        assert!(!history.redo(&mut now) && now.view.ev == 5.0);
+    }
+
+    #[test]
+    fn a_drag_is_one_step() {
+        let (mut history, mut now) = (History::default(), with_ev(0.0));
+        history.record(&now, false);
+        for ev in [1.0, 2.0, 3.0] {
+            now.view.ev = ev;
+            history.record(&now, true);
+        }
+        history.record(&now, false);
+        assert!(history.undo(&mut now) && now.view.ev == 0.0);
+    }
+
+    #[test]
+    fn the_view_is_no_step_and_stays() {
+        let (mut history, mut now) = (History::default(), with_ev(0.0));
+        history.record(&now, false);
+        now.camera.azimuth = 70.0;
+        now.mode = "d".into();
+        now.lights.spin = 30.0;
+        history.record(&now, false);
+        now.lights.orbit[0].azimuth += 10.0;
+        history.record(&now, false);
+        let azimuth = now.lights.orbit[0].azimuth;
+        now.view.ev = 1.0;
+        history.record(&now, false);
+        assert!(history.undo(&mut now));
+        assert_eq!((now.view.ev, now.camera.azimuth, now.mode.as_str()), (0.0, 70.0, "d"));
+        assert_eq!(now.lights.orbit[0].azimuth, azimuth);
+        // The step before is that the lights began to orbit.
+        assert!(history.undo(&mut now) && now.lights.spin == 0.0);
+        assert!(!history.undo(&mut now));
+    }
+
+    #[test]
+    fn only_the_newest_steps_are_kept() {
+        let (mut history, mut now) = (History::default(), with_ev(0.0));
+        for ev in 0..300 {
+            now.view.ev = ev as f32 * 0.01;
+            history.record(&now, false);
+        }
+        let mut steps = 0;
+        while history.undo(&mut now) {
+            steps += 1;
+        }
+        assert_eq!(steps, STEPS);
+    }
+}
