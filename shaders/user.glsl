@@ -17,7 +17,7 @@
 #include "user/params.glsl"
 
 // Give your own constants the ids USER_CONSTANTS + 16 and up. The ids below belong to the files that come with Specula.
-layout(constant_id = USER_CONSTANTS + 1) const uint TOON_BANDS = 0u;   //@ui "Toon" choice Off=0 Two=2 Three=3 Four=4
+layout(constant_id = USER_CONSTANTS + 1) const uint TOON_BANDS = 0u;   //@ui "Toon" choice Off=0 Two=2 Three=3 Four=4 group="Material" doc="Steps of brightness in place of a gradient"
 
 // The surface before it is lit: change the material here. The debug modes show the surface as you leave it.
 void user_surface(inout Surface s) {

@@ -372,7 +372,7 @@ fn an_annotation_that_does_not_parse_is_a_diagnostic_with_its_line() {
     let mut session = sphere();
     let before = session.render();
     for (file, from, to, part) in [
-        (PARAMS, "//@ui \"Rim\" 0..1 = 0.0", "//@ui \"Rim\" 0..one = 0.0", "one"),
+        (PARAMS, "//@ui \"Rim\" 0..1 ", "//@ui \"Rim\" 0..one ", "one"),
         (USER, "Off=0 Two=2", "Off=0 Two", "Two"),
         (
             "debug/modes.glsl",

@@ -12,7 +12,7 @@
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 
-//@ui "Specular antialiasing"
+//@ui "Specular antialiasing" group="Sampling" doc="Widens lobes where normals turn within a pixel (Tokuyoshi & Kaplanyan 2019): highlights do not flicker, but get halos"
 layout(constant_id = USER_CONSTANTS + 9) const bool SPECULAR_ANTIALIASING = false;
 
 // alpha'^2 = alpha^2 + min(2 variance, 0.18)     variance = (|dn/dx|^2 + |dn/dy|^2) / 4

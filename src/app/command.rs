@@ -10,6 +10,10 @@ use crate::shader::Source;
 pub(super) enum Command {
     /// Compile everything again.
     Reload,
+    /// Take the last change of a setting back.
+    Undo,
+    /// Take the last undo back.
+    Redo,
     /// Move the camera so that it sees the whole model.
     FrameModel,
     /// Write the picture to `specula-N.png`.

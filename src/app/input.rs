@@ -144,7 +144,7 @@ fn fly_key(camera: &mut CameraController, code: KeyCode, pressed: bool) -> bool 
 fn is_shortcut(key: &Key, modifiers: ModifiersState) -> bool {
     match key {
         Key::Named(named) => {
-            matches!(named, NamedKey::F5 | NamedKey::F12 | NamedKey::Escape | NamedKey::Home)
+            matches!(named, NamedKey::F1 | NamedKey::F5 | NamedKey::F12 | NamedKey::Escape | NamedKey::Home)
         }
         Key::Character(_) => modifiers.control_key(),
         _ => false,
@@ -167,26 +167,31 @@ fn shader_key(viewer: &mut Viewer, key: PhysicalKey, pressed: bool) -> bool {
 
 fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
     match key {
+        Key::Named(NamedKey::F1) => viewer.panels.show_keys ^= true,
         Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
         Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {
             let Some(key) = text.chars().next() else { return false };
-            return on_character(viewer, key.to_ascii_lowercase(), modifiers.control_key());
+            return on_character(viewer, key.to_ascii_lowercase(), modifiers);
         }
         _ => return false,
     }
     true
 }
 
-/// A key that types a character. While the picture reads keys, `control` is what tells it from the picture's.
-fn on_character(viewer: &mut Viewer, key: char, control: bool) -> bool {
+/// A key that types a character. While the picture reads keys, Ctrl is what tells it from the picture's.
+fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bool {
+    let (control, shift) = (modifiers.control_key(), modifiers.shift_key());
     let is_ignored = control && !viewer.reads_keys();
     let session = &mut viewer.session;
     match key {
         'q' if control => viewer.execute(Command::Quit),
+        'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
+        'y' if control => viewer.execute(Command::Redo),
         _ if is_ignored => return false,
+        '?' => viewer.panels.show_keys ^= true,
         '[' => step_mode(session, -1),
         ']' => step_mode(session, 1),
         'h' => viewer.panels.visible = !viewer.panels.visible,

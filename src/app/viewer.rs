@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::command::{Command, open_as};
+use super::history::History;
 use super::panels::PanelState;
 use super::playback::Playback;
 use super::status::{Notices, ShaderStatus};
@@ -74,6 +75,7 @@ pub(super) struct Viewer {
     pub(super) start: Instant,
     /// The time of animated shaders.
     pub(super) playback: Playback,
+    pub(super) history: History,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
@@ -124,6 +126,7 @@ impl Viewer {
             events: options.events,
             start: options.start,
             playback: Playback::default(),
+            history: History::default(),
             gpu: gpu.clone(),
             resources,
             threads,
@@ -255,6 +258,9 @@ impl Viewer {
                 self.shader.compiling = true;
                 self.threads.worker.change(Change::All, Instant::now());
             }
+            Command::Undo if !self.history.undo(&mut self.session.settings) => self.say("There is nothing to undo"),
+            Command::Redo if !self.history.redo(&mut self.session.settings) => self.say("There is nothing to redo"),
+            Command::Undo | Command::Redo => {}
             Command::FrameModel => {
                 self.session.settings.camera.eye = None;
                 self.session.settings.camera.target = None;

@@ -107,9 +107,10 @@ fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
         unit: "",
         doc,
     };
-    let with_names = |label: &str, choices: &[(String, i64)]| {
+    let with_names = |label: &str, choices: &[(String, i64)], doc: &str| {
         let names: Vec<&str> = choices.iter().map(|(name, _)| name.as_str()).collect();
-        if names.is_empty() { label.to_owned() } else { format!("{label}: {}", names.join(", ")) }
+        let label = if names.is_empty() { label.to_owned() } else { format!("{label}: {}", names.join(", ")) };
+        if doc.is_empty() { label } else { format!("{label}. {doc}") }
     };
     let named = |choices: &[(String, i64)], value: i64| {
         choices.iter().find(|(_, known)| *known == value).map(|(name, _)| name.clone())
@@ -123,7 +124,7 @@ fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
         };
         let chosen = named(&constant.choices, constant.default.into());
         let takes = if constant.choices.is_empty() { takes } else { "name" };
-        let doc = with_names(&constant.label, &constant.choices);
+        let doc = with_names(&constant.label, &constant.choices, &constant.doc);
         setting(&constant.name, takes, chosen.unwrap_or(default), range(constant.range), doc)
     });
     let parameters = shaders.parameters.iter().map(|parameter| {
@@ -140,7 +141,7 @@ fn of_tree(shaders: &ShaderSet) -> Vec<Setting> {
         let number = |value: &f64| if is_bool { (*value != 0.0).to_string() } else { value.to_string() };
         let numbers: Vec<String> = parameter.default.iter().map(number).collect();
         let chosen = parameter.default.first().and_then(|value| named(&parameter.choices, *value as i64));
-        let doc = with_names(&parameter.label, &parameter.choices);
+        let doc = with_names(&parameter.label, &parameter.choices, &parameter.doc);
         setting(&parameter.name, takes, chosen.unwrap_or(numbers.join(",")), range(parameter.range), doc)
     });
     let passes = shaders.graph.passes.iter().filter(|pass| pass.has_switch()).map(|pass| {

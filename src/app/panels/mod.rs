@@ -3,6 +3,7 @@
 
 mod camera;
 mod environment;
+mod keys;
 mod lights;
 mod model;
 mod modes;
@@ -56,6 +57,10 @@ pub(super) fn style(egui: &egui::Context) {
 pub(super) struct PanelState {
     /// Whether the panels are shown (H).
     pub(super) visible: bool,
+    /// Whether the list of keys is shown (F1).
+    pub(super) show_keys: bool,
+    /// The search in the list of modes.
+    search: String,
     /// Whether the warnings of the model are shown over the picture.
     pub(super) show_model_warnings: bool,
     /// Slug of the mode that the list was last scrolled to.
@@ -65,7 +70,14 @@ pub(super) struct PanelState {
 
 impl Default for PanelState {
     fn default() -> Self {
-        Self { visible: true, show_model_warnings: true, scrolled_to: String::new(), timing: timing::Timing::default() }
+        Self {
+            visible: true,
+            show_keys: false,
+            search: String::new(),
+            show_model_warnings: true,
+            scrolled_to: String::new(),
+            timing: timing::Timing::default(),
+        }
     }
 }
 
@@ -91,15 +103,17 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
             let panel = egui::Panel::left("modes").frame(frame).default_size(170.0).min_size(120.0).max_size(320.0);
             let (session, state) = (&mut viewer.session, &mut viewer.panels);
             let mode = &mut session.settings.mode;
-            panel.show(ui, |ui| modes::show(ui, session.shaders.as_deref(), mode, &mut state.scrolled_to));
+            panel.show(ui, |ui| modes::show(ui, session.shaders.as_deref(), mode, state));
         }
-        let panel = egui::Panel::right("settings").frame(frame).default_size(318.0).min_size(220.0).max_size(480.0);
+        let panel = egui::Panel::right("settings").frame(frame).default_size(SETTINGS + 16.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
+            ui.spacing_mut().slider_width += (ui.max_rect().width() - SETTINGS).max(0.0);
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| settings(ui, viewer, readings, commands));
         });
     }
     let picture = ui.available_rect_before_wrap();
     overlay::show(ui.ctx(), viewer, readings, picture);
+    keys::show(ui.ctx(), &mut viewer.panels.show_keys);
     picture
 }
 
@@ -113,8 +127,8 @@ fn settings(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mu
     shaders::show(ui, &viewer.shader, shaders.generation, &session.diagnostics, cut_short, commands);
     timing::show(ui, &mut viewer.panels.timing, readings, &device);
     let settings = &mut session.settings;
-    parameters::show(ui, &shaders, &mut settings.shader);
     environment::show(ui, settings, viewer.threads.baker.progress(), &viewer.resources.environment().report);
+    parameters::show(ui, &shaders, &mut settings.shader);
     lights::show(ui, &mut settings.lights, model.lights.len());
     output::show(ui, settings, commands);
     passes::show(ui, &shaders, settings, &mut viewer.playback, is_animated);
@@ -129,16 +143,21 @@ fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
     ui.add_space(4.0);
 }
 
+/// Width of the settings at first, in points. In a wider panel, sliders are longer.
+const SETTINGS: f32 = 302.0;
+
+/// Size of the names at the left of rows, in points.
+const NAME: egui::Vec2 = egui::vec2(120.0, 18.0);
+
 /// A row with its name on the left and its control on the right. `doc` is the hover text of the name.
 fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        let size = egui::vec2(120.0, 18.0);
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         let label = |ui: &mut Ui| {
-            ui.set_min_size(size);
+            ui.set_min_size(NAME);
             ui.add(egui::Label::new(name).truncate())
         };
-        let response = ui.allocate_ui_with_layout(size, layout, label).inner;
+        let response = ui.allocate_ui_with_layout(NAME, layout, label).inner;
         if !doc.is_empty() {
             response.on_hover_text(doc);
         }
@@ -158,6 +177,6 @@ fn plural(count: usize, noun: &str) -> String {
 }
 
 /// A color picker for linear RGB.
-fn color(ui: &mut Ui, linear: &mut [f32; 3]) {
-    egui::widgets::color_picker::color_edit_button_rgb(ui, linear);
+fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> egui::Response {
+    egui::widgets::color_picker::color_edit_button_rgb(ui, linear)
 }

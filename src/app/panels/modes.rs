@@ -1,19 +1,33 @@
-//! The list of debug modes by group, with the selected mode highlighted.
+//! The list of debug modes by group, with the selected mode highlighted and a search.
 
 use egui::{RichText, Ui};
 
-use super::QUIET;
+use super::{PanelState, QUIET};
 use crate::shader::ShaderSet;
+use crate::shader::annotation::Mode;
 
-/// Shows the list. `current` is the slug of the selected mode, and `scrolled_to` that of the mode last scrolled to.
-pub(super) fn show(ui: &mut Ui, shaders: Option<&ShaderSet>, current: &mut String, scrolled_to: &mut String) {
+/// Shows the list. `current` is the slug of the selected mode.
+pub(super) fn show(ui: &mut Ui, shaders: Option<&ShaderSet>, current: &mut String, state: &mut PanelState) {
     let Some(shaders) = shaders else {
         ui.label(RichText::new("Compiling shaders…").color(QUIET));
         return;
     };
+    let PanelState { search, scrolled_to, .. } = state;
+    ui.horizontal(|ui| {
+        let width = ui.available_width() - if search.is_empty() { 0.0 } else { 24.0 };
+        ui.add(egui::TextEdit::singleline(search).hint_text("Search modes").desired_width(width));
+        if !search.is_empty() && ui.small_button("x").on_hover_text("Show all modes").clicked() {
+            search.clear();
+        }
+    });
+    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
+    let found = |mode: &Mode| words.iter().all(|word| text_of(mode).contains(word));
+    if !words.is_empty() && !shaders.modes.iter().any(found) {
+        ui.label(RichText::new("No mode has these words").small().color(QUIET));
+    }
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut group = "";
-        for (index, mode) in shaders.modes.iter().enumerate() {
+        for (index, mode) in shaders.modes.iter().enumerate().filter(|(_, mode)| found(mode)) {
             if mode.group != group {
                 group = &mode.group;
                 ui.add_space(6.0);
@@ -41,4 +55,9 @@ pub(super) fn show(ui: &mut Ui, shaders: Option<&ShaderSet>, current: &mut Strin
             }
         }
     });
+}
+
+/// What the search looks through, in small letters.
+fn text_of(mode: &Mode) -> String {
+    format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc).to_lowercase()
 }

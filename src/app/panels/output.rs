@@ -1,9 +1,9 @@
 //! The panel Output: exposure, tone map, background, samples.
 
 use clap::ValueEnum as _;
-use egui::{Slider, Ui};
+use egui::{RichText, Slider, Ui};
 
-use super::{row, section};
+use super::{QUIET, row, section};
 use crate::app::command::Command;
 use crate::settings::{Settings, Tonemap};
 
@@ -24,6 +24,10 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Comm
             });
         });
         row(ui, "Background", "Color behind the model (--background)", |ui| {
+            if view.background == "env" {
+                ui.label(RichText::new("the environment").color(QUIET));
+                return;
+            }
             let hex = u32::from_str_radix(view.background.trim_start_matches('#'), 16).unwrap_or(0);
             let mut srgb = [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8];
             if ui.color_edit_button_srgb(&mut srgb).changed() {

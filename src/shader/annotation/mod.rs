@@ -5,7 +5,7 @@
 //! const uint MODE_BRDF_D = 120u;
 //! layout(constant_id = USER_CONSTANTS + 0) const bool WRAP = false;   //@ui "Wrapped diffuse"
 //! layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {
-//!     float rim;         //@ui "Rim" 0..1 = 0.2
+//!     float rim;         //@ui "Rim" 0..1 group="Material" doc="Its brightness" unit="cd/m^2" = 0.2
 //!     vec3  rim_color;   //@ui color = 1 0.8 0.6
 //! };
 //! //@pass glow "Glow" size=1/4 mips

@@ -29,6 +29,15 @@ pub struct Constant {
     /// affect that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reciprocal: Option<Vec<String>>,
+    /// Heading under which the window shows it; empty for none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub group: String,
+    /// What it does, with the source; may be empty.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub doc: String,
+    /// Unit of the number; empty for none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub unit: String,
     /// File as printed.
     #[serde(skip)]
     pub file: String,
@@ -102,6 +111,15 @@ pub struct Parameter {
     /// The constant without which it changes nothing: the window shows it only while that is not 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub when: Option<String>,
+    /// Heading under which the window shows it; empty for none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub group: String,
+    /// What it does, with the source; may be empty.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub doc: String,
+    /// Unit of the number; empty for none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub unit: String,
     /// File as printed.
     #[serde(skip)]
     pub file: String,

@@ -9,7 +9,7 @@ use crate::shader::spirv::reflect::{Reflection, Scalar};
 
 /// Combines a `//@ui` with its declaration in the compiled modules.
 pub(super) fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(), Box<Diagnostic>> {
-    let Ui { name, label, range, choices, conserves, reciprocal, color, when, default, declared, place } = ui;
+    let Ui { name, label, range, choices, conserves, reciprocal, color, when, group, doc, unit, default, declared, place } = ui;
     let (file, line) = (place.file.clone(), place.line);
     match declared {
         Declared::Constant(_) => {
@@ -36,6 +36,9 @@ pub(super) fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) ->
                 choices,
                 conserves,
                 reciprocal,
+                group,
+                doc,
+                unit,
                 file,
                 line,
             });
@@ -60,6 +63,9 @@ pub(super) fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) ->
                 color,
                 choices,
                 when,
+                group,
+                doc,
+                unit,
                 file,
                 line,
             });

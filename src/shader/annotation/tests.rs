@@ -91,6 +91,24 @@ fn constants_and_parameters() {
 }
 
 #[test]
+fn words_for_people_stand_anywhere_before_the_default() {
+    let found = read_text(&format!(
+        "layout(constant_id = 40) const uint C = 0u; //@ui doc=\"One = first.\" choice A=0 B=1 group=Mine\n\
+         {PARAMS}\n float far; //@ui \"Far\" group=\"My lens\" 0..9 unit=m doc=\"0..9 = near\" = 2\n float near; //@ui\n}};"
+    ))
+    .unwrap();
+    let constant = &found.constants[0];
+    assert_eq!((constant.doc.as_str(), constant.group.as_str(), constant.unit.as_str()), ("One = first.", "Mine", ""));
+    let words: Vec<_> = found.parameters.iter().map(|p| [&*p.group, &*p.doc, &*p.unit]).collect();
+    assert_eq!(words, [["My lens", "0..9 = near", "m"], ["", "", ""]]);
+    assert_eq!((found.parameters[0].range, &*found.parameters[0].default), (Some((0.0, 9.0)), &[2.0][..]));
+    refused(
+        "layout(constant_id = 40) const uint C = 0u; //@ui doc=",
+        "m.frag:3:55: error: expected a value after `doc=`, found the end of the line",
+    );
+}
+
+#[test]
 fn claims_name_choices() {
     let constant = |ui: &str| format!("layout(constant_id = 40) const uint C = 0u; //@ui choice A=0 B=1 {ui}");
     let claims = |ui: &str| {

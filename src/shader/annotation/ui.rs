@@ -3,7 +3,7 @@
 use super::ParameterType;
 use super::cursor::Cursor;
 use super::place::Place;
-use super::value::{choices, claim, claimed, default, range};
+use super::value::{choices, claim, claimed, default, range, text_key};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, is_word, tokens};
 use crate::shader::spirv::reflect::Scalar;
@@ -36,6 +36,12 @@ pub struct Ui {
     pub color: bool,
     /// `when=NAME`, before the default.
     pub when: Option<String>,
+    /// `group="Material"`; empty for none.
+    pub group: String,
+    /// `doc="..."`: a sentence for people; may be empty.
+    pub doc: String,
+    /// `unit="m"`; empty for none.
+    pub unit: String,
     /// `= ...`, one number per component.
     pub default: Option<Vec<f64>>,
     /// The annotated declaration.
@@ -59,6 +65,9 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
         reciprocal: None,
         color: false,
         when: None,
+        group: String::new(),
+        doc: String::new(),
+        unit: String::new(),
         default: None,
         declared,
         place,
@@ -89,6 +98,16 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
             ui.when = Some(cursor.value(key)?.1);
             continue;
         }
+        if let Some(key) = text_key(cursor) {
+            cursor.key();
+            let value = cursor.value(key)?.1;
+            *(match key {
+                "group" => &mut ui.group,
+                "unit" => &mut ui.unit,
+                _ => &mut ui.doc,
+            }) = value;
+            continue;
+        }
         let (bytes, word) = cursor.word();
         match word {
             "color" => ui.color = true,
@@ -101,7 +120,7 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
             }
             word if word.contains("..") => ui.range = Some(range(cursor, bytes, word, scalar)?),
             word => {
-                let message = format!("expected \"Label\", lo..hi, choice A=0 B=1, color or = default, found `{word}`");
+                let message = format!("expected \"Label\", lo..hi, choice A=0 B=1, color, group=, doc=, unit= or = default, found `{word}`");
                 return Err(cursor.error(bytes, message));
             }
         }

@@ -81,10 +81,15 @@ pub fn claimed(cursor: &mut Cursor<'_>, choices: &[(String, i64)]) -> Result<Vec
     }
 }
 
+/// The option before the cursor whose value is for people: `group`, `doc` or `unit`.
+pub fn text_key(cursor: &mut Cursor<'_>) -> Option<&'static str> {
+    ["group=", "doc=", "unit="].into_iter().find(|key| cursor.peek_text(key)).map(|key| key.trim_end_matches('='))
+}
+
 /// Parses `A=0 B=1` and so on, with values of the type.
 pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Vec<(String, i64)>, Box<Diagnostic>> {
     let mut out: Vec<(String, i64)> = Vec::new();
-    while !cursor.at_end() && !cursor.peek('=') && claim(cursor).is_none() {
+    while !cursor.at_end() && !cursor.peek('=') && claim(cursor).or_else(|| text_key(cursor)).is_none() {
         let (bytes, word) = cursor.word();
         let choice = word.split_once('=').and_then(|(name, value)| Some((name, value.parse::<i64>().ok()?)));
         let Some((name, value)) = choice.filter(|(name, _)| !name.is_empty()) else {

@@ -16,6 +16,8 @@ pub(super) struct PassDesc {
     is_written: bool,
     pub(super) keeps: bool,
     has_depth: bool,
+    /// Its place among the images of its pass, if they have mip levels.
+    place: usize,
 }
 
 /// The properties of an image that a pass needs only while it draws.
@@ -23,12 +25,15 @@ pub(super) struct PassDesc {
 pub(super) struct ScratchDesc {
     pub(super) size: (u32, u32),
     pub(super) format: vk::Format,
+    /// A pass draws all of its images at once, so each has its own.
+    place: usize,
 }
 
 impl PassDesc {
     /// `picture`: the size of the picture, in pixels.
     pub(super) fn new(pass: &GraphPass, (name, format): (&str, PassFormat), picture: (u32, u32)) -> Self {
         let size = pass.note.size.pixels(picture);
+        let place = pass.note.images().position(|(image, _)| pass.note.mips && image == name);
         Self {
             size,
             format: pass_format(format),
@@ -37,6 +42,7 @@ impl PassDesc {
             keeps: pass.note.keep,
             // All images of a pass share the depth of the first.
             has_depth: pass.note.model.is_some() && name == pass.name(),
+            place: place.unwrap_or(0),
         }
     }
 
@@ -48,12 +54,12 @@ impl PassDesc {
 
     /// The image that the pass draws to, if mip levels are made from it: an attachment has one level.
     pub(super) fn first_level(&self) -> Option<ScratchDesc> {
-        (self.mips > 1).then_some(ScratchDesc { size: self.size, format: self.format })
+        (self.mips > 1).then_some(ScratchDesc { size: self.size, format: self.format, place: self.place })
     }
 
     /// The depth of the model, if the pass draws it.
     pub(super) fn depth(&self) -> Option<ScratchDesc> {
-        self.has_depth.then_some(ScratchDesc { size: self.size, format: vk::Format::D32_SFLOAT })
+        self.has_depth.then_some(ScratchDesc { size: self.size, format: vk::Format::D32_SFLOAT, place: 0 })
     }
 
     pub(super) fn usage(&self) -> vk::ImageUsageFlags {
