@@ -74,7 +74,7 @@ pub struct ReloadEvent {
     pub generation: u64,
     /// Changed files, as diagnostics name them.
     pub changed: Vec<String>,
-    /// Stages that were compiled, the slowest first.
+    /// Stages that were compiled.
     pub stages: Vec<String>,
     /// Whether the new shaders are on screen.
     pub ok: bool,
@@ -128,11 +128,19 @@ impl ReloadEvent {
     }
 }
 
-/// The stages of a report in one line: the first few, and how many more there are.
+/// The stages of a report in one line: those that draw the picture first, and how many more there are.
 pub fn in_short(stages: &[String]) -> String {
     /// More do not fit beside the names of the changed files.
     const SHOWN: usize = 4;
-    match stages {
+    // The picture's fragment stages lie at the root of the tree; below it are passes, and the bakes that nobody sees.
+    let rank = |stage: &&str| match stage.rsplit_once('/') {
+        None => u32::from(!stage.ends_with(".frag")),
+        Some((folder, _)) if folder.starts_with("passes") => 2,
+        Some(_) => 3,
+    };
+    let mut sorted: Vec<&str> = stages.iter().map(String::as_str).collect();
+    sorted.sort_by_key(rank);
+    match sorted.as_slice() {
         [] => "nothing to do".to_owned(),
         few if few.len() <= SHOWN + 1 => few.join(" "),
         many => format!("{} and {} more stages", many[..SHOWN].join(" "), many.len() - SHOWN),
@@ -153,5 +161,19 @@ pub fn emit(enabled: bool, event: &Event<'_>) {
         use std::io::Write as _;
         // Specula goes on after the reader has closed the pipe.
         let _ = writeln!(std::io::stdout().lock(), "{line}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_on_screen_come_first() {
+        let stages = |names: &str| in_short(&names.split_whitespace().map(str::to_owned).collect::<Vec<_>>());
+        assert_eq!(stages(""), "nothing to do");
+        assert_eq!(stages("pbr.vert pbr.frag"), "pbr.frag pbr.vert");
+        let all = "fullscreen.vert ibl/cube.comp ibl/dfg.comp passes/film.frag pbr.vert pbr.frag sky.frag tonemap.frag";
+        assert_eq!(stages(all), "pbr.frag sky.frag tonemap.frag fullscreen.vert and 4 more stages");
     }
 }

@@ -255,7 +255,7 @@ fn errors_quote_the_author() {
             "void main() { gl_FragColor = vec3(1.0); }\n".to_owned(),
             vec!["t.glsl:1:28: error: 'assign'", "void main() { gl_F"],
         ),
-        ("void main() { gl_FragColor.w.y = 1.0; }\n".to_owned(), vec!["t.glsl:1:", "void main() { gl_F"]),
+        ("void main() { gl_FragColor.foo = 1.0; }\n".to_owned(), vec!["t.glsl:1:", "void main() { gl_F"]),
         (
             format!("#iChannel0 \"bad.png\"\n{look}"),
             vec!["t.glsl:1:13: error: ", "bad.png cannot be read", "1 | #iChannel0"],

@@ -41,12 +41,7 @@ impl History {
         Self::step(&mut self.future, &mut self.past, &mut self.last, now)
     }
 
-    fn step(
-        from: &mut Vec<Settings>,
-        to: &mut Vec<Settings>,
-        last: &mut Option<Settings>,
-        now: &mut Settings,
-    ) -> bool {
+    fn step(from: &mut Vec<Settings>, to: &mut Vec<Settings>, last: &mut Option<Settings>, now: &mut Settings) -> bool {
         let Some(settings) = from.pop() else { return false };
         to.push(now.clone());
         *now = with_view_of(&settings, now);

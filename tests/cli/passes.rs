@@ -83,7 +83,7 @@ fn files_that_nothing_draws_are_told_once() {
 #[test]
 fn a_background_of_ones_own_that_is_not_shown_is_told() {
     let tree = Tree::new();
-    let hint = "/shaders/user/background.glsl changes the background, which `--background env` shows";
+    let hint = "shaders/user/background.glsl changes the background, which `--background env` shows";
     let stderr = render(&tree, &[]).expect(0, &[]).stderr.clone();
     assert!(!stderr.contains("hint"), "{stderr}");
     let own = tree.edited("user/background.glsl", "return ", "return 0.5 * ");

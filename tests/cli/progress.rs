@@ -6,10 +6,10 @@ use crate::support::process::run;
 #[test]
 fn many_samples_show_progress_on_stderr() {
     let directory = directory();
-    // Some ten seconds on a software device.
+    // Hours on a software device; it is ended at its first line.
     let long = [
         "render",
-        "sphere-grid",
+        "metal-grid",
         "--size",
         "320x200",
         "--mode",

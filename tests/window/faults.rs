@@ -75,7 +75,8 @@ fn a_screenshot_for_which_memory_is_short_costs_nothing() {
 #[test]
 fn a_window_too_large_for_the_memory_keeps_the_session() {
     // The picture has 8 bytes a pixel: 2.5 MB at 640x480, 5.6 MB at 1000x700.
-    let mut viewer = Viewer::with_fault(Tree::new(), &["sphere-grid", "--set", "passes.ground=false"], "image-bytes:4000000");
+    let mut viewer =
+        Viewer::with_fault(Tree::new(), &["sphere-grid", "--set", "passes.ground=false"], "image-bytes:4000000");
     viewer.running.event("ready");
     // Without panels the picture is as large as the window.
     viewer.key("h");

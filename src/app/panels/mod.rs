@@ -105,7 +105,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
             let mode = &mut session.settings.mode;
             panel.show(ui, |ui| modes::show(ui, session.shaders.as_deref(), mode, state));
         }
-        let panel = egui::Panel::right("settings").frame(frame).default_size(SETTINGS + 16.0).min_size(220.0).max_size(480.0);
+        let panel =
+            egui::Panel::right("settings").frame(frame).default_size(SETTINGS + 16.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
             ui.spacing_mut().slider_width += (ui.max_rect().width() - SETTINGS).max(0.0);
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| settings(ui, viewer, readings, commands));

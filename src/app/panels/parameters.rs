@@ -30,7 +30,11 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<Strin
         // Without a group first, then group by group in the order in which the tree names them.
         let mut groups = vec![""];
         let named = parameters.iter().map(|p| p.group.as_str()).chain(constants.iter().map(|c| c.group.as_str()));
-        named.for_each(|group| if !groups.contains(&group) { groups.push(group) });
+        named.for_each(|group| {
+            if !groups.contains(&group) {
+                groups.push(group)
+            }
+        });
         for group in groups {
             if !group.is_empty() {
                 ui.label(RichText::new(group).small().color(QUIET));
@@ -137,11 +141,7 @@ pub(super) fn is_true(constant: &Constant, values: &BTreeMap<String, ShaderValue
     value.map_or(constant.default != 0, |value| value != 0.0)
 }
 
-fn edit_parameter(
-    ui: &mut Ui,
-    parameter: &Parameter,
-    value: Option<&ShaderValue>,
-) -> (Option<ShaderValue>, Response) {
+fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue>) -> (Option<ShaderValue>, Response) {
     let Parameter { name, choices, range, unit, .. } = parameter;
     let mut numbers = match value {
         Some(ShaderValue::Vector(numbers)) if numbers.len() == parameter.default.len() => numbers.clone(),

@@ -9,7 +9,22 @@ use crate::shader::spirv::reflect::{Reflection, Scalar};
 
 /// Combines a `//@ui` with its declaration in the compiled modules.
 pub(super) fn resolve(ui: Ui, modules: &[&Reflection], out: &mut Annotations) -> Result<(), Box<Diagnostic>> {
-    let Ui { name, label, range, choices, conserves, reciprocal, color, when, group, doc, unit, default, declared, place } = ui;
+    let Ui {
+        name,
+        label,
+        range,
+        choices,
+        conserves,
+        reciprocal,
+        color,
+        when,
+        group,
+        doc,
+        unit,
+        default,
+        declared,
+        place,
+    } = ui;
     let (file, line) = (place.file.clone(), place.line);
     match declared {
         Declared::Constant(_) => {

@@ -120,7 +120,9 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
             }
             word if word.contains("..") => ui.range = Some(range(cursor, bytes, word, scalar)?),
             word => {
-                let message = format!("expected \"Label\", lo..hi, choice A=0 B=1, color, group=, doc=, unit= or = default, found `{word}`");
+                let message = format!(
+                    "expected \"Label\", lo..hi, choice A=0 B=1, color, group=, doc=, unit= or = default, found `{word}`"
+                );
                 return Err(cursor.error(bytes, message));
             }
         }

@@ -266,14 +266,12 @@ impl Library {
         let (compiler, cache) = (&self.compiler, &self.cache);
         let bases: Vec<Option<&Built>> =
             stages.iter().map(|(index, _)| self.slots[*index].base().filter(|_| !is_whole)).collect();
-        let mut compiled: Vec<(usize, Done)> = stages
+        let compiled: Vec<(usize, Done)> = stages
             .par_iter()
             .zip(bases)
             .filter(|_| !superseded())
             .map(|((index, path), base)| (*index, build(compiler, snapshot, cache, path, base)))
             .collect();
-        // The stage that took longest is the one to read about.
-        compiled.sort_by(|(_, a), (_, b)| b.ms.unwrap_or(0.0).total_cmp(&a.ms.unwrap_or(0.0)));
         for (index, Done { outcome, ms }) in compiled {
             let slot = &mut self.slots[index];
             report.stages.extend(ms.map(|ms| (slot.path.to_string(), ms)));
@@ -284,7 +282,8 @@ impl Library {
     fn changed(&self, change: &Change) -> Vec<String> {
         let Change::Paths(paths) = change else { return Vec::new() };
         let known = self.dependencies();
-        paths.iter().filter(|path| known.contains(path)).map(|path| self.source.display_path(path)).collect()
+        let shown = paths.iter().filter(|path| known.contains(path)).map(|path| self.source.display_path(path));
+        shown.filter(|path| is_of_author(path)).collect()
     }
 
     /// Restores results that are already known for the current text, and lists the stages to compile.
@@ -341,8 +340,15 @@ impl Library {
         let texts = self.set.iter().flat_map(|set| &set.texts);
         let edited = texts.filter(|(path, text)| snapshot.read(path).is_ok_and(|now| !is_same_code(&now, text)));
         let shown = edited.map(|(path, _)| self.source.display_path(path));
-        shown.filter(|path| diagnostics.iter().all(|diagnostic| diagnostic.file != *path)).collect()
+        shown
+            .filter(|path| is_of_author(path) && diagnostics.iter().all(|diagnostic| diagnostic.file != *path))
+            .collect()
     }
+}
+
+/// Whether a file, as displayed, is one on disk: the stages of a single opened file are written by Specula.
+fn is_of_author(shown: &str) -> bool {
+    !shown.starts_with("embedded:")
 }
 
 struct Stale {
