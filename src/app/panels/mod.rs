@@ -108,7 +108,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
         let panel =
             egui::Panel::right("settings").frame(frame).default_size(SETTINGS + 16.0).min_size(220.0).max_size(480.0);
         panel.show(ui, |ui| {
-            ui.spacing_mut().slider_width += (ui.max_rect().width() - SETTINGS).max(0.0);
+            ui.spacing_mut().slider_width += (ui.max_rect().width() - SETTINGS_WITH_ROOM).max(0.0);
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| settings(ui, viewer, readings, commands));
         });
     }
@@ -144,8 +144,10 @@ fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
     ui.add_space(4.0);
 }
 
-/// Width of the settings at first, in points. In a wider panel, sliders are longer.
+/// Width of the settings at first, in points.
 const SETTINGS: f32 = 302.0;
+/// Width from which sliders are longer. Less would let the longest row widen its own panel.
+const SETTINGS_WITH_ROOM: f32 = 340.0;
 
 /// Size of the names at the left of rows, in points.
 const NAME: egui::Vec2 = egui::vec2(120.0, 18.0);

@@ -174,7 +174,9 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
         (_, [number]) => ShaderValue::Float(*number),
         _ => ShaderValue::Vector(numbers),
     };
-    ((numbers != before).then(|| value(numbers)), response)
+    // The color picker works with f32, which rounds numbers that nobody has changed.
+    let is_new = numbers != before && (!parameter.color || response.changed());
+    (is_new.then(|| value(numbers)), response)
 }
 
 fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) -> (Option<ShaderValue>, Response) {
