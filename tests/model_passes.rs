@@ -422,7 +422,7 @@ fn contradictions_have_their_line() {
         (
             "passes/mine.frag",
             text.replace("draw=model", "draw=model blend"),
-            "only a pass that draws the model to the picture has blend",
+            "only a pass that draws the model or the background to the picture has blend",
         ),
         (
             "passes/mine.frag",
