@@ -17,7 +17,8 @@ fn an_environment_comes_and_goes_in_one_step() {
     let without = unlit.screenshot();
     unlit.quit();
 
-    let lit = [&size[..], &["--env", "furnace"]].concat();
+    // The background is the same with and without an environment.
+    let lit = [&size[..], &["--env", "furnace", "--background", "#1b1d21"]].concat();
     let mut viewer = Viewer::with_fault(Tree::new(), &lit, "compile-delay-ms:500");
     viewer.ready_and_baked();
     let with = viewer.screenshot();
