@@ -7,6 +7,7 @@ mod window {
     mod endurance;
     mod faults;
     mod keys;
+    mod layout;
     mod losses;
     mod panels;
     mod passes;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::editor::Place;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
 
@@ -22,6 +23,8 @@ pub(super) enum Command {
     Quit,
     /// Show a message for a few seconds.
     Say(String),
+    /// Open a file or folder in the user's editor.
+    Edit(Place),
     /// Open a shader tree.
     OpenTree(PathBuf),
     /// Open a model.

@@ -41,6 +41,8 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 return true;
             }
             let reads_keys = viewer.reads_keys();
+            // The search of the palette has the keys from the moment it opens, which may be before egui knows.
+            let taken = (taken || viewer.panels.palette.is_open()) && !is_function_key(&event.logical_key);
             if !pressed || (reads_keys && !is_shortcut(&event.logical_key, screen.mouse.modifiers)) {
                 // A press that winit makes up when the window gets the focus is none for shaders.
                 let counts = !pressed || !(taken || event.repeat || *is_synthetic);
@@ -140,12 +142,16 @@ fn fly_key(camera: &mut CameraController, code: KeyCode, pressed: bool) -> bool 
     pressed
 }
 
+/// Whether a key types nothing and so is never meant for a text.
+fn is_function_key(key: &Key) -> bool {
+    matches!(key, Key::Named(NamedKey::F1 | NamedKey::F5 | NamedKey::F12))
+}
+
 /// Whether a key remains Specula's while the picture reads keys.
 fn is_shortcut(key: &Key, modifiers: ModifiersState) -> bool {
     match key {
-        Key::Named(named) => {
-            matches!(named, NamedKey::F1 | NamedKey::F5 | NamedKey::F12 | NamedKey::Escape | NamedKey::Home)
-        }
+        key if is_function_key(key) => true,
+        Key::Named(named) => matches!(named, NamedKey::Escape | NamedKey::Home),
         Key::Character(_) => modifiers.control_key(),
         _ => false,
     }
@@ -187,6 +193,7 @@ fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bo
     let is_ignored = control && !viewer.reads_keys();
     let session = &mut viewer.session;
     match key {
+        'p' if control => viewer.panels.palette.toggle(),
         'q' if control => viewer.execute(Command::Quit),
         'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
         'y' if control => viewer.execute(Command::Redo),

@@ -4,9 +4,12 @@
 //! Panels, keys and dropped files change settings or send a `command`.
 
 mod command;
+mod editor;
 mod history;
 mod input;
 mod keys;
+mod layout;
+mod palette;
 mod panels;
 mod playback;
 mod screen;
@@ -240,7 +243,8 @@ impl ApplicationHandler<Message> for App {
                 }
             }
             event => {
-                if input::on_window_event(&mut open.viewer, &event, &mut open.screen, response.consumed) {
+                let taken = open.screen.is_taken(&event, response.consumed);
+                if input::on_window_event(&mut open.viewer, &event, &mut open.screen, taken) {
                     open.window.request_redraw();
                 }
             }

@@ -25,6 +25,8 @@ use crate::scene::{CameraController, CameraView};
 const FRAMES_IN_FLIGHT: usize = 2;
 /// Time until the next attempt at a frame while memory is short.
 const RETRY: Duration = Duration::from_millis(500);
+/// Points at the edge of the picture that belong to the handle between it and a panel.
+const HANDLE: f32 = 4.0;
 /// Repaint delays of egui from here on mean that it needs no repaint.
 const NEVER: Duration = Duration::from_secs(3600);
 
@@ -75,7 +77,7 @@ impl Screen {
         let (display, handle) = handles.map_err(|e| GpuError::NoDevice(format!("the window has no handle: {e}")))?;
         let surface = Surface::new(gpu, display, handle)?;
         let egui = egui::Context::default();
-        panels::style(&egui);
+        panels::theme::apply(&egui);
         let input = egui_winit::State::new(
             egui.clone(),
             egui::ViewportId::ROOT,
@@ -111,6 +113,21 @@ impl Screen {
 
     pub(super) fn on_window_event(&mut self, window: &Window, event: &WindowEvent) -> egui_winit::EventResponse {
         self.input.on_window_event(window, event)
+    }
+
+    /// Whether an event belongs to the user interface. `consumed`: what egui says, for which the tiles with the picture among them
+    /// are one panel. Over the picture, only what lies above it and a drag that began elsewhere take the mouse.
+    pub(super) fn is_taken(&self, event: &WindowEvent, consumed: bool) -> bool {
+        if !matches!(event, WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. }) {
+            return consumed;
+        }
+        let scale = self.egui.pixels_per_point();
+        let at = egui::Pos2::new(self.mouse.at.x, self.mouse.at.y) / scale;
+        let [x, y, width, height] =
+            [self.rect.at.0, self.rect.at.1, self.rect.size.0, self.rect.size.1].map(|n| n as f32 / scale);
+        let picture = egui::Rect::from_min_size(egui::pos2(x, y), egui::vec2(width, height));
+        let is_covered = self.egui.layer_id_at(at).is_some_and(|layer| layer.order != egui::Order::Background);
+        is_covered || self.egui.egui_is_using_pointer() || !picture.shrink(HANDLE).contains(at)
     }
 
     pub(super) fn resized(&mut self) {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::command::{Command, open_as};
+use super::editor;
 use super::history::History;
 use super::panels::PanelState;
 use super::playback::Playback;
@@ -119,7 +120,7 @@ impl Viewer {
         let threads = Threads::start((gpu, layouts), worker, early.watcher, outbox);
         let mut viewer = Self {
             session,
-            panels: PanelState::default(),
+            panels: PanelState::restored(),
             shader: ShaderStatus { compiling: true, ..Default::default() },
             model: ModelStatus { path: options.model.clone(), ..Default::default() },
             notices: Notices::default(),
@@ -267,6 +268,11 @@ impl Viewer {
             }
             Command::Screenshot => self.screenshot = true,
             Command::Quit => self.quit = true,
+            Command::Edit(place) => {
+                if let Err(message) = editor::open(&place) {
+                    self.say(message);
+                }
+            }
             Command::Say(text) => self.say(text),
             Command::OpenTree(path) => {
                 let source = Source::open(path);

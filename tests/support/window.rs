@@ -117,14 +117,28 @@ impl Viewer {
         viewer
     }
 
+    /// [`Self::open`] with an editor in the form of `SPECULA_EDITOR`.
+    pub fn with_editor(tree: Tree, more: &[&str], editor: &str) -> Self {
+        let mut viewer = Self::start(tree, more, &[("SPECULA_EDITOR", editor)]);
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
     /// [`Self::with_fault`] without waiting for a window.
     pub fn launch(tree: Tree, more: &[&str], fault: &str) -> Self {
+        Self::start(tree, more, &[("SPECULA_FAULT", fault)])
+    }
+
+    fn start(tree: Tree, more: &[&str], environment: &[(&str, &str)]) -> Self {
         let display = Display::new();
         let mut command = display.view(&tree);
         // Records of the session lie here, so a test can see whether they are removed.
-        std::fs::create_dir(tree.beside("runtime")).unwrap();
+        std::fs::create_dir_all(tree.beside("runtime")).unwrap();
         command.env("XDG_RUNTIME_DIR", tree.beside("runtime"));
-        command.args(["--set", "view.msaa=1"]).env("SPECULA_FAULT", fault);
+        // So does the arrangement of the panels.
+        command.env("XDG_STATE_HOME", tree.beside("state"));
+        command.args(["--set", "view.msaa=1"]).envs(environment.iter().copied());
         for (option, value) in [("--shaders", "shaders"), ("--env", "none"), ("--size", "640x480")] {
             if !more.contains(&option) {
                 command.args([option, value]);

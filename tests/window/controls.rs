@@ -1,23 +1,26 @@
-//! Finds controls of the right panel on the screen by their colors and sizes, so that rows may be added above them.
+//! Finds what the window shows by its colors, and chooses by the command palette.
 
 use image::{Rgba, RgbaImage};
 
 use crate::support::window::Viewer;
 
-/// Behind the panels, as `src/app/panels/mod.rs` has it.
-pub(super) const PANEL: [u8; 3] = [24, 25, 28];
-/// Text and frames of errors.
+/// Text and frames of errors, as `src/app/panels/theme.rs` has them.
 pub(super) const ERROR: [u8; 3] = [255, 110, 100];
 /// Text and frames of warnings.
 pub(super) const WARNING: [u8; 3] = [255, 196, 92];
 
-/// Behind what is chosen in a list.
-const SELECTED: [u8; 3] = [35, 86, 134];
+/// The mark of shaders without an error.
+pub(super) const GOOD: [u8; 3] = [112, 201, 130];
+
+/// Rows between the bars of a window of 480.
+pub(super) const TILES: std::ops::Range<u32> = 32..456;
+/// Rows of the lower bar.
+pub(super) const STATUS: std::ops::Range<u32> = 458..480;
+/// The end of the lower bar has the time of the last frame, which changes.
+pub(super) const STATUS_COLUMNS: std::ops::Range<u32> = 0..500;
 
 /// Controls begin this far right of the panel's left edge: a margin, and 120 points for the name with a gap.
 const CONTROL: u32 = 134;
-/// The entries of the environment's list are this far apart, the first one a little farther from its button.
-const ENTRY: u32 = 22;
 
 /// Whether a pixel has about this color. Text and thin lines are blended with what is behind them.
 pub(super) fn is_about(pixel: &Rgba<u8>, color: [u8; 3]) -> bool {
@@ -29,28 +32,12 @@ pub(super) fn count(screen: &RgbaImage, x: std::ops::Range<u32>, y: std::ops::Ra
     x.flat_map(|x| y.clone().map(move |y| (x, y))).filter(|(x, y)| is_about(screen.get_pixel(*x, *y), color)).count()
 }
 
-/// Chooses an entry of the list of environments: 0 to 2 are built in, 3 is `none`. `left` is the panel's left edge, which is the
-/// picture's width.
+/// Finds words in the command palette and chooses the first entry that has them.
 #[track_caller]
-pub(super) fn choose_environment(viewer: &Viewer, left: u32, entry: u32) {
-    // The list's button is the only control of 150 points. Its upper edge is free of text.
-    let x = left + CONTROL;
-    let is_button = |screen: &RgbaImage, y: u32| {
-        let first = screen.get_pixel(x + 4, y);
-        first.0[..3] != PANEL && (x + 4..x + 146).all(|x| screen.get_pixel(x, y) == first)
-    };
-    // A list may still be closing, and its entries are no buttons.
-    let row = |screen: &RgbaImage| (100..screen.height()).find(|y| is_button(screen, *y));
-    let screen = viewer.until_screen("the list of environments", |screen| row(screen).is_some());
-    let y = row(&screen).unwrap() + ENTRY / 2;
-    viewer.click((x + 20, y));
-    // An open list marks its chosen entry over its whole width. Nothing else so close to the button has that color.
-    let is_open = |screen: &RgbaImage| count(screen, x..x + 146, y + ENTRY / 2..y + 4 * ENTRY, SELECTED) > 1000;
-    viewer.until_screen("the open list of environments", is_open);
-    viewer.click((x + 20, y + ENTRY + 3 + ENTRY * entry));
-    // Over a control or a name, the mouse would change its color or open a tooltip.
-    viewer.display.park_mouse();
-    viewer.until_screen("the closed list of environments", |screen| !is_open(screen));
+pub(super) fn choose(viewer: &Viewer, words: &str) {
+    viewer.key("ctrl+p");
+    viewer.display.xdotool(&["type", words]);
+    viewer.key("Return");
 }
 
 /// Drags the slider in row `y` of the panel with the left edge `left` to `value`: 0 and 1 are its ends.

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use image::RgbaImage;
 
-use super::controls::{choose_environment, drag_slider};
+use super::controls::{TILES, choose, drag_slider};
 use crate::support::process::PATIENCE;
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb};
@@ -71,11 +71,10 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
     );
     viewer.tree.write(TONEMAP, &text.replace("vec4 scene = texelFetch(", "vec4 scene = LEVEL * texelFetch("));
     viewer.running.reload(true);
-    // The new row is where the panel first differs, below the section Shaders, which reports the reload. The last columns belong to
-    // the scroll bar.
+    // The new row is where the panel first differs. The last columns belong to the scroll bar.
     let differs =
         |screen: &RgbaImage, y: u32| (left..WIDTH - 16).any(|x| screen.get_pixel(x, y) != before.get_pixel(x, y));
-    let row = |screen: &RgbaImage| (120..screen.height()).find(|y| differs(screen, *y));
+    let row = |screen: &RgbaImage| TILES.into_iter().find(|y| differs(screen, *y));
     let after = viewer.until_screen("the constant's row", |screen| row(screen).is_some());
     let y = row(&after).unwrap() + 8;
     repeat(&mut viewer, "drags", 200 * factor(), |viewer, number| {
@@ -93,10 +92,9 @@ fn two_hundred_drags_of_a_constant_keep_nothing() {
 fn twenty_environments_keep_nothing() {
     let mut viewer = open(Tree::new(), &["--size", "640x640", "--env", "studio"]);
     viewer.ready_and_baked();
-    let left = viewer.screenshot().width();
     repeat(&mut viewer, "environments", 20 * factor(), |viewer, number| {
-        let (entry, name) = [(1, "furnace"), (0, "studio")][number % 2];
-        choose_environment(viewer, left, entry);
+        let name = ["furnace", "studio"][number % 2];
+        choose(viewer, &format!("environment {name}"));
         viewer.running.until(name, |event| event["event"] == "bake" && event["environment"] == name);
     });
     viewer.quit();

@@ -1,6 +1,6 @@
 //! A failure outside the shaders costs the user neither the picture nor the session: memory, threads, a model that takes forever.
 
-use super::controls::{WARNING, choose_environment, count};
+use super::controls::{WARNING, choose, count};
 use crate::NDF;
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb, hdr};
@@ -28,8 +28,7 @@ fn a_panic_of_a_canceled_bake_leaves_the_new_one() {
     let size = ["sphere-grid", "--size", "640x640", "--env", "studio"];
     let mut viewer = Viewer::with_fault(Tree::new(), &size, "bake-delay-ms:4000,bake-panic:1");
     viewer.running.event("ready");
-    let left = viewer.screenshot().width();
-    choose_environment(&viewer, left, 1);
+    choose(&viewer, "environment furnace");
     viewer.running.until("furnace", |event| event["event"] == "bake" && event["environment"] == "furnace");
     // A thread that panics prints a backtrace first, which may take longer than the bake.
     viewer.running.until_stderr("baker thread failed");

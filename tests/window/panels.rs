@@ -4,23 +4,18 @@
 use image::RgbaImage;
 use serde_json::json;
 
-use super::controls::{ERROR, PANEL, WARNING, count, is_about};
+use super::controls::{ERROR, GOOD, STATUS, STATUS_COLUMNS, TILES, WARNING, count};
 use crate::NDF;
 use crate::support::window::Viewer;
 use crate::support::{Tree, glb};
 
-/// The section Shaders ends above this row of the window: a heading and four lines. Its last line has the times.
-const SHADERS_END: u32 = 102;
-const TIMES: std::ops::Range<u32> = 82..100;
 /// The last columns of the panel belong to the scroll bar, which fades in and out.
 const SCROLL_BAR: u32 = 16;
 const SIZE: (u32, u32) = (640, 480);
 
-/// The width of what is written in rows `y` of the panel that begins at column `left`.
-fn written(screen: &RgbaImage, left: u32, y: std::ops::Range<u32>) -> u32 {
-    let columns = (left + 4..SIZE.0 - SCROLL_BAR).rev();
-    let is_blank = |x: u32| y.clone().all(|y| is_about(screen.get_pixel(x, y), PANEL));
-    columns.into_iter().find(|x| !is_blank(*x)).map_or(0, |right| right - left)
+/// Pixels of a color in the lower bar.
+fn in_status(screen: &RgbaImage, color: [u8; 3]) -> usize {
+    count(screen, STATUS_COLUMNS, STATUS, color)
 }
 
 #[test]
@@ -31,35 +26,59 @@ fn an_error_moves_nothing_and_goes_with_its_repair() {
     viewer.running.event("ready");
     let first = viewer.screenshot();
     let left = first.width();
-    viewer.move_mouse((left + 230, SHADERS_END / 3));
-    let errors = |screen: &RgbaImage, x: std::ops::Range<u32>| count(screen, x, 0..SIZE.1, ERROR);
-    let times = |screen: &RgbaImage| written(screen, left, TIMES);
-    // "1 ms compile + 2 ms pipeline + 3 ms frame" is longer than "failed after 4 ms".
-    let good = viewer.until_screen("the times of the start", |screen| times(screen) > 160);
-    assert_eq!((errors(&good, 0..left), errors(&good, left..SIZE.0)), (0, 0), "an error without an error");
+    let errors = |screen: &RgbaImage| count(screen, 0..left, TILES, ERROR);
+    let is_good = |screen: &RgbaImage| in_status(screen, GOOD) > 10 && in_status(screen, ERROR) == 0;
+    let good = viewer.until_screen("the state of the start", is_good);
+    assert_eq!(errors(&good), 0, "an error without an error");
     let moved = |screen: &RgbaImage| -> Vec<u32> {
         let differs = |y: u32| (left..SIZE.0 - SCROLL_BAR).any(|x| screen.get_pixel(x, y) != good.get_pixel(x, y));
-        (SHADERS_END..SIZE.1).filter(|y| differs(*y)).collect()
+        TILES.filter(|y| differs(*y)).collect()
     };
 
     let original = viewer.tree.read(NDF);
     for edit in ["alpha * alfa;", "alpha * ;\n}\nfloat other() { return 1.0 / beta;"] {
         viewer.tree.write(NDF, &original.replace("alpha * alpha;", edit));
         viewer.running.reload(false);
-        let bad = viewer.until_screen("the error in the panel, and over the picture", |screen| {
-            errors(screen, left..SIZE.0) > 20 && errors(screen, 0..left) > 100 && times(screen) < 140
+        let bad = viewer.until_screen("the error in the lower bar, and over the picture", |screen| {
+            in_status(screen, ERROR) > 20 && in_status(screen, GOOD) == 0 && errors(screen) > 100
         });
-        assert_eq!(moved(&bad), [0; 0], "rows below the section Shaders that moved or changed");
+        assert_eq!(moved(&bad), [0; 0], "rows of the panels that moved or changed");
         assert_eq!(viewer.screenshot().dimensions(), first.dimensions(), "the picture has another size");
     }
 
     viewer.tree.write(NDF, &original);
     viewer.running.reload(true);
-    let repaired = viewer.until_screen("the repair in the panel", |screen| {
-        (errors(screen, left..SIZE.0), errors(screen, 0..left)) == (0, 0) && times(screen) > 160
-    });
-    assert_eq!(moved(&repaired), [0; 0], "rows below the section Shaders that moved or changed");
+    let repaired = viewer.until_screen("the repair", |screen| is_good(screen) && errors(screen) == 0);
+    assert_eq!(moved(&repaired), [0; 0], "rows of the panels that moved or changed");
     assert!(viewer.screenshot() == first, "the first text no longer shows the first picture");
+    viewer.quit();
+}
+
+/// The position of an error opens in the editor at its line.
+#[cfg(unix)]
+#[test]
+fn a_click_on_an_error_opens_the_editor() {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    let tree = Tree::new();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let (editor, opened) = (tree.beside("editor"), tree.beside("opened.txt"));
+    std::fs::write(&editor, "#!/bin/sh\nprintf '%s ' \"$@\" > opened.new && mv opened.new opened.txt\n").unwrap();
+    std::fs::set_permissions(&editor, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut viewer = Viewer::with_editor(tree, &["model.glb"], "./editor {line} {column} {file}");
+    viewer.running.event("ready");
+    let left = viewer.screenshot().width();
+    let text = viewer.tree.read(NDF).replace("alpha * alpha;", "alpha * alfa;");
+    viewer.tree.write(NDF, &text);
+    let error = viewer.running.event("diagnostic");
+    viewer.running.reload(false);
+    // The card has an edge of the same color over its whole width. The position is its first line.
+    let edge = |screen: &RgbaImage| TILES.into_iter().find(|y| count(screen, 0..left, *y..*y + 1, ERROR) > 100);
+    let screen = viewer.until_screen("the card with the error", |screen| edge(screen).is_some());
+    viewer.click((40, edge(&screen).unwrap() + 17));
+    viewer.until("the editor", |_| opened.exists());
+    let told = std::fs::read_to_string(&opened).unwrap();
+    assert_eq!(told.trim(), format!("{} {} {}", error["line"], error["column"], error["file"].as_str().unwrap()));
     viewer.quit();
 }
 
@@ -71,7 +90,7 @@ fn a_loop_that_does_not_end_stays_on_screen() {
     let mut viewer = Viewer::open(tree, &["model.glb"]);
     viewer.running.event("ready");
     let left = viewer.screenshot().width();
-    let errors = |screen: &RgbaImage, x: std::ops::Range<u32>| count(screen, x, 0..SIZE.1, ERROR);
+    let errors = |screen: &RgbaImage| count(screen, 0..left, TILES, ERROR);
     let hook = "void user_surface(inout Surface s) {";
     let text = viewer.tree.edited("user.glsl", hook, &format!("{hook}\n    while (s.roughness < 2.0) {{}}"));
     let original = viewer.tree.read("user.glsl");
@@ -84,12 +103,12 @@ fn a_loop_that_does_not_end_stays_on_screen() {
         is_named && is_settled
     });
     viewer.move_mouse((left / 2, 100));
-    viewer.until_screen("the loop's name over the picture and in the panel", |screen| {
-        errors(screen, 0..left) > 100 && errors(screen, left..SIZE.0) > 10
+    viewer.until_screen("the loop's name over the picture and an error in the lower bar", |screen| {
+        errors(screen) > 100 && in_status(screen, ERROR) > 20
     });
     viewer.tree.write("user.glsl", &original);
     viewer.running.reload(true);
-    viewer.until_screen("the repair", |screen| errors(screen, 0..SIZE.0) == 0);
+    viewer.until_screen("the repair", |screen| errors(screen) == 0 && in_status(screen, ERROR) == 0);
     viewer.quit();
 }
 
@@ -104,7 +123,7 @@ fn the_end_of_a_bake_moves_nothing() {
     let baking = viewer.screen();
     let changed = |screen: &RgbaImage| -> Vec<u32> {
         let differs = |y: u32| (left..SIZE.0 - SCROLL_BAR).any(|x| screen.get_pixel(x, y) != baking.get_pixel(x, y));
-        (SHADERS_END..640).filter(|y| differs(*y)).collect()
+        (32..616).filter(|y| differs(*y)).collect()
     };
     viewer.running.event("bake");
     viewer.until_screen("the time of the bake", |screen| !changed(screen).is_empty());
@@ -128,7 +147,7 @@ fn warnings_of_a_model_lie_over_the_picture() {
     let mut viewer = Viewer::open(tree, &["model.glb"]);
     viewer.running.event("ready");
     let left = viewer.screenshot().width();
-    let warnings = |screen: &RgbaImage| count(screen, 0..left, 0..SIZE.1, WARNING);
+    let warnings = |screen: &RgbaImage| count(screen, 0..left, TILES, WARNING);
     assert_eq!(warnings(&viewer.screen()), 0, "a warning about a sound model");
     std::fs::write(&path, damaged).unwrap();
     viewer.until_screen("a card with the warning", |screen| warnings(screen) > 100);

@@ -5,7 +5,7 @@ use egui::{RichText, Window};
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 17] = [
+const KEYS: [(&str, &str); 18] = [
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
@@ -19,6 +19,7 @@ const KEYS: [(&str, &str); 17] = [
     ("H", "hide the panels"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo and redo a change of the settings"),
     ("double click on a name", "reset the parameter; its menu copies the option for --set"),
+    ("Ctrl+P", "find a mode, setting, panel or command"),
     ("F1, ?", "these keys"),
     ("F5", "compile everything again"),
     ("F12", "screenshot, to specula-1.png and so on"),

@@ -2,56 +2,54 @@
 
 use egui::{DragValue, Slider, Ui};
 
-use super::{angle, color, row, section};
+use super::{angle, color, row, slide};
 use crate::settings::{LightSettings, LightSource, RectLight};
 
 /// Shows the panel. `in_model` is the number of lights in the model.
 pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
-    section(ui, "Lights", true, |ui| {
-        row(ui, "Source", "Which lights are on (--lights)", |ui| {
-            ui.selectable_value(&mut lights.source, LightSource::Orbit, "Orbit");
-            let model = egui::Button::selectable(lights.source == LightSource::Model, format!("Model ({in_model})"));
-            if ui.add_enabled(in_model > 0, model).clicked() {
-                lights.source = LightSource::Model;
-            }
-            ui.selectable_value(&mut lights.source, LightSource::None, "None");
+    row(ui, "Source", "Which lights are on (--lights)", |ui| {
+        ui.selectable_value(&mut lights.source, LightSource::Orbit, "Orbit");
+        let model = egui::Button::selectable(lights.source == LightSource::Model, format!("Model ({in_model})"));
+        if ui.add_enabled(in_model > 0, model).clicked() {
+            lights.source = LightSource::Model;
+        }
+        ui.selectable_value(&mut lights.source, LightSource::None, "None");
+    });
+    row(ui, "Terms of light", "The light whose BRDF terms the modes show", |ui| {
+        ui.selectable_value(&mut lights.chosen, 0, "All");
+        let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
+        for light in 1..=count {
+            ui.selectable_value(&mut lights.chosen, light, light.to_string());
+        }
+    });
+    if lights.source == LightSource::Orbit {
+        row(ui, "Orbit", "Speed around the model in degrees per second (L)", |ui| {
+            slide(ui, Slider::new(&mut lights.spin, -90.0..=90.0).suffix("°/s").max_decimals(0));
         });
-        row(ui, "Terms of light", "The light whose BRDF terms the modes show", |ui| {
-            ui.selectable_value(&mut lights.chosen, 0, "All");
-            let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
-            for light in 1..=count {
-                ui.selectable_value(&mut lights.chosen, light, light.to_string());
-            }
-        });
-        if lights.source == LightSource::Orbit {
-            row(ui, "Orbit", "Speed around the model in degrees per second (L)", |ui| {
-                ui.add(Slider::new(&mut lights.spin, -90.0..=90.0).suffix("°/s").max_decimals(0));
+        for (i, light) in lights.orbit.iter_mut().enumerate() {
+            ui.push_id(i, |ui| {
+                ui.separator();
+                row(
+                    ui,
+                    &format!("Light {}", i + 1),
+                    "Color, and illuminance in lux at a distance of one model radius",
+                    |ui| {
+                        color(ui, &mut light.color);
+                        slide(ui, Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
+                    },
+                );
+                place(ui, &mut light.distance, &mut light.azimuth, &mut light.polar);
             });
-            for (i, light) in lights.orbit.iter_mut().enumerate() {
-                ui.push_id(i, |ui| {
-                    ui.separator();
-                    row(
-                        ui,
-                        &format!("Light {}", i + 1),
-                        "Color, and illuminance in lux at a distance of one model radius",
-                        |ui| {
-                            color(ui, &mut light.color);
-                            ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
-                        },
-                    );
-                    place(ui, &mut light.distance, &mut light.azimuth, &mut light.polar);
-                });
-            }
         }
-        if lights.source != LightSource::None {
-            ui.separator();
-            rect(ui, &mut lights.rect);
-        }
+    }
+    if lights.source != LightSource::None {
         ui.separator();
-        row(ui, "Ambient", "Color, and luminance of every direction in cd/m^2; off with an environment", |ui| {
-            color(ui, &mut lights.ambient_color);
-            ui.add(Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
-        });
+        rect(ui, &mut lights.rect);
+    }
+    ui.separator();
+    row(ui, "Ambient", "Color, and luminance of every direction in cd/m^2; off with an environment", |ui| {
+        color(ui, &mut lights.ambient_color);
+        slide(ui, Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
     });
 }
 
@@ -61,7 +59,7 @@ fn rect(ui: &mut Ui, light: &mut RectLight) {
         ui.checkbox(&mut light.enabled, "");
         if light.enabled {
             color(ui, &mut light.color);
-            ui.add(Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
+            slide(ui, Slider::new(&mut light.strength, 0.0..=60.0).max_decimals(1));
         }
     });
     if !light.enabled {
@@ -79,7 +77,7 @@ fn rect(ui: &mut Ui, light: &mut RectLight) {
 /// The place of a light around the model.
 fn place(ui: &mut Ui, distance: &mut f32, azimuth: &mut f32, polar: &mut f32) {
     row(ui, "Distance", "From the model center, in model radii", |ui| {
-        ui.add(Slider::new(distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
+        slide(ui, Slider::new(distance, 0.5..=10.0).max_decimals(2).logarithmic(true));
     });
     angle(ui, "Azimuth", "Degrees around +Y, from +Z towards +X", azimuth, -180.0..=360.0);
     angle(ui, "Polar", "Degrees from +Y", polar, 0.0..=180.0);

@@ -1,5 +1,5 @@
-//! The panels: modes on the left, settings on the right, messages over the picture. Each panel has a file of its own and
-//! receives only what it shows and sets.
+//! What the window shows around and over the picture: bars, panels and messages. Each panel has a file of its own and receives only
+//! what it shows and sets. `crate::app::layout` arranges them.
 
 mod camera;
 mod environment;
@@ -12,51 +12,31 @@ mod overlay;
 mod parameters;
 mod passes;
 mod shaders;
+mod status_bar;
+pub(super) mod theme;
 mod timing;
+mod top_bar;
 
 use std::ops::RangeInclusive;
 
-use egui::{Color32, FontId, Margin, Slider, TextStyle, Ui};
+use egui::{Response, Slider, Ui, Vec2};
 
 use super::command::Command;
+use super::layout::{Layout, Panel};
+use super::palette::{self, Palette};
 use super::viewer::Viewer;
 use crate::gpu::PassTime;
+use theme::{ACCENT, ERROR, QUIET, WARNING};
 
-/// Background of the panels.
-const PANEL: Color32 = Color32::from_rgb(24, 25, 28);
-/// Links.
-const ACCENT: Color32 = Color32::from_rgb(94, 182, 255);
-/// Errors.
-const ERROR: Color32 = Color32::from_rgb(255, 110, 100);
-/// Warnings.
-const WARNING: Color32 = Color32::from_rgb(255, 196, 92);
-/// Explanations.
-const QUIET: Color32 = Color32::from_rgb(150, 154, 162);
-
-/// Sets colors, fonts and spacing.
-pub(super) fn style(egui: &egui::Context) {
-    egui.set_theme(egui::Theme::Dark);
-    egui.all_styles_mut(|style| {
-        style.visuals.panel_fill = PANEL;
-        style.visuals.window_fill = PANEL;
-        style.visuals.selection.bg_fill = Color32::from_rgb(35, 86, 134);
-        style.visuals.hyperlink_color = ACCENT;
-        style.text_styles.insert(TextStyle::Body, FontId::proportional(13.0));
-        style.text_styles.insert(TextStyle::Button, FontId::proportional(13.0));
-        style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
-        style.text_styles.insert(TextStyle::Small, FontId::proportional(11.0));
-        style.spacing.item_spacing = egui::vec2(6.0, 4.0);
-        style.spacing.slider_width = 100.0;
-        // Keeps the bar beside the content even while it is wide, under the mouse.
-        let scroll = &mut style.spacing.scroll;
-        scroll.floating_allocated_width = scroll.bar_width + scroll.bar_inner_margin;
-    });
-}
+/// A window smaller than this, in points, shows only the picture.
+const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
 
 /// State of the panels between frames.
 pub(super) struct PanelState {
     /// Whether the panels are shown (H).
     pub(super) visible: bool,
+    pub(super) layout: Layout,
+    pub(super) palette: Palette,
     /// Whether the list of keys is shown (F1).
     pub(super) show_keys: bool,
     /// The search in the list of modes.
@@ -68,10 +48,13 @@ pub(super) struct PanelState {
     timing: timing::Timing,
 }
 
-impl Default for PanelState {
-    fn default() -> Self {
+impl PanelState {
+    /// The panels as they were arranged in the last run.
+    pub(super) fn restored() -> Self {
         Self {
             visible: true,
+            layout: Layout::restored(),
+            palette: Palette::default(),
             show_keys: false,
             search: String::new(),
             show_model_warnings: true,
@@ -93,61 +76,68 @@ pub(super) struct Readings {
     pub(super) title: Option<String>,
 }
 
-/// Shows all panels. Returns the rectangle that is left for the picture.
+/// Shows bars, panels and messages. Returns the rectangle that is left for the picture.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> egui::Rect {
     let whole = ui.max_rect();
-    let frame = egui::Frame::new().fill(PANEL).inner_margin(Margin::symmetric(8, 6));
-    // In a narrow window the picture has priority.
-    if viewer.panels.visible && whole.width() > 460.0 {
-        if whole.width() > 760.0 {
-            let panel = egui::Panel::left("modes").frame(frame).default_size(170.0).min_size(120.0).max_size(320.0);
-            let (session, state) = (&mut viewer.session, &mut viewer.panels);
-            let mode = &mut session.settings.mode;
-            panel.show(ui, |ui| modes::show(ui, session.shaders.as_deref(), mode, state));
-        }
-        let panel =
-            egui::Panel::right("settings").frame(frame).default_size(SETTINGS + 16.0).min_size(220.0).max_size(480.0);
-        panel.show(ui, |ui| {
-            ui.spacing_mut().slider_width += (ui.max_rect().width() - SETTINGS_WITH_ROOM).max(0.0);
-            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| settings(ui, viewer, readings, commands));
-        });
-    }
-    let picture = ui.available_rect_before_wrap();
-    overlay::show(ui.ctx(), viewer, readings, picture);
+    let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
+    viewer.panels.timing.record(readings);
+    let picture = if viewer.panels.visible && has_room {
+        bars(ui, viewer, readings);
+        let mut layout = std::mem::take(&mut viewer.panels.layout);
+        let picture = layout.show(ui, &mut |ui, shown| panel(ui, shown, viewer, readings, commands));
+        viewer.panels.layout = layout;
+        picture
+    } else {
+        whole
+    };
+    overlay::show(ui.ctx(), viewer, readings, picture, commands);
     keys::show(ui.ctx(), &mut viewer.panels.show_keys);
+    palette::show(ui.ctx(), viewer, whole, commands);
     picture
 }
 
-/// The panels on the right.
-fn settings(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) {
-    let shaders = viewer.session.shaders.clone().unwrap_or_default();
+/// The bars above and below the tiles.
+fn bars(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings) {
+    top_bar::show(ui, &mut viewer.panels);
+    let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+    let (shader, device) = (&viewer.shader, device(viewer));
+    let diagnostics = &viewer.session.diagnostics;
+    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, readings, device: &device });
+}
+
+/// The name of the device and its version of Vulkan.
+fn device(viewer: &Viewer) -> String {
+    let info = viewer.gpu.info();
+    format!("{} · Vulkan {}", info.name, info.api)
+}
+
+/// What is in a tile.
+fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) {
+    let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
-    let (cut_short, is_animated) = (viewer.is_cut_short(), viewer.is_animated());
-    let (session, info) = (&mut viewer.session, viewer.gpu.info());
-    let device = format!("{} · Vulkan {}", info.name, info.api);
-    shaders::show(ui, &viewer.shader, shaders.generation, &session.diagnostics, cut_short, commands);
-    timing::show(ui, &mut viewer.panels.timing, readings, &device);
+    let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
+    let session = &mut viewer.session;
     let settings = &mut session.settings;
-    environment::show(ui, settings, viewer.threads.baker.progress(), &viewer.resources.environment().report);
-    parameters::show(ui, &shaders, &mut settings.shader);
-    lights::show(ui, &mut settings.lights, model.lights.len());
-    output::show(ui, settings, commands);
-    passes::show(ui, &shaders, settings, &mut viewer.playback, is_animated);
-    camera::show(ui, &mut settings.camera, &model, commands);
-    model::show(ui, settings, &model, &viewer.model);
+    let declared = shaders.clone().unwrap_or_default();
+    match panel {
+        Panel::Viewport => {}
+        Panel::Modes => modes::show(ui, shaders.as_deref(), &mut settings.mode, &mut viewer.panels),
+        Panel::Model => model::show(ui, settings, &model, &viewer.model),
+        Panel::Shaders => {
+            shaders::show(ui, &viewer.shader, declared.generation, &session.diagnostics, cut_short, commands);
+        }
+        Panel::Timing => timing::show(ui, &viewer.panels.timing, readings, &device),
+        Panel::Parameters => parameters::show(ui, &declared, &mut settings.shader),
+        Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
+        Panel::Environment => {
+            let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);
+            environment::show(ui, settings, progress, report);
+        }
+        Panel::Lights => lights::show(ui, &mut settings.lights, model.lights.len()),
+        Panel::Output => output::show(ui, settings, commands),
+        Panel::Camera => camera::show(ui, &mut settings.camera, &model, commands),
+    }
 }
-
-/// A collapsible section.
-fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
-    let heading = egui::RichText::new(title).strong().size(14.0);
-    egui::CollapsingHeader::new(heading).id_salt(title).default_open(open).show_unindented(ui, body);
-    ui.add_space(4.0);
-}
-
-/// Width of the settings at first, in points.
-const SETTINGS: f32 = 302.0;
-/// Width from which sliders are longer. Less would let the longest row widen its own panel.
-const SETTINGS_WITH_ROOM: f32 = 340.0;
 
 /// Size of the names at the left of rows, in points.
 const NAME: egui::Vec2 = egui::vec2(120.0, 18.0);
@@ -171,7 +161,16 @@ fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R
 
 /// A row with a slider in degrees.
 fn angle(ui: &mut Ui, name: &str, doc: &str, degrees: &mut f32, range: RangeInclusive<f32>) {
-    row(ui, name, doc, |ui| ui.add(Slider::new(degrees, range).suffix("°").max_decimals(0)));
+    row(ui, name, doc, |ui| slide(ui, Slider::new(degrees, range).suffix("°").max_decimals(0)));
+}
+
+/// Points that the number beside a slider takes, with its unit.
+const VALUE: f32 = 72.0;
+
+/// A slider as long as the rest of its row.
+fn slide(ui: &mut Ui, slider: Slider<'_>) -> Response {
+    ui.spacing_mut().slider_width = (ui.available_width() - VALUE).clamp(40.0, 400.0);
+    ui.add(slider)
 }
 
 /// A count with its noun, such as "1 draw" or "2 draws".

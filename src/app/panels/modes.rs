@@ -14,8 +14,7 @@ pub(super) fn show(ui: &mut Ui, shaders: Option<&ShaderSet>, current: &mut Strin
     };
     let PanelState { search, scrolled_to, .. } = state;
     ui.horizontal(|ui| {
-        // Narrower than the panel with its margins, which would grow otherwise.
-        let width = ui.available_width() - if search.is_empty() { 16.0 } else { 40.0 };
+        let width = ui.available_width() - if search.is_empty() { 0.0 } else { 24.0 };
         ui.add(egui::TextEdit::singleline(search).hint_text("Search modes").desired_width(width));
         if !search.is_empty() && ui.small_button("x").on_hover_text("Show all modes").clicked() {
             search.clear();

@@ -1,17 +1,29 @@
 //! The overlay: diagnostics with their source lines, messages, loading state, the mode and the value under the mouse.
 
+use std::path::PathBuf;
+
 use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, RichText, Stroke, Ui};
 
 use super::{ERROR, QUIET, Readings, WARNING, plural};
+use crate::app::command::Command;
+use crate::app::editor::Place;
 use crate::app::viewer::Viewer;
 use crate::shader::{Diagnostic, Severity};
 
 /// Maximum number of model warnings to show. The rest is counted.
 const MODEL_WARNINGS: usize = 4;
 
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: egui::Rect) {
+/// Shows what lies over the picture.
+pub(super) fn show(
+    egui: &egui::Context,
+    viewer: &mut Viewer,
+    readings: &Readings,
+    picture: egui::Rect,
+    commands: &mut Vec<Command>,
+) {
     let cut_short = viewer.is_cut_short();
-    if !viewer.session.diagnostics.is_empty() && diagnostics(egui, &viewer.session.diagnostics, cut_short, picture) {
+    let messages = &viewer.session.diagnostics;
+    if !messages.is_empty() && diagnostics(egui, messages, cut_short, picture, commands) {
         viewer.session.diagnostics.clear();
     }
     warnings(egui, viewer, picture);
@@ -83,7 +95,13 @@ fn label(egui: &egui::Context, readings: &Readings, picture: egui::Rect) {
 
 /// Shows diagnostics. `cut_short`: one is of a loop that did not end. Returns whether the user hides them, which is possible only
 /// without errors.
-fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], cut_short: bool, picture: egui::Rect) -> bool {
+fn diagnostics(
+    egui: &egui::Context,
+    diagnostics: &[Diagnostic],
+    cut_short: bool,
+    picture: egui::Rect,
+    commands: &mut Vec<Command>,
+) -> bool {
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let mut hide = false;
     // An area keeps its first size, so other messages or another picture are another area.
@@ -100,7 +118,7 @@ fn diagnostics(egui: &egui::Context, diagnostics: &[Diagnostic], cut_short: bool
             }
             egui::ScrollArea::vertical().max_height((picture.height() * 0.6).max(80.0)).show(ui, |ui| {
                 for diagnostic in diagnostics {
-                    one(ui, diagnostic);
+                    one(ui, diagnostic, commands);
                 }
                 let picture = match cut_short {
                     true => "Where the picture is magenta, it was cut short.",
@@ -123,16 +141,13 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
+fn one(ui: &mut Ui, diagnostic: &Diagnostic, commands: &mut Vec<Command>) {
     let color = if diagnostic.severity == Severity::Error { ERROR } else { WARNING };
     let place = match diagnostic.line {
         Some(line) => format!("{}:{line}", diagnostic.file),
         None => diagnostic.file.clone(),
     };
-    let response = ui.label(RichText::new(&place).monospace().color(color).strong());
-    if response.on_hover_text("Click to copy the position").interact(egui::Sense::click()).clicked() {
-        ui.ctx().copy_text(place);
-    }
+    position(ui, diagnostic, &place, color, commands);
     // A monospace character is 7.6 points wide; the number of the line and its bar take up to 8.
     let columns = (ui.available_width() / 7.6) as usize;
     let full = diagnostic.clone().within(columns.saturating_sub(8)).full();
@@ -148,6 +163,29 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic) {
         ui.add(egui::Label::new(text(notes)).wrap());
     }
     ui.add_space(6.0);
+}
+
+/// The position of a diagnostic, which opens in the editor if it is a file.
+fn position(ui: &mut Ui, diagnostic: &Diagnostic, place: &str, color: Color32, commands: &mut Vec<Command>) {
+    let label = egui::Label::new(RichText::new(place).monospace().color(color).strong());
+    let response = ui.add(label.sense(egui::Sense::click()));
+    let file = PathBuf::from(&diagnostic.file);
+    // The built-in tree has no files.
+    let is_file = file.is_file();
+    if response.clicked() {
+        match is_file {
+            true => commands.push(Command::Edit(Place { file, line: diagnostic.line, column: diagnostic.column })),
+            false => ui.ctx().copy_text(place.to_owned()),
+        }
+    }
+    response.context_menu(|ui| {
+        if ui.button("Copy the position").clicked() {
+            ui.ctx().copy_text(place.to_owned());
+            ui.close();
+        }
+    });
+    let hint = if is_file { "Click to open in the editor" } else { "Click to copy the position" };
+    response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hint);
 }
 
 fn area(id: Id, corner: Align2, picture: egui::Rect) -> Area {

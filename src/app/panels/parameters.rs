@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use egui::{Response, RichText, Slider, Ui};
 
 use super::passes::switches;
-use super::{ACCENT, NAME, QUIET, color, section};
+use super::{ACCENT, NAME, QUIET, color};
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
@@ -17,41 +17,39 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<Strin
     if shaders.constants.is_empty() && shaders.parameters.is_empty() {
         return;
     }
-    section(ui, "Parameters", true, |ui| {
-        // Those of passes stand below the switch of their pass.
-        let is_wanted = |parameter: &&Parameter| {
-            let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == parameter.when.as_ref());
-            parameter.offset.is_some() && switch.is_none_or(|switch| is_true(switch, values))
-        };
-        // A switch of passes stands with them.
-        let is_switch = |constant: &&Constant| switches(shaders).any(|switch| switch.id == constant.id);
-        let parameters: Vec<&Parameter> = shaders.parameters.iter().filter(is_wanted).collect();
-        let constants: Vec<&Constant> = shaders.constants.iter().filter(|constant| !is_switch(constant)).collect();
-        // Without a group first, then group by group in the order in which the tree names them.
-        let mut groups = vec![""];
-        let named = parameters.iter().map(|p| p.group.as_str()).chain(constants.iter().map(|c| c.group.as_str()));
-        named.for_each(|group| {
-            if !groups.contains(&group) {
-                groups.push(group)
-            }
-        });
-        for group in groups {
-            if !group.is_empty() {
-                ui.label(RichText::new(group).small().color(QUIET));
-            }
-            for parameter in parameters.iter().filter(|parameter| parameter.group == group) {
-                show_parameter(ui, parameter, values);
-            }
-            for constant in constants.iter().filter(|constant| constant.group == group) {
-                show_constant(ui, constant, values);
-            }
-        }
-        let set = !values.is_empty();
-        let button = ui.add_enabled(set, egui::Button::new("Defaults"));
-        if button.on_hover_text("All parameters above as the shader files say; no other setting changes").clicked() {
-            values.clear();
+    // Those of passes stand below the switch of their pass.
+    let is_wanted = |parameter: &&Parameter| {
+        let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == parameter.when.as_ref());
+        parameter.offset.is_some() && switch.is_none_or(|switch| is_true(switch, values))
+    };
+    // A switch of passes stands with them.
+    let is_switch = |constant: &&Constant| switches(shaders).any(|switch| switch.id == constant.id);
+    let parameters: Vec<&Parameter> = shaders.parameters.iter().filter(is_wanted).collect();
+    let constants: Vec<&Constant> = shaders.constants.iter().filter(|constant| !is_switch(constant)).collect();
+    // Without a group first, then group by group in the order in which the tree names them.
+    let mut groups = vec![""];
+    let named = parameters.iter().map(|p| p.group.as_str()).chain(constants.iter().map(|c| c.group.as_str()));
+    named.for_each(|group| {
+        if !groups.contains(&group) {
+            groups.push(group)
         }
     });
+    for group in groups {
+        if !group.is_empty() {
+            ui.label(RichText::new(group).small().color(QUIET));
+        }
+        for parameter in parameters.iter().filter(|parameter| parameter.group == group) {
+            show_parameter(ui, parameter, values);
+        }
+        for constant in constants.iter().filter(|constant| constant.group == group) {
+            show_constant(ui, constant, values);
+        }
+    }
+    let set = !values.is_empty();
+    let button = ui.add_enabled(set, egui::Button::new("Defaults"));
+    if button.on_hover_text("All parameters above as the shader files say; no other setting changes").clicked() {
+        values.clear();
+    }
 }
 
 /// Shows the row of a constant.
@@ -154,7 +152,7 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
     let response = match (parameter.kind, numbers.as_mut_slice()) {
         (ParameterType::Bool, [number]) => check(ui, number),
         (_, [number]) if !choices.is_empty() => choose(ui, name, choices, number),
-        (_, [number]) => slide(ui, number, *range, whole, unit),
+        (_, [number]) => edit_number(ui, number, *range, whole, unit),
         (ParameterType::Vec3, [r, g, b]) if parameter.color => {
             let mut linear = [*r as f32, *g as f32, *b as f32];
             let response = color(ui, &mut linear);
@@ -191,8 +189,8 @@ fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) 
     let response = match constant.scalar {
         _ if !choices.is_empty() => choose(ui, name, choices, &mut now),
         Scalar::Bool => check(ui, &mut now),
-        Scalar::Float => slide(ui, &mut now, *range, false, unit),
-        Scalar::Int | Scalar::Uint => slide(ui, &mut now, *range, true, unit),
+        Scalar::Float => edit_number(ui, &mut now, *range, false, unit),
+        Scalar::Int | Scalar::Uint => edit_number(ui, &mut now, *range, true, unit),
     };
     let value = match constant.scalar {
         Scalar::Bool => ShaderValue::Bool(now != 0.0),
@@ -220,11 +218,11 @@ fn choose(ui: &mut Ui, id: &str, choices: &[(String, i64)], number: &mut f64) ->
     list.response
 }
 
-fn slide(ui: &mut Ui, number: &mut f64, range: Option<(f64, f64)>, whole: bool, unit: &str) -> Response {
+fn edit_number(ui: &mut Ui, number: &mut f64, range: Option<(f64, f64)>, whole: bool, unit: &str) -> Response {
     match range {
         Some((low, high)) => {
             let slider = Slider::new(number, low..=high).suffix(suffix(unit));
-            ui.add(if whole { slider.integer() } else { slider.max_decimals(3) })
+            super::slide(ui, if whole { slider.integer() } else { slider.max_decimals(3) })
         }
         None => drag(ui, number, None, unit),
     }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use egui::{RichText, Ui};
 
+use super::QUIET;
 use super::parameters::{is_true, show_constant, show_parameter};
-use super::{QUIET, section};
 use crate::app::playback::Playback;
 use crate::settings::Settings;
 use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
@@ -18,46 +18,44 @@ pub(super) fn show(
     playback: &mut Playback,
     is_animated: bool,
 ) {
-    section(ui, "Passes", true, |ui| {
-        for switch in switches(shaders) {
-            show_constant(ui, switch, &mut settings.shader);
-            if is_true(switch, &settings.shader) {
-                let passes = shaders.graph.passes.iter().filter(|pass| pass.note.when.as_ref() == Some(&switch.name));
-                passes.for_each(|pass| show_parameters(ui, shaders, pass, settings));
+    for switch in switches(shaders) {
+        show_constant(ui, switch, &mut settings.shader);
+        if is_true(switch, &settings.shader) {
+            let passes = shaders.graph.passes.iter().filter(|pass| pass.note.when.as_ref() == Some(&switch.name));
+            passes.for_each(|pass| show_parameters(ui, shaders, pass, settings));
+        }
+    }
+    let graph = &shaders.graph;
+    let is_base = |pass: &GraphPass| pass.note.is_built_in() || pass.note.background;
+    let active = graph.active(is_base, true, |index| graph.passes[index].is_wanted(&settings.passes), None);
+    // A pass whose readers are all off is off with them.
+    let is_shown = |pass: &&Arc<GraphPass>| {
+        pass.note.when.is_none()
+            && pass.has_switch()
+            && (!pass.note.images().any(|(name, _)| graph.is_read(name))
+                || !pass.is_wanted(&settings.passes)
+                || active.contains(pass))
+    };
+    for pass in graph.passes.iter().filter(is_shown).cloned().collect::<Vec<_>>() {
+        show_pass(ui, shaders, &pass, settings);
+    }
+    if is_animated {
+        ui.horizontal(|ui| {
+            let label = if playback.paused { "Play" } else { "Pause" };
+            if ui.button(label).on_hover_text("Let frame.time_s run, or stop it").clicked() {
+                playback.paused = !playback.paused;
             }
-        }
-        let graph = &shaders.graph;
-        let is_base = |pass: &GraphPass| pass.note.is_built_in() || pass.note.background;
-        let active = graph.active(is_base, true, |index| graph.passes[index].is_wanted(&settings.passes), None);
-        // A pass whose readers are all off is off with them.
-        let is_shown = |pass: &&Arc<GraphPass>| {
-            pass.note.when.is_none()
-                && pass.has_switch()
-                && (!pass.note.images().any(|(name, _)| graph.is_read(name))
-                    || !pass.is_wanted(&settings.passes)
-                    || active.contains(pass))
-        };
-        for pass in graph.passes.iter().filter(is_shown).cloned().collect::<Vec<_>>() {
-            show_pass(ui, shaders, &pass, settings);
-        }
-        if is_animated {
-            ui.horizontal(|ui| {
-                let label = if playback.paused { "Play" } else { "Pause" };
-                if ui.button(label).on_hover_text("Let frame.time_s run, or stop it").clicked() {
-                    playback.paused = !playback.paused;
-                }
-                if ui.button("Step").on_hover_text("One frame of 1/60 s").clicked() {
-                    playback.step();
-                }
-                if ui.button("0").on_hover_text("Back to 0 s").clicked() {
-                    playback.restart();
-                }
-                let speed = egui::DragValue::new(&mut playback.speed).range(0.0..=10.0).speed(0.01).suffix("x");
-                ui.add(speed).on_hover_text("Speed of the time");
-                ui.label(RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET));
-            });
-        }
-    });
+            if ui.button("Step").on_hover_text("One frame of 1/60 s").clicked() {
+                playback.step();
+            }
+            if ui.button("0").on_hover_text("Back to 0 s").clicked() {
+                playback.restart();
+            }
+            let speed = egui::DragValue::new(&mut playback.speed).range(0.0..=10.0).speed(0.01).suffix("x");
+            ui.add(speed).on_hover_text("Speed of the time");
+            ui.label(RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET));
+        });
+    }
 }
 
 /// The constants that switch passes, in the order of their ids.

@@ -1,0 +1,71 @@
+//! The arrangements that Specula offers.
+
+use egui_tiles::{Linear, LinearDir, TileId, Tiles, Tree};
+
+use super::Panel;
+
+/// Widths of the columns beside the picture, in points.
+const LEFT: f32 = 236.0;
+const RIGHT: f32 = 318.0;
+
+/// An arrangement that Specula offers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Preset {
+    /// All panels. The first one.
+    Debug,
+    /// The panels of light, camera and parameters, and a larger picture.
+    Look,
+}
+
+impl Preset {
+    pub(in crate::app) const ALL: [Self; 2] = [Self::Debug, Self::Look];
+
+    pub(in crate::app) fn title(self) -> &'static str {
+        match self {
+            Self::Debug => "Debug",
+            Self::Look => "Look",
+        }
+    }
+
+    pub(in crate::app) fn doc(self) -> &'static str {
+        match self {
+            Self::Debug => "Modes and shaders on the left, all settings on the right",
+            Self::Look => "Light, output and parameters on the right, nothing on the left",
+        }
+    }
+
+    pub(super) fn tree(self) -> Tree<Panel> {
+        let tiles = &mut Tiles::default();
+        let [modes, shaders, parameters, settings] = Panel::GROUPS;
+        let picture = tiles.insert_pane(Panel::Viewport);
+        let columns = match self {
+            Self::Debug => {
+                let left = [(modes, 3.0), (shaders, 1.0)];
+                let right = [(parameters, 1.0), (settings, 1.0)];
+                vec![(column(tiles, &left), LEFT), (picture, 1.0), (column(tiles, &right), RIGHT)]
+            }
+            Self::Look => {
+                let right = [(settings, 1.0), (parameters, 1.0)];
+                vec![(picture, 1.0), (column(tiles, &right), RIGHT)]
+            }
+        };
+        let root = linear(tiles, LinearDir::Horizontal, columns);
+        Tree::new("layout", root, std::mem::take(tiles))
+    }
+}
+
+/// Groups of tabs, one above the other, with their shares of the height.
+fn column(tiles: &mut Tiles<Panel>, groups: &[(&[Panel], f32)]) -> TileId {
+    let rows = groups.iter().map(|(panels, share)| {
+        let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+        (tiles.insert_tab_tile(panes), *share)
+    });
+    let rows = rows.collect();
+    linear(tiles, LinearDir::Vertical, rows)
+}
+
+fn linear(tiles: &mut Tiles<Panel>, dir: LinearDir, children: Vec<(TileId, f32)>) -> TileId {
+    let mut linear = Linear::new(dir, children.iter().map(|(child, _)| *child).collect());
+    children.into_iter().for_each(|(child, share)| linear.shares.set_share(child, share));
+    tiles.insert_container(linear)
+}

@@ -1,0 +1,62 @@
+//! The bar below the picture: the state of the shaders, the last reload, and the time of a frame.
+
+use egui::{Align, Color32, Label, Layout, RichText, Ui};
+
+use super::theme::{EDGE, ERROR, GOOD, QUIET, WARNING};
+use super::{Readings, plural, shaders};
+use crate::app::status::ShaderStatus;
+use crate::shader::{Diagnostic, Severity};
+
+/// Height in points.
+pub(super) const HEIGHT: f32 = 24.0;
+
+/// What the bar shows.
+pub(super) struct Status<'a> {
+    pub(super) shader: &'a ShaderStatus,
+    /// Generation of the shaders on screen; 0 before the first.
+    pub(super) generation: u64,
+    pub(super) diagnostics: &'a [Diagnostic],
+    pub(super) readings: &'a Readings,
+    pub(super) device: &'a str,
+}
+
+pub(super) fn show(ui: &mut Ui, status: &Status<'_>) {
+    let frame = egui::Frame::new().fill(EDGE).inner_margin(egui::Margin::symmetric(8, 2));
+    let bar = egui::Panel::bottom("status").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
+    bar.show(ui, |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            // The right end first, so that a long name of a device takes no room from the reload.
+            if let Some(ms) = status.readings.device_ms {
+                let text = RichText::new(format!("{ms:6.2} ms GPU")).monospace().small().color(QUIET);
+                ui.label(text).on_hover_text(format!("Device time of the last frame\n{}", status.device));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| state(ui, status));
+        });
+    });
+}
+
+fn state(ui: &mut Ui, status: &Status<'_>) {
+    let count = |severity: Severity| status.diagnostics.iter().filter(|d| d.severity == severity).count();
+    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+    let (color, text) = match (status.shader.compiling, errors, warnings) {
+        (true, ..) => (WARNING, "compiling".to_owned()),
+        (_, 0, _) if status.generation == 0 => (QUIET, "no shaders yet".to_owned()),
+        (_, 0, 0) => (GOOD, "watching".to_owned()),
+        (_, 0, warnings) => (WARNING, plural(warnings, "warning")),
+        (_, errors, _) => (ERROR, plural(errors, "error")),
+    };
+    dot(ui, color);
+    let color = if errors > 0 { ERROR } else { Color32::from_gray(210) };
+    ui.label(RichText::new(text).small().color(color)).on_hover_text(&status.shader.tree);
+    if let Some(last) = &status.shader.last {
+        let (edit, times, hover) = shaders::lines(last);
+        let text = RichText::new(format!("{edit}  {times}")).monospace().small();
+        ui.add(Label::new(text).truncate()).on_hover_text(hover);
+    }
+}
+
+/// A round mark.
+fn dot(ui: &mut Ui, color: Color32) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+    ui.painter().circle_filled(rect.center(), 4.0, color);
+}
