@@ -138,6 +138,16 @@ fn folders_by_name() {
     diff(folder.path(), &["a", "b", "--max", "1"]).expect(1, &["1 of 3"]);
     fs::remove_file(b.join("new.png")).unwrap();
     diff(folder.path(), &["a", "b", "--max", "1"]).expect(0, &[]);
+    // The worst comes first, and what is the same is only counted.
+    for side in [&a, &b] {
+        png(side, "equal.png", [7, 7, 7, 255]);
+    }
+    png(&a, "worst.png", [0, 0, 0, 255]);
+    png(&b, "worst.png", [255, 255, 255, 255]);
+    let told = diff(folder.path(), &["a", "b"]);
+    let lines: Vec<&str> = told.stdout.lines().collect();
+    assert!(lines.len() == 3 && lines[0].contains("worst.png") && lines[1].contains("other.png"), "{lines:?}");
+    assert_eq!(lines[2].split_whitespace().collect::<Vec<_>>(), ["same", "2", "pictures"]);
 }
 
 #[test]

@@ -6,7 +6,7 @@
 #include "common/math.glsl"
 #include "user/params.glsl"
 
-layout(constant_id = USER_CONSTANTS + 12) const bool BLOOM = false;  //@ui "Bloom"
+layout(constant_id = USER_CONSTANTS + 12) const bool BLOOM = false;  //@ui "Bloom" doc="Light that a lens scatters around what is bright (Jimenez 2014)"
 
 // Mean of ever wider blurs of the exposed light.
 uniform sampler2D bloom_blur;

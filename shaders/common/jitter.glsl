@@ -4,7 +4,7 @@
 
 #include "interface.glsl"
 
-layout(constant_id = USER_CONSTANTS + 13) const bool TEMPORAL_ANTIALIASING = false;  //@ui "Temporal antialiasing"
+layout(constant_id = USER_CONSTANTS + 13) const bool TEMPORAL_ANTIALIASING = false;  //@ui "Temporal antialiasing" doc="Mean of many frames whose pixels are shifted by parts of a pixel: smooth edges and highlights"
 
 // Frames until the offsets repeat.
 const uint JITTERS = 16u;

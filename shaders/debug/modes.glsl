@@ -3,7 +3,7 @@
 // To add a mode, write an annotation and a constant here, compute its value in `your_mode` below, and save.
 //
 //   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [stage=debug]
-//         [tonemap] [accumulate] [traces] [through] [draw=lines|layers] [key=d] doc=""
+//         [tonemap] [accumulate] [traces] [through] [draw=lines|layers] [needs=FEATURES] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
 // The first line is a comment that starts with the at sign. The number must be unique.
@@ -19,6 +19,8 @@
 //             your own, which says //@pass NAME draw=model to=picture instead=model
 //   traces    rays can be traced through the model (paths/bvh.glsl), in paths.frag
 //   through   transmissive surfaces show the final picture behind them instead of this mode
+//   needs     features of materials or light without which there is nothing to see, as clearcoat or sheen,volume (FEATURE_* in
+//             interface.glsl); the window folds such modes away for models that have none of them
 //   key       letter key that selects the mode in the window
 //
 // Values are raw: depth is in meters, and D may exceed 1. A checkerboard means that the model or light lacks the data.
@@ -52,9 +54,9 @@ const uint MODE_BITANGENT = 206u;
 const uint MODE_TANGENT_SIGN = 207u;
 //@mode uv0 "UV 0" group="Geometry" encode=data components=2 doc="TEXCOORD_0."
 const uint MODE_UV0 = 208u;
-//@mode uv1 "UV 1" group="Geometry" encode=data components=2 doc="TEXCOORD_1."
+//@mode uv1 "UV 1" group="Geometry" encode=data components=2 needs=uv1 doc="TEXCOORD_1."
 const uint MODE_UV1 = 209u;
-//@mode vertex-color "Vertex color" group="Geometry" encode=color doc="COLOR_0, linear RGB."
+//@mode vertex-color "Vertex color" group="Geometry" encode=color needs=vertex-color doc="COLOR_0, linear RGB."
 const uint MODE_VERTEX_COLOR = 210u;
 //@mode face-orientation "Face orientation" group="Geometry" encode=color doc="Green front faces, red back faces."
 const uint MODE_FACE_ORIENTATION = 211u;
@@ -89,7 +91,7 @@ const uint MODE_GGX_ALPHA = 104u;
 const uint MODE_OCCLUSION = 105u;
 //@mode emissive "Emissive" group="Material" encode=color unit="cd/m^2" doc="Texture times factor, linear RGB, without exposure."
 const uint MODE_EMISSIVE = 106u;
-//@mode normal-texture "Normal texture" group="Material" encode=vector doc="Tangent-space normal, scaled and normalized."
+//@mode normal-texture "Normal texture" group="Material" encode=vector needs=normal-texture doc="Tangent-space normal, scaled and normalized."
 const uint MODE_NORMAL_TEXTURE = 107u;
 //@mode diffuse-color "Diffuse color" group="Material" encode=color doc="Base color times (1 - metallic)."
 const uint MODE_DIFFUSE_COLOR = 108u;
@@ -99,39 +101,39 @@ const uint MODE_F0 = 109u;
 const uint MODE_F90 = 110u;
 //@mode ior "Index of refraction" group="Material" encode=data components=1 doc="Index of refraction of the dielectric; default 1.5."
 const uint MODE_IOR = 111u;
-//@mode clearcoat "Clearcoat" group="Material" encode=data components=1 doc="Clearcoat factor: 0 none, 1 full."
+//@mode clearcoat "Clearcoat" group="Material" encode=data components=1 needs=clearcoat doc="Clearcoat factor: 0 none, 1 full."
 const uint MODE_CLEARCOAT = 112u;
-//@mode clearcoat-roughness "Clearcoat roughness" group="Material" encode=data components=1 doc="Perceptual roughness of the clearcoat."
+//@mode clearcoat-roughness "Clearcoat roughness" group="Material" encode=data components=1 needs=clearcoat doc="Perceptual roughness of the clearcoat."
 const uint MODE_CLEARCOAT_ROUGHNESS = 113u;
-//@mode clearcoat-normal "Clearcoat normal" group="Material" encode=vector doc="Normal of the clearcoat, world space."
+//@mode clearcoat-normal "Clearcoat normal" group="Material" encode=vector needs=clearcoat doc="Normal of the clearcoat, world space."
 const uint MODE_CLEARCOAT_NORMAL = 114u;
-//@mode anisotropy "Anisotropy" group="Material" encode=data components=1 doc="Anisotropy strength: 0 round, 1 most stretched."
+//@mode anisotropy "Anisotropy" group="Material" encode=data components=1 needs=anisotropy doc="Anisotropy strength: 0 round, 1 most stretched."
 const uint MODE_ANISOTROPY = 115u;
-//@mode anisotropy-direction "Anisotropy axis" group="Material" encode=vector doc="Direction in which the lobe is stretched, world space."
+//@mode anisotropy-direction "Anisotropy axis" group="Material" encode=vector needs=anisotropy doc="Direction in which the lobe is stretched, world space."
 const uint MODE_ANISOTROPY_DIRECTION = 116u;
-//@mode sheen-color "Sheen color" group="Material" encode=color doc="Sheen color, linear RGB; black is no sheen."
+//@mode sheen-color "Sheen color" group="Material" encode=color needs=sheen doc="Sheen color, linear RGB; black is no sheen."
 const uint MODE_SHEEN_COLOR = 117u;
-//@mode sheen-roughness "Sheen roughness" group="Material" encode=data components=1 doc="Perceptual roughness of the sheen."
+//@mode sheen-roughness "Sheen roughness" group="Material" encode=data components=1 needs=sheen doc="Perceptual roughness of the sheen."
 const uint MODE_SHEEN_ROUGHNESS = 118u;
-//@mode specular-factor "Specular factor" group="Material" encode=data components=1 doc="F90 of the dielectric."
+//@mode specular-factor "Specular factor" group="Material" encode=data components=1 needs=specular doc="F90 of the dielectric."
 const uint MODE_SPECULAR_FACTOR = 119u;
-//@mode specular-color "Specular color" group="Material" encode=color doc="F0 of the dielectric without film: color, factor and ior."
+//@mode specular-color "Specular color" group="Material" encode=color needs=specular,specular-glossiness doc="F0 of the dielectric without film: color, factor and ior."
 const uint MODE_SPECULAR_COLOR = 120u;
-//@mode iridescence "Iridescence" group="Material" encode=data components=1 doc="Iridescence factor: 0 no film, 1 full."
+//@mode iridescence "Iridescence" group="Material" encode=data components=1 needs=iridescence doc="Iridescence factor: 0 no film, 1 full."
 const uint MODE_IRIDESCENCE = 121u;
-//@mode iridescence-thickness "Iridescence thickness" group="Material" encode=data components=1 unit="um" doc="Thickness of the thin film, micrometers."
+//@mode iridescence-thickness "Iridescence thickness" group="Material" encode=data components=1 unit="um" needs=iridescence doc="Thickness of the thin film, micrometers."
 const uint MODE_IRIDESCENCE_THICKNESS = 122u;
-//@mode transmission "Transmission" group="Material" encode=data components=1 doc="Fraction of entering light that is transmitted."
+//@mode transmission "Transmission" group="Material" encode=data components=1 needs=transmission doc="Fraction of entering light that is transmitted."
 const uint MODE_TRANSMISSION = 123u;
-//@mode thickness "Thickness" group="Material" encode=data components=1 unit="m" doc="Thickness of the volume, world space, meters."
+//@mode thickness "Thickness" group="Material" encode=data components=1 unit="m" needs=volume doc="Thickness of the volume, world space, meters."
 const uint MODE_THICKNESS = 124u;
-//@mode attenuation-color "Attenuation color" group="Material" encode=color doc="Color of white light after the attenuation distance."
+//@mode attenuation-color "Attenuation color" group="Material" encode=color needs=volume doc="Color of white light after the attenuation distance."
 const uint MODE_ATTENUATION_COLOR = 125u;
-//@mode dispersion "Dispersion" group="Material" encode=data components=1 doc="20 / Abbe number."
+//@mode dispersion "Dispersion" group="Material" encode=data components=1 needs=dispersion doc="20 / Abbe number."
 const uint MODE_DISPERSION = 126u;
-//@mode diffuse-transmission "Diffuse transmission" group="Material" encode=data components=1 doc="Fraction of diffuse light that is transmitted."
+//@mode diffuse-transmission "Diffuse transmission" group="Material" encode=data components=1 needs=diffuse-transmission doc="Fraction of diffuse light that is transmitted."
 const uint MODE_DIFFUSE_TRANSMISSION = 127u;
-//@mode diffuse-transmission-color "Diffuse transmission tint" group="Material" encode=color doc="Color of diffusely transmitted light."
+//@mode diffuse-transmission-color "Diffuse transmission tint" group="Material" encode=color needs=diffuse-transmission doc="Color of diffusely transmitted light."
 const uint MODE_DIFFUSE_TRANSMISSION_COLOR = 128u;
 
 // D to V dot H are for the selected light, or for light 1 if all are selected.
@@ -162,9 +164,9 @@ const uint MODE_DIFFUSE_LOBE = 310u;
 const uint MODE_SPECULAR_LOBE = 311u;
 //@mode multi-scatter-lobe "Multi-scatter lobe" group="BRDF terms" encode=color unit="1/sr" doc="The selected multiple scattering between microfacets, 1/sr."
 const uint MODE_MULTI_SCATTER_LOBE = 312u;
-//@mode clearcoat-lobe "Clearcoat lobe" group="BRDF terms" encode=color unit="1/sr" doc="D V of the clearcoat times its weight, 1/sr."
+//@mode clearcoat-lobe "Clearcoat lobe" group="BRDF terms" encode=color unit="1/sr" needs=clearcoat doc="D V of the clearcoat times its weight, 1/sr."
 const uint MODE_CLEARCOAT_LOBE = 313u;
-//@mode sheen-lobe "Sheen lobe" group="BRDF terms" encode=color unit="1/sr" doc="Sheen color times the selected sheen, 1/sr."
+//@mode sheen-lobe "Sheen lobe" group="BRDF terms" encode=color unit="1/sr" needs=sheen doc="Sheen color times the selected sheen, 1/sr."
 const uint MODE_SHEEN_LOBE = 314u;
 
 // For the selected light or all lights. The modes from `ambient` to `luminance` ignore the selection.
@@ -191,31 +193,31 @@ const uint MODE_LIGHT_3 = 409u;
 //@mode luminance "Luminance" group="Light" encode=color components=1 unit="cd/m^2" tonemap doc="Luminance Y of the picture (ITU-R BT.709)."
 const uint MODE_LUMINANCE = 410u;
 // Environment light.
-//@mode ibl-diffuse "Environment, diffuse" group="Light" encode=color unit="cd/m^2" tonemap doc="Irradiance times the diffuse albedo."
+//@mode ibl-diffuse "Environment, diffuse" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Irradiance times the diffuse albedo."
 const uint MODE_IBL_DIFFUSE = 411u;
-//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap doc="Split sum: specular albedo times prefiltered radiance (Karis 2013); or the sum over samples (REFLECTION_SAMPLES)."
+//@mode ibl-specular "Environment, specular" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Split sum: specular albedo times prefiltered radiance (Karis 2013); or the sum over samples (REFLECTION_SAMPLES)."
 const uint MODE_IBL_SPECULAR = 412u;
-//@mode irradiance "Irradiance" group="Light" encode=color unit="lux" tonemap doc="Environment irradiance for the normal, lux."
+//@mode irradiance "Irradiance" group="Light" encode=color unit="lux" tonemap needs=environment doc="Environment irradiance for the normal, lux."
 const uint MODE_IRRADIANCE = 413u;
-//@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap doc="Prefiltered radiance in the mirror direction."
+//@mode prefiltered "Prefiltered radiance" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Prefiltered radiance in the mirror direction."
 const uint MODE_PREFILTERED = 414u;
 //@mode dfg "DFG terms" group="Light" encode=data doc="A, B, E of the selected D and V: the lobe reflects F0 A + F90 B, or E if F is 1."
 const uint MODE_DFG = 415u;
 // For the selected light or all lights, and the environment.
-//@mode clearcoat-light "Clearcoat light" group="Light" encode=color unit="cd/m^2" tonemap doc="Light that the clearcoat reflects."
+//@mode clearcoat-light "Clearcoat light" group="Light" encode=color unit="cd/m^2" tonemap needs=clearcoat doc="Light that the clearcoat reflects."
 const uint MODE_CLEARCOAT_LIGHT = 416u;
-//@mode sheen-light "Sheen light" group="Light" encode=color unit="cd/m^2" tonemap doc="Light that the sheen scatters."
+//@mode sheen-light "Sheen light" group="Light" encode=color unit="cd/m^2" tonemap needs=sheen doc="Light that the sheen scatters."
 const uint MODE_SHEEN_LIGHT = 417u;
-//@mode transmitted-light "Transmitted light" group="Light" encode=color unit="cd/m^2" tonemap through doc="Light that passes through the surface."
+//@mode transmitted-light "Transmitted light" group="Light" encode=color unit="cd/m^2" tonemap through needs=transmission,diffuse-transmission doc="Light that passes through the surface."
 const uint MODE_TRANSMITTED_LIGHT = 418u;
 //@mode multiple-scattering "Multiple scattering" group="Light" encode=color unit="cd/m^2" tonemap doc="Light that two microfacets or more have reflected."
 const uint MODE_MULTIPLE_SCATTERING = 419u;
-//@mode area-light "Area lights" group="Light" encode=color unit="cd/m^2" tonemap doc="Light of the rectangles (Heitz et al. 2016)."
+//@mode area-light "Area lights" group="Light" encode=color unit="cd/m^2" tonemap needs=rect-lights doc="Light of the rectangles (Heitz et al. 2016)."
 const uint MODE_AREA_LIGHT = 420u;
 // For all lights; these modes ignore the selection.
 //@mode single-scattering "Single scattering" group="Light" encode=color unit="cd/m^2" tonemap doc="The picture without multiple scattering."
 const uint MODE_SINGLE_SCATTERING = 421u;
-//@mode environment "Environment" group="Light" encode=color unit="cd/m^2" tonemap doc="Sharp mirror reflection of the environment."
+//@mode environment "Environment" group="Light" encode=color unit="cd/m^2" tonemap needs=environment doc="Sharp mirror reflection of the environment."
 const uint MODE_ENVIRONMENT = 422u;
 
 // Lit by the selected punctual light or all punctual lights, without environment and emission.

@@ -1,6 +1,8 @@
 //! Keys and mouse. Events that egui does not consume control the camera, the modes and the viewer. While the picture reads keys,
 //! those that type a character go to its shaders instead.
 
+use std::time::{Duration, Instant};
+
 use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
@@ -9,7 +11,7 @@ use super::command::Command;
 use super::keys;
 use super::screen::Screen;
 use super::viewer::Viewer;
-use crate::scene::CameraController;
+use crate::scene::{CameraController, point_at};
 use crate::session::Session;
 use crate::settings::LightSettings;
 
@@ -24,7 +26,14 @@ pub(super) struct Mouse {
     middle: bool,
     right: bool,
     modifiers: ModifiersState,
+    /// Time and place of the last press of the left button, for double clicks.
+    last_press: Option<(Instant, Vec2)>,
 }
+
+/// Most time between the presses of a double click.
+const DOUBLE_CLICK: Duration = Duration::from_millis(400);
+/// Most pixels between them.
+const SAME_PLACE: f32 = 4.0;
 
 /// Handles an event, unless egui has consumed it (`taken`). Returns whether to redraw.
 pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: &mut Screen, taken: bool) -> bool {
@@ -41,6 +50,10 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 return true;
             }
             let reads_keys = viewer.reads_keys();
+            let is_space = event.logical_key == Key::Named(NamedKey::Space);
+            if is_space && !pressed && viewer.show_before(false) {
+                return true;
+            }
             // The search of the palette has the keys from the moment it opens, which may be before egui knows.
             let taken = (taken || viewer.panels.palette.is_open()) && !is_function_key(&event.logical_key);
             if !pressed || (reads_keys && !is_shortcut(&event.logical_key, screen.mouse.modifiers)) {
@@ -48,18 +61,24 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 let counts = !pressed || !(taken || event.repeat || *is_synthetic);
                 return counts && shader_key(viewer, event.physical_key, pressed) && reads_keys;
             }
+            if is_space && !taken && !event.repeat && !*is_synthetic {
+                return viewer.show_before(true);
+            }
             let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
             !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
         }
         WindowEvent::Focused(false) => {
             viewer.playback.keys().release_all();
-            viewer.reads_keys()
+            viewer.show_before(false) || viewer.reads_keys()
         }
         WindowEvent::MouseInput { state, button, .. } => {
             let pressed = *state == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
             match button {
                 MouseButton::Left => {
                     let was = std::mem::replace(&mut screen.mouse.left, pressed);
+                    if pressed && is_double_click(&mut screen.mouse) {
+                        return focus(viewer, screen);
+                    }
                     match pressed {
                         true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
                         false if was => viewer.playback.release(),
@@ -100,6 +119,25 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
     }
 }
 
+/// Whether a press of the left button is the second of a double click.
+fn is_double_click(mouse: &mut Mouse) -> bool {
+    let (now, at) = (Instant::now(), mouse.at);
+    let is_second =
+        |(since, place): (Instant, Vec2)| now.duration_since(since) <= DOUBLE_CLICK && place.distance(at) <= SAME_PLACE;
+    let is_double = mouse.last_press.take().is_some_and(is_second);
+    mouse.last_press = (!is_double).then_some((now, at));
+    is_double
+}
+
+/// Moves the camera so that it looks at the surface under the mouse, and orbits around it. Returns whether there is one.
+fn focus(viewer: &mut Viewer, screen: &Screen) -> bool {
+    let place = screen.mouse_pixel().zip(screen.camera_view());
+    let Some(((at, view), model)) = place.zip(viewer.session.model().cloned()) else { return false };
+    let Some(point) = point_at(&model, &view, screen.rect.size, at) else { return false };
+    CameraController::focus(&mut viewer.session.settings.camera, &view, point);
+    true
+}
+
 /// A place of the window in pixels of the picture.
 fn in_picture(screen: &Screen, at: Vec2) -> [f32; 2] {
     [at.x - screen.rect.at.0 as f32, at.y - screen.rect.at.1 as f32]
@@ -112,7 +150,14 @@ fn inside(screen: &Screen, at: Vec2) -> bool {
 
 fn drag(viewer: &mut Viewer, screen: &Screen, delta: Vec2) -> bool {
     let Some(view) = screen.camera_view() else { return false };
-    let (mouse, camera) = (&screen.mouse, &mut viewer.session.settings.camera);
+    let settings = &mut viewer.session.settings;
+    let (mouse, camera) = (&screen.mouse, &mut settings.camera);
+    if mouse.left && mouse.modifiers.alt_key() {
+        // A height of the picture is half a turn.
+        let rotation = &mut settings.environment.rotation;
+        *rotation = (*rotation + 180.0 * delta.x + 180.0).rem_euclid(360.0) - 180.0;
+        return true;
+    }
     let pans = mouse.middle || (mouse.left && mouse.modifiers.shift_key());
     match (pans, mouse.left, mouse.right) {
         (true, _, _) => CameraController::pan(camera, &view, delta),
@@ -151,6 +196,7 @@ fn is_function_key(key: &Key) -> bool {
 fn is_shortcut(key: &Key, modifiers: ModifiersState) -> bool {
     match key {
         key if is_function_key(key) => true,
+        Key::Named(NamedKey::Space) => modifiers.control_key(),
         Key::Named(named) => matches!(named, NamedKey::Escape | NamedKey::Home),
         Key::Character(_) => modifiers.control_key(),
         _ => false,

@@ -175,8 +175,11 @@ fn find<'a>(entries: &'a [Entry], query: &str) -> Vec<&'a Entry> {
 fn entries(viewer: &Viewer) -> Vec<Entry> {
     let mut entries = commands();
     let mut add = |group, title: String, words: String, action| entries.push(Entry { group, title, words, action });
-    for name in BUILT_IN.into_iter().chain(["none"]) {
+    for name in BUILT_IN.into_iter().chain(["none"]).chain(viewer.panels.environments.iter().map(String::as_str)) {
         add("Environment", format!("Environment: {name}"), String::new(), Action::Environment(name.to_owned()));
+    }
+    for name in crate::scene::BUILT_IN {
+        add("Model", format!("Model: {name}"), String::new(), Action::Do(Command::OpenModel(name.into())));
     }
     for source in LightSource::value_variants() {
         let name = name_of(source);

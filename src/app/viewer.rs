@@ -84,6 +84,12 @@ pub(super) struct Viewer {
     pub(super) recorder: Recorder,
     allow_outside: bool,
     shown: Option<LastComplete>,
+    /// The last complete picture of the shaders before those on screen.
+    before: Option<LastComplete>,
+    /// The files whose edit came after it.
+    edited: Vec<String>,
+    /// Whether to draw it in place of the newest (Space).
+    shows_before: bool,
     first_frame: Option<FirstFrame>,
     /// Whether the names in the settings were compared with those that the shaders declare.
     names_checked: bool,
@@ -134,6 +140,9 @@ impl Viewer {
             recorder,
             allow_outside: options.allow_outside,
             shown: None,
+            before: None,
+            edited: Vec::new(),
+            shows_before: false,
             first_frame: None,
             names_checked: false,
             settled: None,
@@ -166,6 +175,15 @@ impl Viewer {
     /// Whether a shader of the picture, or a pass that is drawn, reads the time or what it drew before.
     pub(super) fn is_animated(&self) -> bool {
         self.shown.as_ref().is_some_and(|shown| shown.frame.is_animated())
+    }
+
+    /// Shows the picture before the last edit while `on`. Returns whether that changes the picture.
+    pub(super) fn show_before(&mut self, on: bool) -> bool {
+        if on && self.before.is_none() {
+            self.say("There is no earlier picture: no edit has been shown yet");
+        }
+        let shows = on && self.before.is_some();
+        std::mem::replace(&mut self.shows_before, shows) != shows
     }
 
     /// Whether the device is faster than the display, so that vertical sync saves work.

@@ -75,7 +75,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let passes = pairs.iter().all(|pair| pair.passes(args.max));
         print_json(&json!({ "pictures": pictures, "max": args.max, "passes": passes }));
     } else {
-        pairs.iter().for_each(print);
+        print_all(&pairs);
     }
     let failed = pairs.iter().filter(|pair| !pair.passes(args.max)).count();
     match failed {
@@ -146,6 +146,20 @@ fn write_maps(pairs: &[Pair], out: &Path, folders: bool, max: f64) -> Result<(),
         }
     }
     Ok(())
+}
+
+/// Prints the pairs that cannot be compared, then those that differ, the worst first, then the number of the others.
+fn print_all(pairs: &[Pair]) {
+    let error = |pair: &Pair| pair.compared.as_ref().map_or(f64::INFINITY, |found| found.error);
+    let is_same = |pair: &&Pair| pair.compared.as_ref().is_ok_and(|found| found.differing == 0);
+    let (same, mut other): (Vec<&Pair>, Vec<&Pair>) = pairs.iter().partition(is_same);
+    other.sort_by(|a, b| error(b).total_cmp(&error(a)));
+    other.into_iter().for_each(print);
+    match same.as_slice() {
+        [] => {}
+        [pair] => print(pair),
+        all => out!("{:10} {} pictures", "same", all.len()),
+    }
 }
 
 fn print(pair: &Pair) {

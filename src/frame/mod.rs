@@ -23,6 +23,7 @@ pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
 pub use keys::{Keys, key_names};
 pub(crate) use pipeline_key::PipelineKey;
+pub(crate) use pipelines::shared_features;
 pub use pipelines::{MaterialVariant, PipelineRequest};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;

@@ -375,7 +375,7 @@ fn is_transmissive(material: MaterialVariant) -> bool {
 }
 
 /// The feature bits that all materials of a frame share.
-fn shared_features(settings: &Settings) -> u32 {
+pub(crate) fn shared_features(settings: &Settings) -> u32 {
     let mut features = 0;
     if settings.environment.is_lit() {
         features |= interface::FEATURE_ENVIRONMENT;

@@ -1,7 +1,9 @@
-//! Finds the instances of a model that may cover a pixel.
+//! What a pixel shows: the instances of a model that may cover it, and the nearest point of a surface.
 
-use glam::{Mat4, Vec2, Vec4Swizzles as _};
+use glam::{Mat4, Vec2, Vec3, Vec4Swizzles as _};
 
+use super::CameraView;
+use super::gltf::triangles;
 use super::model::{Model, Primitive, Topology};
 
 /// Margin in pixels around a primitive: for the width of points and lines, and for the neighbors that derivatives use.
@@ -24,6 +26,39 @@ pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u
         pieces(primitive).any(|piece| reaches(piece.iter().map(|index| places[*index as usize])))
     };
     model.instances.iter().map(is_near).collect()
+}
+
+/// The nearest point of the model's triangles, world space, that the middle of the pixel `at` sees in a picture of this size. Hidden
+/// back faces and transparent surfaces count too. `None` beside the model.
+pub fn point_at(model: &Model, view: &CameraView, (width, height): (u32, u32), at: (u32, u32)) -> Option<Vec3> {
+    let across = 2.0 * (at.0 as f32 + 0.5) / width.max(1) as f32 - 1.0;
+    let up = 1.0 - 2.0 * (at.1 as f32 + 0.5) / height.max(1) as f32;
+    let (half, forward) = ((0.5 * view.fovy_rad).tan(), view.forward());
+    let right = forward.cross(view.up);
+    let ray = forward + right * (across * half * view.aspect) + view.up * (up * half);
+    let distances = model.instances.iter().flat_map(|instance| {
+        let primitive = &model.primitives[instance.primitive];
+        let place = |index: u32| {
+            instance.world_from_object.transform_point3(primitive.vertices[index as usize].position.into()) - view.eye
+        };
+        let triangles = triangles(primitive.topology, &primitive.indices);
+        triangles.into_iter().filter_map(move |triangle| distance(ray, triangle.map(place)))
+    });
+    let nearest = distances.min_by(f32::total_cmp)?;
+    Some(view.eye + ray * nearest)
+}
+
+/// Where a ray from the origin meets a triangle, in lengths of `ray` (Moller & Trumbore 1997).
+fn distance(ray: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
+    let (ab, ac) = (b - a, c - a);
+    let across = ray.cross(ac);
+    let per_volume = ab.dot(across).recip();
+    let u = -a.dot(across) * per_volume;
+    let side = (-a).cross(ab);
+    let v = ray.dot(side) * per_volume;
+    let distance = ac.dot(side) * per_volume;
+    // A ray along the triangle makes these infinite or NaN, which no comparison lets pass.
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance.is_finite()).then_some(distance)
 }
 
 /// The indices of each triangle, line or point. A fan is one piece.
@@ -52,9 +87,7 @@ fn reaches(places: impl Iterator<Item = Option<Vec2>>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
-    use super::super::{BUILT_IN, Bounds, CameraView, built_in};
+    use super::super::{BUILT_IN, Bounds, built_in};
     use super::*;
 
     #[test]
@@ -73,5 +106,23 @@ mod tests {
         // An instance that reaches behind the eye may cover any pixel.
         model.instances.iter_mut().for_each(|i| i.world_from_object = Mat4::from_translation(view.eye - center));
         assert!(near(&model, (0, 0)).contains(&true));
+    }
+    #[test]
+    fn the_point_of_a_pixel_lies_on_the_nearest_surface() {
+        let model = built_in("sphere-grid").unwrap().unwrap();
+        let Bounds { min, max } = model.bounds;
+        let (center, radius) = ((min + max) * 0.5, model.bounds.radius());
+        let view = CameraView::new(center + Vec3::Z * radius * 4.0, center, 0.6, 2.0, &model.bounds);
+        let size = (400, 200);
+        let points: Vec<Vec3> = (0..400).step_by(7).filter_map(|x| point_at(&model, &view, size, (x, 100))).collect();
+        assert!(points.len() > 5, "{points:?}");
+        for point in points {
+            // Its pixel is the one that was asked for, and it is on the side of the spheres towards the eye.
+            let clip = view.clip_from_world() * point.extend(1.0);
+            let y = (clip.y / clip.w + 1.0) * 100.0;
+            assert!((y - 100.5).abs() < 0.01, "{point}: row {y}");
+            assert!(point.z > center.z, "{point} is behind the middle of the spheres");
+        }
+        assert_eq!(point_at(&model, &view, size, (0, 0)), None);
     }
 }

@@ -31,7 +31,12 @@ fn the_arrangement_of_the_panels_lasts() {
     let first = viewer.screenshot().width();
     // Between the picture and the panels on its right.
     let edge = 236 + 3 + first;
-    viewer.drag((edge, 200), (edge - 80, 200));
+    viewer.move_mouse((edge, 200));
+    viewer.display.xdotool(&["mousedown", "1"]);
+    viewer.screenshot();
+    viewer.move_mouse((edge - 80, 200));
+    viewer.screenshot();
+    viewer.display.xdotool(&["mouseup", "1"]);
     viewer.until("a narrower picture", |shot| shot.width().abs_diff(first - 80) < 6);
     let narrow = viewer.screenshot().width();
     let text = stored(&mut viewer, "");

@@ -42,6 +42,40 @@ fn an_environment_comes_and_goes_in_one_step() {
     viewer.quit();
 }
 
+/// While Space is held, the picture is that before the last edit, from the camera of now.
+#[test]
+fn space_shows_the_picture_before_the_last_edit() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    viewer.display.xdotool(&["keydown", "space"]);
+    assert!(viewer.screenshot() == first, "another picture before any edit");
+    viewer.display.xdotool(&["keyup", "space"]);
+
+    let original = viewer.tree.read(NDF);
+    viewer.tree.write(NDF, &original.replace("float a2 = alpha * alpha;", "float a2 = alpha;"));
+    let reload = viewer.running.reload(true);
+    // Until then, tables of the BRDF are those from before the edit.
+    viewer.running.settled(&reload);
+    let edited = viewer.screenshot();
+    assert!(edited != first, "the edit does not show");
+    viewer.display.xdotool(&["keydown", "space"]);
+    viewer.until("the picture before the edit", |shot| *shot == first);
+    viewer.display.xdotool(&["keyup", "space"]);
+    viewer.until("the edit again", |shot| *shot == edited);
+    // A broken edit is none: it has never been shown.
+    viewer.tree.write(NDF, &original.replace("alpha * alpha;", "alpha * alfa;"));
+    viewer.running.reload(false);
+    viewer.display.xdotool(&["keydown", "space"]);
+    viewer.until("the picture before the good edit", |shot| *shot == first);
+    // Without the focus, the release of the key is not heard.
+    viewer.take_focus_away();
+    viewer.give_focus();
+    viewer.until("the good edit", |shot| *shot == edited);
+    viewer.display.xdotool(&["keyup", "space"]);
+    viewer.quit();
+}
+
 /// A broken edit compiles while the user asks for another mode, with every key that the modes have.
 #[test]
 fn a_mode_asked_for_during_a_broken_edit_is_shown() {

@@ -5,7 +5,7 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 
-//@ui "Ambient occlusion"
+//@ui "Ambient occlusion" doc="Corners and gaps get less light from the environment (GTAO, Jimenez et al. 2016)"
 layout(constant_id = USER_CONSTANTS + 11) const bool AMBIENT_OCCLUSION = false;
 
 // r: hidden part, 0 open .. 1 hidden; g: meters along the camera's axis. 0 where the pass is off.

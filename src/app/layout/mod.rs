@@ -97,7 +97,7 @@ impl Layout {
         self.tree.tiles.find_pane(&panel).is_some()
     }
 
-    /// Shows a panel: in front of the tabs in its tile, beside panels of its group, or in a column of its own.
+    /// Shows a panel: in front of the tabs in its tile, beside panels of its group or any other, or in a column of its own.
     pub(super) fn open(&mut self, panel: Panel) {
         self.is_changed = true;
         if !self.is_open(panel) {
@@ -117,7 +117,9 @@ impl Layout {
     fn insert(&mut self, panel: Panel) {
         let group = Panel::GROUPS.into_iter().find(|group| group.contains(&panel)).unwrap_or_default();
         let (root, tiles) = (self.tree.root(), &mut self.tree.tiles);
-        let beside = group.iter().find_map(|other| tiles.parent_of(tiles.find_pane(other)?));
+        let with = |other: &Panel| tiles.parent_of(tiles.find_pane(other)?);
+        let all = Panel::GROUPS.concat();
+        let beside = group.iter().find_map(with).or_else(|| all.iter().rev().find_map(with));
         let pane = tiles.insert_pane(panel);
         if let Some(Tile::Container(Container::Tabs(tabs))) = beside.and_then(|id| tiles.get_mut(id)) {
             tabs.add_child(pane);

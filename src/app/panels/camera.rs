@@ -31,6 +31,6 @@ pub(super) fn show(ui: &mut Ui, settings: &mut CameraSettings, model: &Model, co
             ui.ctx().copy_text(text);
         }
     }
-    let help = "Drag to orbit, Shift+drag to pan, wheel to zoom.\nHold the right button and W A S D Q E to fly.";
+    let help = "Drag to orbit, Shift+drag to pan, wheel to zoom, Alt+drag to turn the light around.\nHold the right button and W A S D Q E to fly.";
     ui.label(RichText::new(help).small().color(QUIET));
 }

@@ -7,14 +7,22 @@ use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::Settings;
 
-/// Shows the panel. `progress` is the fraction of the current bake that is done, and its next pass.
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings, progress: Option<&(f32, String)>, report: &BakeReport) {
+/// Shows the panel. `recent` are the files that were shown. `progress` is the fraction of the current bake that is done, and its next
+/// pass.
+pub(super) fn show(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    recent: &[String],
+    progress: Option<&(f32, String)>,
+    report: &BakeReport,
+) {
     let environment = &mut settings.environment;
+    let short = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
     row(ui, "Map", "Environment map (--env). Drop an .hdr or .exr file on the window to use it", |ui| {
-        let shown = environment.name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+        let shown = short(&environment.name);
         egui::ComboBox::from_id_salt("environment").selected_text(shown).width(150.0).truncate().show_ui(ui, |ui| {
-            for name in BUILT_IN.into_iter().chain(["none"]) {
-                ui.selectable_value(&mut environment.name, name.to_owned(), name);
+            for name in BUILT_IN.into_iter().chain(["none"]).chain(recent.iter().map(String::as_str)) {
+                ui.selectable_value(&mut environment.name, name.to_owned(), short(name)).on_hover_text(name);
             }
         });
     });

@@ -5,15 +5,18 @@ use egui::{RichText, Window};
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 18] = [
+const KEYS: [(&str, &str); 21] = [
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
     ("Esc", "the final picture"),
     ("drag", "orbit"),
     ("Shift+drag, middle drag", "pan"),
+    ("Alt+drag", "turn the environment"),
     ("wheel", "zoom"),
     ("right button + W A S D Q E", "look around and fly"),
+    ("double click", "look at this point and orbit around it"),
+    ("hold Space", "the picture before the last edit"),
     ("R, Home", "frame the model"),
     ("L", "let the lights orbit"),
     ("H", "hide the panels"),

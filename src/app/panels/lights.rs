@@ -5,8 +5,8 @@ use egui::{DragValue, Slider, Ui};
 use super::{angle, color, row, slide};
 use crate::settings::{LightSettings, LightSource, RectLight};
 
-/// Shows the panel. `in_model` is the number of lights in the model.
-pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
+/// Shows the panel. `in_model` is the number of lights in the model. `has_environment`: an environment replaces the ambient light.
+pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize, has_environment: bool) {
     row(ui, "Source", "Which lights are on (--lights)", |ui| {
         ui.selectable_value(&mut lights.source, LightSource::Orbit, "Orbit");
         let model = egui::Button::selectable(lights.source == LightSource::Model, format!("Model ({in_model})"));
@@ -15,13 +15,18 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
         }
         ui.selectable_value(&mut lights.source, LightSource::None, "None");
     });
-    row(ui, "Terms of light", "The light whose BRDF terms the modes show", |ui| {
-        ui.selectable_value(&mut lights.chosen, 0, "All");
-        let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
-        for light in 1..=count {
-            ui.selectable_value(&mut lights.chosen, light, light.to_string());
-        }
-    });
+    row(
+        ui,
+        "Terms of light",
+        "The light whose BRDF terms the modes show. All: the terms of light 1, and the sum of the lobes over all lights",
+        |ui| {
+            ui.selectable_value(&mut lights.chosen, 0, "All");
+            let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
+            for light in 1..=count {
+                ui.selectable_value(&mut lights.chosen, light, light.to_string());
+            }
+        },
+    );
     if lights.source == LightSource::Orbit {
         row(ui, "Orbit", "Speed around the model in degrees per second (L)", |ui| {
             slide(ui, Slider::new(&mut lights.spin, -90.0..=90.0).suffix("°/s").max_decimals(0));
@@ -47,9 +52,12 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
         rect(ui, &mut lights.rect);
     }
     ui.separator();
-    row(ui, "Ambient", "Color, and luminance of every direction in cd/m^2; off with an environment", |ui| {
-        color(ui, &mut lights.ambient_color);
-        slide(ui, Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
+    let doc = "Color, and luminance of every direction in cd/m^2. An environment replaces it";
+    row(ui, "Ambient", doc, |ui| {
+        ui.add_enabled_ui(!has_environment, |ui| {
+            color(ui, &mut lights.ambient_color);
+            slide(ui, Slider::new(&mut lights.ambient_strength, 0.0..=2.0).max_decimals(2));
+        });
     });
 }
 

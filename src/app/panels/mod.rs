@@ -26,8 +26,11 @@ use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::viewer::Viewer;
 use crate::gpu::PassTime;
+use crate::scene::environment::BUILT_IN;
 use theme::{ACCENT, ERROR, QUIET, WARNING};
 
+/// Files of environments that the list keeps.
+const MOST_ENVIRONMENTS: usize = 8;
 /// A window smaller than this, in points, shows only the picture.
 const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
 
@@ -39,6 +42,8 @@ pub(super) struct PanelState {
     pub(super) palette: Palette,
     /// Whether the list of keys is shown (F1).
     pub(super) show_keys: bool,
+    /// Files of environments that were shown, the newest last.
+    pub(super) environments: Vec<String>,
     /// The search in the list of modes.
     search: String,
     /// Whether the warnings of the model are shown over the picture.
@@ -56,10 +61,22 @@ impl PanelState {
             layout: Layout::restored(),
             palette: Palette::default(),
             show_keys: false,
+            environments: Vec::new(),
             search: String::new(),
             show_model_warnings: true,
             scrolled_to: String::new(),
             timing: timing::Timing::default(),
+        }
+    }
+}
+
+impl PanelState {
+    /// Keeps an environment's file in the list.
+    fn remember(&mut self, environment: &str) {
+        let is_file = environment != "none" && !BUILT_IN.contains(&environment);
+        if is_file && !self.environments.iter().any(|known| known == environment) {
+            self.environments.push(environment.to_owned());
+            self.environments.drain(..self.environments.len().saturating_sub(MOST_ENVIRONMENTS));
         }
     }
 }
@@ -81,6 +98,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let whole = ui.max_rect();
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
+    viewer.panels.remember(&viewer.session.settings.environment.name);
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, readings);
         let mut layout = std::mem::take(&mut viewer.panels.layout);
@@ -116,13 +134,14 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, readings: &Readings, co
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
+    let features = viewer.session.features();
     let session = &mut viewer.session;
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
         Panel::Viewport => {}
-        Panel::Modes => modes::show(ui, shaders.as_deref(), &mut settings.mode, &mut viewer.panels),
-        Panel::Model => model::show(ui, settings, &model, &viewer.model),
+        Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
+        Panel::Model => model::show(ui, settings, &model, &viewer.model, commands),
         Panel::Shaders => {
             shaders::show(ui, &viewer.shader, declared.generation, &session.diagnostics, cut_short, commands);
         }
@@ -131,9 +150,9 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, readings: &Readings, co
         Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
         Panel::Environment => {
             let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);
-            environment::show(ui, settings, progress, report);
+            environment::show(ui, settings, &viewer.panels.environments, progress, report);
         }
-        Panel::Lights => lights::show(ui, &mut settings.lights, model.lights.len()),
+        Panel::Lights => lights::show(ui, &mut settings.lights, model.lights.len(), settings.environment.is_lit()),
         Panel::Output => output::show(ui, settings, commands),
         Panel::Camera => camera::show(ui, &mut settings.camera, &model, commands),
     }

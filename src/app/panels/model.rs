@@ -3,16 +3,30 @@
 use egui::{RichText, Slider, Ui};
 
 use super::{QUIET, WARNING, angle, color, plural, row, slide};
+use crate::app::command::Command;
 use crate::app::viewer::ModelStatus;
-use crate::scene::Model;
+use crate::scene::{BUILT_IN, Model};
 use crate::settings::{MaterialOverride, Settings};
 
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, status: &ModelStatus) {
-    ui.horizontal(|ui| {
-        ui.label(if model.name.is_empty() { "none" } else { &model.name });
-        if status.loading {
-            ui.label("loading…");
-        }
+pub(super) fn show(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    model: &Model,
+    status: &ModelStatus,
+    commands: &mut Vec<Command>,
+) {
+    row(ui, "Model", "Built-in models. Drop a .gltf or .glb file on the window to open it", |ui| {
+        let name = if status.loading { "loading…" } else { model.name.as_str() };
+        egui::ComboBox::from_id_salt("model").selected_text(name).width(ui.available_width()).truncate().show_ui(
+            ui,
+            |ui| {
+                for name in BUILT_IN {
+                    if ui.selectable_label(name == model.name, name).clicked() {
+                        commands.push(Command::OpenModel(name.into()));
+                    }
+                }
+            },
+        );
     });
     if !model.variants.is_empty() {
         let variant = &mut settings.variant;

@@ -9,8 +9,17 @@ use crate::settings::{Settings, Tonemap};
 
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
     let view = &mut settings.view;
-    row(ui, "Exposure", "EV100 (--ev): light in cd/m^2 is multiplied by 1 / (1.2 * 2^EV)", |ui| {
-        slide(ui, Slider::new(&mut view.ev, -10.0..=10.0).suffix(" EV").max_decimals(1));
+    let doc =
+        "Exposure compensation in stops: +1 is twice as bright. Light in cd/m^2 is multiplied by 1 / (1.2 * 2^EV100)";
+    row(ui, "Exposure", doc, |ui| {
+        // Compensation and EV100 have opposite signs. 0.0 - 0.0 is 0, and -0.0 would show its sign.
+        let mut stops = 0.0 - view.ev;
+        let slider = Slider::new(&mut stops, -10.0..=10.0).suffix(" EV").max_decimals(1);
+        let slider = slider.custom_formatter(|stops, _| format!("{stops:+.1}"));
+        let response = slide(ui, slider).on_hover_text(format!("{doc}\n\n--ev {}", view.ev));
+        if response.changed() {
+            view.ev = 0.0 - stops;
+        }
     });
     row(ui, "Tone map", "Curve from exposed light to display range (--tonemap)", |ui| {
         let name =

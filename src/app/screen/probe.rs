@@ -4,7 +4,7 @@ use super::{FRAMES_IN_FLIGHT, Screen};
 
 impl Screen {
     /// The pixel of the picture under the mouse.
-    pub(super) fn mouse_pixel(&self) -> Option<(u32, u32)> {
+    pub(in crate::app) fn mouse_pixel(&self) -> Option<(u32, u32)> {
         let (x, y) = (self.mouse.at.x - self.rect.at.0 as f32, self.mouse.at.y - self.rect.at.1 as f32);
         let (width, height) = self.last.as_ref()?.state.size;
         (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32)).filter(|(x, y)| *x < width && *y < height)

@@ -31,6 +31,11 @@ impl Viewer {
         let is_complete = self.request_missing(&state) && state.shaders.pending.is_empty();
         // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
+        if let Some(before) = self.before.as_ref().filter(|_| self.shows_before) {
+            let frame = self.interim(before, clock, size);
+            prepare(&frame)?;
+            return Ok(Some(frame));
+        }
         if let Some(frame) = self.resources.bind(&state, is_first)? {
             prepare(&frame)?;
             let generation = state.shaders.generation;
@@ -38,12 +43,24 @@ impl Viewer {
                 emit(self.events, &Event::Settled { generation });
             }
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
-            self.shown = Some(LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() });
+            let shown = LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() };
+            let last = self.shown.replace(shown);
+            self.keep_before(last, generation);
             return Ok(Some(frame));
         }
         let interim = self.shown.as_ref().map(|shown| self.interim(shown, clock, size));
         interim.iter().try_for_each(prepare)?;
         Ok(interim)
+    }
+
+    /// Keeps the last picture if its shaders are not those of the new one.
+    fn keep_before(&mut self, last: Option<LastComplete>, generation: u64) {
+        let is_earlier =
+            |last: &LastComplete| last.scene.is_some() && last.frame.state.shaders.generation != generation;
+        let Some(last) = last.filter(is_earlier) else { return };
+        self.before = Some(last);
+        let edit = self.first_frame.as_ref().filter(|first| first.generation == generation);
+        self.edited = edit.map(|first| first.event.changed.clone()).unwrap_or_default();
     }
 
     /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow
@@ -96,6 +113,11 @@ impl Viewer {
 
     /// The title over the picture: see [`title`]. `frames` is the number of frames in the mean of an accumulating mode.
     pub(in crate::app) fn title(&self, frames: u32) -> Option<String> {
+        if let Some(before) = self.before.as_ref().filter(|_| self.shows_before) {
+            let mode = before.frame.state.mode().map_or("", |mode| &mode.name);
+            let files: Vec<&str> = self.edited.iter().map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
+            return Some(format!("{mode}, before the edit of {}", files.join(", ")));
+        }
         let shown = self.shown()?;
         let request = &shown.pipelines;
         let paths = request.accumulates.then(|| frames.saturating_mul(request.paths_per_frame()));

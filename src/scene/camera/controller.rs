@@ -31,6 +31,13 @@ impl CameraController {
         put(settings, orbit.eye(), orbit.target);
     }
 
+    /// Moves the camera across its view so that it looks at `point`, at the distance that the point has.
+    pub fn focus(settings: &mut CameraSettings, view: &CameraView, point: Vec3) {
+        let distance = view.forward().dot(point - view.eye);
+        settings.eye = Some((point - view.forward() * distance).to_array());
+        settings.target = Some(point.to_array());
+    }
+
     /// Wheel: moves the eye towards the target or away from it.
     pub fn dolly(settings: &mut CameraSettings, view: &CameraView, steps: f32) {
         let mut orbit = OrbitCamera::new(view.eye, view.target);

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::cursor::Cursor;
 use crate::interface;
+use crate::message::did_you_mean;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, tokens};
 
@@ -90,6 +91,9 @@ pub struct Mode {
     pub pass: Option<String>,
     /// Key in the window.
     pub key: Option<char>,
+    /// `FEATURE_*` bits: without any of them in the model, the mode has nothing to show. 0: it always has.
+    #[serde(skip)]
+    pub needs: u32,
     /// A description of the mode.
     pub doc: String,
     /// File as printed.
@@ -157,13 +161,35 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
             mode.draw = cursor.one_of(key, &all)?;
         }
         "key" => mode.key = Some(window_key(cursor)?),
+        "needs" => mode.needs = features(cursor)?,
         other => {
-            let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, key= or \
-                doc=";
+            let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, needs=, \
+                key= or doc=";
             return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
         }
     }
     Ok(())
+}
+
+/// Reads the value of `needs=`: names of `FEATURE_*` constants in small letters, with `-` for `_`.
+fn features(cursor: &mut Cursor<'_>) -> Result<u32, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("needs")?;
+    let mut bits = 0;
+    for name in value.split(',') {
+        let constant = format!("FEATURE_{}", name.trim().to_uppercase().replace('-', "_"));
+        let Some((_, bit)) = interface::UINTS.iter().find(|(known, _)| *known == constant) else {
+            let known = interface::UINTS.iter().filter_map(|(known, _)| known.strip_prefix("FEATURE_"));
+            let known: Vec<String> = known.map(|name| name.to_lowercase().replace('_', "-")).collect();
+            let hint = did_you_mean(name, known.iter().map(String::as_str));
+            let message = format!(
+                "expected features of materials after needs=, found `{name}`.{hint} They are {}",
+                known.join(", ")
+            );
+            return Err(cursor.error(bytes, message));
+        };
+        bits |= bit;
+    }
+    Ok(bits)
 }
 
 /// Reads the value of `key=`.

@@ -152,8 +152,12 @@ fn what_does_not_parse_says_what_was_expected() {
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
         "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, \
-         key= or doc=, found `colour`",
+         needs=, key= or doc=, found `colour`",
     );
+    let errors = read_text("const uint M = 1u; //@mode d \"D\" needs=sheen,clearcot").unwrap_err();
+    let needs =
+        "expected features of materials after needs=, found `clearcot`. Did you mean `clearcoat`? They are unlit, ";
+    assert!(errors[0].message.starts_with(needs), "{}", errors[0].message);
     refused(
         "const uint M = 1u; //@mode d \"D\" accumulate accumulate",
         "m.frag:3:45: error: `accumulate` is given twice",
