@@ -42,6 +42,9 @@ pub(super) fn open(place: &Place) -> Result<(), String> {
         std::env::split_paths(&folders).any(|folder| folder.join(program).is_file())
     };
     let choice = [of("VISUAL"), of("EDITOR")];
+    // A name that begins with `-` or `+` would be an option.
+    let file = std::path::absolute(&place.file).unwrap_or_else(|_| place.file.clone());
+    let place = &Place { file, ..place.clone() };
     let Some(words) = command(of("SPECULA_EDITOR"), choice, is_installed, place) else {
         return Err("found no editor with a window of its own. Set SPECULA_EDITOR, for example to \
                     `code -g {file}:{line}:{column}`"
@@ -49,6 +52,9 @@ pub(super) fn open(place: &Place) -> Result<(), String> {
     };
     let (program, arguments) = words.split_first().ok_or("SPECULA_EDITOR is empty")?;
     let mut command = Command::new(program);
+    // Ctrl+C in the terminal ends Specula and leaves the editor.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let mut editor = command.spawn().map_err(|error| format!("the editor `{program}` did not start: {error}"))?;
     std::thread::spawn(move || editor.wait());

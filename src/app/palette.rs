@@ -103,7 +103,9 @@ fn window(egui: &egui::Context, palette: &mut Palette, entries: &[Entry], area: 
             ui.set_width(width);
             let id = Id::new("palette search");
             // Keys of the same frame are already the search's.
-            ui.memory_mut(|memory| memory.request_focus(id));
+            if !ui.memory(|memory| memory.has_focus(id)) {
+                ui.memory_mut(|memory| memory.request_focus(id));
+            }
             let field = TextEdit::singleline(&mut palette.query).id(id).desired_width(f32::INFINITY);
             let field = field.background_color(EDGE).hint_text("Find a mode, setting, panel or command");
             if ui.add(field).changed() {

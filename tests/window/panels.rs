@@ -78,7 +78,8 @@ fn a_click_on_an_error_opens_the_editor() {
     viewer.click((40, edge(&screen).unwrap() + 17));
     viewer.until("the editor", |_| opened.exists());
     let told = std::fs::read_to_string(&opened).unwrap();
-    assert_eq!(told.trim(), format!("{} {} {}", error["line"], error["column"], error["file"].as_str().unwrap()));
+    let file = viewer.tree.beside(error["file"].as_str().unwrap());
+    assert_eq!(told.trim(), format!("{} {} {}", error["line"], error["column"], file.display()));
     viewer.quit();
 }
 

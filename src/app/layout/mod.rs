@@ -157,6 +157,7 @@ impl Layout {
         ui.painter().set(background, around(picture, area, ui.visuals().extreme_bg_color));
         if is_edited {
             self.give_tabs();
+            self.give_shares();
             self.is_changed = true;
         }
         if let Some(panel) = closed {
@@ -236,6 +237,22 @@ impl Layout {
                 linear.shares.set_share(on_path, rest);
             }
             left = if is_row { Vec2::new(rest, left.y) } else { Vec2::new(left.x, rest) };
+        }
+    }
+
+    /// Gives what was dropped beside other tiles the mean of their sizes. Without a share it would be a point wide.
+    fn give_shares(&mut self) {
+        let containers = self.tree.tiles.tiles_mut().filter_map(|tile| match tile {
+            Tile::Container(Container::Linear(linear)) => Some(linear),
+            _ => None,
+        });
+        for linear in containers {
+            let share = |child: &TileId| linear.shares.iter().find(|(id, _)| *id == child).map(|(_, share)| *share);
+            let known: Vec<f32> = linear.children.iter().filter_map(share).collect();
+            let new: Vec<TileId> = linear.children.iter().copied().filter(|child| share(child).is_none()).collect();
+            let mean = known.iter().sum::<f32>() / known.len().max(1) as f32;
+            let size = if known.is_empty() { 1.0 } else { mean.min(COLUMN) };
+            new.into_iter().for_each(|child| linear.shares.set_share(child, size));
         }
     }
 

@@ -140,6 +140,8 @@ impl Viewer {
         self.model.loading = false;
         match loaded.result {
             Ok(uploaded) => {
+                // The picture before the last edit would keep the old model on the device.
+                (self.before, self.shows_before) = (None, false);
                 let model = uploaded.model();
                 for warning in &model.warnings {
                     message::warn(format_args!("{}: {warning}", model.name));
