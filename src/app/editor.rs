@@ -68,17 +68,23 @@ fn command(
     is_installed: impl Fn(&str) -> bool,
     place: &Place,
 ) -> Option<Vec<String>> {
+    // A folder or a whole file has no line, and every editor takes it as it is.
+    let with = |command: &str, template: &str| {
+        let rest = if place.line.is_some() { template } else { "{file}" };
+        filled(&format!("{command} {rest}"), place)
+    };
     if let Some(own) = own {
-        let known = template(&own).filter(|_| !own.contains("{file}"));
-        let rest = known.unwrap_or(if own.contains("{file}") { "" } else { "{file}" });
-        return Some(filled(&format!("{own} {rest}"), place));
+        return Some(match own.contains("{file}") {
+            true => filled(&own, place),
+            false => with(&own, template(&own).unwrap_or("{file}")),
+        });
     }
     let preferred = choices.into_iter().flatten().find_map(|choice| Some((template(&choice)?, choice)));
     if let Some((template, choice)) = preferred {
-        return Some(filled(&format!("{choice} {template}"), place));
+        return Some(with(&choice, template));
     }
     let (program, template) = EDITORS.into_iter().find(|(program, _)| is_installed(program))?;
-    Some(filled(&format!("{program} {template}"), place))
+    Some(with(program, template))
 }
 
 /// How the editor of a command takes a position, if it is known.
@@ -87,20 +93,17 @@ fn template(command: &str) -> Option<&'static str> {
     EDITORS.into_iter().find(|(name, _)| *name == program).map(|(_, template)| template)
 }
 
-/// The words of a command with the place filled in. Without a line, what names only a line goes.
-fn filled(template: &str, place: &Place) -> Vec<String> {
+/// Splits a command into words and fills the place in. Without a line, the parts that give one are left out.
+fn filled(command: &str, place: &Place) -> Vec<String> {
     let file = place.file.display().to_string();
     let (line, column) = (place.line.unwrap_or(1).to_string(), place.column.unwrap_or(1).to_string());
-    let mut words: Vec<&str> = template.split_whitespace().collect();
-    if place.line.is_none()
-        && let Some(program) = words.first().copied()
-    {
-        // A folder or a whole file: editors take it as their only argument.
-        words.retain(|word| *word == program || word.contains("{file}"));
-        words.iter_mut().filter(|word| word.contains("{file}")).for_each(|word| *word = "{file}");
-    }
     let fill = |word: &str| word.replace("{line}", &line).replace("{column}", &column).replace("{file}", &file);
-    words.into_iter().map(fill).collect()
+    if place.line.is_some() {
+        return command.split_whitespace().map(fill).collect();
+    }
+    let command = command.replace(":{line}", "").replace(":{column}", "");
+    let gives_line = |word: &&str| word.contains("{line}") || word.contains("{column}");
+    command.split_whitespace().filter(|word| !gives_line(word)).map(fill).collect()
 }
 
 #[cfg(test)]
@@ -134,6 +137,11 @@ mod tests {
             at(words(Some("ed {line} {file}"), prefers, "code", Some(20))).unwrap(),
             "ed|20|my shaders/ndf.glsl"
         );
+        assert_eq!(
+            at(words(Some("flatpak run ed {file}:{line}"), none, "code", None)).unwrap(),
+            "flatpak|run|ed|my shaders/ndf.glsl"
+        );
+        assert_eq!(at(words(Some("zed -n"), none, "code", None)).unwrap(), "zed|-n|my shaders/ndf.glsl");
         assert_eq!(at(words(Some("ed"), prefers, "code", Some(20))).unwrap(), "ed|my shaders/ndf.glsl");
         assert_eq!(at(words(Some("zed -n"), none, "code", Some(20))).unwrap(), "zed|-n|my shaders/ndf.glsl:20:7");
     }

@@ -76,13 +76,14 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             match button {
                 MouseButton::Left => {
                     let was = std::mem::replace(&mut screen.mouse.left, pressed);
-                    if pressed && is_double_click(&mut screen.mouse) {
-                        return focus(viewer, screen);
-                    }
+                    let is_double = pressed && is_double_click(&mut screen.mouse);
                     match pressed {
                         true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
                         false if was => viewer.playback.release(),
                         false => {}
+                    }
+                    if is_double {
+                        return focus(viewer, screen);
                     }
                 }
                 MouseButton::Middle => screen.mouse.middle = pressed,
