@@ -4,7 +4,7 @@ use clap::ValueEnum as _;
 use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 
 use super::command::Command;
-use super::layout::{Layout, Panel, Preset};
+use super::layout::{Panel, Preset};
 use super::panels::theme::{EDGE, PANEL, QUIET};
 use super::viewer::Viewer;
 use crate::scene::environment::BUILT_IN;
@@ -279,7 +279,7 @@ fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Command>) {
         }
         Action::Arrange(preset) => {
             viewer.panels.visible = true;
-            viewer.panels.layout = Layout::of(preset);
+            viewer.panels.layout.arrange(preset);
         }
         Action::TogglePanels => viewer.panels.visible ^= true,
         Action::ShowKeys => viewer.panels.show_keys = true,

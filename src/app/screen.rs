@@ -25,8 +25,6 @@ use crate::scene::{CameraController, CameraView};
 const FRAMES_IN_FLIGHT: usize = 2;
 /// Time until the next attempt at a frame while memory is short.
 const RETRY: Duration = Duration::from_millis(500);
-/// Points at the edge of the picture that belong to the handle between it and a panel.
-const HANDLE: f32 = 4.0;
 /// Repaint delays of egui from here on mean that it needs no repaint.
 const NEVER: Duration = Duration::from_secs(3600);
 
@@ -68,6 +66,8 @@ pub(super) struct Screen {
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
     pub(super) rect: PictureRect,
+    /// The part of the picture that no handle between it and a panel covers, in points.
+    free: egui::Rect,
     last_frame: Instant,
 }
 
@@ -107,6 +107,7 @@ impl Screen {
             mouse: Mouse::default(),
             camera: CameraController::default(),
             rect: PictureRect::default(),
+            free: egui::Rect::NOTHING,
             last_frame: Instant::now(),
         })
     }
@@ -115,19 +116,16 @@ impl Screen {
         self.input.on_window_event(window, event)
     }
 
-    /// Whether an event belongs to the user interface. `consumed`: what egui says, for which the tiles with the picture among them
-    /// are one panel. Over the picture, only what lies above it and a drag that began elsewhere take the mouse.
+    /// Whether an event belongs to the user interface. egui has `consumed` every event over the tiles, which are one panel to it,
+    /// picture included. Over the picture, only areas above it and a drag that began elsewhere take the mouse.
     pub(super) fn is_taken(&self, event: &WindowEvent, consumed: bool) -> bool {
         if !matches!(event, WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. }) {
             return consumed;
         }
         let scale = self.egui.pixels_per_point();
         let at = egui::Pos2::new(self.mouse.at.x, self.mouse.at.y) / scale;
-        let [x, y, width, height] =
-            [self.rect.at.0, self.rect.at.1, self.rect.size.0, self.rect.size.1].map(|n| n as f32 / scale);
-        let picture = egui::Rect::from_min_size(egui::pos2(x, y), egui::vec2(width, height));
         let is_covered = self.egui.layer_id_at(at).is_some_and(|layer| layer.order != egui::Order::Background);
-        is_covered || self.egui.egui_is_using_pointer() || !picture.shrink(HANDLE).contains(at)
+        is_covered || self.egui.egui_is_using_pointer() || !self.free.contains(at)
     }
 
     pub(super) fn resized(&mut self) {

@@ -8,14 +8,20 @@ use crate::app::panels::theme::{ACCENT, EDGE, PANEL, QUIET};
 
 /// Space between two tiles, in points.
 pub(super) const GAP: f32 = 2.0;
+/// Height of the tabs of a tile, in points.
+pub(super) const TAB_BAR: f32 = 24.0;
 
 /// The tiles in one frame.
 pub(super) struct Dock<'a> {
     pub(super) panels: &'a mut dyn FnMut(&mut Ui, Panel),
     /// The rectangle of the viewport, if it is not behind another tab.
     pub(super) picture: Option<Rect>,
-    /// Whether the user has changed the arrangement.
+    /// Whether the user has moved or resized a tile.
     pub(super) is_edited: bool,
+    /// Whether the user has moved a tile.
+    pub(super) is_dropped: bool,
+    /// Whether another tab has come to the front.
+    pub(super) is_selected: bool,
     /// The panel that the user has closed.
     pub(super) closed: Option<Panel>,
 }
@@ -113,7 +119,13 @@ impl Behavior<Panel> for Dock<'_> {
         SIMPLIFY
     }
 
-    fn on_edit(&mut self, _: EditAction) {
-        self.is_edited = true;
+    fn tab_bar_height(&self, _: &egui::Style) -> f32 {
+        TAB_BAR
+    }
+
+    fn on_edit(&mut self, action: EditAction) {
+        self.is_dropped |= action == EditAction::TileDropped;
+        self.is_edited |= matches!(action, EditAction::TileDropped | EditAction::TileResized);
+        self.is_selected |= action == EditAction::TabSelected;
     }
 }

@@ -1,20 +1,20 @@
 //! The arrangement of the panels: tiles around the picture that the user docks, resizes and closes. It is kept between runs.
 
 mod behavior;
+mod fit;
 mod preset;
+mod repair;
 mod store;
 
 use egui::{Rect, Ui, Vec2};
-use egui_tiles::{Container, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree};
+use egui_tiles::{Container, LinearDir, SimplificationOptions, Tile, TileId, Tree};
 use serde::{Deserialize, Serialize};
 
 use behavior::Dock;
+use fit::Fit;
 pub(super) use preset::Preset;
+use repair::repair;
 
-/// Width of the window in points below which the panels left of the picture are hidden.
-const NARROW: f32 = 760.0;
-/// The picture keeps at least this many points in each direction.
-const MIN_PICTURE: f32 = 120.0;
 /// Width of a column of panels that has none to take it from.
 const COLUMN: f32 = 318.0;
 
@@ -63,12 +63,17 @@ impl Panel {
 /// The arrangement of the panels.
 pub(super) struct Layout {
     tree: Tree<Panel>,
-    /// The size for which the tiles were last measured.
-    fitted: Option<Vec2>,
+    fit: Fit,
+    /// The arrangement that the user made, while a preset is shown.
+    own: Option<Tree<Panel>>,
+    /// Whether the user has changed the tiles since a preset was chosen.
+    is_own: bool,
     /// Whether the arrangement differs from the stored one.
     is_changed: bool,
     /// Whether the tiles have been laid out since the last change.
     is_settled: bool,
+    /// The part of the picture that no handle covers, in points.
+    free: Rect,
 }
 
 impl Default for Layout {
@@ -81,36 +86,71 @@ impl Default for Layout {
 impl Layout {
     /// The arrangement of the last run, or the first preset.
     pub(super) fn restored() -> Self {
-        store::load().map_or_else(|| Self::of(Preset::Debug), Self::of_tree)
-    }
-
-    /// The arrangement of a preset.
-    pub(super) fn of(preset: Preset) -> Self {
-        Self { is_changed: true, ..Self::of_tree(preset.tree()) }
+        let Some(store::Stored { mut tree, is_own, own }) = store::load() else {
+            return Self { is_changed: true, ..Self::of_tree(Preset::Debug.tree()) };
+        };
+        repair(&mut tree);
+        Self { is_own, own, ..Self::of_tree(tree) }
     }
 
     fn of_tree(tree: Tree<Panel>) -> Self {
-        Self { tree, fitted: None, is_changed: false, is_settled: false }
+        let (fit, free) = (Fit::default(), Rect::ZERO);
+        Self { tree, fit, own: None, is_own: false, is_changed: false, is_settled: false, free }
+    }
+
+    /// Shows a preset. The user's own arrangement is kept for [`Self::arrange_own`].
+    pub(super) fn arrange(&mut self, preset: Preset) {
+        if self.is_own {
+            self.own = Some(self.fit.measured(&self.tree));
+        }
+        let own = self.own.take();
+        *self = Self { own, is_changed: true, ..Self::of_tree(preset.tree()) };
+    }
+
+    /// Whether there is an arrangement of the user's to go back to.
+    pub(super) fn has_own(&self) -> bool {
+        self.own.is_some()
+    }
+
+    /// Shows the user's own arrangement again.
+    pub(super) fn arrange_own(&mut self) {
+        if let Some(tree) = self.own.take() {
+            *self = Self { is_own: true, is_changed: true, ..Self::of_tree(tree) };
+        }
+    }
+
+    /// Notes a change by the user, who then has an arrangement of her own.
+    fn edited(&mut self) {
+        (self.is_changed, self.is_own) = (true, true);
+        self.own = None;
     }
 
     pub(super) fn is_open(&self, panel: Panel) -> bool {
         self.tree.tiles.find_pane(&panel).is_some()
     }
 
-    /// Shows a panel: in front of the tabs in its tile, beside panels of its group or any other, or in a column of its own.
+    /// Shows a panel: in front of the tabs in its tile, beside panels of its group or any other, or in a column of its own. A narrow
+    /// window then shows the panel's side of the picture.
     pub(super) fn open(&mut self, panel: Panel) {
         self.is_changed = true;
         if !self.is_open(panel) {
             self.insert(panel);
+            self.edited();
         }
         self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(other) if *other == panel));
+        let tiles = &self.tree.tiles;
+        let up = std::iter::successors(tiles.find_pane(&panel), |id| tiles.parent_of(*id));
+        if up.into_iter().any(|id| !tiles.is_visible(id)) {
+            self.fit.swap_sides();
+        }
     }
 
     pub(super) fn close(&mut self, panel: Panel) {
         if let Some(id) = self.tree.tiles.find_pane(&panel) {
             self.tree.remove_recursively(id);
             self.tree.simplify(&SIMPLIFY);
-            (self.is_changed, self.fitted) = (true, None);
+            self.fit.invalidate();
+            self.edited();
         }
     }
 
@@ -126,7 +166,7 @@ impl Layout {
             return;
         }
         let column = tiles.insert_tab_tile(vec![pane]);
-        self.fitted = None;
+        self.fit.invalidate();
         match root.and_then(|id| tiles.get_mut(id)) {
             Some(Tile::Container(Container::Linear(linear))) if linear.dir == LinearDir::Horizontal => {
                 linear.add_child(column);
@@ -143,28 +183,38 @@ impl Layout {
         }
     }
 
-    /// Shows the tiles in `ui`. `panels` shows what is in them. Returns the rectangle of the picture in points, which is empty
-    /// behind another tab.
+    /// Shows the tiles in `ui`. `panels` shows what is in them. Returns the rectangle of the picture in points.
     pub(super) fn show(&mut self, ui: &mut Ui, panels: &mut dyn FnMut(&mut Ui, Panel)) -> Rect {
         let area = ui.available_rect_before_wrap();
-        self.fit(area.size());
-        let mut dock = Dock { panels, picture: None, is_edited: false, closed: None };
+        self.fit.apply(&mut self.tree, area.size());
+        let mut dock =
+            Dock { panels, picture: None, is_edited: false, is_dropped: false, is_selected: false, closed: None };
         // What the tiles leave uncovered, apart from the picture, is painted behind them.
         let background = ui.painter().add(egui::Shape::Noop);
         self.tree.ui(&mut dock, ui);
-        let Dock { picture, is_edited, closed, .. } = dock;
+        let Dock { picture, is_edited, is_dropped, is_selected, closed, .. } = dock;
         let picture = picture.unwrap_or(Rect::from_min_size(area.min, Vec2::ZERO));
         ui.painter().set(background, around(picture, area, ui.visuals().extreme_bg_color));
+        if is_dropped {
+            repair(&mut self.tree);
+        }
+        self.is_changed |= is_selected;
         if is_edited {
-            self.give_tabs();
-            self.give_shares();
-            self.is_changed = true;
+            self.edited();
         }
         if let Some(panel) = closed {
             self.close(panel);
         }
+        let reach = &ui.style().interaction;
+        let grab = reach.resize_grab_radius_side + reach.interact_radius;
+        self.free = fit::without_handles(picture, area, grab);
         self.store(ui);
         picture
+    }
+
+    /// The part of the last picture that no handle between it and a panel covers, in points.
+    pub(super) fn free_of_handles(&self) -> Rect {
+        self.free
     }
 
     /// Stores a changed arrangement, once its tiles have their sizes. A drag changes them in each frame, and only its end is worth
@@ -174,114 +224,12 @@ impl Layout {
             self.is_settled = false;
         } else if std::mem::replace(&mut self.is_settled, true) {
             (self.is_changed, self.is_settled) = (false, false);
-            self.measure();
-            store::save(&self.tree);
+            self.fit.remember(&self.tree);
+            let (tree, own) = (self.fit.measured(&self.tree), self.own.clone());
+            store::save(&store::Stored { tree, is_own: self.is_own, own });
         } else {
             ui.ctx().request_repaint();
         }
-    }
-
-    /// Replaces the shares of all tiles by their sizes in points, which is what [`Self::fit`] takes shares for.
-    fn measure(&mut self) {
-        let tiles = &mut self.tree.tiles;
-        let ids: Vec<TileId> = tiles.tile_ids().collect();
-        for id in ids {
-            let Some(Container::Linear(linear)) = tiles.get_container(id) else { continue };
-            let is_row = linear.dir == LinearDir::Horizontal;
-            let size_of =
-                |child: &TileId| tiles.rect(*child).map(|rect| if is_row { rect.width() } else { rect.height() });
-            let sizes: Vec<_> = linear.children.iter().filter_map(|child| Some((*child, size_of(child)?))).collect();
-            if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(id) {
-                sizes.into_iter().for_each(|(child, points)| linear.shares.set_share(child, points));
-            }
-        }
-    }
-
-    /// Gives the picture what a new size of the window adds or takes, so that the panels keep theirs.
-    fn fit(&mut self, size: Vec2) {
-        let tiles = &mut self.tree.tiles;
-        let Some(viewport) = tiles.find_pane(&Panel::Viewport).filter(|_| self.fitted != Some(size)) else { return };
-        self.fitted = Some(size);
-        let mut path = vec![viewport];
-        while let Some(parent) = path.last().and_then(|child| tiles.parent_of(*child)) {
-            path.push(parent);
-        }
-        path.reverse();
-        let mut left = size;
-        for step in path.windows(2) {
-            let [parent, on_path] = [step[0], step[1]];
-            let Some(Container::Linear(linear)) = tiles.get_container(parent) else { continue };
-            let is_row = linear.dir == LinearDir::Horizontal;
-            let length = |size: Vec2| if is_row { size.x } else { size.y };
-            let (mut children, mut is_before) = (Vec::new(), true);
-            for child in linear.children.clone() {
-                is_before &= child != on_path;
-                let share = linear_share(tiles, parent, child);
-                children.push((
-                    child,
-                    tiles.rect(child).map_or(share, |rect| length(rect.size())),
-                    is_row && is_before,
-                ));
-            }
-            for (child, _, is_left) in &children {
-                tiles.set_visible(*child, !is_left || size.x >= NARROW);
-            }
-            children.retain(|(child, ..)| *child != on_path && tiles.is_visible(*child));
-            let panels: f32 = children.iter().map(|(_, points, _)| points).sum();
-            let most = (length(left) - MIN_PICTURE).max(0.0);
-            let scale = if panels > most { most / panels } else { 1.0 };
-            let gaps = behavior::GAP * children.len() as f32;
-            let rest = (length(left) - panels * scale - gaps).max(1.0);
-            if let Some(Tile::Container(Container::Linear(linear))) = tiles.get_mut(parent) {
-                children.iter().for_each(|(child, points, _)| linear.shares.set_share(*child, points * scale));
-                linear.shares.set_share(on_path, rest);
-            }
-            left = if is_row { Vec2::new(rest, left.y) } else { Vec2::new(left.x, rest) };
-        }
-    }
-
-    /// Gives what was dropped beside other tiles the mean of their sizes. Without a share it would be a point wide.
-    fn give_shares(&mut self) {
-        let containers = self.tree.tiles.tiles_mut().filter_map(|tile| match tile {
-            Tile::Container(Container::Linear(linear)) => Some(linear),
-            _ => None,
-        });
-        for linear in containers {
-            let share = |child: &TileId| linear.shares.iter().find(|(id, _)| *id == child).map(|(_, share)| *share);
-            let known: Vec<f32> = linear.children.iter().filter_map(share).collect();
-            let new: Vec<TileId> = linear.children.iter().copied().filter(|child| share(child).is_none()).collect();
-            let mean = known.iter().sum::<f32>() / known.len().max(1) as f32;
-            let size = if known.is_empty() { 1.0 } else { mean.min(COLUMN) };
-            new.into_iter().for_each(|child| linear.shares.set_share(child, size));
-        }
-    }
-
-    /// Gives each panel that was dragged out of its tabs a tab of its own, by which it can be dragged and closed again.
-    fn give_tabs(&mut self) {
-        let tiles = &mut self.tree.tiles;
-        let is_bare = |id: &TileId| {
-            let parent = tiles.parent_of(*id).and_then(|parent| tiles.get_container(parent));
-            matches!(tiles.get(*id), Some(Tile::Pane(panel)) if *panel != Panel::Viewport)
-                && parent.is_some_and(|parent| !matches!(parent, Container::Tabs(_)))
-        };
-        let bare: Vec<TileId> = tiles.tile_ids().filter(is_bare).collect();
-        for pane in bare {
-            let Some(parent) = tiles.parent_of(pane) else { continue };
-            let tabs = tiles.insert_tab_tile(vec![pane]);
-            if let Some(Tile::Container(container)) = tiles.get_mut(parent) {
-                if let Container::Linear(linear) = container {
-                    linear.shares.replace_with(pane, tabs);
-                }
-                let _ = container.replace_child(pane, tabs);
-            }
-        }
-    }
-}
-
-fn linear_share(tiles: &Tiles<Panel>, parent: TileId, child: TileId) -> f32 {
-    match tiles.get_container(parent) {
-        Some(Container::Linear(linear)) => linear.shares[child],
-        _ => 1.0,
     }
 }
 
@@ -310,6 +258,8 @@ fn around(picture: Rect, area: Rect, color: egui::Color32) -> egui::Shape {
 
 #[cfg(test)]
 mod tests {
+    use egui_tiles::Tiles;
+
     use super::*;
 
     /// Lays the tiles out in a window of this size, and returns the picture.
@@ -337,7 +287,7 @@ mod tests {
             assert!((left - widths[0].0).abs() < 1.5 && (right - widths[0].1).abs() < 1.5, "{widths:?}");
         }
         assert!(widths[0].0 > 150.0 && widths[0].1 > 250.0, "{widths:?}");
-        // A narrow window hides what is left of the picture, which comes back with its width.
+        // A narrow window hides the panels on the left, which come back with their width.
         let narrow = shown(&mut layout, &egui, Vec2::new(640.0, 480.0));
         assert!(narrow.min.x == 0.0 && narrow.width() > 250.0, "{narrow:?}");
         let wide = shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
@@ -377,5 +327,74 @@ mod tests {
             }
             assert!(shown(&mut layout, &egui, size).width() > 0.5 * first.width());
         }
+    }
+
+    #[test]
+    fn panels_that_a_small_window_shrinks_grow_again() {
+        let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+        let [first, small, last] = [1280.0, 400.0, 1280.0].map(|width| {
+            let picture = shown(&mut layout, &egui, Vec2::new(width, 720.0));
+            width - picture.max.x
+        });
+        assert!(small < first - 10.0 && (last - first).abs() < 1.5, "{first}, {small}, {last}");
+    }
+
+    #[test]
+    fn a_panel_that_a_narrow_window_hides_can_be_opened() {
+        let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+        let size = Vec2::new(640.0, 480.0);
+        let left_of_picture = shown(&mut layout, &egui, size).min.x;
+        layout.open(Panel::Modes);
+        layout.is_changed = false;
+        let picture = shown(&mut layout, &egui, size);
+        assert!(left_of_picture == 0.0 && picture.min.x > 100.0 && picture.max.x > 638.0, "{picture:?}");
+    }
+
+    #[test]
+    fn a_preset_keeps_the_arrangement_that_the_user_made() {
+        let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+        shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
+        layout.close(Panel::Lights);
+        for preset in [Preset::Look, Preset::Debug] {
+            layout.arrange(preset);
+            assert!(layout.is_open(Panel::Lights) && layout.has_own());
+        }
+        layout.arrange_own();
+        assert!(!layout.is_open(Panel::Lights) && layout.is_open(Panel::Modes) && !layout.has_own());
+    }
+
+    #[test]
+    fn a_panel_on_the_picture_moves_beside_it() {
+        let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+        let size = Vec2::new(1280.0, 720.0);
+        shown(&mut layout, &egui, size);
+        let tiles = &mut layout.tree.tiles;
+        let (picture, lights) = (tiles.find_pane(&Panel::Viewport).unwrap(), tiles.find_pane(&Panel::Lights).unwrap());
+        let (tabs, root) = (tiles.parent_of(lights).unwrap(), tiles.parent_of(picture).unwrap());
+        let container = |tiles: &mut Tiles<Panel>, id, change: &dyn Fn(&mut Container)| match tiles.get_mut(id) {
+            Some(Tile::Container(container)) => change(container),
+            _ => panic!("no container"),
+        };
+        container(tiles, tabs, &|tabs| _ = tabs.remove_child(lights));
+        // As a drop on the middle of the picture leaves it.
+        let new = tiles.insert_tab_tile(vec![picture, lights]);
+        container(tiles, root, &|root| _ = root.replace_child(picture, new));
+        repair(&mut layout.tree);
+        layout.fit.invalidate();
+        let picture = shown(&mut layout, &egui, size);
+        assert!(picture.width() > 200.0 && layout.is_open(Panel::Lights), "{picture:?}");
+        assert!(
+            fit::path_to_picture(&layout.tree.tiles)
+                .into_iter()
+                .all(|[parent, _]| { !matches!(layout.tree.tiles.get_container(parent), Some(Container::Tabs(_))) })
+        );
+    }
+
+    #[test]
+    fn handles_lie_only_between_the_picture_and_panels() {
+        let area = Rect::from_min_max(egui::pos2(0.0, 30.0), egui::pos2(1000.0, 700.0));
+        let picture = area.with_min_x(240.0);
+        let free = fit::without_handles(picture, area, 10.0);
+        assert_eq!(free, picture.with_min_x(250.0));
     }
 }

@@ -4,8 +4,20 @@
 use std::path::PathBuf;
 
 use egui_tiles::{Tile, Tree};
+use serde::{Deserialize, Serialize};
 
 use super::Panel;
+
+/// The content of the file.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Stored {
+    /// The arrangement on screen.
+    pub(super) tree: Tree<Panel>,
+    /// Whether the user has changed it.
+    pub(super) is_own: bool,
+    /// The arrangement that the user made before a preset was chosen.
+    pub(super) own: Option<Tree<Panel>>,
+}
 
 /// `$XDG_STATE_HOME/specula/layout.json`, or the same in `~/.local/state`. `None` without a home folder.
 fn file() -> Option<PathBuf> {
@@ -15,26 +27,30 @@ fn file() -> Option<PathBuf> {
 }
 
 /// The stored arrangement.
-pub(super) fn load() -> Option<Tree<Panel>> {
+pub(super) fn load() -> Option<Stored> {
     parse(&std::fs::read_to_string(file()?).ok()?)
 }
 
-/// An arrangement with the viewport, and with no panel twice.
-fn parse(text: &str) -> Option<Tree<Panel>> {
-    let tree: Tree<Panel> = serde_json::from_str(text).ok()?;
-    let root = tree.root()?;
-    tree.tiles.get(root)?;
+fn parse(text: &str) -> Option<Stored> {
+    let mut stored: Stored = serde_json::from_str(text).ok()?;
+    stored.own = stored.own.filter(is_whole);
+    is_whole(&stored.tree).then_some(stored)
+}
+
+/// Whether an arrangement has the viewport, and no panel twice.
+fn is_whole(tree: &Tree<Panel>) -> bool {
     let panels =
         |panel: &Panel| tree.tiles.tiles().filter(|tile| matches!(tile, Tile::Pane(other) if other == panel)).count();
-    let is_whole = panels(&Panel::Viewport) == 1 && Panel::GROUPS.concat().iter().all(|panel| panels(panel) <= 1);
-    is_whole.then_some(tree)
+    tree.root().is_some_and(|root| tree.tiles.get(root).is_some())
+        && panels(&Panel::Viewport) == 1
+        && Panel::GROUPS.concat().iter().all(|panel| panels(panel) <= 1)
 }
 
 /// Stores an arrangement. A failure costs only the arrangement, so it is traced and not reported.
-pub(super) fn save(tree: &Tree<Panel>) {
+pub(super) fn save(stored: &Stored) {
     let Some(path) = file() else { return };
     let written = || -> std::io::Result<()> {
-        let text = serde_json::to_string(tree)?;
+        let text = serde_json::to_string(stored)?;
         std::fs::create_dir_all(path.parent().unwrap_or(&path))?;
         // Another window may read the file.
         let new = path.with_extension(format!("{}.new", std::process::id()));
@@ -54,15 +70,17 @@ mod tests {
     #[test]
     fn an_arrangement_is_read_as_it_was_written() {
         for preset in Preset::ALL {
-            let tree = serde_json::to_value(preset.tree()).unwrap();
-            let read = parse(&tree.to_string()).unwrap();
-            assert_eq!(serde_json::to_value(read).unwrap(), tree);
+            let stored = Stored { tree: preset.tree(), is_own: true, own: Some(Preset::Look.tree()) };
+            let value = serde_json::to_value(&stored).unwrap();
+            let read = parse(&value.to_string()).unwrap();
+            assert_eq!(serde_json::to_value(read).unwrap(), value);
         }
     }
 
     #[test]
     fn what_is_no_arrangement_counts_as_absent() {
-        let whole = serde_json::to_string(&Preset::Debug.tree()).unwrap();
+        let stored = Stored { tree: Preset::Debug.tree(), is_own: false, own: None };
+        let whole = serde_json::to_string(&stored).unwrap();
         let broken = ["", "{}", "[1]", &whole[..whole.len() / 2]];
         assert!(broken.iter().all(|text| parse(text).is_none()));
         for (old, new) in [("Viewport", "Modes"), ("Lights", "Lamps"), ("Lights", "Output")] {

@@ -93,8 +93,16 @@ pub(super) struct Readings {
     pub(super) title: Option<String>,
 }
 
-/// Shows bars, panels and messages. Returns the rectangle that is left for the picture.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> egui::Rect {
+/// Where the picture is, in points.
+#[derive(Clone, Copy)]
+pub(super) struct PictureArea {
+    pub(super) rect: egui::Rect,
+    /// The part of it that no handle between it and a panel covers.
+    pub(super) free: egui::Rect,
+}
+
+/// Shows bars, panels and messages. Returns what is left for the picture.
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> PictureArea {
     let whole = ui.max_rect();
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
@@ -103,12 +111,13 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
         bars(ui, viewer, readings);
         let mut layout = std::mem::take(&mut viewer.panels.layout);
         let picture = layout.show(ui, &mut |ui, shown| panel(ui, shown, viewer, readings, commands));
+        let free = layout.free_of_handles();
         viewer.panels.layout = layout;
-        picture
+        PictureArea { rect: picture, free }
     } else {
-        whole
+        PictureArea { rect: whole, free: whole }
     };
-    overlay::show(ui.ctx(), viewer, readings, picture, commands);
+    overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     keys::show(ui.ctx(), &mut viewer.panels.show_keys);
     palette::show(ui.ctx(), viewer, whole, commands);
     picture

@@ -19,8 +19,13 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState) {
             panels(ui, &mut state.layout);
             for preset in Preset::ALL {
                 if ui.button(preset.title()).on_hover_text(preset.doc()).clicked() {
-                    state.layout = Layout::of(preset);
+                    state.layout.arrange(preset);
                 }
+            }
+            if state.layout.has_own()
+                && ui.button("Own").on_hover_text("The panels as you last arranged them").clicked()
+            {
+                state.layout.arrange_own();
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("?").on_hover_text("Keys (F1)").clicked() {

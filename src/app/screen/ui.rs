@@ -25,15 +25,16 @@ impl Screen {
             title: viewer.title(self.view.accumulated()),
         };
         let input = self.input.take_egui_input(window);
-        let (mut picture, mut commands) = (egui::Rect::NOTHING, Vec::new());
-        let output = self.egui.run_ui(input, |ui| picture = panels::show(ui, viewer, &readings, &mut commands));
+        let (mut shown, mut commands) = (None, Vec::new());
+        let output = self.egui.run_ui(input, |ui| shown = Some(panels::show(ui, viewer, &readings, &mut commands)));
         commands.into_iter().for_each(|command| viewer.execute(command));
         // A drag, or a number that is being typed, is one step.
         let is_held = self.egui.input(|input| input.pointer.any_down()) || self.egui.egui_wants_keyboard_input();
         viewer.history.record(&viewer.session.settings, is_held);
         self.input.handle_platform_output(window, output.platform_output);
-        if let Some(swapchain) = &self.swapchain {
-            self.rect = pixels(picture, output.pixels_per_point, swapchain.extent());
+        if let Some((swapchain, area)) = self.swapchain.as_ref().zip(shown) {
+            self.rect = pixels(area.rect, output.pixels_per_point, swapchain.extent());
+            self.free = area.free;
         }
         self.take_textures(output.textures_delta)?;
         let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);
