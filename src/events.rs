@@ -42,6 +42,13 @@ pub enum Event<'a> {
         /// Milliseconds for all of its frames.
         ms: f64,
     },
+    /// The picture was compared with an earlier one.
+    Compared {
+        /// Mean FLIP, 0..1.
+        flip: f64,
+        /// Largest difference of a channel of the display, 0..1.
+        largest: f64,
+    },
     /// A screenshot was written.
     Screenshot {
         /// Its path.

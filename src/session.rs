@@ -72,15 +72,26 @@ impl Session {
 
     /// The picture that the settings describe; `None` without shaders.
     pub fn frame_state(&self, clock: Clock, size: (u32, u32), target: TargetFormat) -> Option<FrameState> {
-        Some(FrameState::new(&FrameInputs {
+        self.shaders.as_ref().map(|shaders| self.frame_state_of(shaders, clock, size, target))
+    }
+
+    /// The picture that the settings describe with these shaders.
+    pub fn frame_state_of(
+        &self,
+        shaders: &Arc<ShaderSet>,
+        clock: Clock,
+        size: (u32, u32),
+        target: TargetFormat,
+    ) -> FrameState {
+        FrameState::new(&FrameInputs {
             settings: &self.settings,
-            shaders: self.shaders.as_ref()?,
+            shaders,
             scene: self.scene().as_ref(),
             revisions: self.revisions,
             clock,
             size,
             target,
-        }))
+        })
     }
 
     /// The absolute path of the environment's file; empty for a built-in environment.

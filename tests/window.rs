@@ -3,6 +3,7 @@
 
 mod support;
 mod window {
+    mod compare;
     mod controls;
     mod endurance;
     mod faults;

@@ -6,6 +6,16 @@ use super::editor::Place;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
 
+/// What the picture is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CompareWith {
+    Nothing,
+    /// The picture as it is now, with all its settings.
+    ThisPicture,
+    /// A version of the shaders, by its number.
+    Version(u64),
+}
+
 /// A command to the viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
@@ -23,6 +33,10 @@ pub(super) enum Command {
     Quit,
     /// Show a message for a few seconds.
     Say(String),
+    /// Show the picture beside an earlier one.
+    Compare(CompareWith),
+    /// Write the texts of a version of the shaders over the files of the tree.
+    WriteVersion(u64),
     /// Open a file or folder in the user's editor.
     Edit(Place),
     /// Open a shader tree.

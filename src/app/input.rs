@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::command::Command;
+use super::command::{Command, CompareWith};
 use super::keys;
 use super::screen::Screen;
 use super::viewer::Viewer;
@@ -50,8 +50,8 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 return true;
             }
             let reads_keys = viewer.reads_keys();
-            let is_space = event.logical_key == Key::Named(NamedKey::Space);
-            if is_space && !pressed && viewer.show_before(false) {
+            let is_space = event.physical_key == PhysicalKey::Code(KeyCode::Space);
+            if is_space && !pressed && viewer.hold_reference(false) {
                 return true;
             }
             // The search of the palette has the keys from the moment it opens, which may be before egui knows.
@@ -62,14 +62,14 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 return counts && shader_key(viewer, event.physical_key, pressed) && reads_keys;
             }
             if is_space && !taken && !event.repeat && !*is_synthetic {
-                return viewer.show_before(true);
+                return viewer.hold_reference(true);
             }
             let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
             !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
         }
         WindowEvent::Focused(false) => {
             viewer.playback.keys().release_all();
-            viewer.show_before(false) || viewer.reads_keys()
+            viewer.hold_reference(false) || viewer.reads_keys()
         }
         WindowEvent::MouseInput { state, button, .. } => {
             let pressed = *state == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
@@ -241,6 +241,10 @@ fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bo
     let session = &mut viewer.session;
     match key {
         'p' if control => viewer.panels.palette.toggle(),
+        'k' if control => {
+            let with = if viewer.compare.is_on() { CompareWith::Nothing } else { CompareWith::ThisPicture };
+            viewer.execute(Command::Compare(with));
+        }
         'q' if control => viewer.execute(Command::Quit),
         'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
         'y' if control => viewer.execute(Command::Redo),

@@ -4,6 +4,7 @@
 //! Panels, keys and dropped files change settings or send a `command`.
 
 mod command;
+mod difference;
 mod editor;
 mod history;
 mod input;

@@ -1,7 +1,10 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
+mod error_map;
 mod loops;
 mod probe;
+mod reference;
+mod thumbnail;
 mod ui;
 
 use std::sync::Arc;
@@ -20,6 +23,8 @@ use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRender
 use crate::picture;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
+use error_map::ErrorMap;
+use reference::ReferenceView;
 
 /// The CPU prepares a frame while the device draws the one before.
 const FRAMES_IN_FLIGHT: usize = 2;
@@ -61,8 +66,14 @@ pub(super) struct Screen {
     endless: Option<Arc<FrameState>>,
     /// How many more frames are drawn only to learn whether the loops have ended.
     checks: usize,
-    /// The newest value under the mouse.
-    pixel: Option<PixelAt>,
+    /// The picture that the user compares with, while there is one.
+    reference: Option<ReferenceView>,
+    error_map: ErrorMap,
+    /// Draws thumbnails of versions while some are missing.
+    thumbnails: Option<View>,
+    thumbnail: Option<thumbnail::Pending>,
+    /// The newest value under the mouse, and whether it is the reference's.
+    pixel: Option<(PixelAt, bool)>,
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
     pub(super) rect: PictureRect,
@@ -103,6 +114,10 @@ impl Screen {
             attempts: [None; FRAMES_IN_FLIGHT],
             endless: None,
             checks: 0,
+            reference: None,
+            error_map: ErrorMap::default(),
+            thumbnails: None,
+            thumbnail: None,
             pixel: None,
             mouse: Mouse::default(),
             camera: CameraController::default(),
@@ -147,6 +162,7 @@ impl Screen {
         let drawn = self.survive(drawn)?;
         if drawn.is_none() {
             self.view.forget();
+            (self.reference, self.thumbnails, self.thumbnail) = (None, None, None);
         }
         let shortage = self.shortage.take();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
@@ -171,13 +187,17 @@ impl Screen {
             self.view.restart_passes();
         }
         let frame = self.next_frame(viewer)?;
-        self.view.probe = self.mouse.over.then(|| self.mouse_pixel()).flatten();
+        self.prepare_reference(viewer, frame.as_ref())?;
+        self.place_probe();
+        let measures = self.measure_error(viewer, frame.as_ref());
+        let measures = self.survive(measures)?.unwrap_or(false);
         // A screenshot that was requested before the first picture waits for it.
         if let Some(frame) = frame.as_ref().filter(|_| viewer.screenshot) {
             viewer.screenshot = false;
             match self.screenshot(viewer, frame) {
                 Err(error @ GpuError::OutOfMemory(_)) => {
                     self.view.forget();
+                    self.reference = None;
                     viewer.say(format!("no screenshot: {error}"));
                 }
                 written => written?,
@@ -199,6 +219,8 @@ impl Screen {
             Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?,
             None => View::clear(&mut encoder, &output),
         }
+        self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
+        self.record_thumbnail(&mut encoder, slot, viewer)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
         self.attempts[slot] = viewer.record(window);
@@ -212,8 +234,16 @@ impl Screen {
         let leaves_motion = frame.as_ref().is_some_and(|frame| self.view.is_moving(frame));
         let accumulates = frame.is_some_and(|frame| frame.state.pipelines.accumulates);
         let gets_better = accumulates && self.view.accumulated() < View::MOST_ACCUMULATED;
-        let again =
-            self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better || leaves_motion;
+        let again = self.stale
+            || moving
+            || reported
+            || self.awaits_pixel()
+            || self.thumbnail.is_some()
+            || measures
+            || self.error_map.awaits_copies()
+            || viewer.moves()
+            || gets_better
+            || leaves_motion;
         let again = self.awaits_loops() || again;
         Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
     }
@@ -271,7 +301,7 @@ impl Screen {
         }
         // SYNC: once per reload, so that the time includes the device's work.
         self.frames.wait_all()?;
-        viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3);
+        viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, self.frames.last_device_ms());
         Ok(!viewer.times_next_frame())
     }
 
@@ -279,8 +309,11 @@ impl Screen {
     fn screenshot(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
         let image = self.view.output_image(frame.state.size)?;
         let mut encoder = self.frames.begin()?;
+        self.check_loops(viewer);
         let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
-        self.view.draw(&mut encoder, self.frames.current(), frame, &output, Redraw::IfChanged)?;
+        let slot = self.frames.current();
+        self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?;
+        self.draw_reference(&mut encoder, slot, &image, (0, 0))?;
         let readback = self.view.read_back(&mut encoder, &image)?;
         self.frames.submit(encoder, Default::default())?;
         // SYNC: the CPU reads the picture.

@@ -1,8 +1,10 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
+mod compare;
 mod messages;
 mod picture;
 mod recording;
+mod versions;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,7 +18,7 @@ use super::playback::Playback;
 use super::status::{Notices, ShaderStatus};
 use super::{AppOptions, Early};
 use crate::events::{Event, ReloadEvent, emit};
-use crate::frame::{Revisions, Scene};
+use crate::frame::{Clock, Revisions, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::pipeline::endless_loop;
@@ -29,9 +31,14 @@ use crate::shader::{Change, Compiler, Diagnostic, Source};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{Outbox, Threads};
+pub(super) use compare::{Compare, Difference, Reference};
 use picture::target;
+pub(super) use picture::value_text;
+pub(super) use versions::Version;
+use versions::Versions;
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
+#[derive(Clone)]
 struct LastComplete {
     settings: Settings,
     scene: Option<Scene>,
@@ -84,12 +91,13 @@ pub(super) struct Viewer {
     pub(super) recorder: Recorder,
     allow_outside: bool,
     shown: Option<LastComplete>,
-    /// The last complete picture of the shaders before those on screen.
-    before: Option<LastComplete>,
-    /// The files whose edit came after it.
-    edited: Vec<String>,
-    /// Whether to draw it in place of the newest (Space).
-    shows_before: bool,
+    /// The versions of the shaders that were on screen.
+    pub(super) versions: Versions,
+    pub(super) compare: Compare,
+    /// The time in the last frame.
+    clock: Clock,
+    /// Whether nothing was missing for the last frame.
+    is_complete: bool,
     first_frame: Option<FirstFrame>,
     /// Whether the names in the settings were compared with those that the shaders declare.
     names_checked: bool,
@@ -140,9 +148,10 @@ impl Viewer {
             recorder,
             allow_outside: options.allow_outside,
             shown: None,
-            before: None,
-            edited: Vec::new(),
-            shows_before: false,
+            versions: Versions::default(),
+            compare: Compare::default(),
+            clock: Clock::default(),
+            is_complete: false,
             first_frame: None,
             names_checked: false,
             settled: None,
@@ -177,15 +186,6 @@ impl Viewer {
         self.shown.as_ref().is_some_and(|shown| shown.frame.is_animated())
     }
 
-    /// Shows the picture before the last edit while `on`. Returns whether that changes the picture.
-    pub(super) fn show_before(&mut self, on: bool) -> bool {
-        if on && self.before.is_none() {
-            self.say("There is no earlier picture: no edit has been shown yet");
-        }
-        let shows = on && self.before.is_some();
-        std::mem::replace(&mut self.shows_before, shows) != shows
-    }
-
     /// Whether the device is faster than the display, so that vertical sync saves work.
     pub(super) fn gpu_is_fast(&self) -> bool {
         self.gpu.info().kind != "cpu"
@@ -196,10 +196,12 @@ impl Viewer {
         self.first_frame.is_some() || (!self.ready && self.session.model().is_some())
     }
 
-    /// Reports the first frame of a reload or of the model. `frame` has finished `ms` milliseconds after it began.
-    pub(super) fn frame_done(&mut self, frame: Option<&BoundFrame>, ms: f64) {
+    /// Reports the first frame of a reload or of the model. `frame` has finished `ms` milliseconds after it began, and took the
+    /// device `device_ms`.
+    pub(super) fn frame_done(&mut self, frame: Option<&BoundFrame>, ms: f64, device_ms: Option<f64>) {
         let Some(state) = frame.map(|frame| &frame.state) else { return };
         if let Some(first) = self.first_frame.take_if(|first| first.generation == state.shaders.generation) {
+            self.versions.time(first.generation, ms, device_ms);
             self.report(ReloadEvent { first_frame_ms: ms, ..first.event });
             self.threads.worker.shown();
         }
@@ -265,7 +267,10 @@ impl Viewer {
         if let Some(old) = std::mem::replace(&mut self.shortage, text.clone()) {
             self.notices.end(&old);
         }
-        text.into_iter().for_each(|text| self.keep_saying(text));
+        if let Some(text) = text {
+            self.forget_references();
+            self.keep_saying(text);
+        }
         true
     }
 
@@ -292,6 +297,8 @@ impl Viewer {
                 }
             }
             Command::Say(text) => self.say(text),
+            Command::Compare(with) => self.compare_with(with),
+            Command::WriteVersion(number) => self.write_version(number),
             Command::OpenTree(path) => {
                 let source = Source::open(path);
                 self.source = source.clone();

@@ -111,6 +111,11 @@ impl Resources {
         })
     }
 
+    /// The layouts that all pipelines share.
+    pub fn layouts(&self) -> &Arc<SetLayouts> {
+        &self.layouts
+    }
+
     /// The pipelines of the last good shaders.
     pub fn pipelines(&self) -> Option<&Arc<PipelineSet>> {
         self.pipelines.as_ref()
@@ -217,6 +222,39 @@ impl Resources {
             },
             None => None,
         };
+        Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, traced }))
+    }
+
+    /// Binds `state`, whose shaders are older than the newest, to the pipelines of their own `set`. Its light and tables are those of
+    /// `like`, a frame with the same shaders, or the newest ones if these were baked by stages that are still the same. Returns
+    /// `None` if a resource is missing.
+    ///
+    /// # Errors
+    /// No memory left for the materials.
+    pub fn bind_older(
+        &mut self,
+        set: &PipelineSet,
+        state: &Arc<FrameState>,
+        like: Option<&BoundFrame>,
+    ) -> Result<Option<BoundFrame>, GpuError> {
+        let Some(pipelines) = set.bind(&state.pipelines) else { return Ok(None) };
+        let of_like = like.filter(|like| like.state.environment == state.environment).map(|like| &like.environment);
+        let environment = of_like.or_else(|| self.environment.get(state.environment.as_ref())).cloned();
+        let of_like = like.filter(|like| like.state.tables == state.tables).map(|like| &like.tables);
+        let tables = of_like.or_else(|| self.tables.get(Some(&state.tables))).cloned();
+        let measured = self.measured.get(state.measured.as_ref()).cloned();
+        let (Some(environment), Some(tables), Some(measured)) = (environment, tables, measured) else {
+            return Ok(None);
+        };
+        let key = Self::trace_key(state, &environment);
+        let Some(traced) = self.traced.get(key.as_ref()).cloned() else { return Ok(None) };
+        let scene = match &state.scene {
+            Some(scene) => self.scene_of(scene)?,
+            None => None,
+        };
+        if scene.is_none() && state.scene.is_some() {
+            return Ok(None);
+        }
         Ok(Some(BoundFrame { state: state.clone(), pipelines, scene, tables, environment, measured, traced }))
     }
 

@@ -11,12 +11,14 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use image::RgbaImage;
 use winit::event_loop::EventLoopProxy;
 
+use crate::comparison::{Comparison, Picture};
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
-use crate::render::TraceKey;
+use crate::render::{Capture, TraceKey};
 use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
@@ -31,6 +33,10 @@ pub(crate) enum Message {
     EndlessLoop([u32; 2], Option<Box<Diagnostic>>),
     /// Watched files outside the shader tree have changed.
     FilesChanged(BTreeSet<PathBuf>),
+    /// The difference of the two pictures that the window compares, or why there is none.
+    Compared(Result<Box<Comparison>, String>),
+    /// A message for the user.
+    Say(String),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
 }
@@ -119,6 +125,24 @@ impl Threads {
             explainers: Vec::new(),
             outbox: outbox.clone(),
         }
+    }
+
+    /// Tells the user the message that `work` returns, which runs on a thread of its own.
+    pub(crate) fn say(&self, work: impl FnOnce() -> String + Send + 'static) {
+        let outbox = self.outbox.clone();
+        std::thread::spawn(move || outbox.send(Message::Say(work())));
+    }
+
+    /// Compares two pictures on a thread of its own.
+    pub(crate) fn compare(&self, pictures: [Capture; 2]) {
+        let outbox = self.outbox.clone();
+        std::thread::spawn(move || {
+            let of = |capture: Capture| RgbaImage::from_raw(capture.width, capture.height, capture.rgba8);
+            let [a, b] = pictures.map(|capture| of(capture).map(Picture::Display));
+            let compared = a.zip(b).ok_or_else(|| "a picture was not read whole".to_owned());
+            let compared = compared.and_then(|(a, b)| Comparison::new(&a, &b));
+            outbox.send(Message::Compared(compared.map(Box::new)));
+        });
     }
 
     /// Sends the diagnostic that `find` returns, which compiles a stage, for a loop that did not end.

@@ -25,6 +25,7 @@ pub(super) enum Panel {
     Modes,
     Model,
     Shaders,
+    Timeline,
     Timing,
     Parameters,
     Passes,
@@ -38,7 +39,7 @@ impl Panel {
     /// All panels that can be closed, in groups that share a tile at first.
     pub(super) const GROUPS: [&[Self]; 4] = [
         &[Self::Modes, Self::Model],
-        &[Self::Shaders, Self::Timing],
+        &[Self::Shaders, Self::Timeline, Self::Timing],
         &[Self::Parameters, Self::Passes],
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
     ];
@@ -49,6 +50,7 @@ impl Panel {
             Self::Modes => "Modes",
             Self::Model => "Model",
             Self::Shaders => "Shaders",
+            Self::Timeline => "Timeline",
             Self::Timing => "GPU time",
             Self::Parameters => "Parameters",
             Self::Passes => "Passes",

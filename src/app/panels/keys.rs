@@ -5,7 +5,7 @@ use egui::{RichText, Window};
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 21] = [
+const KEYS: [(&str, &str); 22] = [
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
@@ -16,7 +16,8 @@ const KEYS: [(&str, &str); 21] = [
     ("wheel", "zoom"),
     ("right button + W A S D Q E", "look around and fly"),
     ("double click", "look at this point and orbit around it"),
-    ("hold Space", "the picture before the last edit"),
+    ("hold Space", "the picture before the last edit, or the one that you compare with"),
+    ("Ctrl+K", "keep this picture and compare with it; again ends the comparison"),
     ("R, Home", "frame the model"),
     ("L", "let the lights orbit"),
     ("H", "hide the panels"),

@@ -2,6 +2,7 @@
 //! what it shows and sets. `crate::app::layout` arranges them.
 
 mod camera;
+mod compare;
 mod environment;
 mod keys;
 mod lights;
@@ -14,6 +15,7 @@ mod passes;
 mod shaders;
 mod status_bar;
 pub(super) mod theme;
+pub(super) mod timeline;
 mod timing;
 mod top_bar;
 
@@ -27,7 +29,7 @@ use super::palette::{self, Palette};
 use super::viewer::Viewer;
 use crate::gpu::PassTime;
 use crate::scene::environment::BUILT_IN;
-use theme::{ACCENT, ERROR, QUIET, WARNING};
+use theme::{ACCENT, EDGE, ERROR, QUIET, WARNING};
 
 /// Files of environments that the list keeps.
 const MOST_ENVIRONMENTS: usize = 8;
@@ -51,6 +53,7 @@ pub(super) struct PanelState {
     /// Slug of the mode that the list was last scrolled to.
     scrolled_to: String,
     timing: timing::Timing,
+    pub(super) timeline: timeline::TimelineState,
 }
 
 impl PanelState {
@@ -66,6 +69,7 @@ impl PanelState {
             show_model_warnings: true,
             scrolled_to: String::new(),
             timing: timing::Timing::default(),
+            timeline: timeline::TimelineState::default(),
         }
     }
 }
@@ -106,6 +110,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let whole = ui.max_rect();
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
+    viewer.panels.timeline.is_visible = false;
     viewer.panels.remember(&viewer.session.settings.environment.name);
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, readings);
@@ -117,6 +122,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     } else {
         PictureArea { rect: whole, free: whole }
     };
+    compare::show(ui.ctx(), viewer, picture.rect);
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     keys::show(ui.ctx(), &mut viewer.panels.show_keys);
     palette::show(ui.ctx(), viewer, whole, commands);
@@ -140,6 +146,12 @@ fn device(viewer: &Viewer) -> String {
 
 /// What is in a tile.
 fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) {
+    if panel == Panel::Timeline {
+        let mut state = std::mem::take(&mut viewer.panels.timeline);
+        timeline::show(ui, viewer, &mut state, commands);
+        viewer.panels.timeline = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
@@ -148,7 +160,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, readings: &Readings, co
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport => {}
+        Panel::Viewport | Panel::Timeline => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => model::show(ui, settings, &model, &viewer.model, commands),
         Panel::Shaders => {

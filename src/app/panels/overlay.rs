@@ -193,7 +193,7 @@ fn area(id: Id, corner: Align2, picture: egui::Rect) -> Area {
     Area::new(id).order(Order::Foreground).pivot(corner).fixed_pos(at).constrain_to(picture)
 }
 
-fn card(edge: Color32) -> Frame {
+pub(super) fn card(edge: Color32) -> Frame {
     Frame::new()
         .fill(Color32::from_rgba_unmultiplied(16, 17, 20, 235))
         .stroke(Stroke::new(1.0, edge))

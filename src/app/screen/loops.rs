@@ -14,6 +14,7 @@ impl Screen {
             }
             let Some(state) = self.unchecked[slot].take() else { continue };
             if let Some(words) = self.frames.endless_loop(slot) {
+                viewer.versions.cut_short(state.shaders.generation);
                 self.endless = Some(state);
                 viewer.on_endless_loop(words);
                 continue;

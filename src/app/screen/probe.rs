@@ -1,6 +1,8 @@
 //! The value of the pixel under the mouse.
 
 use super::{FRAMES_IN_FLIGHT, Screen};
+use crate::app::viewer::{Viewer, value_text};
+use crate::render::View;
 
 impl Screen {
     /// The pixel of the picture under the mouse.
@@ -16,13 +18,38 @@ impl Screen {
             (0..FRAMES_IN_FLIGHT).map(|age| (self.frames.current() + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT);
         let finished = newest_first.into_iter().find(|slot| self.frames.is_finished(*slot));
         if let Some(slot) = finished {
-            self.pixel = self.view.pixel(slot);
+            self.pixel = match &self.reference {
+                Some(reference) if reference.view.probe.is_some() => {
+                    reference.view.pixel(slot).map(|pixel| (pixel, true))
+                }
+                _ => self.view.pixel(slot).map(|pixel| (pixel, false)),
+            };
         }
+    }
+
+    /// Asks for the value under the mouse, from the picture or from the reference, whichever is there.
+    pub(super) fn place_probe(&mut self) {
+        let at = self.mouse.over.then(|| self.mouse_pixel()).flatten();
+        let of_reference = at.is_some_and(|at| self.is_in_reference(at));
+        self.view.probe = at.filter(|_| !of_reference);
+        if let Some(reference) = &mut self.reference {
+            reference.view.probe = at.filter(|_| of_reference);
+        }
+    }
+
+    /// The text of the value under the mouse.
+    pub(super) fn value_text(&self, viewer: &Viewer) -> Option<String> {
+        let (pixel, is_of_reference) = self.pixel.filter(|_| self.mouse.over)?;
+        let reference = self.reference.as_ref().filter(|_| is_of_reference);
+        let state = reference.map_or_else(|| viewer.shown(), |reference| Some(&reference.frame.state))?;
+        value_text(state, &pixel)
     }
 
     /// Whether the value under the mouse does not belong to the current picture yet.
     pub(super) fn awaits_pixel(&self) -> bool {
-        let current = self.view.probe.map(|at| (at, self.view.picture()));
-        current.is_some() && self.pixel.map(|pixel| (pixel.at, pixel.picture)) != current
+        let of = |view: &View, is_reference| view.probe.map(|at| (at, view.picture(), is_reference));
+        let of_reference = self.reference.as_ref().and_then(|reference| of(&reference.view, true));
+        let current = of_reference.or_else(|| of(&self.view, false));
+        current.is_some() && self.pixel.map(|(pixel, of)| (pixel.at, pixel.picture, of)) != current
     }
 }

@@ -18,10 +18,12 @@ impl Screen {
         viewer: &mut Viewer,
     ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
         self.read_pixel();
+        self.take_thumbnail(viewer);
+        self.take_copies(viewer);
         let readings = Readings {
             device_ms: self.frames.last_device_ms(),
             passes: self.frames.pass_times().to_vec(),
-            value: self.pixel.filter(|_| self.mouse.over).and_then(|pixel| viewer.value_text(&pixel)),
+            value: self.value_text(viewer),
             title: viewer.title(self.view.accumulated()),
         };
         let input = self.input.take_egui_input(window);

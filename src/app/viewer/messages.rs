@@ -35,6 +35,8 @@ impl Viewer {
             Message::Bake(message) => self.on_bake(message),
             Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
+            Message::Say(text) => self.say(text),
+            Message::Compared(compared) => self.on_compared(compared),
             Message::Panicked(role, text) => self.on_panic(role, &text),
         }
     }
@@ -49,6 +51,7 @@ impl Viewer {
                 self.set_diagnostics(set.shaders.warnings.clone());
                 self.session.shaders = Some(set.shaders.clone());
                 self.resources.set_pipelines(set);
+                self.versions.complete(set);
                 if !self.names_checked || self.session.mode().is_none() {
                     self.check_names();
                 }
@@ -140,8 +143,8 @@ impl Viewer {
         self.model.loading = false;
         match loaded.result {
             Ok(uploaded) => {
-                // The picture before the last edit would keep the old model on the device.
-                (self.before, self.shows_before) = (None, false);
+                // The pictures of older versions would keep the old model on the device.
+                self.versions.drop_pictures();
                 let model = uploaded.model();
                 for warning in &model.warnings {
                     message::warn(format_args!("{}: {warning}", model.name));

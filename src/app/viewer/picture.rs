@@ -29,13 +29,9 @@ impl Viewer {
         let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
         let state = Arc::new(state);
         let is_complete = self.request_missing(&state) && state.shaders.pending.is_empty();
+        (self.clock, self.is_complete) = (clock, is_complete);
         // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
-        if let Some(before) = self.before.as_ref().filter(|_| self.shows_before) {
-            let frame = self.interim(before, clock, size);
-            prepare(&frame)?;
-            return Ok(Some(frame));
-        }
         if let Some(frame) = self.resources.bind(&state, is_first)? {
             prepare(&frame)?;
             let generation = state.shaders.generation;
@@ -45,7 +41,7 @@ impl Viewer {
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
             let shown = LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() };
             let last = self.shown.replace(shown);
-            self.keep_before(last, generation);
+            self.keep_version(last);
             return Ok(Some(frame));
         }
         let interim = self.shown.as_ref().map(|shown| self.interim(shown, clock, size));
@@ -53,19 +49,25 @@ impl Viewer {
         Ok(interim)
     }
 
-    /// Keeps the last picture if its shaders are not those of the new one.
-    fn keep_before(&mut self, last: Option<LastComplete>, generation: u64) {
-        let is_earlier =
-            |last: &LastComplete| last.scene.is_some() && last.frame.state.shaders.generation != generation;
-        let Some(last) = last.filter(is_earlier) else { return };
-        self.before = Some(last);
-        let edit = self.first_frame.as_ref().filter(|first| first.generation == generation);
-        self.edited = edit.map(|first| first.event.changed.clone()).unwrap_or_default();
+    /// Adds the shaders on screen to the versions if they are new, and keeps the last picture of those before.
+    fn keep_version(&mut self, last: Option<LastComplete>) {
+        let generation = self.shown_generation();
+        let has_model = self.shown.as_ref().is_some_and(|shown| shown.scene.is_some());
+        if let Some(last) =
+            last.filter(|last| last.scene.is_some() && last.frame.state.shaders.generation != generation)
+        {
+            self.versions.retire(last);
+        }
+        if let Some(set) = self.resources.pipelines().filter(|_| has_model && self.versions.get(generation).is_none()) {
+            let edit = self.first_frame.as_ref().filter(|first| first.generation == generation);
+            let reload = edit.map(|first| first.event.clone()).or_else(|| self.shader.last.clone()).unwrap_or_default();
+            self.versions.add(set, reload);
+        }
     }
 
     /// The last complete picture at this size and time. While the model is the same, camera and orbiting lights follow
     /// the current settings, since they need no new resources. All else is unchanged.
-    fn interim(&self, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
+    pub(super) fn interim(&self, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
         let mut settings = shown.settings.clone();
         let same_model = match (&shown.scene, self.session.model()) {
             (Some(scene), Some(model)) => Arc::ptr_eq(scene.model(), model),
@@ -87,6 +89,24 @@ impl Viewer {
             size,
             target: state.pipelines.target,
         }))
+    }
+
+    /// The number and picture, at `size`, of a version that lacks a thumbnail while the panel that shows them is open.
+    pub(in crate::app) fn missing_thumbnail(&self, size: (u32, u32)) -> Option<(u64, BoundFrame)> {
+        let newest = self.shown_generation();
+        // That of the newest waits for the light that its edit changes.
+        let is_settled = self.is_complete && self.settled == Some(newest);
+        let shown = self.shown.as_ref().filter(|shown| is_settled && shown.scene.is_some());
+        let lacks = self.versions.iter().rev().filter(|version| version.thumbnail.is_none());
+        if !self.panels.timeline.is_visible {
+            return None;
+        }
+        let mut with_picture = lacks.filter_map(|version| {
+            let picture = if version.number == newest { shown } else { version.picture.as_ref() };
+            Some((version.number, picture?))
+        });
+        let (number, picture) = with_picture.next()?;
+        Some((number, self.interim(picture, self.clock, size)))
     }
 
     /// Requests the resources that a state lacks from the threads. Returns whether it lacks none.
@@ -113,24 +133,19 @@ impl Viewer {
 
     /// The title over the picture: see [`title`]. `frames` is the number of frames in the mean of an accumulating mode.
     pub(in crate::app) fn title(&self, frames: u32) -> Option<String> {
-        if let Some(before) = self.before.as_ref().filter(|_| self.shows_before) {
-            let mode = before.frame.state.mode().map_or("", |mode| &mode.name);
-            let files: Vec<&str> = self.edited.iter().map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
-            return Some(format!("{mode}, before the edit of {}", files.join(", ")));
-        }
         let shown = self.shown()?;
         let request = &shown.pipelines;
         let paths = request.accumulates.then(|| frames.saturating_mul(request.paths_per_frame()));
         title(shown.mode()?, self.session.mode(), paths)
     }
+}
 
-    /// The text of a pixel's value; `None` where nothing covers the pixel.
-    pub(in crate::app) fn value_text(&self, pixel: &PixelAt) -> Option<String> {
-        let PixelAt { at: (x, y), value, .. } = pixel;
-        let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
-        let mode = self.shown().filter(|_| covered)?.mode()?;
-        Some(format!("{}   at {x}, {y}", value.text(mode)))
-    }
+/// The text of the value of a pixel in a picture; `None` where nothing covers the pixel.
+pub(in crate::app) fn value_text(state: &FrameState, pixel: &PixelAt) -> Option<String> {
+    let PixelAt { at: (x, y), value, .. } = pixel;
+    let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
+    let mode = state.mode().filter(|_| covered)?;
+    Some(format!("{}   at {x}, {y}", value.text(mode)))
 }
 
 /// Half floats with the samples of the settings, or 1 if the device does not support them.

@@ -73,9 +73,14 @@ impl Encoder {
 
     /// Copies an image in [`Use::CopyFrom`] to the place `at` of one in [`Use::CopyTo`] of the same format, as far as it fits.
     pub fn copy_image_to(&mut self, from: &Arc<Image>, to: &Arc<Image>, at: (u32, u32)) {
+        self.copy_columns_to(from, from.desc().width, to, at);
+    }
+
+    /// [`Encoder::copy_image_to`] for the left `columns` of the image alone.
+    pub fn copy_columns_to(&mut self, from: &Arc<Image>, columns: u32, to: &Arc<Image>, at: (u32, u32)) {
         self.keep(from);
         self.keep(to);
-        let width = from.desc().width.min(to.desc().width.saturating_sub(at.0));
+        let width = columns.min(from.desc().width).min(to.desc().width.saturating_sub(at.0));
         let height = from.desc().height.min(to.desc().height.saturating_sub(at.1));
         if width == 0 || height == 0 {
             return;

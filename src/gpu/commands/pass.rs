@@ -67,6 +67,14 @@ impl Encoder {
         result
     }
 
+    /// Runs `commands` without measuring its passes.
+    pub fn untimed<T>(&mut self, commands: impl FnOnce(&mut Self) -> T) -> T {
+        let timer = self.timer.take();
+        let result = commands(self);
+        self.timer = timer;
+        result
+    }
+
     /// Records that the pass `name` keeps its image, so that it has no commands.
     pub fn kept_pass(&mut self, name: &str) {
         if let Some((queries, first)) = self.timer.as_mut().and_then(|timer| timer.reserve(name, true)) {

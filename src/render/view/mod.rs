@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use glam::Mat4;
 
-pub use capture::Capture;
-use capture::{PixelReadback, Readback};
+use capture::PixelReadback;
+pub use capture::{Capture, Readback};
 use targets::{TargetDesc, Targets};
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 

@@ -1,0 +1,168 @@
+//! The panel Timeline: the versions of the shaders, each with its picture, its times and what it changed.
+
+use egui::{Color32, Label, RichText, Sense, Ui, Vec2, vec2};
+
+use super::theme::{ACCENT, GOOD, QUIET};
+use super::{EDGE, ERROR};
+use crate::app::command::{Command, CompareWith};
+use crate::app::difference::{Kind, Line};
+use crate::app::viewer::{Difference, Version, Viewer};
+
+/// Size of a thumbnail in points.
+pub(in crate::app) const THUMBNAIL: Vec2 = vec2(80.0, 50.0);
+/// Most lines of a difference in the hover text.
+const MOST_LINES: usize = 40;
+
+/// What the panel keeps between frames.
+#[derive(Default)]
+pub(in crate::app) struct TimelineState {
+    /// The version that the user is asked about before it is written to the files.
+    asked: Option<u64>,
+    /// Whether the last frame has shown the panel.
+    pub(in crate::app) is_visible: bool,
+}
+
+/// Shows the panel.
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, commands: &mut Vec<Command>) {
+    state.is_visible = true;
+    let compare = &mut viewer.compare;
+    ui.horizontal_wrapped(|ui| match compare.is_on() {
+        true => {
+            if ui.button("Stop comparing").on_hover_text("Show the newest picture alone (Ctrl+K)").clicked() {
+                commands.push(Command::Compare(CompareWith::Nothing));
+            }
+            ui.toggle_value(&mut compare.shows_map, "Difference").on_hover_text(
+                "Cover the picture with FLIP of each pixel: black is equal, white as different as can be",
+            );
+        }
+        false => {
+            let hint = "Keep the picture as it is now, with all settings, and compare what follows with it (Ctrl+K)";
+            if ui.button("Keep this picture").on_hover_text(hint).clicked() {
+                commands.push(Command::Compare(CompareWith::ThisPicture));
+            }
+        }
+    });
+    if compare.is_on() {
+        let text = match &compare.difference {
+            Some(Difference { flip, largest, .. }) => format!("FLIP {flip:.4}   largest {:.0}/255", largest * 255.0),
+            None => "FLIP …".to_owned(),
+        };
+        let hint = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different both pictures look when one is flipped to the other, \
+                    0.7 m from a 4K screen. And the largest difference of a channel of the display";
+        ui.add(Label::new(monospace(text)).truncate()).on_hover_text(hint);
+    }
+    if let Some(number) = state.asked {
+        ask(ui, viewer, number, &mut state.asked, commands);
+    }
+    let viewer = &*viewer;
+    let newest = viewer.shown_generation();
+    for version in viewer.versions.iter().rev() {
+        row(ui, viewer, version, newest, &mut state.asked, commands);
+    }
+    if viewer.versions.iter().next().is_none() {
+        ui.label(RichText::new("Each edit that is shown appears here").color(QUIET));
+    }
+}
+
+/// A version. A click compares the picture with it.
+fn row(
+    ui: &mut Ui,
+    viewer: &Viewer,
+    version: &Version,
+    newest: u64,
+    asked: &mut Option<u64>,
+    commands: &mut Vec<Command>,
+) {
+    let size = vec2(ui.available_width(), THUMBNAIL.y + 6.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let is_chosen = viewer.compare.version() == Some(version.number);
+    let can_show = viewer.versions.can_show(version, newest);
+    if is_chosen || response.hovered() {
+        let fill = if is_chosen { ui.visuals().selection.bg_fill } else { ui.visuals().widgets.hovered.weak_bg_fill };
+        ui.painter().rect_filled(rect, 3.0, fill);
+    }
+    let inner = rect.shrink(3.0);
+    let picture = egui::Rect::from_min_size(inner.min, THUMBNAIL);
+    match &version.thumbnail {
+        Some(thumbnail) => egui::Image::new(thumbnail).corner_radius(2).paint_at(ui, picture),
+        None => drop(ui.painter().rect_filled(picture, 2.0, EDGE)),
+    }
+    let text = inner.with_min_x(picture.max.x + 8.0);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(text), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let quiet = if is_chosen { Color32::WHITE } else { QUIET };
+        let now = if version.number == newest { "  (now)" } else { "" };
+        let title = format!("{}  {}{now}", version.number, version.title());
+        ui.add(Label::new(RichText::new(title).strong()).truncate().selectable(false));
+        let reload = &version.reload;
+        let times = format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
+        let line = |text: String| Label::new(monospace(text).color(quiet)).truncate().selectable(false);
+        ui.add(line(times));
+        let gpu = version.device_ms.map_or_else(String::new, |ms| format!("  {ms:.0} ms GPU"));
+        ui.add(line(format!("{}{gpu}", version.since.format("%H:%M:%S"))));
+    });
+    if response.clicked() && can_show {
+        let with = if is_chosen { CompareWith::Nothing } else { CompareWith::Version(version.number) };
+        commands.push(Command::Compare(with));
+    }
+    response.context_menu(|ui| {
+        let lines = viewer.versions.difference(version);
+        if ui.add_enabled(!lines.is_empty(), egui::Button::new("Copy the difference")).clicked() {
+            let text: Vec<&str> = lines.iter().map(|line| line.text.as_str()).collect();
+            ui.ctx().copy_text(text.join("\n"));
+            ui.close();
+        }
+        let can_write = !viewer.files_of_version(version.number).is_empty();
+        if ui.add_enabled(can_write, egui::Button::new("Write to the files…")).clicked() {
+            *asked = Some(version.number);
+            ui.close();
+        }
+    });
+    let hint = match (can_show, version.number == newest) {
+        (true, _) if is_chosen => "Click to stop comparing",
+        (true, _) => "Click to compare the picture with this version",
+        (false, true) => "The picture on screen",
+        (false, false) => "A loop did not end in this version, so it is not shown again",
+    };
+    response.on_hover_ui(|ui| hover(ui, hint, viewer.versions.difference(version)));
+}
+
+/// The hover text: what a click does, and the difference from the version before.
+fn hover(ui: &mut Ui, hint: &str, lines: &[Line]) {
+    ui.set_max_width(560.0);
+    ui.label(RichText::new(hint).small().color(QUIET));
+    for Line { kind, text } in lines.iter().take(MOST_LINES) {
+        let color = match kind {
+            Kind::Place => ACCENT,
+            Kind::Removed => ERROR,
+            Kind::Added => GOOD,
+            Kind::Same => Color32::from_gray(200),
+        };
+        ui.add(Label::new(monospace(text).color(color)).truncate());
+    }
+    if lines.len() > MOST_LINES {
+        ui.label(RichText::new(format!("and {} more lines", lines.len() - MOST_LINES)).small().color(QUIET));
+    }
+}
+
+/// Small text of a fixed width.
+fn monospace(text: impl Into<String>) -> RichText {
+    RichText::new(text).font(egui::FontId::monospace(11.0))
+}
+
+/// Asks whether to write a version over the files of the tree.
+fn ask(ui: &mut Ui, viewer: &Viewer, number: u64, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
+    let files = viewer.files_of_version(number);
+    let names: Vec<&str> = files.iter().filter_map(|(path, _)| path.file_name()?.to_str()).collect();
+    let question = format!("Replace what is on disk with version {number} of {}?", names.join(", "));
+    ui.add(Label::new(question).wrap());
+    ui.horizontal(|ui| {
+        if ui.add_enabled(!files.is_empty(), egui::Button::new("Write")).clicked() {
+            commands.push(Command::WriteVersion(number));
+            *asked = None;
+        }
+        if ui.button("Cancel").clicked() {
+            *asked = None;
+        }
+    });
+}

@@ -1,0 +1,96 @@
+//! Measures how much the picture differs from the one that it is compared with. Both are read back once they rest, and compared on
+//! a thread.
+
+use std::sync::Arc;
+
+use super::Screen;
+use crate::app::viewer::Viewer;
+use crate::frame::FrameState;
+use crate::gpu::{GpuError, Use};
+use crate::render::{BoundFrame, Output, Readback, Redraw};
+
+/// Both pictures, by their numbers and states.
+pub(super) struct Pair {
+    numbers: [u64; 2],
+    states: [Arc<FrameState>; 2],
+}
+
+impl Pair {
+    fn is_same(&self, other: &Self) -> bool {
+        self.numbers == other.numbers && self.states.iter().zip(&other.states).all(|(a, b)| a.is_same(b))
+    }
+}
+
+/// The pictures that are measured.
+#[derive(Default)]
+pub(super) struct ErrorMap {
+    /// The pictures of the last frame.
+    last: Option<Pair>,
+    /// The pictures that were measured last, or are being measured.
+    measured: Option<Pair>,
+    /// The slot of the frame that copies both pictures.
+    copied: Option<(usize, [Readback; 2])>,
+}
+
+impl ErrorMap {
+    /// Whether pictures are still on the way from the device.
+    pub(super) fn awaits_copies(&self) -> bool {
+        self.copied.is_some()
+    }
+}
+
+impl Screen {
+    /// Copies the picture and the reference if both are the same as in the last frame, and not measured yet. Returns whether another
+    /// frame is needed.
+    pub(super) fn measure_error(&mut self, viewer: &mut Viewer, live: Option<&BoundFrame>) -> Result<bool, GpuError> {
+        let wanted = viewer.compare.is_on() && !viewer.compare.is_held();
+        let Some((reference, live)) = self.reference.as_ref().filter(|_| wanted).zip(live) else {
+            self.error_map = ErrorMap::default();
+            return Ok(false);
+        };
+        let numbers = [reference.view.picture(), self.view.picture()];
+        let states = [reference.frame.state.clone(), live.state.clone()];
+        let same_size = states[0].size == states[1].size;
+        let pair = Pair { numbers, states };
+        let is = |other: &Option<Pair>| other.as_ref().is_some_and(|other| other.is_same(&pair));
+        let (rests, is_known) = (is(&self.error_map.last), is(&self.error_map.measured));
+        if is_known || !same_size || viewer.compare.is_measuring || self.error_map.awaits_copies() {
+            self.error_map.last = Some(pair);
+            return Ok(false);
+        }
+        if rests {
+            self.copy_pictures(viewer, live)?;
+            viewer.compare.is_measuring = true;
+            self.error_map.measured = Some(pair);
+        } else {
+            self.error_map.last = Some(pair);
+        }
+        Ok(true)
+    }
+
+    /// Draws both pictures as they are displayed, and copies them to CPU memory.
+    fn copy_pictures(&mut self, viewer: &mut Viewer, live: &BoundFrame) -> Result<(), GpuError> {
+        let image = self.view.output_image(live.state.size)?;
+        let mut encoder = self.frames.begin()?;
+        self.check_loops(viewer);
+        let slot = self.frames.current();
+        let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
+        encoder.untimed(|encoder| self.view.draw(encoder, slot, live, &output, Redraw::IfChanged))?;
+        let of_live = self.view.read_back(&mut encoder, &image)?;
+        let of_reference = match &mut self.reference {
+            Some(reference) => reference.copy(&mut encoder, slot)?,
+            None => None,
+        };
+        self.frames.submit(encoder, Default::default())?;
+        self.error_map.copied = of_reference.zip(of_live).map(|(a, b)| (slot, [a, b]));
+        Ok(())
+    }
+
+    /// Sends copies whose frame has finished to the thread that compares them.
+    pub(super) fn take_copies(&mut self, viewer: &Viewer) {
+        let is_finished = |(slot, _): &mut (usize, [Readback; 2])| self.frames.is_finished(*slot);
+        if let Some((_, copies)) = self.error_map.copied.take_if(is_finished) {
+            viewer.threads.compare(copies.map(Readback::finish));
+        }
+    }
+}

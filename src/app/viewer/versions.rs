@@ -1,0 +1,148 @@
+//! The versions of the shaders that were on screen, with what each changed, what it cost and how it looked.
+
+use std::cell::OnceCell;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use chrono::{DateTime, Local};
+
+use super::LastComplete;
+use crate::app::difference::{Line, difference};
+use crate::events::ReloadEvent;
+use crate::pipeline::PipelineSet;
+
+/// Number of versions that are kept. Each holds pipelines, and after an edit of D also the light that was baked with it.
+const MOST: usize = 12;
+
+/// One version of the shaders.
+pub(in crate::app) struct Version {
+    /// Its generation.
+    pub(in crate::app) number: u64,
+    /// When it was first on screen.
+    pub(in crate::app) since: DateTime<Local>,
+    /// The reload that made it.
+    pub(in crate::app) reload: ReloadEvent,
+    /// Device time of its first frame, milliseconds.
+    pub(in crate::app) device_ms: Option<f64>,
+    /// Its picture in small.
+    pub(in crate::app) thumbnail: Option<egui::TextureHandle>,
+    pub(super) set: Arc<PipelineSet>,
+    /// Its last complete picture. `None` while it is the newest version, and after the model has changed.
+    pub(super) picture: Option<LastComplete>,
+    /// Whether a loop did not end in its picture.
+    is_cut_short: bool,
+    /// Its texts compared with those of the version before.
+    difference: OnceCell<Vec<Line>>,
+}
+
+impl Version {
+    /// The names of the changed files without folders, or what else made this version.
+    pub(in crate::app) fn title(&self) -> String {
+        let names: Vec<&str> = self.reload.changed.iter().map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
+        if names.is_empty() { "whole tree".to_owned() } else { names.join(", ") }
+    }
+}
+
+/// The newest versions, the oldest first.
+#[derive(Default)]
+pub(in crate::app) struct Versions {
+    list: VecDeque<Version>,
+}
+
+impl Versions {
+    /// All versions, the oldest first.
+    pub(in crate::app) fn iter(&self) -> impl DoubleEndedIterator<Item = &Version> {
+        self.list.iter()
+    }
+
+    pub(in crate::app) fn get(&self, number: u64) -> Option<&Version> {
+        self.list.iter().find(|version| version.number == number)
+    }
+
+    fn get_mut(&mut self, number: u64) -> Option<&mut Version> {
+        self.list.iter_mut().find(|version| version.number == number)
+    }
+
+    /// Adds the version that has just come on screen.
+    pub(super) fn add(&mut self, set: &Arc<PipelineSet>, reload: ReloadEvent) {
+        let (number, since) = (set.shaders.generation, Local::now());
+        let (device_ms, thumbnail, picture, is_cut_short) = (None, None, None, false);
+        let difference = OnceCell::new();
+        let set = set.clone();
+        self.list.push_back(Version {
+            number,
+            since,
+            reload,
+            device_ms,
+            thumbnail,
+            set,
+            picture,
+            is_cut_short,
+            difference,
+        });
+        self.list.drain(..self.list.len().saturating_sub(MOST));
+    }
+
+    /// Keeps the last picture of a version that a newer one replaces.
+    pub(super) fn retire(&mut self, picture: LastComplete) {
+        if let Some(version) = self.get_mut(picture.frame.state.shaders.generation) {
+            version.picture = Some(picture);
+        }
+    }
+
+    /// Takes the set with the stages that were compiled later.
+    pub(super) fn complete(&mut self, set: &Arc<PipelineSet>) {
+        if let Some(version) = self.get_mut(set.shaders.generation) {
+            version.set = set.clone();
+        }
+    }
+
+    /// Takes the times of a version's first frame.
+    pub(super) fn time(&mut self, number: u64, first_frame_ms: f64, device_ms: Option<f64>) {
+        if let Some(version) = self.get_mut(number) {
+            (version.reload.first_frame_ms, version.device_ms) = (first_frame_ms, device_ms);
+        }
+    }
+
+    /// Takes the picture of a version in small.
+    pub(in crate::app) fn set_thumbnail(&mut self, number: u64, thumbnail: egui::TextureHandle) {
+        if let Some(version) = self.get_mut(number) {
+            version.thumbnail = Some(thumbnail);
+        }
+    }
+
+    /// Marks a version in which a loop did not end. It is not shown again, since it would keep the device as long again.
+    pub(in crate::app) fn cut_short(&mut self, number: u64) {
+        if let Some(version) = self.get_mut(number) {
+            (version.is_cut_short, version.picture) = (true, None);
+        }
+    }
+
+    /// Whether a version can be shown beside the version `newest`, which is on screen.
+    pub(in crate::app) fn can_show(&self, version: &Version, newest: u64) -> bool {
+        version.number < newest && !version.is_cut_short
+    }
+
+    /// The newest version before `newest` that can be shown.
+    pub(super) fn before(&self, newest: u64) -> Option<&Version> {
+        self.list.iter().rev().find(|version| self.can_show(version, newest))
+    }
+
+    /// The version that a version was made from, and the lines in which their texts differ.
+    pub(in crate::app) fn difference<'a>(&'a self, version: &'a Version) -> &'a [Line] {
+        let before = self.list.iter().rev().find(|other| other.number < version.number);
+        version.difference.get_or_init(|| {
+            before.map(|before| difference(&before.set.shaders.texts, &version.set.shaders.texts)).unwrap_or_default()
+        })
+    }
+
+    /// Releases the pictures, which hold the model and its light on the device.
+    pub(super) fn drop_pictures(&mut self) {
+        self.list.iter_mut().for_each(|version| version.picture = None);
+    }
+
+    /// Drops all versions but the newest, while memory is short.
+    pub(super) fn drop_old(&mut self) {
+        self.list.drain(..self.list.len().saturating_sub(1));
+    }
+}

@@ -1,0 +1,128 @@
+//! The picture beside an earlier one.
+
+use image::RgbaImage;
+
+use crate::NDF;
+use crate::support::Tree;
+use crate::support::window::Viewer;
+
+const D: &str = "float a2 = alpha * alpha;";
+
+/// Whether two pictures are equal in these columns.
+fn same(a: &RgbaImage, b: &RgbaImage, columns: std::ops::Range<u32>) -> bool {
+    a.dimensions() == b.dimensions()
+        && columns
+            .flat_map(|x| (0..a.height()).map(move |y| (x, y)))
+            .all(|(x, y)| a.get_pixel(x, y) == b.get_pixel(x, y))
+}
+
+/// Opens a window with spheres and returns it with its first picture.
+fn open() -> (Viewer, RgbaImage) {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    (viewer, first)
+}
+
+/// Edits D and returns the settled picture.
+fn edit(viewer: &mut Viewer, new: &str) -> RgbaImage {
+    let text = viewer.tree.read(NDF).replace(D, new);
+    viewer.tree.write(NDF, &text);
+    let reload = viewer.running.reload(true);
+    viewer.running.settled(&reload);
+    viewer.screenshot()
+}
+
+#[test]
+fn a_kept_picture_stays_left_of_the_border() {
+    let (mut viewer, first) = open();
+    let (width, height) = first.dimensions();
+    let original = viewer.tree.read(NDF);
+    let edited = edit(&mut viewer, "float a2 = alpha;");
+    assert!(edited != first, "the edit does not show");
+    viewer.key("ctrl+k");
+    viewer.tree.write(NDF, &original);
+    let reload = viewer.running.reload(true);
+    viewer.running.settled(&reload);
+    let middle = width / 2;
+    let is_both = |shot: &RgbaImage| same(shot, &edited, 0..middle - 1) && same(shot, &first, middle + 1..width);
+    viewer.until("both pictures", is_both);
+    let compared = viewer.running.event("compared");
+    assert!(compared["flip"].as_f64() > Some(0.0) && compared["largest"].as_f64() > Some(0.1), "{compared}");
+
+    // Over the edge of the picture, the border shows one of them alone.
+    let bar = 30;
+    let at = |x: u32| (x, bar + height / 2);
+    viewer.drag(at(middle), at(width - 1));
+    viewer.until("the kept picture", |shot| same(shot, &edited, 0..width - 2));
+    viewer.drag(at(width - 1), at(1));
+    viewer.until("the picture of now", |shot| same(shot, &first, 2..width));
+    viewer.display.xdotool(&["keydown", "space"]);
+    viewer.until("the kept picture while Space is held", |shot| *shot == edited);
+    viewer.display.xdotool(&["keyup", "space"]);
+    viewer.key("ctrl+k");
+    viewer.until("the picture alone", |shot| *shot == first);
+    viewer.quit();
+}
+
+/// A kept picture keeps its mode, and the camera of now.
+#[test]
+fn a_kept_picture_has_the_mode_that_it_had() {
+    let (mut viewer, first) = open();
+    let width = first.width();
+    viewer.key("ctrl+k");
+    viewer.key("n");
+    viewer.until("another mode on the right", |shot| {
+        same(shot, &first, 0..width / 2 - 1) && !same(shot, &first, width / 2 + 1..width)
+    });
+    viewer.quit();
+}
+
+/// The picture before the last edit follows the mode of now, as soon as its pipelines are built.
+#[test]
+fn an_older_version_follows_the_mode() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--mode", "d"]);
+    viewer.running.event("ready");
+    let d = viewer.screenshot();
+    viewer.quit();
+
+    let (mut viewer, _) = open();
+    let edited = edit(&mut viewer, "float a2 = alpha;");
+    viewer.key("d");
+    viewer.until("D after the edit", |shot| *shot != edited);
+    viewer.display.xdotool(&["keydown", "space"]);
+    viewer.until("D before the edit", |shot| *shot == d);
+    viewer.display.xdotool(&["keyup", "space"]);
+    viewer.quit();
+}
+
+/// A loop that does not end is not shown again.
+#[test]
+fn space_passes_over_a_loop_that_does_not_end() {
+    let (mut viewer, first) = open();
+    let original = viewer.tree.read(NDF);
+    let endless = format!("float x = alpha;\n    while (x < 2.0) x *= 0.5;\n    {D}");
+    viewer.tree.write(NDF, &original.replace(D, &endless));
+    viewer.running.event("diagnostic");
+    viewer.tree.write(NDF, &original);
+    let reload = viewer.running.reload(true);
+    viewer.running.settled(&reload);
+    let edited = edit(&mut viewer, "float a2 = alpha;");
+    assert!(edited != first, "the edit does not show");
+    viewer.display.xdotool(&["keydown", "space"]);
+    viewer.until("the picture before the edit", |shot| *shot == first);
+    viewer.display.xdotool(&["keyup", "space"]);
+    viewer.until("the edit", |shot| *shot == edited);
+
+    // The version before the edit is the loop's, so the picture before that is shown.
+    viewer.tree.write(NDF, &original.replace(D, &endless));
+    viewer.running.event("diagnostic");
+    let repaired = original.replace(D, "float a2 = 0.5 * alpha;");
+    viewer.tree.write(NDF, &repaired);
+    let reload = viewer.running.reload(true);
+    viewer.running.settled(&reload);
+    viewer.display.xdotool(&["keydown", "space"]);
+    viewer.until("the picture before the loop", |shot| *shot == edited);
+    viewer.display.xdotool(&["keyup", "space"]);
+    viewer.quit();
+}
