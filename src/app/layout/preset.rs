@@ -7,6 +7,8 @@ use super::Panel;
 /// Widths of the columns beside the picture, in points.
 const LEFT: f32 = 236.0;
 const RIGHT: f32 = 318.0;
+/// Height of the timeline below the picture, in points.
+const BELOW: f32 = 190.0;
 
 /// An arrangement that Specula offers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,15 +17,18 @@ pub(in crate::app) enum Preset {
     Debug,
     /// The panels of light, camera and parameters, and a larger picture.
     Look,
+    /// The versions of the shaders below the picture.
+    Compare,
 }
 
 impl Preset {
-    pub(in crate::app) const ALL: [Self; 2] = [Self::Debug, Self::Look];
+    pub(in crate::app) const ALL: [Self; 3] = [Self::Debug, Self::Look, Self::Compare];
 
     pub(in crate::app) fn title(self) -> &'static str {
         match self {
             Self::Debug => "Debug",
             Self::Look => "Look",
+            Self::Compare => "Compare",
         }
     }
 
@@ -31,6 +36,7 @@ impl Preset {
         match self {
             Self::Debug => "Modes and shaders on the left, all settings on the right",
             Self::Look => "Light, output and parameters on the right, nothing on the left",
+            Self::Compare => "The timeline of your edits below the picture, parameters on the right",
         }
     }
 
@@ -47,6 +53,14 @@ impl Preset {
             Self::Look => {
                 let right = [(settings, 1.0), (parameters, 1.0)];
                 vec![(picture, 1.0), (column(tiles, &right), RIGHT)]
+            }
+            Self::Compare => {
+                let right = [(parameters, 1.0), (settings, 1.0)];
+                let below = [Panel::Timeline, Panel::Shaders, Panel::Timing];
+                let below = below.map(|panel| tiles.insert_pane(panel)).to_vec();
+                let below = tiles.insert_tab_tile(below);
+                let left = linear(tiles, LinearDir::Vertical, vec![(picture, 1.0), (below, BELOW)]);
+                vec![(left, 1.0), (column(tiles, &right), RIGHT)]
             }
         };
         let root = linear(tiles, LinearDir::Horizontal, columns);

@@ -1,6 +1,6 @@
 //! The panel Timeline: the versions of the shaders, each with its picture, its times and what it changed.
 
-use egui::{Color32, Label, RichText, Sense, Ui, Vec2, vec2};
+use egui::{Color32, Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
 use super::theme::{ACCENT, GOOD, QUIET};
 use super::{EDGE, ERROR};
@@ -9,7 +9,9 @@ use crate::app::difference::{Kind, Line};
 use crate::app::viewer::{Difference, Version, Viewer};
 
 /// Size of a thumbnail in points.
-pub(in crate::app) const THUMBNAIL: Vec2 = vec2(80.0, 50.0);
+pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
+/// How much smaller it is in a list.
+const IN_LIST: f32 = 0.625;
 /// Most lines of a difference in the hover text.
 const MOST_LINES: usize = 40;
 
@@ -56,75 +58,131 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
     }
     let viewer = &*viewer;
     let newest = viewer.shown_generation();
-    for version in viewer.versions.iter().rev() {
-        row(ui, viewer, version, newest, &mut state.asked, commands);
-    }
-    if viewer.versions.iter().next().is_none() {
-        ui.label(RichText::new("Each edit that is shown appears here").color(QUIET));
-    }
+    let area = ui.available_size();
+    // A wide tile runs from left to right, with the newest version first as in a tall one.
+    let is_strip = area.x > 2.0 * area.y && area.y > 40.0;
+    let scroll = if is_strip { egui::ScrollArea::horizontal() } else { egui::ScrollArea::vertical() };
+    scroll.auto_shrink(false).show(ui, |ui| {
+        let layout = match is_strip {
+            true => egui::Layout::left_to_right(egui::Align::Min),
+            false => egui::Layout::top_down(egui::Align::Min),
+        };
+        ui.with_layout(layout, |ui| {
+            for version in viewer.versions.iter().rev() {
+                let entry = Entry { viewer, version, newest };
+                let response = if is_strip { entry.card(ui) } else { entry.row(ui) };
+                entry.respond(response, &mut state.asked, commands);
+            }
+            if viewer.versions.iter().next().is_none() {
+                ui.label(RichText::new("Each edit that is shown appears here").color(QUIET));
+            }
+        });
+    });
 }
 
-/// A version. A click compares the picture with it.
-fn row(
-    ui: &mut Ui,
-    viewer: &Viewer,
-    version: &Version,
+/// A version in the panel.
+struct Entry<'a> {
+    viewer: &'a Viewer,
+    version: &'a Version,
+    /// The version on screen.
     newest: u64,
-    asked: &mut Option<u64>,
-    commands: &mut Vec<Command>,
-) {
-    let size = vec2(ui.available_width(), THUMBNAIL.y + 6.0);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let is_chosen = viewer.compare.version() == Some(version.number);
-    let can_show = viewer.versions.can_show(version, newest);
-    if is_chosen || response.hovered() {
-        let fill = if is_chosen { ui.visuals().selection.bg_fill } else { ui.visuals().widgets.hovered.weak_bg_fill };
-        ui.painter().rect_filled(rect, 3.0, fill);
+}
+
+impl Entry<'_> {
+    fn is_chosen(&self) -> bool {
+        self.viewer.compare.version() == Some(self.version.number)
     }
-    let inner = rect.shrink(3.0);
-    let picture = egui::Rect::from_min_size(inner.min, THUMBNAIL);
-    match &version.thumbnail {
-        Some(thumbnail) => egui::Image::new(thumbnail).corner_radius(2).paint_at(ui, picture),
-        None => drop(ui.painter().rect_filled(picture, 2.0, EDGE)),
+
+    fn can_show(&self) -> bool {
+        self.viewer.versions.can_show(self.version, self.newest)
     }
-    let text = inner.with_min_x(picture.max.x + 8.0);
-    ui.scope_builder(egui::UiBuilder::new().max_rect(text), |ui| {
-        ui.spacing_mut().item_spacing.y = 2.0;
-        let quiet = if is_chosen { Color32::WHITE } else { QUIET };
-        let now = if version.number == newest { "  (now)" } else { "" };
-        let title = format!("{}  {}{now}", version.number, version.title());
-        ui.add(Label::new(RichText::new(title).strong()).truncate().selectable(false));
-        let reload = &version.reload;
-        let times = format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
-        let line = |text: String| Label::new(monospace(text).color(quiet)).truncate().selectable(false);
-        ui.add(line(times));
-        let gpu = version.device_ms.map_or_else(String::new, |ms| format!("  {ms:.0} ms GPU"));
-        ui.add(line(format!("{}{gpu}", version.since.format("%H:%M:%S"))));
-    });
-    if response.clicked() && can_show {
-        let with = if is_chosen { CompareWith::Nothing } else { CompareWith::Version(version.number) };
-        commands.push(Command::Compare(with));
+
+    /// In a list: the picture on the left, the texts on the right.
+    fn row(&self, ui: &mut Ui) -> Response {
+        let size = IN_LIST * THUMBNAIL;
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), size.y + 6.0), Sense::click());
+        let picture = Rect::from_min_size(rect.shrink(3.0).min, size);
+        self.paint(ui, &response, picture);
+        self.texts(ui, rect.shrink(3.0).with_min_x(picture.max.x + 8.0));
+        response
     }
-    response.context_menu(|ui| {
-        let lines = viewer.versions.difference(version);
-        if ui.add_enabled(!lines.is_empty(), egui::Button::new("Copy the difference")).clicked() {
-            let text: Vec<&str> = lines.iter().map(|line| line.text.as_str()).collect();
-            ui.ctx().copy_text(text.join("\n"));
-            ui.close();
+
+    /// In a strip: the texts below the picture.
+    fn card(&self, ui: &mut Ui) -> Response {
+        let texts = 50.0;
+        let height = (ui.available_height() - texts - 6.0).clamp(20.0, THUMBNAIL.y);
+        let size = THUMBNAIL * (height / THUMBNAIL.y);
+        let width = size.x.max(110.0);
+        let (rect, response) = ui.allocate_exact_size(vec2(width, height + texts) + vec2(6.0, 6.0), Sense::click());
+        let inner = rect.shrink(3.0);
+        self.paint(ui, &response, Rect::from_min_size(inner.min, size));
+        self.texts(ui, inner.with_min_y(inner.min.y + height + 2.0));
+        response
+    }
+
+    /// The background, and the picture in small.
+    fn paint(&self, ui: &Ui, response: &Response, picture: Rect) {
+        if self.is_chosen() || response.hovered() {
+            let widgets = &ui.visuals().widgets;
+            let fill = if self.is_chosen() { ui.visuals().selection.bg_fill } else { widgets.hovered.weak_bg_fill };
+            ui.painter().rect_filled(response.rect, 3.0, fill);
         }
-        let can_write = !viewer.files_of_version(version.number).is_empty();
-        if ui.add_enabled(can_write, egui::Button::new("Write to the files…")).clicked() {
-            *asked = Some(version.number);
-            ui.close();
+        match &self.version.thumbnail {
+            Some(thumbnail) => egui::Image::new(thumbnail).corner_radius(2).paint_at(ui, picture),
+            None => _ = ui.painter().rect_filled(picture, 2.0, EDGE),
         }
-    });
-    let hint = match (can_show, version.number == newest) {
-        (true, _) if is_chosen => "Click to stop comparing",
-        (true, _) => "Click to compare the picture with this version",
-        (false, true) => "The picture on screen",
-        (false, false) => "A loop did not end in this version, so it is not shown again",
-    };
-    response.on_hover_ui(|ui| hover(ui, hint, viewer.versions.difference(version)));
+    }
+
+    /// Number and files, the times of the reload, and when it was.
+    fn texts(&self, ui: &mut Ui, rect: Rect) {
+        let Version { number, reload, since, device_ms, .. } = self.version;
+        ui.scope_builder(
+            egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::top_down(egui::Align::Min)),
+            |ui| {
+                ui.spacing_mut().item_spacing.y = 2.0;
+                let quiet = if self.is_chosen() { Color32::WHITE } else { QUIET };
+                let now = if *number == self.newest { "  (now)" } else { "" };
+                let title = format!("{number}  {}{now}", self.version.title());
+                ui.add(Label::new(RichText::new(title).strong()).truncate().selectable(false));
+                let times =
+                    format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
+                let gpu = device_ms.map_or_else(String::new, |ms| format!("  {ms:.0} ms GPU"));
+                for line in [times, format!("{}{gpu}", since.format("%H:%M:%S"))] {
+                    ui.add(Label::new(monospace(line).color(quiet)).truncate().selectable(false));
+                }
+            },
+        );
+    }
+
+    /// A click compares the picture with the version; the menu copies what it changed, or writes it to the files.
+    fn respond(&self, response: Response, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
+        let Self { viewer, version, newest } = self;
+        let (is_chosen, can_show) = (self.is_chosen(), self.can_show());
+        if response.clicked() && can_show {
+            let with = if is_chosen { CompareWith::Nothing } else { CompareWith::Version(version.number) };
+            commands.push(Command::Compare(with));
+        }
+        response.context_menu(|ui| {
+            let lines = viewer.versions.difference(version);
+            if ui.add_enabled(!lines.is_empty(), egui::Button::new("Copy the difference")).clicked() {
+                let text: Vec<&str> = lines.iter().map(|line| line.text.as_str()).collect();
+                ui.ctx().copy_text(text.join("\n"));
+                ui.close();
+            }
+            let can_write = !viewer.files_of_version(version.number).is_empty();
+            if ui.add_enabled(can_write, egui::Button::new("Write to the files…")).clicked() {
+                *asked = Some(version.number);
+                ui.close();
+            }
+        });
+        let hint = match (can_show, version.number == *newest) {
+            (true, _) if is_chosen => "Click to stop comparing",
+            (true, _) => "Click to compare the picture with this version",
+            (false, true) => "The picture on screen",
+            (false, false) => "A loop did not end in this version, so it is not shown again",
+        };
+        response.on_hover_ui(|ui| hover(ui, hint, viewer.versions.difference(version)));
+    }
 }
 
 /// The hover text: what a click does, and the difference from the version before.
