@@ -13,7 +13,7 @@ pub enum FileKind {
     Environment,
     /// Measured BRDF: `.binary` (MERL), `.bin` (UTIA).
     Measured,
-    /// Settings: `.toml`.
+    /// Settings: `.toml`, or a `.png` that Specula has written.
     Look,
     /// A single file of a shader tree.
     Shader,
@@ -35,7 +35,7 @@ impl FileKind {
             "gltf" | "glb" => Self::Model,
             "hdr" | "exr" => Self::Environment,
             "binary" | "bin" => Self::Measured,
-            "toml" => Self::Look,
+            "toml" | "png" => Self::Look,
             "glsl" | "vert" | "tesc" | "tese" | "geom" | "frag" | "fs" | "comp" => Self::Shader,
             _ => Self::Other,
         }

@@ -1,5 +1,6 @@
 //! Captured frames as files: PNG for the picture, EXR for the raw values behind it.
 
+mod look;
 mod part;
 
 use std::fs::OpenOptions;
@@ -9,6 +10,8 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
 use crate::render::Capture;
+use crate::settings::Settings;
+pub use look::{read_look, read_settings};
 pub use part::{Halt, remove_unfinished};
 
 /// Linux gives up after this many symbolic links, too.
@@ -22,14 +25,14 @@ pub fn check_ending(path: &Path) -> Result<(), String> {
     format_of(path).map(|_| ())
 }
 
-/// Writes a frame as `specula-N.png` with the first free number, in the working directory. Returns the path.
+/// Writes a frame as `specula-N.png` with the first free number, in the working directory, with its settings. Returns the path.
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_numbered(capture: &Capture) -> Result<PathBuf, String> {
+pub fn write_numbered(capture: &Capture, settings: &Settings) -> Result<PathBuf, String> {
     let free = (1..).map(|n| PathBuf::from(format!("specula-{n}.png"))).find(|path| !path.exists());
     let path = free.unwrap_or_else(|| "specula.png".into());
-    write(capture, &path).map(|()| path)
+    write(capture, settings, &path).map(|()| path)
 }
 
 /// Fails before any work when no picture can be written to `path`.
@@ -61,21 +64,20 @@ pub fn path_of_mode(out: &Path, slug: &str) -> PathBuf {
     out.with_extension(format!("{}.{ending}", slug.replace(':', "-")))
 }
 
-/// Writes a capture to a file, as [`write_image`] does: 8-bit color to a PNG, the raw values to an EXR.
+/// Writes a capture to a file, as [`write_image`] does: 8-bit color and the settings that made it to a PNG, the raw values to an
+/// EXR.
 ///
 /// # Errors
 /// As [`write_image`].
-pub fn write(capture: &Capture, path: &Path) -> Result<(), String> {
-    let (width, height) = (capture.width, capture.height);
-    let image = match format_of(path)? {
-        ImageFormat::OpenExr => {
-            let floats = capture.raw.iter().flatten().copied().collect();
-            ImageBuffer::from_raw(width, height, floats).map(DynamicImage::ImageRgba32F)
-        }
-        _ => ImageBuffer::from_raw(width, height, capture.rgba8.clone()).map(DynamicImage::ImageRgba8),
-    };
-    let size = || format!("cannot write {}: the picture's size does not match its pixels", path.display());
-    write_image(&image.ok_or_else(size)?, path)
+pub fn write(capture: &Capture, settings: &Settings, path: &Path) -> Result<(), String> {
+    let cannot = |why: String| format!("cannot write {}: {why}", path.display());
+    if format_of(path)? == ImageFormat::Png {
+        let bytes = look::encode(capture, settings).map_err(cannot)?;
+        return write_bytes(&bytes, path).map_err(|e| cannot(e.to_string()));
+    }
+    let floats = capture.raw.iter().flatten().copied().collect();
+    let image = ImageBuffer::from_raw(capture.width, capture.height, floats).map(DynamicImage::ImageRgba32F);
+    write_image(&image.ok_or_else(|| cannot("the picture's size does not match its pixels".to_owned()))?, path)
 }
 
 /// Writes an image whole: to a temporary file beside `path`, which then takes the name, so that no reader ever sees half a

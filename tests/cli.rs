@@ -334,6 +334,25 @@ fn an_exr_holds_raw_floats() {
     assert_eq!(exr.get_pixel(0, 0).0[3], 0.0);
 }
 
+/// A PNG holds the settings that made it, and gives the same picture again.
+#[test]
+fn a_picture_is_a_look_file() {
+    let directory = directory();
+    let here = directory.path();
+    fs::write(here.join("ball.glb"), glb::model(&glb::sphere(16, 32), &glb::gray())).unwrap();
+    let options = ["--background", "#102030", "--azimuth", "70", "--mode", "n", "--set", "NDF=Beckmann"];
+    render(here, "ball.glb", &options[..4]).expect(0, &[]);
+    let first = fs::read(here.join("out.png")).unwrap();
+    fs::rename(here.join("out.png"), here.join("first.png")).unwrap();
+    render(here, "ball.glb", &["--look", "first.png"]).expect(0, &[]);
+    assert!(fs::read(here.join("out.png")).unwrap() == first, "not the same file again");
+    render(here, "ball.glb", &["--look", "first.png", "--background", "#ff0000"]).expect(0, &[]);
+    assert_eq!(open_image(&here.join("out.png")).into_rgba8().get_pixel(0, 0).0, [255, 0, 0, 255]);
+    image::RgbaImage::new(2, 2).save(here.join("photo.png")).unwrap();
+    render(here, "ball.glb", &["--look", "photo.png"]).expect(1, &["photo.png: this PNG holds no settings of Specula"]);
+    run(here, &["render", "first.png"]).expect(2, &["first.png is a look file; use `--look first.png`"]);
+}
+
 #[test]
 fn without_a_background_alpha_is_coverage() {
     let directory = directory();

@@ -45,6 +45,8 @@ pub(super) enum Command {
     OpenModel(PathBuf),
     /// Open an environment.
     OpenEnvironment(PathBuf),
+    /// Take the settings of a look file, or of a PNG that Specula has written.
+    OpenLook(PathBuf),
     /// Open a measured BRDF and show it.
     OpenMeasured(PathBuf),
 }
@@ -64,9 +66,10 @@ pub(super) fn open_as(path: PathBuf) -> Result<Command, String> {
             path.display()
         )),
         FileKind::Shader if Source::is_file(&path) => Ok(Command::OpenTree(path)),
-        FileKind::Look | FileKind::Shader | FileKind::Other => Err(format!(
-            "{}: expected a .gltf or .glb model, an .hdr or .exr environment, a measured .binary or .bin, or a folder with a \
-             shader tree",
+        FileKind::Look => Ok(Command::OpenLook(path)),
+        FileKind::Shader | FileKind::Other => Err(format!(
+            "{}: expected a .gltf or .glb model, an .hdr or .exr environment, a measured .binary or .bin, a look file (.toml or \
+             a .png of Specula), or a folder with a shader tree",
             path.display()
         )),
     }

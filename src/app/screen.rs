@@ -319,7 +319,7 @@ impl Screen {
         // SYNC: the CPU reads the picture.
         self.frames.wait()?;
         let Some(capture) = readback.map(|readback| readback.finish()) else { return Ok(()) };
-        match picture::write_numbered(&capture) {
+        match picture::write_numbered(&capture, &viewer.session.settings) {
             Ok(path) => {
                 viewer.say(format!("wrote {}", path.display()));
                 emit(viewer.events, &Event::Screenshot { file: &path.display().to_string() });

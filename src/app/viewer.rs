@@ -308,6 +308,7 @@ impl Viewer {
             }
             Command::OpenModel(path) => self.load_model(Some(path)),
             Command::OpenEnvironment(path) => self.session.settings.environment.name = path.display().to_string(),
+            Command::OpenLook(path) => self.threads.read_look(path),
             Command::OpenMeasured(path) => {
                 self.session.settings.measured = path.display().to_string();
                 self.session.settings.mode = "measured".into();

@@ -18,7 +18,9 @@ use crate::comparison::{Comparison, Picture};
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
+use crate::picture;
 use crate::render::{Capture, TraceKey};
+use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
@@ -35,6 +37,8 @@ pub(crate) enum Message {
     FilesChanged(BTreeSet<PathBuf>),
     /// The difference of the two pictures that the window compares, or why there is none.
     Compared(Result<Box<Comparison>, String>),
+    /// The settings of a look file, or why it cannot be used.
+    Look(Result<Box<Settings>, String>),
     /// A message for the user.
     Say(String),
     /// A thread has panicked, with this message.
@@ -131,6 +135,12 @@ impl Threads {
     pub(crate) fn say(&self, work: impl FnOnce() -> String + Send + 'static) {
         let outbox = self.outbox.clone();
         std::thread::spawn(move || outbox.send(Message::Say(work())));
+    }
+
+    /// Reads the settings of a look file on a thread of its own.
+    pub(crate) fn read_look(&self, path: PathBuf) {
+        let outbox = self.outbox.clone();
+        std::thread::spawn(move || outbox.send(Message::Look(picture::read_settings(&path).map(Box::new))));
     }
 
     /// Compares two pictures on a thread of its own.

@@ -36,6 +36,12 @@ impl Viewer {
             Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
             Message::Say(text) => self.say(text),
+            Message::Look(Ok(settings)) => {
+                self.session.settings = *settings;
+                self.check_names();
+                self.watch_files();
+            }
+            Message::Look(Err(message)) => self.say(message),
             Message::Compared(compared) => self.on_compared(compared),
             Message::Panicked(role, text) => self.on_panic(role, &text),
         }

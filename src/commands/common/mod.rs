@@ -69,8 +69,8 @@ pub struct Common {
     /// Change any setting, as view.msaa=1, or a shader parameter, as NDF=Beckmann; may repeat. `specula help set` lists all
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Look file (TOML) with settings; other options come on top
-    #[arg(long, value_name = "FILE.toml")]
+    /// Look file with settings: TOML, or a PNG that Specula has written; other options come on top
+    #[arg(long, value_name = "FILE")]
     look: Option<PathBuf>,
     /// Use the device whose name contains this text; `specula info` lists the devices
     #[arg(long, value_name = "NAME")]
@@ -327,8 +327,7 @@ fn open(path: &Path) -> Result<Source, Failure> {
 
 /// Reads a look file. A name or value that no setting has is a usage error; a file that is not TOML is a wrong file.
 fn read_look(path: &Path) -> Result<Settings, Failure> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Failure::Input(format!("{}: the look file cannot be read: {e}", path.display())))?;
+    let text = picture::read_look(path).map_err(Failure::Input)?;
     Settings::from_toml(&text).map_err(|error| {
         // As `file:line:column: message`, which editors parse.
         let separator = if error.place.is_some() { ":" } else { ": " };

@@ -305,7 +305,7 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
         let capture = capture(headless, args, &mut Progress::new(!args.common.emits(), 1), 0)?;
-        return picture::write(&capture, out).map_err(Failure::Input);
+        return picture::write(&capture, headless.settings_mut(), out).map_err(Failure::Input);
     }
     // The passes that are off, and their modes, are known when all stages have compiled.
     if let Some(Outcome::Failed(diagnostics)) = headless.finish().map(|rest| rest.outcome) {
@@ -320,7 +320,8 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
         // A frame of a mode that traces the model takes seconds on a software device.
         settings.view.frames = if mode.traces { 1 } else { frames };
         let capture = capture(headless, args, &mut progress, number)?;
-        picture::write(&capture, &picture::path_of_mode(out, &mode.slug)).map_err(Failure::Input)?;
+        let path = picture::path_of_mode(out, &mode.slug);
+        picture::write(&capture, headless.settings_mut(), &path).map_err(Failure::Input)?;
     }
     headless.settings_mut().view.frames = frames;
     Ok(())
