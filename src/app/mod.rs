@@ -9,6 +9,7 @@ mod history;
 mod input;
 mod keys;
 mod layout;
+mod numbers;
 mod palette;
 mod panels;
 mod playback;

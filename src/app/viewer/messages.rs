@@ -26,6 +26,7 @@ impl Viewer {
             Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source }) => {
                 self.shader.compiling = false;
                 self.shader.tree = source.name();
+                self.shader.location = source.location().map(Into::into);
                 self.threads.follow_tree(&source);
                 self.source = source;
                 self.on_reload(&reload, detect_ms);
