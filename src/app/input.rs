@@ -8,6 +8,7 @@ use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
 use super::command::Command;
+use super::dialog::Dialog;
 use super::keys;
 use super::screen::Screen;
 use super::viewer::Viewer;
@@ -250,6 +251,7 @@ fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bo
     let session = &mut viewer.session;
     match key {
         'p' if control => viewer.panels.palette.toggle(),
+        'o' if control => viewer.execute(Command::Choose(Dialog::File)),
         'q' if control => viewer.execute(Command::Quit),
         'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
         'y' if control => viewer.execute(Command::Redo),

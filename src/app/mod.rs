@@ -4,6 +4,7 @@
 //! Panels, keys and dropped files change settings or send a `command`.
 
 mod command;
+mod dialog;
 mod editor;
 mod history;
 mod input;
@@ -13,7 +14,9 @@ mod numbers;
 mod palette;
 mod panels;
 mod playback;
+mod recent;
 mod screen;
+mod state;
 mod status;
 mod viewer;
 

@@ -4,17 +4,17 @@ mod messages;
 mod picture;
 mod recording;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::command::{Command, open_as};
-use super::editor;
 use super::history::History;
 use super::panels::PanelState;
 use super::playback::Playback;
 use super::status::{Notices, ShaderStatus};
 use super::{AppOptions, Early};
+use super::{dialog, editor};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::frame::{Revisions, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
@@ -28,7 +28,7 @@ use crate::settings::Settings;
 use crate::shader::{Change, Compiler, Diagnostic, Source};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
-use crate::threads::{Outbox, Threads};
+use crate::threads::{Message, Outbox, Threads};
 use picture::target;
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
@@ -63,6 +63,14 @@ pub(super) struct ModelStatus {
     files: Vec<PathBuf>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
+}
+
+impl ModelStatus {
+    /// Whether this file is on screen.
+    pub(super) fn is_open(&self, path: &Path) -> bool {
+        let shown = self.path.as_ref().and_then(|path| std::path::absolute(path).ok());
+        shown.is_some_and(|shown| shown == path)
+    }
 }
 
 /// The window's state apart from the screen.
@@ -103,6 +111,8 @@ pub(super) struct Viewer {
     ready: bool,
     /// The message about a lack of memory.
     shortage: Option<String>,
+    /// Whether the file dialog is open.
+    is_choosing: bool,
     pub(super) screenshot: bool,
     pub(super) quit: bool,
 }
@@ -151,6 +161,7 @@ impl Viewer {
             source: source.clone(),
             ready: false,
             shortage: None,
+            is_choosing: false,
             screenshot: false,
             quit: false,
         };
@@ -286,10 +297,14 @@ impl Viewer {
             }
             Command::Screenshot => self.screenshot = true,
             Command::Quit => self.quit = true,
-            Command::Edit(place) => {
-                if let Err(message) = editor::open(&place) {
-                    self.say(message);
-                }
+            Command::Edit(place) => match editor::open(&place) {
+                Ok(editor) => self.threads.wait(|| editor.failure().map(Message::Failed)),
+                Err(message) => self.say(message),
+            },
+            Command::Choose(_) if self.is_choosing => self.say("The file dialog is already open"),
+            Command::Choose(dialog) => {
+                self.is_choosing = true;
+                self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
             Command::Say(text) => self.say(text),
             Command::OpenTree(path) => {

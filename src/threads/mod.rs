@@ -31,6 +31,10 @@ pub(crate) enum Message {
     EndlessLoop([u32; 2], Option<Box<Diagnostic>>),
     /// Watched files outside the shader tree have changed.
     FilesChanged(BTreeSet<PathBuf>),
+    /// Work outside of Specula, such as the user's editor, has failed with this message.
+    Failed(String),
+    /// The file dialog has closed: the chosen path, none if the user cancels it, or a message if there is no dialog.
+    Chosen(Result<Option<PathBuf>, String>),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
 }
@@ -127,6 +131,13 @@ impl Threads {
         self.explainers.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
             outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
         }));
+    }
+
+    /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
+    /// window.
+    pub(crate) fn wait(&self, work: impl FnOnce() -> Option<Message> + Send + 'static) {
+        let outbox = self.outbox.clone();
+        std::thread::spawn(move || work().into_iter().for_each(|message| outbox.send(message)));
     }
 
     /// Watches a shader tree instead of the previous one. Changes go to the worker.

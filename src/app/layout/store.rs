@@ -1,22 +1,16 @@
 //! The arrangement of the panels on disk: `layout.json` in `specula` of the user's folder for state. It holds the tiles as
 //! `egui_tiles` writes them. A file that cannot be read, for example of another version, counts as absent.
 
-use std::path::PathBuf;
-
 use egui_tiles::{Tile, Tree};
 
 use super::Panel;
+use crate::app::state;
 
-/// `$XDG_STATE_HOME/specula/layout.json`, or the same in `~/.local/state`. `None` without a home folder.
-fn file() -> Option<PathBuf> {
-    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let base = set("XDG_STATE_HOME").or_else(|| set("HOME").map(|home| home.join(".local/state")))?;
-    Some(base.join("specula/layout.json"))
-}
+const FILE: &str = "layout.json";
 
 /// The stored arrangement.
 pub(super) fn load() -> Option<Tree<Panel>> {
-    parse(&std::fs::read_to_string(file()?).ok()?)
+    parse(&state::load(FILE)?)
 }
 
 /// An arrangement with the viewport, and with no panel twice.
@@ -30,19 +24,11 @@ fn parse(text: &str) -> Option<Tree<Panel>> {
     is_whole.then_some(tree)
 }
 
-/// Stores an arrangement. A failure costs only the arrangement, so it is traced and not reported.
+/// Stores an arrangement.
 pub(super) fn save(tree: &Tree<Panel>) {
-    let Some(path) = file() else { return };
-    let written = || -> std::io::Result<()> {
-        let text = serde_json::to_string(tree)?;
-        std::fs::create_dir_all(path.parent().unwrap_or(&path))?;
-        // Another window may read the file.
-        let new = path.with_extension(format!("{}.new", std::process::id()));
-        std::fs::write(&new, text)?;
-        std::fs::rename(&new, &path)
-    };
-    if let Err(error) = written() {
-        tracing::debug!("{}: the layout was not stored: {error}", path.display());
+    match serde_json::to_string(tree) {
+        Ok(text) => state::save(FILE, &text),
+        Err(error) => tracing::debug!("the layout was not stored: {error}"),
     }
 }
 

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum as _;
 
 use crate::app::command::Command;
+use crate::app::dialog::Dialog;
 use crate::app::layout::{Layout, Panel, Preset};
 use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
 use crate::app::panels::parameters::default_of;
-use crate::app::panels::passes::{is_effect, is_of_pass, is_switch};
+use crate::app::panels::passes::{internal, is_of_pass, is_switch};
 use crate::app::panels::rows::choice_name;
+use crate::app::recent::Kind;
 use crate::app::viewer::Viewer;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{LightSource, Settings, ShaderValue, Tonemap};
@@ -18,7 +20,7 @@ use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
 use crate::shader::{Mode, ShaderSet};
 
-/// What an entry does.
+/// The action of an entry.
 #[derive(Clone, Debug)]
 pub(super) enum Action {
     Mode(String),
@@ -157,29 +159,28 @@ pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
     entries
 }
 
-/// Environments and models: the built-in ones and the files that were open.
+/// Environments, models and shader trees: the built-in ones and the files that were open.
 fn files(viewer: &Viewer) -> impl Iterator<Item = Entry> {
-    let environment = |name: &str| {
-        let title = format!("Environment: {}", file_name(name));
-        Entry { words: name.to_owned(), ..Entry::new("Environment", title, Action::Environment(name.to_owned())) }
+    let entry = |group: &'static str, path: &Path, action: Action| {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let words = path.display().to_string();
+        Entry { words, ..Entry::new(group, format!("{group}: {name}"), action) }
     };
-    let recent = viewer.panels.environments.iter().map(String::as_str);
-    let model = |name: &str| {
-        let action = Action::Do(Command::OpenModel(PathBuf::from(name)));
-        Entry::new("Model", format!("Model: {}", file_name(name)), action)
-    };
-    let environments = BUILT_IN.into_iter().chain(["none"]).chain(recent).map(environment);
-    environments.chain(crate::scene::BUILT_IN.into_iter().map(model))
-}
-
-/// The last part of a path.
-fn file_name(path: &str) -> String {
-    Path::new(path).file_name().map_or_else(|| path.to_owned(), |name| name.to_string_lossy().into_owned())
+    let recent = &viewer.panels.recent;
+    let built_in = BUILT_IN.into_iter().chain(["none"]).map(PathBuf::from);
+    let environment = move |path: PathBuf| entry("Environment", &path, Action::Environment(path.display().to_string()));
+    let model = move |path: PathBuf| entry("Model", &path, Action::Do(Command::OpenModel(path.clone())));
+    let tree = move |path: PathBuf| entry("Shaders", &path, Action::Do(Command::OpenTree(path.clone())));
+    let environments = built_in.chain(recent.of(Kind::Environment).iter().cloned()).map(environment);
+    let models = crate::scene::BUILT_IN.into_iter().map(PathBuf::from).chain(recent.of(Kind::Model).iter().cloned());
+    environments.chain(models.map(model)).chain(recent.of(Kind::Tree).iter().cloned().map(tree))
 }
 
 /// Commands, panels and arrangements.
 pub(super) fn commands() -> Vec<Entry> {
     let commands = [
+        ("Open a file", "model environment shader measured BRDF", "Ctrl+O", Action::Do(Command::Choose(Dialog::File))),
+        ("Open a shader tree", "folder", "", Action::Do(Command::Choose(Dialog::Tree))),
         ("Frame the model", "camera", "R", Action::Do(Command::FrameModel)),
         ("Reload all shaders", "compile", "F5", Action::Do(Command::Reload)),
         ("Undo", "", "Ctrl+Z", Action::Do(Command::Undo)),
@@ -275,10 +276,11 @@ fn parameters(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings
 }
 
 fn passes(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
+    let internal = internal(shaders);
     for pass in shaders.graph.passes.iter().filter(|pass| pass.has_switch() && pass.note.when.is_none()) {
         let action = |on| Action::Pass(pass.name().to_owned(), on);
         let entry = switch("Pass", &pass.note.label, pass.name(), pass.is_wanted(&settings.passes), action);
-        entries.push(Entry { is_minor: !is_effect(shaders, pass), ..entry });
+        entries.push(Entry { is_minor: internal.contains(pass.name()), ..entry });
     }
 }
 

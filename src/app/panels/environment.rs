@@ -1,5 +1,7 @@
 //! The panel Environment: the map, its rotation and intensity, and whether it is visible.
 
+use std::path::PathBuf;
+
 use egui::{RichText, Ui};
 
 use super::QUIET;
@@ -9,12 +11,12 @@ use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{EnvironmentSettings, Settings, ViewSettings};
 
-/// Shows the panel. `recent` are the files that were shown, the newest first. `progress` is the fraction of the current bake that is
+/// Shows the panel. `recent`: files that were shown, the newest first. `progress` is the fraction of the current bake that is
 /// done, and its next pass.
 pub(super) fn show(
     ui: &mut Ui,
     settings: &mut Settings,
-    recent: &[String],
+    recent: &[PathBuf],
     progress: Option<&(f32, String)>,
     report: &BakeReport,
 ) {
@@ -37,14 +39,18 @@ pub(super) fn show(
 }
 
 /// The list of maps.
-fn map(ui: &mut Ui, environment: &mut EnvironmentSettings, recent: &[String]) {
+fn map(ui: &mut Ui, environment: &mut EnvironmentSettings, recent: &[PathBuf]) {
     let short = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
     let doc = "Environment map. Drop an .hdr or .exr file on the window to use it";
     let default = EnvironmentSettings::default().name;
     setting(ui, ("Map", doc, "environment.name"), &mut environment.name, default, |ui, name| {
         choose(ui, "environment", short(name), |ui| {
-            for choice in BUILT_IN.into_iter().chain(["none"]).chain(recent.iter().map(String::as_str)) {
-                ui.selectable_value(name, choice.to_owned(), short(choice)).on_hover_text(choice);
+            for choice in BUILT_IN.into_iter().chain(["none"]) {
+                ui.selectable_value(name, choice.to_owned(), choice);
+            }
+            for path in recent {
+                let choice = path.display().to_string();
+                ui.selectable_value(name, choice.clone(), short(&choice)).on_hover_text(choice);
             }
         })
     });

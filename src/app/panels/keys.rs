@@ -5,7 +5,7 @@ use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 21] = [
+const KEYS: [(&str, &str); 22] = [
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
@@ -22,6 +22,7 @@ const KEYS: [(&str, &str); 21] = [
     ("H", "hide the panels"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo and redo a change of the settings"),
     ("double click on a name", "reset the setting; the menu of the name copies its option"),
+    ("Ctrl+O", "open a model, environment or shader"),
     ("Ctrl+P", "find a mode, setting, panel or command"),
     ("F1, ?", "these keys"),
     ("F5", "compile everything again"),
@@ -30,8 +31,8 @@ const KEYS: [(&str, &str); 21] = [
 ];
 
 /// Width of the list in points, and of the column with the keys.
-const WIDTH: f32 = 500.0;
-const COLUMN: f32 = 180.0;
+const WIDTH: f32 = 540.0;
+const COLUMN: f32 = 210.0;
 /// Height of the title, the filter and the margins, in points.
 const AROUND: f32 = 90.0;
 
@@ -54,6 +55,8 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
     let is_new = !std::mem::replace(&mut list.is_shown, true);
     let room = egui.content_rect();
     let window = Window::new(RichText::new("Keys").strong()).open(open).collapsible(false).resizable(false);
+    // Above the cards over the picture.
+    let window = window.order(egui::Order::Foreground);
     window.pivot(egui::Align2::CENTER_CENTER).default_pos(room.center()).show(egui, |ui| {
         ui.set_width(WIDTH.min(room.width() - 40.0));
         let field = ui.add(TextEdit::singleline(&mut list.filter).hint_text("Filter").desired_width(f32::INFINITY));
@@ -86,7 +89,7 @@ fn row(ui: &mut Ui, keys: &str, meaning: &str) {
         let column = COLUMN.min(0.45 * ui.available_width());
         ui.allocate_ui(vec2(column, 16.0), |ui| {
             ui.set_width(column);
-            ui.add(Label::new(RichText::new(keys).monospace().small().color(ACCENT)).wrap());
+            ui.add(Label::new(RichText::new(keys).monospace().color(ACCENT)).wrap());
         });
         ui.add(Label::new(RichText::new(meaning).color(QUIET)).wrap());
     });

@@ -23,13 +23,11 @@ use egui::{Ui, Vec2};
 use super::command::Command;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
+use super::recent::{Kind, Recent};
 use super::viewer::Viewer;
 use crate::gpu::PassTime;
-use crate::scene::environment::BUILT_IN;
 use theme::{ACCENT, ERROR, QUIET, WARNING};
 
-/// Files of environments that the list keeps.
-const MOST_ENVIRONMENTS: usize = 8;
 /// A window smaller than this, in points, shows only the picture.
 const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
 
@@ -42,8 +40,8 @@ pub(super) struct PanelState {
     /// Whether the list of keys is shown (F1).
     pub(super) show_keys: bool,
     key_list: keys::KeyList,
-    /// Files of environments that were shown, the newest last.
-    pub(super) environments: Vec<String>,
+    /// Files that were open, in this run and before.
+    pub(super) recent: Recent,
     /// The search in the list of modes.
     search: String,
     /// Whether the warnings of the model are shown over the picture.
@@ -63,23 +61,12 @@ impl PanelState {
             palette: Palette::default(),
             show_keys: false,
             key_list: keys::KeyList::default(),
-            environments: Vec::new(),
+            recent: Recent::restored(),
             search: String::new(),
             show_model_warnings: true,
             scrolled_to: String::new(),
             timing: timing::Timing::default(),
             files: overlay::diagnostics::Files::default(),
-        }
-    }
-}
-
-impl PanelState {
-    /// Keeps an environment's file in the list.
-    fn remember(&mut self, environment: &str) {
-        let is_file = environment != "none" && !BUILT_IN.contains(&environment);
-        if is_file && !self.environments.iter().any(|known| known == environment) {
-            self.environments.push(environment.to_owned());
-            self.environments.drain(..self.environments.len().saturating_sub(MOST_ENVIRONMENTS));
         }
     }
 }
@@ -101,9 +88,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let whole = ui.max_rect();
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
-    viewer.panels.remember(&viewer.session.settings.environment.name);
     let picture = if viewer.panels.visible && has_room {
-        bars(ui, viewer);
+        bars(ui, viewer, commands);
         let mut layout = std::mem::take(&mut viewer.panels.layout);
         let picture = layout.show(ui, &mut |ui, shown| panel(ui, shown, viewer, commands));
         viewer.panels.layout = layout;
@@ -119,8 +105,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
 }
 
 /// The bars above and below the tiles.
-fn bars(ui: &mut Ui, viewer: &mut Viewer) {
-    top_bar::show(ui, &mut viewer.panels);
+fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
+    top_bar::show(ui, &mut viewer.panels, commands);
     let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
     let (shader, device) = (&viewer.shader, device(viewer));
     let diagnostics = &viewer.session.diagnostics;
@@ -146,7 +132,10 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     match panel {
         Panel::Viewport => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
-        Panel::Model => model::show(ui, settings, &model, &viewer.model, commands),
+        Panel::Model => {
+            let recent = viewer.panels.recent.of(Kind::Model);
+            model::show(ui, settings, &model, &viewer.model, recent, commands);
+        }
         Panel::Shaders => {
             shaders::show(ui, &viewer.shader, declared.generation, &session.diagnostics, cut_short, commands);
         }
@@ -155,7 +144,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
         Panel::Environment => {
             let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);
-            environment::show(ui, settings, &viewer.panels.environments, progress, report);
+            environment::show(ui, settings, viewer.panels.recent.of(Kind::Environment), progress, report);
         }
         Panel::Lights => lights::show(ui, settings, model.lights.len()),
         Panel::Output => output::show(ui, settings, commands),

@@ -1,5 +1,7 @@
 //! The panel Model: variant, material override, statistics, and the loader's warnings.
 
+use std::path::PathBuf;
+
 use egui::{RichText, Ui};
 
 use super::rows::{Row, check, choose, color, heading, number, setting};
@@ -15,9 +17,10 @@ pub(super) fn show(
     settings: &mut Settings,
     model: &Model,
     status: &ModelStatus,
+    recent: &[PathBuf],
     commands: &mut Vec<Command>,
 ) {
-    list(ui, model, status, commands);
+    list(ui, model, status, recent, commands);
     if !model.variants.is_empty() {
         let doc = "Variant of the model's materials (KHR_materials_variants)";
         let name = |variant: &str| if variant.is_empty() { "default materials" } else { variant }.to_owned();
@@ -39,8 +42,8 @@ pub(super) fn show(
 }
 
 /// The list of models.
-fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, commands: &mut Vec<Command>) {
-    let doc = "Built-in models. Drop a .gltf or .glb file on the window to open it";
+fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], commands: &mut Vec<Command>) {
+    let doc = "Built-in models, and files that were open. Drop a .gltf or .glb file on the window, or press Ctrl+O, to open another";
     let row = Row { name: "Model", doc, option: String::new(), is_changed: false, is_indented: false };
     row.show(ui, |ui| {
         let shown = if status.loading { "loading…" } else { model.name.as_str() };
@@ -48,6 +51,13 @@ fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, commands: &mut Vec<Com
             for name in BUILT_IN {
                 if ui.selectable_label(name == model.name, name).clicked() {
                     commands.push(Command::OpenModel(name.into()));
+                }
+            }
+            for path in recent {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let button = ui.selectable_label(status.is_open(path), name);
+                if button.on_hover_text(path.display().to_string()).clicked() {
+                    commands.push(Command::OpenModel(path.clone()));
                 }
             }
         })

@@ -30,18 +30,19 @@ pub(super) fn show(
             show_parameters(ui, of_switch, &switch.label, settings, &mut shown);
         }
     }
-    let (effects, internal): (Vec<&GraphPass>, Vec<&GraphPass>) =
-        own(shaders).partition(|pass| is_effect(shaders, pass));
+    let names = internal(shaders);
+    let (inside, effects): (Vec<&GraphPass>, Vec<&GraphPass>) =
+        own(shaders).partition(|pass| names.contains(pass.name()));
     for pass in effects {
         if show_switch(ui, pass, settings) {
-            show_parameters(ui, of_effect(shaders, pass), &pass.note.label, settings, &mut shown);
+            show_parameters(ui, of_effect(shaders, pass, &names), &pass.note.label, settings, &mut shown);
         }
     }
-    if !internal.is_empty() {
-        let title = RichText::new(format!("Internal passes ({})", internal.len())).small().color(QUIET);
+    if !inside.is_empty() {
+        let title = RichText::new(format!("Internal passes ({})", inside.len())).small().color(QUIET);
         let header = CollapsingHeader::new(title).id_salt("internal passes");
         let header = header.show_unindented(ui, |ui| {
-            for pass in internal {
+            for pass in inside {
                 let _ = show_switch(ui, pass, settings);
             }
         });
@@ -58,13 +59,12 @@ fn own(shaders: &ShaderSet) -> impl Iterator<Item = &GraphPass> {
     shaders.graph.passes.iter().map(|pass| &**pass).filter(has_own)
 }
 
-/// Whether a pass changes the picture itself, or works for no other pass.
-pub(in crate::app) fn is_effect(shaders: &ShaderSet, pass: &GraphPass) -> bool {
-    let is_used = |index: usize| {
-        let other = &shaders.graph.passes[index];
-        other.name() != pass.name() && needs(shaders, other).any(|needed| needed.name() == pass.name())
-    };
-    pass.name() != MODEL && (pass.note.to_picture() || !(0..shaders.graph.passes.len()).any(is_used))
+/// The names of the passes that only work for others: they do not change the picture, and another pass needs them.
+pub(in crate::app) fn internal(shaders: &ShaderSet) -> BTreeSet<&str> {
+    let passes = || shaders.graph.passes.iter().map(|pass| &**pass);
+    let needed = passes().flat_map(|pass| needs(shaders, pass).filter(|needed| needed.name() != pass.name()));
+    let needed: BTreeSet<&str> = needed.filter(|needed| !needed.note.to_picture()).map(GraphPass::name).collect();
+    passes().map(GraphPass::name).filter(|name| *name == MODEL || needed.contains(name)).collect()
 }
 
 /// A pass and those whose images and buffers it needs.
@@ -99,8 +99,8 @@ fn of_switch<'a>(shaders: &'a ShaderSet, switch: &Constant) -> Vec<&'a Parameter
 }
 
 /// The parameters in the uniform blocks of an effect and of the internal passes that it needs.
-fn of_effect<'a>(shaders: &'a ShaderSet, effect: &GraphPass) -> Vec<&'a Parameter> {
-    let is_its = |pass: &&GraphPass| pass.name() == effect.name() || !is_effect(shaders, pass);
+fn of_effect<'a>(shaders: &'a ShaderSet, effect: &GraphPass, internal: &BTreeSet<&str>) -> Vec<&'a Parameter> {
+    let is_its = |pass: &&GraphPass| pass.name() == effect.name() || internal.contains(pass.name());
     let passes: Vec<_> = needs(shaders, effect).filter(|pass| pass.note.when.is_none()).filter(is_its).collect();
     let in_block = |parameter: &&Parameter| {
         parameter.offset.is_none() && passes.iter().any(|pass| pass.has_parameter(&parameter.name))
