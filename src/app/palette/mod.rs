@@ -133,7 +133,7 @@ fn list(ui: &mut Ui, palette: &mut Palette, entries: &[Entry], rows: usize) -> O
     choose(palette, chosen?)
 }
 
-/// What stands at the right of a title: the key, or the number that the query sets.
+/// The text at the right of a title: the key, or the number that the query sets.
 fn note(found: &Found<'_>) -> String {
     match (&found.entry.action, found.typed) {
         (Action::Number(ask), Some(typed)) => {

@@ -13,7 +13,7 @@ use crate::settings::{LightSource, Settings, Tonemap};
 /// Height of a row, in points.
 const HEIGHT: f32 = 18.0;
 /// Width of the names, in points. Names become narrower before the controls do.
-const NAME: std::ops::RangeInclusive<f32> = 64.0..=120.0;
+const NAME: std::ops::RangeInclusive<f32> = 84.0..=120.0;
 /// Points by which the name of an indented row moves.
 const INDENT: f32 = 10.0;
 /// Points that names leave to the controls while they can.
@@ -100,7 +100,7 @@ impl Row<'_> {
 
 /// An option of the command line. The font of the other texts shows two hyphens as one dash.
 pub(super) fn option_text(option: &str) -> RichText {
-    RichText::new(option).monospace().small()
+    RichText::new(option).monospace().size(11.5)
 }
 
 /// A heading above rows.
@@ -248,7 +248,13 @@ pub(super) fn check(ui: &mut Ui, on: &mut bool) -> Response {
 
 /// A color picker for linear RGB.
 pub(super) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
-    egui::widgets::color_picker::color_edit_button_rgb(ui, linear)
+    // The picker rounds the color that it is given, also while nobody uses it.
+    let mut edited = *linear;
+    let response = egui::widgets::color_picker::color_edit_button_rgb(ui, &mut edited);
+    if response.changed() {
+        *linear = edited;
+    }
+    response
 }
 
 #[cfg(test)]
@@ -288,6 +294,17 @@ mod tests {
             });
         }
         reach
+    }
+
+    #[test]
+    fn a_color_that_nobody_edits_stays_as_it_is() {
+        let egui = egui::Context::default();
+        let before = [1.0, 0.93, 0.82];
+        let mut linear = before;
+        for _ in 0..2 {
+            let _ = egui.run_ui(egui::RawInput::default(), |ui| drop(color(ui, &mut linear)));
+        }
+        assert_eq!(linear, before);
     }
 
     #[test]

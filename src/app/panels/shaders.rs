@@ -19,7 +19,7 @@ pub(super) fn show(
     cut_short: bool,
     commands: &mut Vec<Command>,
 ) {
-    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+    let bar = |ui: &mut Ui| {
         // The button first, so that a long text in a narrow column is elided beside it.
         if ui.button("Reload").on_hover_text("Compile everything again (F5)").clicked() {
             commands.push(Command::Reload);
@@ -30,7 +30,8 @@ pub(super) fn show(
             let text = if errors > 0 && !status.compiling { text.color(ERROR) } else { text };
             ui.add(Label::new(text).truncate()).on_hover_text(hover);
         });
-    });
+    };
+    ui.horizontal(|ui| ui.with_layout(Layout::right_to_left(Align::Center), bar));
     tree(ui, status, commands);
     let (edit, times, hover) = status.last.as_ref().map(lines).unwrap_or_default();
     for line in [edit, times] {

@@ -32,7 +32,7 @@ impl Files {
     }
 }
 
-/// What the card shows.
+/// Contents of the card.
 pub(super) struct Shown<'a> {
     pub(super) diagnostics: &'a [Diagnostic],
     /// Whether one of them is about a loop that did not end.

@@ -112,7 +112,13 @@ fn label(egui: &egui::Context, readings: &Readings, picture: Rect) {
             let mono = TextStyle::Monospace.resolve(ui.style());
             let color = ui.visuals().text_color();
             if let Some(value) = &readings.value {
-                ui.label(wrapped(ui, value, mono.clone(), color, picture.width()));
+                let galley = wrapped(ui, value, mono.clone(), color, picture.width());
+                // The position of the pixel goes to the next line as a whole.
+                let galley = match galley.rows.len() {
+                    1 => galley,
+                    _ => wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, picture.width()),
+                };
+                ui.label(galley);
             }
         });
     });
@@ -127,7 +133,7 @@ fn wrapped(ui: &Ui, text: &str, font: FontId, color: Color32, width: f32) -> Arc
 
 fn area(id: Id, corner: Align2, picture: Rect) -> Area {
     let at = corner.pos_in_rect(&picture.shrink(MARGIN));
-    Area::new(id).order(Order::Foreground).pivot(corner).fixed_pos(at).constrain_to(picture)
+    Area::new(id).order(Order::Middle).pivot(corner).fixed_pos(at).constrain_to(picture)
 }
 
 fn card(edge: Color32) -> Frame {
