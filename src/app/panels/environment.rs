@@ -50,7 +50,12 @@ fn map(ui: &mut Ui, environment: &mut EnvironmentSettings, recent: &[PathBuf]) {
             }
             for path in recent {
                 let choice = path.display().to_string();
-                ui.selectable_value(name, choice.clone(), short(&choice)).on_hover_text(choice);
+                // The command line may name the same file by a relative path.
+                let is_shown = std::path::absolute(&*name).is_ok_and(|shown| shown == *path);
+                let label = ui.selectable_label(is_shown, short(&choice)).on_hover_text(&choice);
+                if label.clicked() && !is_shown {
+                    *name = choice;
+                }
             }
         })
     });

@@ -58,7 +58,8 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
 /// Shows the row of a constant.
 pub(super) fn show_constant(ui: &mut Ui, constant: &Constant, values: &mut Values) {
     let Constant { name, label, doc, choices, .. } = constant;
-    let about = About { name, label, doc, choices, is_indented: false };
+    let (default, is_switch) = (&[default_of(constant)], constant.scalar == Scalar::Bool);
+    let about = About { name, label, doc, choices, default, is_switch, is_indented: false };
     setting(ui, &about, values, |ui, value| edit_constant(ui, constant, value));
 }
 
@@ -66,7 +67,8 @@ pub(super) fn show_constant(ui: &mut Ui, constant: &Constant, values: &mut Value
 pub(super) fn show_parameter(ui: &mut Ui, parameter: &Parameter, values: &mut Values, effect: Option<&str>) {
     let Parameter { name, label, doc, choices, .. } = parameter;
     let label = label_below(label, effect.unwrap_or_default());
-    let about = About { name, label: &label, doc, choices, is_indented: effect.is_some() };
+    let (default, is_switch) = (&parameter.default, parameter.kind == ParameterType::Bool);
+    let about = About { name, label: &label, doc, choices, default, is_switch, is_indented: effect.is_some() };
     setting(ui, &about, values, |ui, value| edit_parameter(ui, parameter, value));
 }
 
@@ -84,6 +86,9 @@ struct About<'a> {
     label: &'a str,
     doc: &'a str,
     choices: &'a [(String, i64)],
+    /// A number for each component.
+    default: &'a [f64],
+    is_switch: bool,
     is_indented: bool,
 }
 
@@ -96,10 +101,8 @@ fn setting(
 ) {
     let About { name, label, doc, is_indented, .. } = *about;
     let value = values.get(name).cloned();
-    // Without a value, the option begins with the name.
-    let option =
-        value.as_ref().map_or_else(|| format!("--set {name}"), |value| set_option(name, &option_of(value, about)));
-    let row = Row { name: label, doc, option, is_changed: value.is_some(), is_indented };
+    let now = value.as_ref().map_or_else(|| default_text(about), |value| option_of(value, about));
+    let row = Row { name: label, doc, option: set_option(name, &now), is_changed: value.is_some(), is_indented };
     let mut new = None;
     let resets = row.show(ui, |ui| {
         let (edited, response) = control(ui, value.as_ref());
@@ -111,6 +114,16 @@ fn setting(
     } else if let Some(new) = new {
         values.insert(name.to_owned(), new);
     }
+}
+
+/// The default as `--set` takes it.
+fn default_text(about: &About<'_>) -> String {
+    let value = match about.default {
+        [number] if about.is_switch => ShaderValue::Bool(*number != 0.0),
+        [number] if !about.choices.is_empty() => ShaderValue::Int(*number as i64),
+        numbers => ShaderValue::Vector(numbers.to_vec()),
+    };
+    option_of(&value, about)
 }
 
 /// A value as `--set` takes it.
@@ -225,7 +238,19 @@ fn choose(ui: &mut Ui, id: &str, choices: &[(String, i64)], number: &mut f64) ->
 
 #[cfg(test)]
 mod tests {
-    use super::label_below;
+    use super::*;
+
+    #[test]
+    fn an_untouched_setting_has_the_option_of_its_default() {
+        let choices = [("GGX".to_owned(), 0), ("Beckmann".to_owned(), 1)];
+        let text = |default: &[f64], choices, is_switch| {
+            default_text(&About { name: "x", label: "", doc: "", choices, default, is_switch, is_indented: false })
+        };
+        assert_eq!(text(&[1.0], &choices, false), "Beckmann");
+        assert_eq!(text(&[1.0], &[], true), "true");
+        assert_eq!(text(&[0.12], &[], false), "0.12");
+        assert_eq!(text(&[1.0, 0.8, 0.6], &[], false), "1,0.8,0.6");
+    }
 
     #[test]
     fn a_label_does_not_repeat_its_effect() {

@@ -64,7 +64,7 @@ impl Row<'_> {
                 ui.add_space(INDENT);
             }
             // The hover text begins with the whole name.
-            ui.add(Label::new(text).truncate().show_tooltip_when_elided(false).sense(Sense::click()))
+            ui.add(Label::new(text).truncate().show_tooltip_when_elided(false).selectable(false).sense(Sense::click()))
         };
         ui.allocate_ui_with_layout(size, Layout::left_to_right(egui::Align::Center), label).inner
     }
@@ -106,7 +106,7 @@ pub(super) fn option_text(option: &str) -> RichText {
 /// A heading above rows.
 pub(super) fn heading(ui: &mut Ui, text: &str) {
     ui.add_space(4.0);
-    ui.label(RichText::new(text).small().color(QUIET));
+    ui.add(Label::new(RichText::new(text).small().color(QUIET)).selectable(false));
 }
 
 /// A value of a setting as `--set` takes it.
