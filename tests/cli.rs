@@ -340,8 +340,8 @@ fn a_picture_is_a_look_file() {
     let directory = directory();
     let here = directory.path();
     fs::write(here.join("ball.glb"), glb::model(&glb::sphere(16, 32), &glb::gray())).unwrap();
-    let options = ["--background", "#102030", "--azimuth", "70", "--mode", "n", "--set", "NDF=Beckmann"];
-    render(here, "ball.glb", &options[..4]).expect(0, &[]);
+    let options = ["--background", "#102030", "--set", "camera.azimuth=70", "--set", "NDF=Beckmann"];
+    render(here, "ball.glb", &options).expect(0, &[]);
     let first = fs::read(here.join("out.png")).unwrap();
     fs::rename(here.join("out.png"), here.join("first.png")).unwrap();
     render(here, "ball.glb", &["--look", "first.png"]).expect(0, &[]);

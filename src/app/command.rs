@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::dialog::Dialog;
 use super::editor::Place;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
@@ -39,6 +40,8 @@ pub(super) enum Command {
     WriteVersion(u64),
     /// Open a file or folder in the user's editor.
     Edit(Place),
+    /// Let the user choose a file or folder to open.
+    Choose(Dialog),
     /// Open a shader tree.
     OpenTree(PathBuf),
     /// Open a model.

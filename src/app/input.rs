@@ -8,6 +8,7 @@ use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
 use super::command::{Command, CompareWith};
+use super::dialog::Dialog;
 use super::keys;
 use super::screen::Screen;
 use super::viewer::Viewer;
@@ -54,8 +55,11 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             if is_space && !pressed && viewer.hold_reference(false) {
                 return true;
             }
-            // The search of the palette has the keys from the moment it opens, which may be before egui knows.
-            let taken = (taken || viewer.panels.palette.is_open()) && !is_function_key(&event.logical_key);
+            // The search of the palette has the keys from the moment it opens, which may be before egui knows. The key that opens
+            // it also closes it.
+            let is_open_key =
+                is_function_key(&event.logical_key) || opens_palette(&event.logical_key, screen.mouse.modifiers);
+            let taken = (taken || viewer.panels.palette.is_open()) && !is_open_key;
             if !pressed || (reads_keys && !is_shortcut(&event.logical_key, screen.mouse.modifiers)) {
                 // A press that winit makes up when the window gets the focus is none for shaders.
                 let counts = !pressed || !(taken || event.repeat || *is_synthetic);
@@ -193,6 +197,11 @@ fn is_function_key(key: &Key) -> bool {
     matches!(key, Key::Named(NamedKey::F1 | NamedKey::F5 | NamedKey::F12))
 }
 
+/// Whether a key opens and closes the palette.
+fn opens_palette(key: &Key, modifiers: ModifiersState) -> bool {
+    modifiers.control_key() && matches!(key, Key::Character(text) if text.eq_ignore_ascii_case("p"))
+}
+
 /// Whether a key remains Specula's while the picture reads keys.
 fn is_shortcut(key: &Key, modifiers: ModifiersState) -> bool {
     match key {
@@ -223,6 +232,7 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
         Key::Named(NamedKey::F1) => viewer.panels.show_keys ^= true,
         Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
         Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
+        Key::Named(NamedKey::Escape) if viewer.panels.show_keys => viewer.panels.show_keys = false,
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {
@@ -245,6 +255,7 @@ fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bo
             let with = if viewer.compare.is_on() { CompareWith::Nothing } else { CompareWith::ThisPicture };
             viewer.execute(Command::Compare(with));
         }
+        'o' if control => viewer.execute(Command::Choose(Dialog::File)),
         'q' if control => viewer.execute(Command::Quit),
         'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
         'y' if control => viewer.execute(Command::Redo),

@@ -4,16 +4,20 @@
 //! Panels, keys and dropped files change settings or send a `command`.
 
 mod command;
+mod dialog;
 mod difference;
 mod editor;
 mod history;
 mod input;
 mod keys;
 mod layout;
+mod numbers;
 mod palette;
 mod panels;
 mod playback;
+mod recent;
 mod screen;
+mod state;
 mod status;
 mod viewer;
 

@@ -1,5 +1,6 @@
 //! State that the panels show but do not change.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::events::ReloadEvent;
@@ -13,6 +14,8 @@ const NOTICE: Duration = Duration::from_secs(6);
 pub(super) struct ShaderStatus {
     /// Name of the tree: its folder, or that of the built-in tree.
     pub(super) tree: String,
+    /// Folder or file of a tree on disk.
+    pub(super) location: Option<PathBuf>,
     /// Whether a compile is under way.
     pub(super) compiling: bool,
     /// The last finished reload.

@@ -6,21 +6,22 @@ mod picture;
 mod recording;
 mod versions;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::command::{Command, open_as};
-use super::editor;
 use super::history::History;
 use super::panels::PanelState;
 use super::playback::Playback;
 use super::status::{Notices, ShaderStatus};
 use super::{AppOptions, Early};
+use super::{dialog, editor};
 use crate::events::{Event, ReloadEvent, emit};
 use crate::frame::{Clock, Revisions, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
+use crate::picture::read_settings;
 use crate::pipeline::endless_loop;
 use crate::recovery::Recorder;
 use crate::render::{BoundFrame, Resources};
@@ -30,7 +31,7 @@ use crate::settings::Settings;
 use crate::shader::{Change, Compiler, Diagnostic, Source};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
-use crate::threads::{Outbox, Threads};
+use crate::threads::{Message, Outbox, Threads};
 pub(super) use compare::{Compare, Difference, Reference};
 use picture::target;
 pub(super) use picture::value_text;
@@ -72,6 +73,14 @@ pub(super) struct ModelStatus {
     pub(super) load_ms: f64,
 }
 
+impl ModelStatus {
+    /// Whether this file is on screen.
+    pub(super) fn is_open(&self, path: &Path) -> bool {
+        let shown = self.path.as_ref().and_then(|path| std::path::absolute(path).ok());
+        shown.is_some_and(|shown| shown == path)
+    }
+}
+
 /// The window's state apart from the screen.
 pub(super) struct Viewer {
     pub(super) session: Session,
@@ -111,6 +120,8 @@ pub(super) struct Viewer {
     ready: bool,
     /// The message about a lack of memory.
     shortage: Option<String>,
+    /// Whether the file dialog is open.
+    is_choosing: bool,
     pub(super) screenshot: bool,
     pub(super) quit: bool,
 }
@@ -160,6 +171,7 @@ impl Viewer {
             source: source.clone(),
             ready: false,
             shortage: None,
+            is_choosing: false,
             screenshot: false,
             quit: false,
         };
@@ -291,10 +303,14 @@ impl Viewer {
             }
             Command::Screenshot => self.screenshot = true,
             Command::Quit => self.quit = true,
-            Command::Edit(place) => {
-                if let Err(message) = editor::open(&place) {
-                    self.say(message);
-                }
+            Command::Edit(place) => match editor::open(&place) {
+                Ok(editor) => self.threads.wait(|| editor.failure().map(Message::Say)),
+                Err(message) => self.say(message),
+            },
+            Command::Choose(_) if self.is_choosing => self.say("The file dialog is already open"),
+            Command::Choose(dialog) => {
+                self.is_choosing = true;
+                self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
             Command::Say(text) => self.say(text),
             Command::Compare(with) => self.compare_with(with),
@@ -308,7 +324,9 @@ impl Viewer {
             }
             Command::OpenModel(path) => self.load_model(Some(path)),
             Command::OpenEnvironment(path) => self.session.settings.environment.name = path.display().to_string(),
-            Command::OpenLook(path) => self.threads.read_look(path),
+            Command::OpenLook(path) => {
+                self.threads.wait(move || Some(Message::Look(read_settings(&path).map(Box::new))));
+            }
             Command::OpenMeasured(path) => {
                 self.session.settings.measured = path.display().to_string();
                 self.session.settings.mode = "measured".into();

@@ -18,7 +18,6 @@ use crate::comparison::{Comparison, Picture};
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
-use crate::picture;
 use crate::render::{Capture, TraceKey};
 use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
@@ -41,6 +40,8 @@ pub(crate) enum Message {
     Look(Result<Box<Settings>, String>),
     /// A message for the user.
     Say(String),
+    /// The file dialog has closed: the chosen path, none if the user cancels it, or a message if there is no dialog.
+    Chosen(Result<Option<PathBuf>, String>),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
 }
@@ -131,27 +132,14 @@ impl Threads {
         }
     }
 
-    /// Tells the user the message that `work` returns, which runs on a thread of its own.
-    pub(crate) fn say(&self, work: impl FnOnce() -> String + Send + 'static) {
-        let outbox = self.outbox.clone();
-        std::thread::spawn(move || outbox.send(Message::Say(work())));
-    }
-
-    /// Reads the settings of a look file on a thread of its own.
-    pub(crate) fn read_look(&self, path: PathBuf) {
-        let outbox = self.outbox.clone();
-        std::thread::spawn(move || outbox.send(Message::Look(picture::read_settings(&path).map(Box::new))));
-    }
-
     /// Compares two pictures on a thread of its own.
     pub(crate) fn compare(&self, pictures: [Capture; 2]) {
-        let outbox = self.outbox.clone();
-        std::thread::spawn(move || {
+        self.wait(move || {
             let of = |capture: Capture| RgbaImage::from_raw(capture.width, capture.height, capture.rgba8);
             let [a, b] = pictures.map(|capture| of(capture).map(Picture::Display));
             let compared = a.zip(b).ok_or_else(|| "a picture was not read whole".to_owned());
             let compared = compared.and_then(|(a, b)| Comparison::new(&a, &b));
-            outbox.send(Message::Compared(compared.map(Box::new)));
+            Some(Message::Compared(compared.map(Box::new)))
         });
     }
 
@@ -161,6 +149,13 @@ impl Threads {
         self.explainers.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
             outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
         }));
+    }
+
+    /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
+    /// window.
+    pub(crate) fn wait(&self, work: impl FnOnce() -> Option<Message> + Send + 'static) {
+        let outbox = self.outbox.clone();
+        std::thread::spawn(move || work().into_iter().for_each(|message| outbox.send(message)));
     }
 
     /// Watches a shader tree instead of the previous one. Changes go to the worker.

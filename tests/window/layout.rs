@@ -1,10 +1,14 @@
 //! The arrangement of the panels, and the command palette.
 
-use super::controls::choose;
-use crate::support::Tree;
+use image::RgbaImage;
+use serde_json::{Value, json};
+
+use super::controls::{ACCENT, TILES, choose, count};
 use crate::support::window::Viewer;
+use crate::support::{Tree, glb};
 
 const LAYOUT: &str = "state/specula/layout.json";
+const RECENT: &str = "state/specula/recent.json";
 
 fn open(layout: Option<&str>) -> Viewer {
     let tree = Tree::new();
@@ -84,10 +88,93 @@ fn the_palette_reaches_modes_switches_and_commands() {
     choose(&viewer, "hide panels");
     viewer.until("the whole window", |shot| shot.dimensions() == (1000, 480));
     viewer.key("h");
-    // Nothing is chosen by words that no entry has, and Escape closes the palette alone.
+    // Nothing is chosen by words that no entry has. The key that opens the palette closes it, and so does Escape, alone.
+    viewer.key("n");
+    viewer.until("shading normals again", |shot| *shot == normals);
     choose(&viewer, "no such entry");
     viewer.key("ctrl+p");
+    viewer.key("ctrl+p");
     viewer.key("Escape");
-    viewer.until("the picture, as before", |shot| *shot == picture);
+    assert!(viewer.screenshot() == normals, "Escape reached the window behind the palette");
+    viewer.key("n");
+    viewer.until("the picture, by a letter that no palette takes", |shot| *shot == picture);
+    viewer.quit();
+}
+
+#[test]
+fn the_palette_sets_numbers() {
+    let mut viewer = open(None);
+    let picture = viewer.screenshot();
+    choose(&viewer, "expsoure -2 EV");
+    viewer.until("a darker picture", |shot| brightness(shot) < 0.6 * brightness(&picture));
+    let dark = viewer.screenshot();
+    choose(&viewer, "undo");
+    viewer.until("the picture, undone", |shot| *shot == picture);
+    // The number of a parameter of the shaders, in a second step. A value out of range is not taken.
+    choose(&viewer, "roughness scale");
+    assert!(viewer.screenshot() == picture, "a number without a value changed the picture");
+    viewer.display.xdotool(&["type", "7"]);
+    viewer.key("Return");
+    assert!(viewer.screenshot() == picture, "a value out of range was taken");
+    viewer.key("BackSpace");
+    viewer.display.xdotool(&["type", "0.1"]);
+    viewer.key("Return");
+    viewer.until("a smoother model", |shot| *shot != picture && *shot != dark);
+    viewer.quit();
+}
+
+/// Sum of all channels.
+fn brightness(shot: &RgbaImage) -> f64 {
+    shot.pixels().flat_map(|pixel| pixel.0[..3].to_vec()).map(f64::from).sum()
+}
+
+#[test]
+fn escape_closes_the_list_of_keys_alone() {
+    let mut viewer = open(None);
+    let picture = viewer.screenshot();
+    // Roughness is gray, so that only the keys in the list have the color of links.
+    viewer.key("u");
+    viewer.until("roughness", |shot| *shot != picture);
+    let roughness = viewer.screenshot();
+    let keys = |screen: &RgbaImage| count(screen, 240..660, TILES, ACCENT);
+    let before = keys(&viewer.screen());
+    viewer.key("F1");
+    viewer.until_screen("the list of keys", |screen| keys(screen) > before + 600);
+    // The letters are the filter's.
+    viewer.display.xdotool(&["type", "undo"]);
+    viewer.until_screen("one row", |screen| (before + 30..before + 400).contains(&keys(screen)));
+    viewer.key("Escape");
+    viewer.until_screen("no list", |screen| keys(screen) <= before);
+    assert!(viewer.screenshot() == roughness, "Escape changed the mode, or the filter's letters did");
+    viewer.key("Escape");
+    viewer.until("the picture", |shot| *shot == picture);
+    viewer.quit();
+}
+
+/// The files of earlier runs are in the palette, apart from those that are gone. An opened one comes first.
+#[test]
+fn files_that_were_open_are_offered() {
+    let tree = Tree::new();
+    let [model, other] = ["model.glb", "other.glb"].map(|name| tree.beside(name));
+    std::fs::write(&model, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    std::fs::write(&other, glb::model(&glb::sphere(8, 16), &glb::gray())).unwrap();
+    std::fs::create_dir_all(tree.beside("state/specula")).unwrap();
+    let recent = tree.beside(RECENT);
+    let stored = json!({ "models": [tree.beside("gone.glb"), other, model] });
+    std::fs::write(&recent, stored.to_string()).unwrap();
+    let mut viewer = Viewer::open(tree, &["sphere-grid", "--size", "1000x480"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    choose(&viewer, "model gone");
+    assert!(viewer.screenshot() == first, "a file that is gone was offered");
+    viewer.key("ctrl+p");
+    viewer.screenshot();
+    choose(&viewer, "model: model.glb");
+    viewer.until("the model", |shot| *shot != first);
+    let models = || {
+        let stored: Value = serde_json::from_str(&std::fs::read_to_string(&recent).unwrap()).unwrap();
+        stored["models"].clone()
+    };
+    viewer.until("the list of models", |_| models() == json!([model, other]));
     viewer.quit();
 }

@@ -1,12 +1,13 @@
 //! The arrangement of the panels on disk: `layout.json` in `specula` of the user's folder for state. It holds the tiles as
 //! `egui_tiles` writes them. A file that cannot be read, for example of another version, counts as absent.
 
-use std::path::PathBuf;
-
 use egui_tiles::{Tile, Tree};
 use serde::{Deserialize, Serialize};
 
 use super::Panel;
+use crate::app::state;
+
+const FILE: &str = "layout.json";
 
 /// The content of the file.
 #[derive(Serialize, Deserialize)]
@@ -19,16 +20,9 @@ pub(super) struct Stored {
     pub(super) own: Option<Tree<Panel>>,
 }
 
-/// `$XDG_STATE_HOME/specula/layout.json`, or the same in `~/.local/state`. `None` without a home folder.
-fn file() -> Option<PathBuf> {
-    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let base = set("XDG_STATE_HOME").or_else(|| set("HOME").map(|home| home.join(".local/state")))?;
-    Some(base.join("specula/layout.json"))
-}
-
 /// The stored arrangement.
 pub(super) fn load() -> Option<Stored> {
-    parse(&std::fs::read_to_string(file()?).ok()?)
+    parse(&state::load(FILE)?)
 }
 
 fn parse(text: &str) -> Option<Stored> {
@@ -46,19 +40,11 @@ fn is_whole(tree: &Tree<Panel>) -> bool {
         && Panel::GROUPS.concat().iter().all(|panel| panels(panel) <= 1)
 }
 
-/// Stores an arrangement. A failure costs only the arrangement, so it is traced and not reported.
+/// Stores an arrangement.
 pub(super) fn save(stored: &Stored) {
-    let Some(path) = file() else { return };
-    let written = || -> std::io::Result<()> {
-        let text = serde_json::to_string(stored)?;
-        std::fs::create_dir_all(path.parent().unwrap_or(&path))?;
-        // Another window may read the file.
-        let new = path.with_extension(format!("{}.new", std::process::id()));
-        std::fs::write(&new, text)?;
-        std::fs::rename(&new, &path)
-    };
-    if let Err(error) = written() {
-        tracing::debug!("{}: the layout was not stored: {error}", path.display());
+    match serde_json::to_string(stored) {
+        Ok(text) => state::save(FILE, &text),
+        Err(error) => tracing::debug!("the layout was not stored: {error}"),
     }
 }
 

@@ -1,53 +1,78 @@
 //! The panel Environment: the map, its rotation and intensity, and whether it is visible.
 
-use egui::{RichText, Slider, Ui};
+use std::path::PathBuf;
 
-use super::{QUIET, angle, row, slide};
+use egui::{RichText, Ui};
+
+use super::QUIET;
+use super::rows::{Row, check, choose, number, set_option, setting};
+use crate::app::numbers::{BLUR, INTENSITY, ROTATION};
 use crate::render::BakeReport;
 use crate::scene::environment::BUILT_IN;
-use crate::settings::Settings;
+use crate::settings::{EnvironmentSettings, Settings, ViewSettings};
 
-/// Shows the panel. `recent` are the files that were shown. `progress` is the fraction of the current bake that is done, and its next
-/// pass.
+/// Shows the panel. `recent`: files that were shown, the newest first. `progress` is the fraction of the current bake that is
+/// done, and its next pass.
 pub(super) fn show(
     ui: &mut Ui,
     settings: &mut Settings,
-    recent: &[String],
+    recent: &[PathBuf],
     progress: Option<&(f32, String)>,
     report: &BakeReport,
 ) {
-    let environment = &mut settings.environment;
-    let short = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-    row(ui, "Map", "Environment map (--env). Drop an .hdr or .exr file on the window to use it", |ui| {
-        let shown = short(&environment.name);
-        egui::ComboBox::from_id_salt("environment").selected_text(shown).width(150.0).truncate().show_ui(ui, |ui| {
-            for name in BUILT_IN.into_iter().chain(["none"]).chain(recent.iter().map(String::as_str)) {
-                ui.selectable_value(&mut environment.name, name.to_owned(), short(name)).on_hover_text(name);
-            }
-        });
-    });
+    map(ui, &mut settings.environment, recent);
+    let is_lit = settings.environment.is_lit();
     // A row of the same height in every state, so that the rows below keep their place.
     ui.allocate_ui(egui::vec2(ui.available_width(), 16.0), |ui| {
         ui.set_min_height(16.0);
         if let Some((done, next)) = progress {
             ui.add(egui::ProgressBar::new(*done).desired_height(16.0).text(RichText::new(next).small()));
-        } else if environment.is_lit() && report.total_ms > 0.0 {
-            let from = if report.cached { "from the disk" } else { "baked" };
+        } else if is_lit && report.total_ms > 0.0 {
+            let from = if report.cached { "Read from the disk" } else { "Baked" };
             ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));
         }
     });
-    angle(ui, "Rotation", "Rotation around +Y in degrees", &mut environment.rotation, -180.0..=180.0);
-    row(ui, "Intensity", "Factor on the map, whose values are cd/m^2", |ui| {
-        slide(ui, Slider::new(&mut environment.intensity, 0.0..=8.0).max_decimals(2));
+    number(ui, settings, &ROTATION);
+    number(ui, settings, &INTENSITY);
+    visible(ui, &mut settings.view, is_lit);
+    number(ui, settings, &BLUR);
+}
+
+/// The list of maps.
+fn map(ui: &mut Ui, environment: &mut EnvironmentSettings, recent: &[PathBuf]) {
+    let short = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+    let doc = "Environment map. Drop an .hdr or .exr file on the window to use it";
+    let default = EnvironmentSettings::default().name;
+    setting(ui, ("Map", doc, "environment.name"), &mut environment.name, default, |ui, name| {
+        choose(ui, "environment", short(name), |ui| {
+            for choice in BUILT_IN.into_iter().chain(["none"]) {
+                ui.selectable_value(name, choice.to_owned(), choice);
+            }
+            for path in recent {
+                let choice = path.display().to_string();
+                // The command line may name the same file by a relative path.
+                let is_shown = std::path::absolute(&*name).is_ok_and(|shown| shown == *path);
+                let label = ui.selectable_label(is_shown, short(&choice)).on_hover_text(&choice);
+                if label.clicked() && !is_shown {
+                    *name = choice;
+                }
+            }
+        })
     });
-    row(ui, "Behind", "Show the map behind the model (--background env)", |ui| {
-        let mut seen = settings.view.background == "env";
-        if ui.add_enabled(environment.is_lit(), egui::Checkbox::without_text(&mut seen)).changed() {
-            settings.view.background = if seen { "env".into() } else { "#1b1d21".into() };
-        }
-    });
-    row(ui, "Blur", "Blur of the map behind the model: 0 is sharp", |ui| {
-        let is_seen = environment.is_shown(&settings.view);
-        ui.add_enabled_ui(is_seen, |ui| slide(ui, Slider::new(&mut environment.blur, 0.0..=1.0).max_decimals(2)));
-    });
+}
+
+/// Whether the map is the background.
+fn visible(ui: &mut Ui, view: &mut ViewSettings, is_lit: bool) {
+    let mut is_visible = view.background == "env";
+    let row = Row {
+        name: "Visible",
+        doc: "Show the map behind the model",
+        option: set_option("view.background", &view.background),
+        is_changed: !is_visible,
+        is_indented: false,
+    };
+    let resets = row.show(ui, |ui| ui.add_enabled_ui(is_lit, |ui| check(ui, &mut is_visible)).inner);
+    if (is_visible || (resets && is_lit)) != (view.background == "env") {
+        view.background = if is_visible || resets { "env".into() } else { ViewSettings::default().background };
+    }
 }

@@ -1,15 +1,15 @@
 //! The list of keys.
 
-use egui::{RichText, Window};
+use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
 
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 22] = [
+const KEYS: [(&str, &str); 23] = [
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
-    ("Esc", "the final picture"),
+    ("Esc", "close this list; otherwise the final picture"),
     ("drag", "orbit"),
     ("Shift+drag, middle drag", "pan"),
     ("Alt+drag", "turn the environment"),
@@ -22,7 +22,8 @@ const KEYS: [(&str, &str); 22] = [
     ("L", "let the lights orbit"),
     ("H", "hide the panels"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo and redo a change of the settings"),
-    ("double click on a name", "reset the parameter; its menu copies the option for --set"),
+    ("double click on a name", "reset the setting; the menu of the name copies its option"),
+    ("Ctrl+O", "open a model, environment or shader"),
     ("Ctrl+P", "find a mode, setting, panel or command"),
     ("F1, ?", "these keys"),
     ("F5", "compile everything again"),
@@ -30,16 +31,81 @@ const KEYS: [(&str, &str); 22] = [
     ("Ctrl+Q", "quit"),
 ];
 
-/// Shows the list over the picture while it is `open`.
-pub(super) fn show(egui: &egui::Context, open: &mut bool) {
+/// Width of the list in points, and of the column with the keys.
+const WIDTH: f32 = 540.0;
+const COLUMN: f32 = 210.0;
+/// Height of the title, the filter and the margins, in points.
+const AROUND: f32 = 90.0;
+
+/// State of the list between frames.
+#[derive(Default)]
+pub(super) struct KeyList {
+    filter: String,
+    /// Whether it was open in the last frame.
+    is_shown: bool,
+}
+
+/// Shows the list over the picture while it is `open`. `closes`: whether Escape is meant for the list.
+pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, closes: bool) {
+    if closes && egui.input(|input| input.key_pressed(Key::Escape)) {
+        *open = false;
+    }
+    if !*open {
+        return *list = KeyList::default();
+    }
+    let is_new = !std::mem::replace(&mut list.is_shown, true);
+    let room = egui.content_rect();
     let window = Window::new(RichText::new("Keys").strong()).open(open).collapsible(false).resizable(false);
-    window.pivot(egui::Align2::CENTER_CENTER).default_pos(egui.content_rect().center()).show(egui, |ui| {
-        egui::Grid::new("keys").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {
-            for (keys, meaning) in KEYS {
-                ui.label(RichText::new(keys).monospace().color(ACCENT));
-                ui.label(RichText::new(meaning).color(QUIET));
-                ui.end_row();
+    // Above the cards over the picture.
+    let window = window.order(egui::Order::Foreground);
+    window.pivot(egui::Align2::CENTER_CENTER).default_pos(room.center()).show(egui, |ui| {
+        ui.set_width(WIDTH.min(room.width() - 40.0));
+        let field = ui.add(TextEdit::singleline(&mut list.filter).hint_text("Filter").desired_width(f32::INFINITY));
+        if is_new {
+            field.request_focus();
+        }
+        let height = (room.height() - AROUND).max(60.0);
+        // The height does not follow the filter, so that the window stays in place.
+        egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+            let found: Vec<_> = found(&list.filter).collect();
+            if found.is_empty() {
+                ui.label(RichText::new("No match").color(QUIET));
             }
+            found.into_iter().for_each(|(keys, meaning)| row(ui, keys, meaning));
         });
     });
+}
+
+/// The rows that have all words of the filter.
+fn found(filter: &str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let filter = filter.to_lowercase();
+    KEYS.into_iter().filter(move |(keys, meaning)| {
+        let text = format!("{keys} {meaning}").to_lowercase();
+        filter.split_whitespace().all(|word| text.contains(word))
+    })
+}
+
+fn row(ui: &mut Ui, keys: &str, meaning: &str) {
+    ui.horizontal_top(|ui| {
+        let column = COLUMN.min(0.45 * ui.available_width());
+        ui.allocate_ui(vec2(column, 16.0), |ui| {
+            ui.set_width(column);
+            ui.add(Label::new(RichText::new(keys).monospace().color(ACCENT)).wrap());
+        });
+        ui.add(Label::new(RichText::new(meaning).color(QUIET)).wrap());
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_filter_finds_keys_and_meanings() {
+        let keys = |filter| found(filter).map(|(keys, _)| keys).collect::<Vec<_>>();
+        assert_eq!(keys("ctrl undo"), ["Ctrl+Z, Ctrl+Shift+Z"]);
+        assert_eq!(keys("PAN"), ["Shift+drag, middle drag", "H", "Ctrl+P"]);
+        assert_eq!(keys("").len(), KEYS.len());
+        assert!(keys("no such key").is_empty());
+    }
 }

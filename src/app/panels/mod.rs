@@ -1,4 +1,4 @@
-//! What the window shows around and over the picture: bars, panels and messages. Each panel has a file of its own and receives only
+//! Bars, panels and messages around and over the picture. Each panel has a file of its own and receives only
 //! what it shows and sets. `crate::app::layout` arranges them.
 
 mod camera;
@@ -10,8 +10,9 @@ mod model;
 mod modes;
 mod output;
 mod overlay;
-mod parameters;
-mod passes;
+pub(super) mod parameters;
+pub(super) mod passes;
+pub(super) mod rows;
 mod shaders;
 mod status_bar;
 pub(super) mod theme;
@@ -19,20 +20,16 @@ pub(super) mod timeline;
 mod timing;
 mod top_bar;
 
-use std::ops::RangeInclusive;
-
-use egui::{Response, Slider, Ui, Vec2};
+use egui::{Ui, Vec2};
 
 use super::command::Command;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
+use super::recent::{Kind, Recent};
 use super::viewer::Viewer;
 use crate::gpu::PassTime;
-use crate::scene::environment::BUILT_IN;
 use theme::{ACCENT, EDGE, ERROR, QUIET, WARNING};
 
-/// Files of environments that the list keeps.
-const MOST_ENVIRONMENTS: usize = 8;
 /// A window smaller than this, in points, shows only the picture.
 const SMALLEST_WITH_PANELS: Vec2 = Vec2::new(460.0, 240.0);
 
@@ -44,8 +41,9 @@ pub(super) struct PanelState {
     pub(super) palette: Palette,
     /// Whether the list of keys is shown (F1).
     pub(super) show_keys: bool,
-    /// Files of environments that were shown, the newest last.
-    pub(super) environments: Vec<String>,
+    key_list: keys::KeyList,
+    /// Files that were open, in this run and before.
+    pub(super) recent: Recent,
     /// The search in the list of modes.
     search: String,
     /// Whether the warnings of the model are shown over the picture.
@@ -54,6 +52,7 @@ pub(super) struct PanelState {
     scrolled_to: String,
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
+    files: overlay::diagnostics::Files,
 }
 
 impl PanelState {
@@ -64,23 +63,14 @@ impl PanelState {
             layout: Layout::restored(),
             palette: Palette::default(),
             show_keys: false,
-            environments: Vec::new(),
+            key_list: keys::KeyList::default(),
+            recent: Recent::restored(),
             search: String::new(),
             show_model_warnings: true,
             scrolled_to: String::new(),
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
-        }
-    }
-}
-
-impl PanelState {
-    /// Keeps an environment's file in the list.
-    fn remember(&mut self, environment: &str) {
-        let is_file = environment != "none" && !BUILT_IN.contains(&environment);
-        if is_file && !self.environments.iter().any(|known| known == environment) {
-            self.environments.push(environment.to_owned());
-            self.environments.drain(..self.environments.len().saturating_sub(MOST_ENVIRONMENTS));
+            files: overlay::diagnostics::Files::default(),
         }
     }
 }
@@ -111,11 +101,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
     viewer.panels.timeline.is_visible = false;
-    viewer.panels.remember(&viewer.session.settings.environment.name);
     let picture = if viewer.panels.visible && has_room {
-        bars(ui, viewer, readings);
+        bars(ui, viewer, commands);
         let mut layout = std::mem::take(&mut viewer.panels.layout);
-        let picture = layout.show(ui, &mut |ui, shown| panel(ui, shown, viewer, readings, commands));
+        let picture = layout.show(ui, &mut |ui, shown| panel(ui, shown, viewer, commands));
         let free = layout.free_of_handles();
         viewer.panels.layout = layout;
         PictureArea { rect: picture, free }
@@ -124,18 +113,20 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     };
     compare::show(ui.ctx(), viewer, picture.rect);
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
-    keys::show(ui.ctx(), &mut viewer.panels.show_keys);
+    let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
+    keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
     palette::show(ui.ctx(), viewer, whole, commands);
     picture
 }
 
 /// The bars above and below the tiles.
-fn bars(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings) {
-    top_bar::show(ui, &mut viewer.panels);
+fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
+    top_bar::show(ui, &mut viewer.panels, commands);
     let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
     let (shader, device) = (&viewer.shader, device(viewer));
     let diagnostics = &viewer.session.diagnostics;
-    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, readings, device: &device });
+    let frame_ms = viewer.panels.timing.frame_ms;
+    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, frame_ms, device: &device });
 }
 
 /// The name of the device and its version of Vulkan.
@@ -144,8 +135,8 @@ fn device(viewer: &Viewer) -> String {
     format!("{} · Vulkan {}", info.name, info.api)
 }
 
-/// What is in a tile.
-fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) {
+/// Shows the panel in a tile.
+fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Command>) {
     if panel == Panel::Timeline {
         let mut state = std::mem::take(&mut viewer.panels.timeline);
         timeline::show(ui, viewer, &mut state, commands);
@@ -162,63 +153,27 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, readings: &Readings, co
     match panel {
         Panel::Viewport | Panel::Timeline => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
-        Panel::Model => model::show(ui, settings, &model, &viewer.model, commands),
+        Panel::Model => {
+            let recent = viewer.panels.recent.of(Kind::Model);
+            model::show(ui, settings, &model, &viewer.model, recent, commands);
+        }
         Panel::Shaders => {
             shaders::show(ui, &viewer.shader, declared.generation, &session.diagnostics, cut_short, commands);
         }
-        Panel::Timing => timing::show(ui, &viewer.panels.timing, readings, &device),
+        Panel::Timing => timing::show(ui, &viewer.panels.timing, &device),
         Panel::Parameters => parameters::show(ui, &declared, &mut settings.shader),
         Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
         Panel::Environment => {
             let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);
-            environment::show(ui, settings, &viewer.panels.environments, progress, report);
+            environment::show(ui, settings, viewer.panels.recent.of(Kind::Environment), progress, report);
         }
-        Panel::Lights => lights::show(ui, &mut settings.lights, model.lights.len(), settings.environment.is_lit()),
+        Panel::Lights => lights::show(ui, settings, model.lights.len()),
         Panel::Output => output::show(ui, settings, commands),
-        Panel::Camera => camera::show(ui, &mut settings.camera, &model, commands),
+        Panel::Camera => camera::show(ui, settings, &model, commands),
     }
-}
-
-/// Size of the names at the left of rows, in points.
-const NAME: egui::Vec2 = egui::vec2(120.0, 18.0);
-
-/// A row with its name on the left and its control on the right. `doc` is the hover text of the name.
-fn row<R>(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> R) -> R {
-    ui.horizontal(|ui| {
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let label = |ui: &mut Ui| {
-            ui.set_min_size(NAME);
-            ui.add(egui::Label::new(name).truncate())
-        };
-        let response = ui.allocate_ui_with_layout(NAME, layout, label).inner;
-        if !doc.is_empty() {
-            response.on_hover_text(doc);
-        }
-        control(ui)
-    })
-    .inner
-}
-
-/// A row with a slider in degrees.
-fn angle(ui: &mut Ui, name: &str, doc: &str, degrees: &mut f32, range: RangeInclusive<f32>) {
-    row(ui, name, doc, |ui| slide(ui, Slider::new(degrees, range).suffix("°").max_decimals(0)));
-}
-
-/// Points that the number beside a slider takes, with its unit.
-const VALUE: f32 = 72.0;
-
-/// A slider as long as the rest of its row.
-fn slide(ui: &mut Ui, slider: Slider<'_>) -> Response {
-    ui.spacing_mut().slider_width = (ui.available_width() - VALUE).clamp(40.0, 400.0);
-    ui.add(slider)
 }
 
 /// A count with its noun, such as "1 draw" or "2 draws".
 fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-}
-
-/// A color picker for linear RGB.
-fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> egui::Response {
-    egui::widgets::color_picker::color_edit_button_rgb(ui, linear)
 }

@@ -1,9 +1,13 @@
 //! The panel Model: variant, material override, statistics, and the loader's warnings.
 
-use egui::{RichText, Slider, Ui};
+use std::path::PathBuf;
 
-use super::{QUIET, WARNING, angle, color, plural, row, slide};
+use egui::{RichText, Ui};
+
+use super::rows::{Row, check, choose, color, heading, number, setting};
+use super::{QUIET, WARNING, plural};
 use crate::app::command::Command;
+use crate::app::numbers::{DIRECTION, MATERIAL};
 use crate::app::viewer::ModelStatus;
 use crate::scene::{BUILT_IN, Model};
 use crate::settings::{MaterialOverride, Settings};
@@ -13,34 +17,71 @@ pub(super) fn show(
     settings: &mut Settings,
     model: &Model,
     status: &ModelStatus,
+    recent: &[PathBuf],
     commands: &mut Vec<Command>,
 ) {
-    row(ui, "Model", "Built-in models. Drop a .gltf or .glb file on the window to open it", |ui| {
-        let name = if status.loading { "loading…" } else { model.name.as_str() };
-        egui::ComboBox::from_id_salt("model").selected_text(name).width(ui.available_width()).truncate().show_ui(
-            ui,
-            |ui| {
-                for name in BUILT_IN {
-                    if ui.selectable_label(name == model.name, name).clicked() {
-                        commands.push(Command::OpenModel(name.into()));
-                    }
-                }
-            },
-        );
-    });
+    list(ui, model, status, recent, commands);
     if !model.variants.is_empty() {
-        let variant = &mut settings.variant;
-        row(ui, "Variant", "Variant of the model's materials (KHR_materials_variants)", |ui| {
-            let shown = if variant.is_empty() { "default materials" } else { variant.as_str() }.to_owned();
-            egui::ComboBox::from_id_salt("variant").selected_text(shown).show_ui(ui, |ui| {
-                ui.selectable_value(variant, String::new(), "default materials");
-                for name in &model.variants {
-                    ui.selectable_value(variant, name.clone(), name);
+        let doc = "Variant of the model's materials (KHR_materials_variants)";
+        let name = |variant: &str| if variant.is_empty() { "default materials" } else { variant }.to_owned();
+        setting(ui, ("Variant", doc, "variant"), &mut settings.variant, String::new(), |ui, variant| {
+            choose(ui, "variant", name(variant), |ui| {
+                for choice in [""].into_iter().chain(model.variants.iter().map(String::as_str)) {
+                    ui.selectable_value(variant, choice.to_owned(), name(choice));
                 }
-            });
+            })
         });
     }
-    override_material(ui, &mut settings.material);
+    override_material(ui, settings);
+    statistics(ui, model, status);
+    for warning in &model.warnings {
+        ui.label(RichText::new(warning).small().color(WARNING));
+    }
+    let hint = "Drop a model (.gltf, .glb), an environment (.hdr, .exr) or a shader folder on the window.";
+    ui.label(RichText::new(hint).small().color(QUIET));
+}
+
+/// The list of models.
+fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], commands: &mut Vec<Command>) {
+    let doc = "Built-in models, and files that were open. Drop a .gltf or .glb file on the window, or press Ctrl+O, to open another";
+    let row = Row { name: "Model", doc, option: String::new(), is_changed: false, is_indented: false };
+    row.show(ui, |ui| {
+        let shown = if status.loading { "loading…" } else { model.name.as_str() };
+        choose(ui, "model", shown, |ui| {
+            for name in BUILT_IN {
+                if ui.selectable_label(name == model.name, name).clicked() {
+                    commands.push(Command::OpenModel(name.into()));
+                }
+            }
+            for path in recent {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let button = ui.selectable_label(status.is_open(path), name);
+                if button.on_hover_text(path.display().to_string()).clicked() {
+                    commands.push(Command::OpenModel(path.clone()));
+                }
+            }
+        })
+    });
+}
+
+/// The material override.
+fn override_material(ui: &mut Ui, settings: &mut Settings) {
+    heading(ui, "Material override");
+    let (material, default) = (&mut settings.material, MaterialOverride::default());
+    let doc = "Replace all materials of the model with one that has no textures";
+    setting(ui, ("On", doc, "material.enabled"), &mut material.enabled, default.enabled, check);
+    if !material.enabled {
+        return;
+    }
+    let doc = "Reflectance of the diffuse lobe, or of a metal";
+    setting(ui, ("Base color", doc, "material.base_color"), &mut material.base_color, default.base_color, color);
+    MATERIAL.iter().for_each(|row| number(ui, settings, row));
+    if settings.material.anisotropy > 0.0 {
+        number(ui, settings, &DIRECTION);
+    }
+}
+
+fn statistics(ui: &mut Ui, model: &Model, status: &ModelStatus) {
     let triangles: usize = model.instances.iter().map(|i| model.primitives[i.primitive].indices.len() / 3).sum();
     let size = if model.bounds.is_empty() { glam::Vec3::ZERO } else { model.bounds.max - model.bounds.min };
     let timing = model.timing;
@@ -57,30 +98,6 @@ pub(super) fn show(
             status.load_ms, timing.parse_ms, timing.decode_ms, timing.tangents_ms
         ),
     ];
+    heading(ui, "Statistics");
     ui.label(RichText::new(lines.join("\n")).small().color(QUIET));
-    for warning in &model.warnings {
-        ui.label(RichText::new(warning).small().color(WARNING));
-    }
-    let hint = "Drop a model (.gltf, .glb), an environment (.hdr, .exr) or a shader folder on the window.";
-    ui.label(RichText::new(hint).small().color(QUIET));
-}
-
-/// The material override.
-fn override_material(ui: &mut Ui, material: &mut MaterialOverride) {
-    row(ui, "Override", "Replace all materials with one that has no textures", |ui| {
-        ui.checkbox(&mut material.enabled, "");
-        if material.enabled {
-            color(ui, &mut material.base_color);
-        }
-    });
-    if !material.enabled {
-        return;
-    }
-    row(ui, "Metallic", "1 is metal", |ui| slide(ui, Slider::new(&mut material.metallic, 0.0..=1.0).max_decimals(3)));
-    row(ui, "Roughness", "Perceptual", |ui| slide(ui, Slider::new(&mut material.roughness, 0.0..=1.0).max_decimals(3)));
-    row(ui, "Anisotropy", "Strength", |ui| slide(ui, Slider::new(&mut material.anisotropy, 0.0..=1.0).max_decimals(3)));
-    if material.anisotropy > 0.0 {
-        let doc = "Angle from the tangent towards the bitangent, in degrees";
-        angle(ui, "Direction", doc, &mut material.anisotropy_rotation, -90.0..=90.0);
-    }
 }

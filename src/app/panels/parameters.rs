@@ -2,30 +2,32 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Response, RichText, Slider, Ui};
+use egui::{Response, Ui};
 
-use super::passes::switches;
-use super::{ACCENT, NAME, QUIET, color};
+use super::passes::is_of_pass;
+use super::rows::{self, Row, edit_number, heading, set_option, short};
+use crate::app::numbers::{component, of_constant, of_parameter};
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
 use crate::shader::{Constant, Parameter, ShaderSet};
 
-/// Shows the panel. `values` holds the values that were set, by name.
-pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<String, ShaderValue>) {
-    if shaders.constants.is_empty() && shaders.parameters.is_empty() {
-        return;
-    }
-    // Those of passes stand below the switch of their pass.
+/// Values of constants and parameters that were set, by name.
+pub(super) type Values = BTreeMap<String, ShaderValue>;
+
+/// Shows the panel: all constants and parameters apart from those of passes, which stand with them.
+pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     let is_wanted = |parameter: &&Parameter| {
         let switch = shaders.constants.iter().find(|constant| Some(&constant.name) == parameter.when.as_ref());
-        parameter.offset.is_some() && switch.is_none_or(|switch| is_true(switch, values))
+        !is_of_pass(shaders, parameter) && switch.is_none_or(|switch| is_true(switch, values))
     };
-    // A switch of passes stands with them.
-    let is_switch = |constant: &&Constant| switches(shaders).any(|switch| switch.id == constant.id);
     let parameters: Vec<&Parameter> = shaders.parameters.iter().filter(is_wanted).collect();
-    let constants: Vec<&Constant> = shaders.constants.iter().filter(|constant| !is_switch(constant)).collect();
+    let switches: Vec<u32> = super::passes::switches(shaders).map(|switch| switch.id).collect();
+    let constants: Vec<&Constant> = shaders.constants.iter().filter(|c| !switches.contains(&c.id)).collect();
+    if constants.is_empty() && parameters.is_empty() {
+        return;
+    }
     // Without a group first, then group by group in the order in which the tree names them.
     let mut groups = vec![""];
     let named = parameters.iter().map(|p| p.group.as_str()).chain(constants.iter().map(|c| c.group.as_str()));
@@ -36,84 +38,92 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut BTreeMap<Strin
     });
     for group in groups {
         if !group.is_empty() {
-            ui.label(RichText::new(group).small().color(QUIET));
+            heading(ui, group);
         }
         for parameter in parameters.iter().filter(|parameter| parameter.group == group) {
-            show_parameter(ui, parameter, values);
+            show_parameter(ui, parameter, values, None);
         }
         for constant in constants.iter().filter(|constant| constant.group == group) {
             show_constant(ui, constant, values);
         }
     }
-    let set = !values.is_empty();
-    let button = ui.add_enabled(set, egui::Button::new("Defaults"));
-    if button.on_hover_text("All parameters above as the shader files say; no other setting changes").clicked() {
-        values.clear();
+    let names = parameters.iter().map(|p| &p.name).chain(constants.iter().map(|c| &c.name));
+    let set: Vec<&String> = names.filter(|name| values.contains_key(*name)).collect();
+    let button = ui.add_enabled(!set.is_empty(), egui::Button::new("Defaults"));
+    if button.on_hover_text("Reset all parameters above to the values in the shader files").clicked() {
+        set.into_iter().for_each(|name| drop(values.remove(name)));
     }
 }
 
 /// Shows the row of a constant.
-pub(super) fn show_constant(ui: &mut Ui, constant: &Constant, values: &mut BTreeMap<String, ShaderValue>) {
+pub(super) fn show_constant(ui: &mut Ui, constant: &Constant, values: &mut Values) {
     let Constant { name, label, doc, choices, .. } = constant;
-    setting(ui, &About { name, label, doc, choices }, values, |ui, value| edit_constant(ui, constant, value));
+    let (default, is_switch) = (&[default_of(constant)], constant.scalar == Scalar::Bool);
+    let about = About { name, label, doc, choices, default, is_switch, is_indented: false };
+    setting(ui, &about, values, |ui, value| edit_constant(ui, constant, value));
 }
 
-/// Shows the row of a parameter.
-pub(super) fn show_parameter(ui: &mut Ui, parameter: &Parameter, values: &mut BTreeMap<String, ShaderValue>) {
+/// Shows the row of a parameter. `effect`: the label of the row above to which it belongs.
+pub(super) fn show_parameter(ui: &mut Ui, parameter: &Parameter, values: &mut Values, effect: Option<&str>) {
     let Parameter { name, label, doc, choices, .. } = parameter;
-    setting(ui, &About { name, label, doc, choices }, values, |ui, value| edit_parameter(ui, parameter, value));
+    let label = label_below(label, effect.unwrap_or_default());
+    let (default, is_switch) = (&parameter.default, parameter.kind == ParameterType::Bool);
+    let about = About { name, label: &label, doc, choices, default, is_switch, is_indented: effect.is_some() };
+    setting(ui, &about, values, |ui, value| edit_parameter(ui, parameter, value));
 }
 
-/// The words about a setting of the shaders.
+/// A label without the name of its effect: `FXAA: edge threshold` becomes `Edge threshold`.
+fn label_below(label: &str, effect: &str) -> String {
+    let rest = label.strip_prefix(effect).and_then(|rest| rest.strip_prefix(": "));
+    let Some(rest) = rest.filter(|_| !effect.is_empty()) else { return label.to_owned() };
+    let mut letters = rest.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
+}
+
+/// The texts of a setting of the shaders.
 struct About<'a> {
     name: &'a str,
     label: &'a str,
     doc: &'a str,
     choices: &'a [(String, i64)],
+    /// A number for each component.
+    default: &'a [f64],
+    is_switch: bool,
+    is_indented: bool,
 }
 
-/// Shows a row: the name, which has another color once the value was set, and the control. Both have the same hover text. A double
-/// click on the name resets the value; its menu can copy the option that sets it.
+/// Shows the row of a setting of the shaders.
 fn setting(
     ui: &mut Ui,
     about: &About<'_>,
-    values: &mut BTreeMap<String, ShaderValue>,
+    values: &mut Values,
     control: impl FnOnce(&mut Ui, Option<&ShaderValue>) -> (Option<ShaderValue>, Response),
 ) {
-    let About { name, label, doc, .. } = *about;
+    let About { name, label, doc, is_indented, .. } = *about;
     let value = values.get(name).cloned();
-    let option = value.as_ref().map_or_else(|| name.to_owned(), |value| format!("{name}={}", option_of(value, about)));
-    let reset = if value.is_some() { "\nDouble-click the name to reset it" } else { "" };
-    let doc = format!("{doc}{}--set {option}{reset}", if doc.is_empty() { "" } else { "\n\n" });
-    let text = RichText::new(label);
-    let text = if value.is_some() { text.color(ACCENT) } else { text };
-    ui.horizontal(|ui| {
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let title = |ui: &mut Ui| {
-            ui.set_min_size(NAME);
-            ui.add(egui::Label::new(text).truncate().sense(egui::Sense::click()))
-        };
-        let title = ui.allocate_ui_with_layout(NAME, layout, title).inner.on_hover_text(&doc);
-        let (new, response) = control(ui, value.as_ref());
-        response.on_hover_text(&doc);
-        if let Some(new) = new {
-            values.insert(name.to_owned(), new);
-        }
-        let mut resets = title.double_clicked();
-        title.context_menu(|ui| {
-            if ui.button(format!("Copy --set {option}")).clicked() {
-                ui.ctx().copy_text(format!("--set {option}"));
-                ui.close();
-            }
-            if ui.add_enabled(value.is_some(), egui::Button::new("Reset")).clicked() {
-                resets = true;
-                ui.close();
-            }
-        });
-        if resets {
-            values.remove(name);
-        }
+    let now = value.as_ref().map_or_else(|| default_text(about), |value| option_of(value, about));
+    let row = Row { name: label, doc, option: set_option(name, &now), is_changed: value.is_some(), is_indented };
+    let mut new = None;
+    let resets = row.show(ui, |ui| {
+        let (edited, response) = control(ui, value.as_ref());
+        new = edited;
+        response
     });
+    if resets {
+        values.remove(name);
+    } else if let Some(new) = new {
+        values.insert(name.to_owned(), new);
+    }
+}
+
+/// The default as `--set` takes it.
+fn default_text(about: &About<'_>) -> String {
+    let value = match about.default {
+        [number] if about.is_switch => ShaderValue::Bool(*number != 0.0),
+        [number] if !about.choices.is_empty() => ShaderValue::Int(*number as i64),
+        numbers => ShaderValue::Vector(numbers.to_vec()),
+    };
+    option_of(&value, about)
 }
 
 /// A value as `--set` takes it.
@@ -128,19 +138,14 @@ fn option_of(value: &ShaderValue, about: &About<'_>) -> String {
     }
 }
 
-/// A number with at most four digits behind the point.
-fn short(number: f64) -> String {
-    ((number * 1e4).round() / 1e4).to_string()
-}
-
 /// Whether a constant is not 0.
-pub(super) fn is_true(constant: &Constant, values: &BTreeMap<String, ShaderValue>) -> bool {
+pub(super) fn is_true(constant: &Constant, values: &Values) -> bool {
     let value = values.get(&constant.name).and_then(|value| number(value, &constant.choices));
     value.map_or(constant.default != 0, |value| value != 0.0)
 }
 
 fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue>) -> (Option<ShaderValue>, Response) {
-    let Parameter { name, choices, range, unit, .. } = parameter;
+    let Parameter { name, choices, .. } = parameter;
     let mut numbers = match value {
         Some(ShaderValue::Vector(numbers)) if numbers.len() == parameter.default.len() => numbers.clone(),
         Some(value) => number(value, choices).map_or_else(|| parameter.default.clone(), |n| vec![n]),
@@ -148,24 +153,20 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
     };
     numbers.resize(parameter.default.len(), 0.0);
     let before = numbers.clone();
-    let whole = matches!(parameter.kind, ParameterType::Int | ParameterType::Uint);
+    let scale = of_parameter(parameter);
     let response = match (parameter.kind, numbers.as_mut_slice()) {
         (ParameterType::Bool, [number]) => check(ui, number),
         (_, [number]) if !choices.is_empty() => choose(ui, name, choices, number),
-        (_, [number]) => edit_number(ui, number, *range, whole, unit),
+        (_, [number]) => edit_number(ui, number, &scale.unwrap_or_else(|| component(parameter))),
         (ParameterType::Vec3, [r, g, b]) if parameter.color => {
             let mut linear = [*r as f32, *g as f32, *b as f32];
-            let response = color(ui, &mut linear);
+            let response = rows::color(ui, &mut linear);
             (*r, *g, *b) = (linear[0].into(), linear[1].into(), linear[2].into());
             response
         }
-        (_, numbers) => {
-            let mut drags = numbers.iter_mut().map(|number| drag(ui, number, *range, unit));
-            let first = drags.next();
-            let all = drags.fold(first, |all, next| all.map(|all| all.union(next)));
-            all.unwrap_or_else(|| ui.label(""))
-        }
+        (_, numbers) => edit_vector(ui, parameter, numbers),
     };
+    let whole = matches!(parameter.kind, ParameterType::Int | ParameterType::Uint);
     let value = |numbers: Vec<f64>| match (parameter.kind, numbers.as_slice()) {
         (ParameterType::Bool, [number]) => ShaderValue::Bool(*number != 0.0),
         (_, [number]) if whole => ShaderValue::Int(*number as i64),
@@ -177,20 +178,29 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
     (is_new.then(|| value(numbers)), response)
 }
 
+/// A number for each component, side by side.
+fn edit_vector(ui: &mut Ui, parameter: &Parameter, numbers: &mut [f64]) -> Response {
+    let mut scale = component(parameter);
+    // The unit stands in the hover text of the row, since the numbers are narrow.
+    scale.suffix.clear();
+    ui.spacing_mut().item_spacing.x = 3.0;
+    let count = numbers.len().max(1) as f32;
+    let width = (ui.available_width() - 3.0 * (count - 1.0)) / count;
+    let mut drags = numbers.iter_mut().map(|number| rows::drag(ui, number, &scale, width));
+    let first = drags.next();
+    let all = drags.fold(first, |all, next| all.map(|all| all.union(next)));
+    all.unwrap_or_else(|| ui.label(""))
+}
+
 fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) -> (Option<ShaderValue>, Response) {
-    let Constant { name, choices, range, unit, .. } = constant;
-    let default = match constant.scalar {
-        Scalar::Float => f64::from(f32::from_bits(constant.default)),
-        Scalar::Int => f64::from(constant.default.cast_signed()),
-        Scalar::Uint | Scalar::Bool => f64::from(constant.default),
-    };
+    let Constant { name, choices, .. } = constant;
+    let default = default_of(constant);
     let before = value.and_then(|value| number(value, choices)).unwrap_or(default);
     let mut now = before;
-    let response = match constant.scalar {
+    let response = match of_constant(constant) {
         _ if !choices.is_empty() => choose(ui, name, choices, &mut now),
-        Scalar::Bool => check(ui, &mut now),
-        Scalar::Float => edit_number(ui, &mut now, *range, false, unit),
-        Scalar::Int | Scalar::Uint => edit_number(ui, &mut now, *range, true, unit),
+        Some(scale) => edit_number(ui, &mut now, &scale),
+        None => check(ui, &mut now),
     };
     let value = match constant.scalar {
         Scalar::Bool => ShaderValue::Bool(now != 0.0),
@@ -200,9 +210,18 @@ fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) 
     ((now != before).then_some(value), response)
 }
 
+/// The default of a constant; 0 or 1 for `bool`.
+pub(in crate::app) fn default_of(constant: &Constant) -> f64 {
+    match constant.scalar {
+        Scalar::Float => f64::from(f32::from_bits(constant.default)),
+        Scalar::Int => f64::from(constant.default.cast_signed()),
+        Scalar::Uint | Scalar::Bool => f64::from(constant.default),
+    }
+}
+
 fn check(ui: &mut Ui, number: &mut f64) -> Response {
     let mut on = *number != 0.0;
-    let response = ui.checkbox(&mut on, "");
+    let response = rows::check(ui, &mut on);
     *number = f64::from(u8::from(on));
     response
 }
@@ -210,33 +229,33 @@ fn check(ui: &mut Ui, number: &mut f64) -> Response {
 fn choose(ui: &mut Ui, id: &str, choices: &[(String, i64)], number: &mut f64) -> Response {
     let current = choices.iter().find(|(_, value)| *value as f64 == *number);
     let text = current.map_or_else(|| number.to_string(), |(name, _)| name.clone());
-    let list = egui::ComboBox::from_id_salt(id).selected_text(text).show_ui(ui, |ui| {
+    rows::choose(ui, id, text, |ui| {
         for (name, value) in choices {
             ui.selectable_value(number, *value as f64, name);
         }
-    });
-    list.response
-}
-
-fn edit_number(ui: &mut Ui, number: &mut f64, range: Option<(f64, f64)>, whole: bool, unit: &str) -> Response {
-    match range {
-        Some((low, high)) => {
-            let slider = Slider::new(number, low..=high).suffix(suffix(unit));
-            super::slide(ui, if whole { slider.integer() } else { slider.max_decimals(3) })
-        }
-        None => drag(ui, number, None, unit),
-    }
-}
-
-fn drag(ui: &mut Ui, number: &mut f64, range: Option<(f64, f64)>, unit: &str) -> Response {
-    let value = egui::DragValue::new(number).speed(0.01).suffix(suffix(unit));
-    ui.add(match range {
-        Some((low, high)) => value.range(low..=high),
-        None => value,
     })
 }
 
-/// What follows a number with this unit.
-fn suffix(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_untouched_setting_has_the_option_of_its_default() {
+        let choices = [("GGX".to_owned(), 0), ("Beckmann".to_owned(), 1)];
+        let text = |default: &[f64], choices, is_switch| {
+            default_text(&About { name: "x", label: "", doc: "", choices, default, is_switch, is_indented: false })
+        };
+        assert_eq!(text(&[1.0], &choices, false), "Beckmann");
+        assert_eq!(text(&[1.0], &[], true), "true");
+        assert_eq!(text(&[0.12], &[], false), "0.12");
+        assert_eq!(text(&[1.0, 0.8, 0.6], &[], false), "1,0.8,0.6");
+    }
+
+    #[test]
+    fn a_label_does_not_repeat_its_effect() {
+        assert_eq!(label_below("FXAA: edge threshold", "FXAA"), "Edge threshold");
+        assert_eq!(label_below("Bloom strength", "Bloom"), "Bloom strength");
+        assert_eq!(label_below(": x", ""), ": x");
+    }
 }

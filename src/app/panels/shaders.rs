@@ -1,9 +1,7 @@
 //! The panel Shaders: the last reload and the time of each step. Its height is constant, so that an error does not move the
 //! panels below.
 
-use std::path::PathBuf;
-
-use egui::{Label, RichText, Ui};
+use egui::{Align, Label, Layout, RichText, Ui};
 
 use super::{ACCENT, ERROR, QUIET, plural};
 use crate::app::command::Command;
@@ -21,22 +19,19 @@ pub(super) fn show(
     cut_short: bool,
     commands: &mut Vec<Command>,
 ) {
-    ui.horizontal(|ui| {
-        let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
-        match (status.compiling, errors) {
-            // No spinner: on a software device its frames would slow the compilation down.
-            (true, _) => ui.label("Compiling…"),
-            (_, 0) if generation == 0 => ui.label("No shaders yet"),
-            (_, 0) => ui.label(format!("Generation {generation}")),
-            (_, errors) if cut_short => ui.colored_label(ERROR, plural(errors, "error")),
-            (_, errors) => ui.colored_label(ERROR, format!("{}; showing the last good", plural(errors, "error"))),
-        };
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("Reload").on_hover_text("Compile everything again (F5)").clicked() {
-                commands.push(Command::Reload);
-            }
+    let bar = |ui: &mut Ui| {
+        // The button first, so that a long text in a narrow column is elided beside it.
+        if ui.button("Reload").on_hover_text("Compile everything again (F5)").clicked() {
+            commands.push(Command::Reload);
+        }
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
+            let (text, hover) = state(status, generation, errors, cut_short);
+            let text = if errors > 0 && !status.compiling { text.color(ERROR) } else { text };
+            ui.add(Label::new(text).truncate()).on_hover_text(hover);
         });
-    });
+    };
+    ui.horizontal(|ui| ui.with_layout(Layout::right_to_left(Align::Center), bar));
     tree(ui, status, commands);
     let (edit, times, hover) = status.last.as_ref().map(lines).unwrap_or_default();
     for line in [edit, times] {
@@ -49,19 +44,32 @@ pub(super) fn show(
     }
 }
 
-/// The folder to edit, which opens in the editor.
+/// The state of the shaders in a few words, and in a sentence.
+fn state(status: &ShaderStatus, generation: u64, errors: usize, cut_short: bool) -> (RichText, &'static str) {
+    // No spinner: on a software device its frames would slow the compilation down.
+    match (status.compiling, errors) {
+        (true, _) => ("Compiling…".into(), "The picture stays until the new shaders are ready"),
+        (_, 0) if generation == 0 => ("No shaders yet".into(), "The first shaders have not compiled yet"),
+        (_, 0) => {
+            (format!("Generation {generation}").into(), "Number of the shaders on screen: 1 is that of the start")
+        }
+        (_, errors) if cut_short => (plural(errors, "error").into(), "A loop did not end"),
+        (_, errors) => (plural(errors, "error").into(), "The picture is that of the last good shaders"),
+    }
+}
+
+/// The folder or file to edit, which opens in the editor.
 fn tree(ui: &mut Ui, status: &ShaderStatus, commands: &mut Vec<Command>) {
-    let folder = PathBuf::from(&status.tree);
     let text = RichText::new(&status.tree).small();
-    if !folder.exists() {
+    let Some(folder) = &status.location else {
         ui.add(Label::new(text.color(QUIET)).truncate()).on_hover_text(&status.tree);
         return;
-    }
+    };
     let label = ui.add(Label::new(text.color(ACCENT)).truncate().sense(egui::Sense::click()));
     if label.clicked() {
-        commands.push(Command::Edit(Place { file: folder, line: None, column: None }));
+        commands.push(Command::Edit(Place { file: folder.clone(), line: None, column: None }));
     }
-    let hint = format!("{}\nSave a file here and the picture follows. Click to open in the editor", status.tree);
+    let hint = format!("{}\nSave a file here, and the picture follows. Click to open it in the editor", status.tree);
     label.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hint);
 }
 

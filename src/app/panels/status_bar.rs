@@ -3,20 +3,21 @@
 use egui::{Align, Color32, Label, Layout, RichText, Ui};
 
 use super::theme::{EDGE, ERROR, GOOD, QUIET, WARNING};
-use super::{Readings, plural, shaders};
+use super::{plural, shaders};
 use crate::app::status::ShaderStatus;
 use crate::shader::{Diagnostic, Severity};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 24.0;
 
-/// What the bar shows.
+/// Contents of the bar.
 pub(super) struct Status<'a> {
     pub(super) shader: &'a ShaderStatus,
     /// Generation of the shaders on screen; 0 before the first.
     pub(super) generation: u64,
     pub(super) diagnostics: &'a [Diagnostic],
-    pub(super) readings: &'a Readings,
+    /// Device time of the last frame that drew the picture, milliseconds.
+    pub(super) frame_ms: Option<f64>,
     pub(super) device: &'a str,
 }
 
@@ -26,9 +27,12 @@ pub(super) fn show(ui: &mut Ui, status: &Status<'_>) {
     bar.show(ui, |ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // The right end first, so that a long name of a device takes no room from the reload.
-            if let Some(ms) = status.readings.device_ms {
+            if let Some(ms) = status.frame_ms {
                 let text = RichText::new(format!("{ms:6.2} ms GPU")).monospace().small().color(QUIET);
-                ui.label(text).on_hover_text(format!("Device time of the last frame\n{}", status.device));
+                ui.label(text).on_hover_text(format!(
+                    "Device time of the last frame in which the picture was drawn\n{}",
+                    status.device
+                ));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| state(ui, status));
         });

@@ -24,6 +24,13 @@ pub(in crate::app) struct TimelineState {
     pub(in crate::app) is_visible: bool,
 }
 
+impl TimelineState {
+    /// Asks the user whether to write a version to the files.
+    pub(in crate::app) fn ask(&mut self, number: u64) {
+        self.asked = Some(number);
+    }
+}
+
 /// Shows the panel.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, commands: &mut Vec<Command>) {
     state.is_visible = true;

@@ -4,18 +4,22 @@ use egui::{Button, RichText, Ui, vec2};
 
 use super::theme::{EDGE, QUIET};
 use super::{PanelState, theme};
+use crate::app::command::Command;
+use crate::app::dialog::Dialog;
 use crate::app::layout::{Layout, Panel, Preset};
+use crate::app::recent::{Kind, Recent};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 30.0;
 
-pub(super) fn show(ui: &mut Ui, state: &mut PanelState) {
+pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
     let frame = egui::Frame::new().fill(EDGE).inner_margin(egui::Margin::symmetric(8, 3));
     let bar = egui::Panel::top("bar").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             ui.label(RichText::new("Specula").strong().color(theme::ACCENT));
             ui.add_space(6.0);
+            open(ui, &state.recent, commands);
             panels(ui, &mut state.layout);
             for preset in Preset::ALL {
                 if ui.button(preset.title()).on_hover_text(preset.doc()).clicked() {
@@ -42,6 +46,40 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState) {
             });
         });
     });
+}
+
+/// The menu that opens files: by a dialog, or those that were open.
+fn open(ui: &mut Ui, recent: &Recent, commands: &mut Vec<Command>) {
+    let menu = ui.menu_button("Open", |ui| {
+        ui.set_min_width(180.0);
+        if ui.add(Button::new("File…").right_text(RichText::new("Ctrl+O").small().color(QUIET))).clicked() {
+            commands.push(Command::Choose(Dialog::File));
+        }
+        if ui.button("Shader tree…").clicked() {
+            commands.push(Command::Choose(Dialog::Tree));
+        }
+        for (kind, title) in
+            [(Kind::Model, "Models"), (Kind::Environment, "Environments"), (Kind::Tree, "Shader trees")]
+        {
+            if recent.of(kind).is_empty() {
+                continue;
+            }
+            ui.separator();
+            ui.label(RichText::new(title).small().color(QUIET));
+            for path in recent.of(kind) {
+                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    let path = path.clone();
+                    commands.push(match kind {
+                        Kind::Model => Command::OpenModel(path),
+                        Kind::Environment => Command::OpenEnvironment(path),
+                        Kind::Tree => Command::OpenTree(path),
+                    });
+                }
+            }
+        }
+    });
+    menu.response.on_hover_text("Open a model, an environment or shaders");
 }
 
 /// The menu that opens and closes panels.

@@ -10,6 +10,7 @@ use crate::events::{Event, emit};
 use crate::gpu::GpuError;
 use crate::render::BoundFrame;
 use crate::shader::TreePath;
+use crate::threads::Message;
 
 /// The earlier picture, and how much of it is shown.
 pub(in crate::app) struct Compare {
@@ -205,12 +206,11 @@ impl Viewer {
     /// Writes the texts of a version over the files in which it differs from the version on screen, on a thread of its own.
     pub(super) fn write_version(&mut self, number: u64) {
         let files = self.files_of_version(number);
-        self.threads.say(move || {
+        self.threads.wait(move || {
             let names: Vec<&str> = files.iter().filter_map(|(path, _)| path.file_name()?.to_str()).collect();
-            match files.iter().try_for_each(|(path, text)| write_text(path, text)) {
-                Ok(()) => format!("Wrote version {number} of {}", names.join(", ")),
-                Err(message) => message,
-            }
+            let written = files.iter().try_for_each(|(path, text)| write_text(path, text));
+            let done = || format!("Wrote version {number} of {}", names.join(", "));
+            Some(Message::Say(written.map_or_else(|message| message, |()| done())))
         });
     }
 }

@@ -1,16 +1,18 @@
 //! Applies the results of the threads to the viewer.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
+use crate::app::recent::Kind;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
 use crate::message;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
+use crate::scene::{BUILT_IN, environment};
 use crate::settings::{GROUND, LightSource};
 use crate::shader::{Diagnostic, Severity, ShaderSet};
 use crate::threads::baker::BakeMessage;
@@ -26,8 +28,10 @@ impl Viewer {
             Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source }) => {
                 self.shader.compiling = false;
                 self.shader.tree = source.name();
+                self.shader.location = source.location().map(Into::into);
                 self.threads.follow_tree(&source);
                 self.source = source;
+                self.remember_tree(&reload.outcome);
                 self.on_reload(&reload, detect_ms);
             }
             Message::Worker(WorkerMessage::Completed(reload)) => self.on_completed(&reload),
@@ -43,7 +47,21 @@ impl Viewer {
             }
             Message::Look(Err(message)) => self.say(message),
             Message::Compared(compared) => self.on_compared(compared),
+            Message::Chosen(answer) => {
+                self.is_choosing = false;
+                match answer {
+                    Ok(path) => path.into_iter().for_each(|path| self.open_path(path)),
+                    Err(message) => self.say(message),
+                }
+            }
             Message::Panicked(role, text) => self.on_panic(role, &text),
+        }
+    }
+
+    /// Remembers the shader tree on disk, if it compiles.
+    fn remember_tree(&mut self, outcome: &Outcome) {
+        if let (Outcome::Ready(_), Some(tree)) = (outcome, self.source.location()) {
+            self.panels.recent.remember(Kind::Tree, tree);
         }
     }
 
@@ -162,6 +180,9 @@ impl Viewer {
                     self.execute(Command::FrameModel);
                 }
                 self.panels.show_model_warnings = true;
+                if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {
+                    self.panels.recent.remember(Kind::Model, path);
+                }
                 self.model.path = loaded.path;
                 self.model.load_ms = loaded.ms;
                 self.model.files.clone_from(&model.files);
@@ -172,6 +193,9 @@ impl Viewer {
                 // Watch the model on screen as well as the files that must be repaired.
                 let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
                 self.model.files = on_screen.into_iter().chain(tried).collect();
+                if let Some(path) = &loaded.path {
+                    self.panels.recent.forget(Kind::Model, path);
+                }
                 self.say(message);
             }
         }
@@ -186,6 +210,9 @@ impl Viewer {
                 match result {
                     Ok(environment) => {
                         self.warn_of(environment.wrong());
+                        if !environment::BUILT_IN.contains(&key.name.as_str()) {
+                            self.panels.recent.remember(Kind::Environment, Path::new(&key.name));
+                        }
                         emit(self.events, &Event::Bake(&environment.report));
                         self.resources.set_environment(key, Some(environment));
                     }
@@ -193,6 +220,7 @@ impl Viewer {
                         if let BakeError::Gpu(GpuError::EndlessLoop(words)) = error {
                             self.on_endless_loop(words);
                         }
+                        self.panels.recent.forget(Kind::Environment, Path::new(&key.name));
                         self.resources.set_environment(key, None);
                         self.say(format!("{error}\nThe previous environment stays."));
                     }
@@ -292,4 +320,9 @@ impl Viewer {
         };
         self.keep_saying(format!("Specula's {thread} thread failed ({text}). Please report this; your files are safe"));
     }
+}
+
+/// Whether a path is the name of a built-in model.
+fn is_built_in(path: &Path) -> bool {
+    BUILT_IN.iter().any(|name| Path::new(name) == path)
 }

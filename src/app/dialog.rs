@@ -1,0 +1,59 @@
+//! The file dialog of the desktop, through the XDG portal. It blocks, so it runs on a thread of its own.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// The dialog to show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Dialog {
+    /// A model, an environment, a measured BRDF, or a single shader.
+    File,
+    /// A folder with a shader tree.
+    Tree,
+}
+
+/// File name extensions that the window opens.
+const EXTENSIONS: [&str; 12] =
+    ["gltf", "glb", "hdr", "exr", "binary", "bin", "glsl", "frag", "fs", "vert", "comp", "toy"];
+/// Nobody cancels a dialog in less than this. The portal gives the same answer to a cancel and to its own absence.
+const SHORTEST: Duration = Duration::from_millis(300);
+
+/// Waits for the user's choice. Returns `None` if she cancels the dialog.
+///
+/// # Errors
+/// A message, if the desktop shows no dialog.
+pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, String> {
+    let start = Instant::now();
+    let chosen = match dialog {
+        Dialog::File => {
+            let files = rfd::FileDialog::new().set_title("Open a model, environment or shader");
+            files.add_filter("Models, environments, shaders", &EXTENSIONS).add_filter("All files", &["*"]).pick_file()
+        }
+        Dialog::Tree => rfd::FileDialog::new().set_title("Open a shader tree").pick_folder(),
+    };
+    answer(chosen, start.elapsed())
+}
+
+fn answer(chosen: Option<PathBuf>, after: Duration) -> Result<Option<PathBuf>, String> {
+    if chosen.is_none() && after < SHORTEST {
+        return Err(
+            "this desktop has no file dialog (no XDG portal answers). Drop a file or folder on the window, or name it \
+                    on the command line: `specula view MODEL --env MAP --shaders FOLDER`"
+                .into(),
+        );
+    }
+    Ok(chosen)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cancel_is_told_from_a_missing_portal() {
+        let path = PathBuf::from("a.glb");
+        assert_eq!(answer(Some(path.clone()), Duration::ZERO), Ok(Some(path)));
+        assert_eq!(answer(None, Duration::from_secs(2)), Ok(None));
+        assert!(answer(None, Duration::from_millis(20)).unwrap_err().contains("Drop a file"));
+    }
+}

@@ -1,0 +1,347 @@
+//! The entries of the command palette: what the window can do at the moment.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum as _;
+
+use crate::app::command::{Command, CompareWith};
+use crate::app::dialog::Dialog;
+use crate::app::layout::{Panel, Preset};
+use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
+use crate::app::panels::parameters::default_of;
+use crate::app::panels::passes::{internal, is_of_pass, is_switch};
+use crate::app::panels::rows::choice_name;
+use crate::app::recent::Kind;
+use crate::app::viewer::Viewer;
+use crate::scene::environment::BUILT_IN;
+use crate::settings::{LightSource, Settings, ShaderValue, Tonemap};
+use crate::shader::annotation::ParameterType;
+use crate::shader::spirv::reflect::Scalar;
+use crate::shader::values::number;
+use crate::shader::{Mode, ShaderSet};
+
+/// The action of an entry.
+#[derive(Clone, Debug)]
+pub(super) enum Action {
+    Mode(String),
+    Do(Command),
+    Environment(String),
+    Lights(LightSource),
+    Tonemap(Tonemap),
+    /// Sets a value of a parameter or constant of the shaders.
+    Value(String, ShaderValue),
+    /// Asks for a number, and sets it.
+    Number(Box<Ask>),
+    Pass(String, bool),
+    Open(Panel),
+    Arrange(Preset),
+    /// Shows the user's own arrangement of the panels.
+    ArrangeOwn,
+    /// Asks in the timeline whether to write a version to the files.
+    WriteVersion(u64),
+    TogglePanels,
+    ShowKeys,
+}
+
+/// A number that the palette asks for.
+#[derive(Clone, Debug)]
+pub(super) struct Ask {
+    pub(super) title: String,
+    group: &'static str,
+    pub(super) doc: String,
+    pub(super) scale: Scale,
+    /// The present value.
+    pub(super) now: f64,
+    target: Target,
+}
+
+/// Where a number is.
+#[derive(Clone)]
+enum Target {
+    Setting(Number),
+    /// A parameter or constant of the shaders; `true` for a whole number.
+    Shader(String, bool),
+}
+
+impl std::fmt::Debug for Target {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Setting(number) => formatter.write_str(&number.path()),
+            Self::Shader(name, _) => formatter.write_str(name),
+        }
+    }
+}
+
+impl Ask {
+    pub(super) fn of_setting(number: &Number, settings: &mut Settings) -> Self {
+        Self {
+            title: number.title(),
+            group: number.group(),
+            doc: number.doc.to_owned(),
+            scale: number.scale(),
+            now: number.get(settings),
+            target: Target::Setting(number.clone()),
+        }
+    }
+
+    pub(super) fn entry(self) -> Entry {
+        let (group, title, key) = (self.group, self.title.clone(), self.scale.text(self.now));
+        let words = match &self.target {
+            // The index of a light in its path is not the number in its name.
+            Target::Setting(number) => number.path().rsplit('.').next().unwrap_or_default().to_owned(),
+            Target::Shader(name, _) => name.clone(),
+        };
+        Entry { words, key, ..Entry::new(group, title, Action::Number(Box::new(self))) }
+    }
+
+    /// The same number with another value.
+    pub(super) fn with(&self, now: f64) -> Self {
+        Self { now, ..self.clone() }
+    }
+
+    /// Sets the number to its present value.
+    fn set(&self, settings: &mut Settings) {
+        let value = self.now;
+        match &self.target {
+            Target::Setting(number) => number.set(settings, value),
+            Target::Shader(name, true) => {
+                settings.shader.insert(name.clone(), ShaderValue::Int(value.round() as i64));
+            }
+            Target::Shader(name, false) => {
+                settings.shader.insert(name.clone(), ShaderValue::Float(value));
+            }
+        }
+    }
+}
+
+/// A row that the palette can show.
+#[derive(Debug)]
+pub(super) struct Entry {
+    pub(super) group: &'static str,
+    pub(super) title: String,
+    /// More words by which it is found.
+    pub(super) words: String,
+    /// Key that does the same, or the value of a number; may be empty.
+    pub(super) key: String,
+    pub(super) action: Action,
+    /// Whether it comes after entries that match as well: it shows or switches the inside of an effect.
+    pub(super) is_minor: bool,
+}
+
+impl Entry {
+    pub(super) fn new(group: &'static str, title: String, action: Action) -> Self {
+        Self { group, title, words: String::new(), key: String::new(), action, is_minor: false }
+    }
+}
+
+/// All entries.
+pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
+    let mut entries = commands();
+    let settings = &viewer.session.settings;
+    entries.extend(files(viewer));
+    let has_lights = viewer.session.model().is_some_and(|model| !model.lights.is_empty());
+    let is_offered = |source: &&LightSource| has_lights || **source != LightSource::Model;
+    entries.extend(
+        LightSource::value_variants()
+            .iter()
+            .filter(is_offered)
+            .map(|source| Entry::new("Lights", format!("Lights: {}", choice_name(source)), Action::Lights(*source))),
+    );
+    entries.extend(
+        Tonemap::value_variants().iter().map(|tonemap| {
+            Entry::new("Output", format!("Tone map: {}", choice_name(tonemap)), Action::Tonemap(*tonemap))
+        }),
+    );
+    let (used, mut copy) = (numbers::all(settings).filter(|number| number.is_used(settings)), settings.clone());
+    entries.extend(used.map(|number| Ask::of_setting(&number, &mut copy).entry()));
+    entries.extend(comparisons(viewer));
+    if let Some(shaders) = &viewer.session.shaders {
+        constants(&mut entries, shaders, settings);
+        parameters(&mut entries, shaders, settings);
+        passes(&mut entries, shaders, settings);
+        entries.extend(shaders.modes.iter().enumerate().map(|(index, mode)| of_mode(index, mode)));
+    }
+    entries
+}
+
+/// Environments, models and shader trees: the built-in ones and the files that were open.
+fn files(viewer: &Viewer) -> impl Iterator<Item = Entry> {
+    let entry = |group: &'static str, path: &Path, action: Action| {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let words = path.display().to_string();
+        Entry { words, ..Entry::new(group, format!("{group}: {name}"), action) }
+    };
+    let recent = &viewer.panels.recent;
+    let built_in = BUILT_IN.into_iter().chain(["none"]).map(PathBuf::from);
+    let environment = move |path: PathBuf| entry("Environment", &path, Action::Environment(path.display().to_string()));
+    let model = move |path: PathBuf| entry("Model", &path, Action::Do(Command::OpenModel(path.clone())));
+    let tree = move |path: PathBuf| entry("Shaders", &path, Action::Do(Command::OpenTree(path.clone())));
+    let environments = built_in.chain(recent.of(Kind::Environment).iter().cloned()).map(environment);
+    let models = crate::scene::BUILT_IN.into_iter().map(PathBuf::from).chain(recent.of(Kind::Model).iter().cloned());
+    environments.chain(models.map(model)).chain(recent.of(Kind::Tree).iter().cloned().map(tree))
+}
+
+/// What the picture can be compared with, and the versions that can be written to the files.
+fn comparisons(viewer: &Viewer) -> Vec<Entry> {
+    let compare = |title: String, with| Entry::new("Compare", title, Action::Do(Command::Compare(with)));
+    let newest = viewer.shown_generation();
+    let mut entries = match viewer.compare.is_on() {
+        true => vec![compare("Stop comparing".to_owned(), CompareWith::Nothing)],
+        false => vec![compare("Keep this picture and compare".to_owned(), CompareWith::ThisPicture)],
+    };
+    entries[0].key = "Ctrl+K".to_owned();
+    for version in viewer.versions.iter().filter(|version| viewer.versions.can_show(version, newest)) {
+        let title = format!("Compare with version {}: {}", version.number, version.title());
+        entries.push(compare(title, CompareWith::Version(version.number)));
+    }
+    for version in viewer.versions.iter().filter(|version| !viewer.files_of_version(version.number).is_empty()) {
+        let title = format!("Write version {} to the files…", version.number);
+        entries.push(Entry::new("Compare", title, Action::WriteVersion(version.number)));
+    }
+    if viewer.panels.layout.has_own() {
+        entries.push(Entry::new("Layout", "Layout: Own".to_owned(), Action::ArrangeOwn));
+    }
+    entries
+}
+
+/// Commands, panels and arrangements.
+pub(super) fn commands() -> Vec<Entry> {
+    let commands = [
+        ("Open a file", "model environment shader measured BRDF", "Ctrl+O", Action::Do(Command::Choose(Dialog::File))),
+        ("Open a shader tree", "folder", "", Action::Do(Command::Choose(Dialog::Tree))),
+        ("Frame the model", "camera", "R", Action::Do(Command::FrameModel)),
+        ("Reload all shaders", "compile", "F5", Action::Do(Command::Reload)),
+        ("Undo", "", "Ctrl+Z", Action::Do(Command::Undo)),
+        ("Redo", "", "Ctrl+Shift+Z", Action::Do(Command::Redo)),
+        ("Screenshot", "capture PNG", "F12", Action::Do(Command::Screenshot)),
+        ("Keys", "shortcuts help", "F1", Action::ShowKeys),
+        ("Hide or show the panels", "", "H", Action::TogglePanels),
+        ("Quit", "close", "Ctrl+Q", Action::Do(Command::Quit)),
+    ];
+    let command = |(title, words, key, action): (&str, &str, &str, Action)| {
+        let entry = Entry::new("Command", title.to_owned(), action);
+        Entry { words: words.to_owned(), key: key.to_owned(), ..entry }
+    };
+    let preset = |preset: Preset| {
+        let entry = Entry::new("Layout", format!("Layout: {}", preset.title()), Action::Arrange(preset));
+        Entry { words: preset.doc().to_owned(), ..entry }
+    };
+    let panel = |panel: Panel| Entry::new("Panel", format!("Panel: {}", panel.title()), Action::Open(panel));
+    let presets = Preset::ALL.into_iter().map(preset);
+    commands.into_iter().map(command).chain(presets).chain(Panel::GROUPS.concat().into_iter().map(panel)).collect()
+}
+
+/// A mode with its keys.
+fn of_mode(index: usize, mode: &Mode) -> Entry {
+    let digit = (index < 10).then(|| char::from_digit((index as u32 + 1) % 10, 10)).flatten();
+    let keys: Vec<String> =
+        mode.key.map(|key| key.to_ascii_uppercase()).into_iter().chain(digit).map(String::from).collect();
+    Entry {
+        words: format!("{} {}", mode.slug, mode.group),
+        key: keys.join(" "),
+        is_minor: mode.pass.is_some(),
+        ..Entry::new("Mode", mode.name.clone(), Action::Mode(mode.slug.clone()))
+    }
+}
+
+/// An entry that switches something on or off.
+fn switch(group: &'static str, label: &str, name: &str, is_on: bool, action: impl Fn(bool) -> Action) -> Entry {
+    let turns = if is_on { "off" } else { "on" };
+    Entry { words: name.to_owned(), ..Entry::new(group, format!("{label}: turn {turns}"), action(!is_on)) }
+}
+
+/// An entry for each choice of a constant or parameter.
+fn choices<'a>(
+    group: &'static str,
+    label: &'a str,
+    name: &'a str,
+    choices: &'a [(String, i64)],
+) -> impl Iterator<Item = Entry> + 'a {
+    choices.iter().map(move |(choice, _)| {
+        let action = Action::Value(name.to_owned(), ShaderValue::Name(choice.clone()));
+        Entry { words: name.to_owned(), ..Entry::new(group, format!("{label}: {choice}"), action) }
+    })
+}
+
+fn constants(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
+    for constant in &shaders.constants {
+        let (name, label, default) = (&constant.name, &constant.label, default_of(constant));
+        let group = if is_switch(shaders, name) { "Pass" } else { "Parameter" };
+        let now = settings.shader.get(name).and_then(|value| number(value, &constant.choices)).unwrap_or(default);
+        if constant.scalar == Scalar::Bool {
+            let action = |on| Action::Value(name.clone(), ShaderValue::Bool(on));
+            entries.push(switch(group, label, name, now != 0.0, action));
+        } else if let Some(scale) = of_constant(constant) {
+            let target = Target::Shader(name.clone(), constant.scalar != Scalar::Float);
+            let (title, doc) = (label.clone(), constant.doc.clone());
+            entries.push(Ask { title, group, doc, scale, now, target }.entry());
+        }
+        entries.extend(choices(group, label, name, &constant.choices));
+    }
+}
+
+fn parameters(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
+    for parameter in &shaders.parameters {
+        let (name, label) = (&parameter.name, &parameter.label);
+        let is_of_pass = is_of_pass(shaders, parameter);
+        let group = if is_of_pass { "Pass" } else { "Parameter" };
+        let set = settings.shader.get(name).and_then(|value| number(value, &parameter.choices));
+        let now = set.or_else(|| parameter.default.first().copied()).unwrap_or_default();
+        if parameter.kind == ParameterType::Bool {
+            let action = |on| Action::Value(name.clone(), ShaderValue::Bool(on));
+            entries.push(switch(group, label, name, now != 0.0, action));
+        } else if let Some(scale) = of_parameter(parameter) {
+            let target = Target::Shader(name.clone(), parameter.kind != ParameterType::Float);
+            let (title, doc) = (label.clone(), parameter.doc.clone());
+            entries.push(Ask { title, group, doc, scale, now, target }.entry());
+        } else if parameter.choices.is_empty() {
+            // Colors and vectors have no single number to type.
+            let panel = if is_of_pass { Panel::Passes } else { Panel::Parameters };
+            entries.push(Entry { words: name.clone(), ..Entry::new(group, label.clone(), Action::Open(panel)) });
+        }
+        entries.extend(choices(group, label, name, &parameter.choices));
+    }
+}
+
+fn passes(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
+    let internal = internal(shaders);
+    for pass in shaders.graph.passes.iter().filter(|pass| pass.has_switch() && pass.note.when.is_none()) {
+        let action = |on| Action::Pass(pass.name().to_owned(), on);
+        let entry = switch("Pass", &pass.note.label, pass.name(), pass.is_wanted(&settings.passes), action);
+        entries.push(Entry { is_minor: internal.contains(pass.name()), ..entry });
+    }
+}
+
+/// Carries out the action of the chosen entry.
+pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Command>) {
+    let settings = &mut viewer.session.settings;
+    match action {
+        Action::Mode(slug) => settings.mode = slug,
+        Action::Do(command) => commands.push(command),
+        Action::Environment(name) => settings.environment.name = name,
+        Action::Lights(source) => settings.lights.source = source,
+        Action::Tonemap(tonemap) => settings.view.tonemap = tonemap,
+        Action::Value(name, value) => drop(settings.shader.insert(name, value)),
+        Action::Number(ask) => ask.set(settings),
+        Action::Pass(name, on) => drop(settings.passes.insert(name, on)),
+        Action::Open(panel) => {
+            viewer.panels.visible = true;
+            viewer.panels.layout.open(panel);
+        }
+        Action::Arrange(preset) => {
+            viewer.panels.visible = true;
+            viewer.panels.layout.arrange(preset);
+        }
+        Action::ArrangeOwn => {
+            viewer.panels.visible = true;
+            viewer.panels.layout.arrange_own();
+        }
+        Action::WriteVersion(number) => {
+            viewer.panels.visible = true;
+            viewer.panels.layout.open(Panel::Timeline);
+            viewer.panels.timeline.ask(number);
+        }
+        Action::TogglePanels => viewer.panels.visible ^= true,
+        Action::ShowKeys => viewer.panels.show_keys = true,
+    }
+}

@@ -1,0 +1,145 @@
+//! The overlay: diagnostics, messages, loading state, the mode and the value under the mouse.
+
+pub(super) mod diagnostics;
+
+use std::sync::Arc;
+
+use egui::{Align2, Area, Color32, CornerRadius, FontId, Frame, Galley, Id, Margin, Order, Rect, RichText, Stroke};
+use egui::{TextStyle, Ui};
+
+use super::{Readings, WARNING};
+use crate::app::command::Command;
+use crate::app::viewer::Viewer;
+use diagnostics::Shown;
+
+/// Maximum number of model warnings to show. The rest is counted.
+const MODEL_WARNINGS: usize = 4;
+/// Points between the edge of the picture and a card.
+const MARGIN: f32 = 12.0;
+/// Points between the edge of a card and its text.
+const PADDING: f32 = 12.0;
+/// A passing message needs this many points above the diagnostics.
+const NOTICE: f32 = 60.0;
+
+/// Shows what lies over the picture.
+pub(super) fn show(
+    egui: &egui::Context,
+    viewer: &mut Viewer,
+    readings: &Readings,
+    picture: Rect,
+    commands: &mut Vec<Command>,
+) {
+    let cut_short = viewer.is_cut_short();
+    let mut free = picture;
+    if !viewer.session.diagnostics.is_empty() {
+        let shown = Shown { diagnostics: &viewer.session.diagnostics, cut_short, picture };
+        let (card, hides) = diagnostics::show(egui, &shown, &mut viewer.panels.files, commands);
+        free.max.y = card.top();
+        if hides {
+            viewer.session.diagnostics.clear();
+        }
+    }
+    warnings(egui, viewer, picture);
+    notice(egui, viewer, picture, free);
+    if viewer.panels.visible {
+        label(egui, readings, picture);
+    }
+}
+
+/// Kept messages and the model's warnings, until the user hides them.
+fn warnings(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
+    let model = viewer.session.model().filter(|_| viewer.panels.show_model_warnings);
+    let mut lines: Vec<String> = viewer.notices.kept().to_vec();
+    lines.extend(model.map(|model| model.first_warnings(MODEL_WARNINGS)).unwrap_or_default());
+    if lines.is_empty() {
+        return;
+    }
+    let mut hide = false;
+    // An area keeps its first size, so other messages or another picture are another area.
+    let id = Id::new(("warnings", &lines, picture.width() as u32));
+    area(id, Align2::RIGHT_TOP, picture).fade_in(false).show(egui, |ui| {
+        card(WARNING).show(ui, |ui| {
+            ui.set_max_width((picture.width() * 0.5).clamp(200.0, 420.0));
+            for line in &lines {
+                ui.label(RichText::new(line).small());
+            }
+            hide = ui.small_button("Hide").clicked();
+        });
+    });
+    if hide {
+        viewer.notices.dismiss();
+        viewer.panels.show_model_warnings = false;
+    }
+}
+
+/// The passing message, or that a model is loading. `free` is the part of the picture above the diagnostics.
+fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
+    let has_model = viewer.session.model().is_some_and(|model| !model.instances.is_empty());
+    // If no model could be loaded, the message stays.
+    let stays = !has_model && !viewer.model.loading;
+    let notice = viewer.notices.passing(stays);
+    if let Some((_, left)) = notice.filter(|_| !stays) {
+        egui.request_repaint_after(left);
+    }
+    let loading = viewer.model.loading.then_some("Loading the model…");
+    let Some(text) = notice.map(|(text, _)| text).or(loading) else { return };
+    // Where the diagnostics leave no room below, it stands at the top.
+    let (corner, room) = match free.height() >= NOTICE {
+        true => (Align2::CENTER_BOTTOM, free),
+        false => (Align2::CENTER_TOP, picture),
+    };
+    area(Id::new("notice"), corner, room).interactable(false).show(egui, |ui| {
+        card(Color32::from_gray(90)).show(ui, |ui| {
+            let font = TextStyle::Body.resolve(ui.style());
+            let color = ui.visuals().text_color();
+            ui.label(wrapped(ui, text, font, color, room.width().min(620.0)));
+        });
+    });
+}
+
+/// The title with the mode, and the value under the mouse.
+fn label(egui: &egui::Context, readings: &Readings, picture: Rect) {
+    if readings.title.is_none() && readings.value.is_none() {
+        return;
+    }
+    area(Id::new("mode"), Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
+        card(Color32::from_gray(60)).show(ui, |ui| {
+            let body = TextStyle::Body.resolve(ui.style());
+            let strong = ui.visuals().strong_text_color();
+            if let Some(title) = &readings.title {
+                ui.label(wrapped(ui, title, body.clone(), strong, picture.width()));
+            }
+            let mono = TextStyle::Monospace.resolve(ui.style());
+            let color = ui.visuals().text_color();
+            if let Some(value) = &readings.value {
+                let galley = wrapped(ui, value, mono.clone(), color, picture.width());
+                // The position of the pixel goes to the next line as a whole.
+                let galley = match galley.rows.len() {
+                    1 => galley,
+                    _ => wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, picture.width()),
+                };
+                ui.label(galley);
+            }
+        });
+    });
+}
+
+/// A text that wraps where a card would be wider than `width` with its margins. An area keeps its first size, and so would wrap a
+/// longer text by the width of the text before it.
+fn wrapped(ui: &Ui, text: &str, font: FontId, color: Color32, width: f32) -> Arc<Galley> {
+    let width = (width - 2.0 * (MARGIN + PADDING + 1.0)).max(80.0);
+    ui.painter().layout(text.to_owned(), font, color, width)
+}
+
+fn area(id: Id, corner: Align2, picture: Rect) -> Area {
+    let at = corner.pos_in_rect(&picture.shrink(MARGIN));
+    Area::new(id).order(Order::Middle).pivot(corner).fixed_pos(at).constrain_to(picture)
+}
+
+pub(in crate::app::panels) fn card(edge: Color32) -> Frame {
+    Frame::new()
+        .fill(Color32::from_rgba_unmultiplied(16, 17, 20, 235))
+        .stroke(Stroke::new(1.0, edge))
+        .corner_radius(CornerRadius::same(6))
+        .inner_margin(Margin::symmetric(PADDING as i8, 8))
+}

@@ -1,0 +1,317 @@
+//! Rows of the panels: a name at the left, a control at the right. All rows of a column have names of the same width, and fit the
+//! column. The name of a changed setting has another color. A double click on it resets the setting; its menu copies the option of
+//! the command line.
+
+use egui::{
+    Button, Checkbox, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui, vec2,
+};
+
+use super::theme::{ACCENT, QUIET};
+use crate::app::numbers::{Number, Scale};
+use crate::settings::{LightSource, Settings, Tonemap};
+
+/// Height of a row, in points.
+const HEIGHT: f32 = 18.0;
+/// Width of the names, in points. Names become narrower before the controls do.
+const NAME: std::ops::RangeInclusive<f32> = 84.0..=120.0;
+/// Points by which the name of an indented row moves.
+const INDENT: f32 = 10.0;
+/// Points that names leave to the controls while they can.
+const CONTROL: f32 = 150.0;
+/// Width of the number at the right of a slider, with its unit.
+const VALUE: f32 = 72.0;
+/// A slider shorter than this is left out: the number is dragged instead.
+const SHORTEST: f32 = 36.0;
+
+/// A row without its control.
+pub(super) struct Row<'a> {
+    pub(super) name: &'a str,
+    /// Meaning of the setting; may be empty.
+    pub(super) doc: &'a str,
+    /// Option of the command line that sets the present value; empty if there is none.
+    pub(super) option: String,
+    /// Whether the value differs from the default.
+    pub(super) is_changed: bool,
+    /// Whether it belongs to the row above.
+    pub(super) is_indented: bool,
+}
+
+impl Row<'_> {
+    /// Shows the row with its control. Returns whether the user resets the setting.
+    pub(super) fn show(self, ui: &mut Ui, control: impl FnOnce(&mut Ui) -> Response) -> bool {
+        ui.horizontal(|ui| {
+            let title = self.title(ui);
+            let response = control(ui);
+            response.on_hover_ui(|ui| self.about(ui));
+            let mut resets = self.is_changed && title.double_clicked();
+            if !self.option.is_empty() {
+                title.context_menu(|ui| resets |= self.menu(ui));
+            }
+            title.on_hover_ui(|ui| self.about(ui));
+            resets
+        })
+        .inner
+    }
+
+    fn title(&self, ui: &mut Ui) -> Response {
+        let text = RichText::new(self.name);
+        let text = if self.is_changed { text.color(ACCENT) } else { text };
+        let room = ui.available_width() - CONTROL - ui.spacing().item_spacing.x;
+        let size = vec2(room.clamp(*NAME.start(), *NAME.end()), HEIGHT);
+        let label = |ui: &mut Ui| {
+            ui.set_min_size(size);
+            if self.is_indented {
+                ui.add_space(INDENT);
+            }
+            // The hover text begins with the whole name.
+            ui.add(Label::new(text).truncate().show_tooltip_when_elided(false).selectable(false).sense(Sense::click()))
+        };
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(egui::Align::Center), label).inner
+    }
+
+    /// The hover text.
+    fn about(&self, ui: &mut Ui) {
+        ui.set_max_width(320.0);
+        ui.label(RichText::new(self.name).strong());
+        if !self.doc.is_empty() {
+            ui.label(self.doc);
+        }
+        if !self.option.is_empty() {
+            ui.label(option_text(&self.option).color(ACCENT));
+        }
+        if self.is_changed {
+            ui.label(RichText::new("Double-click the name to reset it").small().color(QUIET));
+        }
+    }
+
+    /// The menu of the name. Returns whether the user resets the setting.
+    fn menu(&self, ui: &mut Ui) -> bool {
+        if ui.button(option_text(&format!("Copy {}", self.option))).clicked() {
+            ui.ctx().copy_text(self.option.clone());
+            ui.close();
+        }
+        let resets = ui.add_enabled(self.is_changed, Button::new("Reset")).clicked();
+        if resets {
+            ui.close();
+        }
+        resets
+    }
+}
+
+/// An option of the command line. The font of the other texts shows two hyphens as one dash.
+pub(super) fn option_text(option: &str) -> RichText {
+    RichText::new(option).monospace().size(11.5)
+}
+
+/// A heading above rows.
+pub(super) fn heading(ui: &mut Ui, text: &str) {
+    ui.add_space(4.0);
+    ui.add(Label::new(RichText::new(text).small().color(QUIET)).selectable(false));
+}
+
+/// A value of a setting as `--set` takes it.
+pub(super) trait Value: PartialEq {
+    fn text(&self) -> String;
+}
+
+impl Value for bool {
+    fn text(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Value for u32 {
+    fn text(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Value for String {
+    fn text(&self) -> String {
+        self.clone()
+    }
+}
+
+impl Value for [f32; 3] {
+    fn text(&self) -> String {
+        self.map(|number| short(f64::from(number))).join(",")
+    }
+}
+
+impl Value for LightSource {
+    fn text(&self) -> String {
+        choice_name(self)
+    }
+}
+
+impl Value for Tonemap {
+    fn text(&self) -> String {
+        choice_name(self)
+    }
+}
+
+/// The name of a choice on the command line.
+pub(in crate::app) fn choice_name(value: &impl clap::ValueEnum) -> String {
+    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
+
+/// A number with at most four decimals.
+pub(super) fn short(number: f64) -> String {
+    ((number * 1e4).round() / 1e4).to_string()
+}
+
+/// `--set PATH=VALUE`, in the quotes that a shell needs.
+pub(super) fn set_option(path: &str, value: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "._-/,:+%@=".contains(c);
+    let value =
+        if value.chars().all(is_plain) { value.to_owned() } else { format!("'{}'", value.replace('\'', r"'\''")) };
+    format!("--set {path}={value}")
+}
+
+/// Shows the row of a setting: `value` at `path` of the settings, with this default.
+pub(super) fn setting<T: Value>(
+    ui: &mut Ui,
+    (name, doc, path): (&str, &str, &str),
+    value: &mut T,
+    default: T,
+    control: impl FnOnce(&mut Ui, &mut T) -> Response,
+) {
+    let row =
+        Row { name, doc, option: set_option(path, &value.text()), is_changed: *value != default, is_indented: false };
+    if row.show(ui, |ui| control(ui, value)) {
+        *value = default;
+    }
+}
+
+/// Shows the row of a number of the settings.
+pub(super) fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
+    let (before, default) = (number.get(settings), number.get(&mut Settings::of_window()));
+    let (path, scale) = (number.path(), number.scale());
+    let row = Row {
+        name: number.name,
+        doc: number.doc,
+        option: set_option(&path, &number.option_value(settings)),
+        is_changed: before != default,
+        is_indented: false,
+    };
+    let is_used = number.is_used(settings);
+    let mut now = before;
+    if row.show(ui, |ui| ui.add_enabled_ui(is_used, |ui| edit_number(ui, &mut now, &scale)).inner) {
+        now = default;
+    }
+    if now != before {
+        number.set(settings, now);
+    }
+}
+
+/// A slider with its number, or the number alone where there is no room or no range.
+pub(super) fn edit_number(ui: &mut Ui, number: &mut f64, scale: &Scale) -> Response {
+    let gap = ui.spacing().item_spacing.x;
+    let rail = ui.available_width() - VALUE - gap;
+    let Some((low, high)) = scale.slider.filter(|_| rail >= SHORTEST) else {
+        let width = ui.available_width();
+        return drag(ui, number, scale, width);
+    };
+    ui.spacing_mut().slider_width = rail;
+    let slider = Slider::new(number, low..=high).show_value(false).clamping(SliderClamping::Edits);
+    let slider = slider.logarithmic(scale.is_logarithmic).fixed_decimals(scale.decimals);
+    let response = ui.add(slider);
+    response.union(drag(ui, number, scale, VALUE))
+}
+
+/// A number that is dragged or typed, of this width in points.
+pub(super) fn drag(ui: &mut Ui, number: &mut f64, scale: &Scale, width: f32) -> Response {
+    let (low, high) = scale.limits;
+    // A drag over 200 points covers the range of the slider.
+    let speed = scale.slider.map_or(0.01, |(low, high)| (high - low) / 200.0);
+    let value = DragValue::new(number).range(low..=high).clamp_existing_to_range(false).speed(speed);
+    let value = value.fixed_decimals(scale.decimals);
+    let value = value.custom_formatter(|number, _| scale.text(number)).custom_parser(|text| scale.parse(text).ok());
+    ui.add_sized(vec2(width, HEIGHT), value)
+}
+
+/// A list of choices as wide as the rest of the row.
+pub(super) fn choose(
+    ui: &mut Ui,
+    id: &str,
+    shown: impl Into<egui::WidgetText>,
+    list: impl FnOnce(&mut Ui),
+) -> Response {
+    let list_of = ComboBox::from_id_salt(id).selected_text(shown).width(ui.available_width()).truncate();
+    list_of.show_ui(ui, list).response
+}
+
+/// A check box.
+pub(super) fn check(ui: &mut Ui, on: &mut bool) -> Response {
+    ui.add(Checkbox::without_text(on))
+}
+
+/// A color picker for linear RGB.
+pub(super) fn color(ui: &mut Ui, linear: &mut [f32; 3]) -> Response {
+    // The picker rounds the color that it is given, also while nobody uses it.
+    let mut edited = *linear;
+    let response = egui::widgets::color_picker::color_edit_button_rgb(ui, &mut edited);
+    if response.changed() {
+        *linear = edited;
+    }
+    response
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::numbers::{BLUR, EXPOSURE};
+
+    #[test]
+    fn options_are_what_a_shell_takes() {
+        assert_eq!(set_option("view.ev", "-1.5"), "--set view.ev=-1.5");
+        assert_eq!(set_option("environment.name", "my sky's.hdr"), r"--set environment.name='my sky'\''s.hdr'");
+        assert_eq!([0.45_f32, 1.0, 0.0].text(), "0.45,1,0");
+    }
+
+    /// Shows rows in a column of this width, and returns how far they reach.
+    fn reach(width: f32) -> f32 {
+        let egui = egui::Context::default();
+        super::super::theme::apply(&egui);
+        let mut reach = 0.0;
+        let mut settings = Settings::of_window();
+        let size = vec2(800.0, 600.0);
+        // The second frame has the sizes of the first.
+        for _ in 0..2 {
+            let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
+            let input = egui::RawInput { screen_rect, ..Default::default() };
+            let _ = egui.run_ui(input, |ui| {
+                let column = egui::Rect::from_min_size(egui::Pos2::ZERO, vec2(width, 600.0));
+                ui.scope_builder(egui::UiBuilder::new().max_rect(column), |ui| {
+                    number(ui, &mut settings, &EXPOSURE);
+                    number(ui, &mut settings, &BLUR);
+                    let long = "a name that is longer than any column";
+                    setting(ui, (long, "", "variant"), &mut settings.variant, String::new(), |ui, value| {
+                        choose(ui, "long", format!("{long}{value}"), |_| {})
+                    });
+                    reach = ui.min_rect().max.x;
+                });
+            });
+        }
+        reach
+    }
+
+    #[test]
+    fn a_color_that_nobody_edits_stays_as_it_is() {
+        let egui = egui::Context::default();
+        let before = [1.0, 0.93, 0.82];
+        let mut linear = before;
+        for _ in 0..2 {
+            let _ = egui.run_ui(egui::RawInput::default(), |ui| drop(color(ui, &mut linear)));
+        }
+        assert_eq!(linear, before);
+    }
+
+    #[test]
+    fn rows_fit_narrow_and_wide_columns() {
+        for width in [184.0, 220.0, 302.0, 600.0] {
+            let reach = reach(width);
+            assert!(reach <= width + 0.5 && reach > width - 3.0, "{reach} in a column of {width}");
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The models, environments and shader trees that were open, kept between runs in `recent.json`.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::state;
+
+const FILE: &str = "recent.json";
+/// Most files of a kind.
+const MOST: usize = 8;
+
+/// A kind of file that is remembered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Model,
+    Environment,
+    Tree,
+}
+
+/// Absolute paths of files that could be opened, the newest first.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Recent {
+    models: Vec<PathBuf>,
+    environments: Vec<PathBuf>,
+    trees: Vec<PathBuf>,
+}
+
+impl Recent {
+    /// The files of the last run that are still there.
+    pub(super) fn restored() -> Self {
+        state::load(FILE).and_then(|text| parse(&text)).unwrap_or_default()
+    }
+
+    pub(super) fn of(&self, kind: Kind) -> &[PathBuf] {
+        match kind {
+            Kind::Model => &self.models,
+            Kind::Environment => &self.environments,
+            Kind::Tree => &self.trees,
+        }
+    }
+
+    fn of_mut(&mut self, kind: Kind) -> &mut Vec<PathBuf> {
+        match kind {
+            Kind::Model => &mut self.models,
+            Kind::Environment => &mut self.environments,
+            Kind::Tree => &mut self.trees,
+        }
+    }
+
+    /// Puts a file that has been opened first, and stores the list.
+    pub(super) fn remember(&mut self, kind: Kind, path: &Path) {
+        if self.insert(kind, path) {
+            self.store();
+        }
+    }
+
+    /// Removes a file that could not be opened, and stores the list.
+    pub(super) fn forget(&mut self, kind: Kind, path: &Path) {
+        let Ok(path) = std::path::absolute(path) else { return };
+        let list = self.of_mut(kind);
+        if list.contains(&path) && !path.exists() {
+            list.retain(|known| *known != path);
+            self.store();
+        }
+    }
+
+    /// Returns whether the list has changed.
+    fn insert(&mut self, kind: Kind, path: &Path) -> bool {
+        let Ok(path) = std::path::absolute(path) else { return false };
+        let list = self.of_mut(kind);
+        if list.first() == Some(&path) {
+            return false;
+        }
+        list.retain(|known| *known != path);
+        list.insert(0, path);
+        list.truncate(MOST);
+        true
+    }
+
+    fn store(&self) {
+        match serde_json::to_string(self) {
+            Ok(text) => state::save(FILE, &text),
+            // A path that is no text.
+            Err(error) => tracing::debug!("the recent files were not stored: {error}"),
+        }
+    }
+}
+
+/// The stored files that exist. A text that cannot be read counts as none.
+fn parse(text: &str) -> Option<Recent> {
+    let mut recent: Recent = serde_json::from_str(text).ok()?;
+    for kind in [Kind::Model, Kind::Environment, Kind::Tree] {
+        let list = recent.of_mut(kind);
+        list.retain(|path| path.exists());
+        list.truncate(MOST);
+    }
+    Some(recent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_files_come_first_and_missing_ones_are_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let paths: Vec<PathBuf> = (0..10).map(|i| folder.path().join(format!("{i}.glb"))).collect();
+        let mut recent = Recent::default();
+        for path in &paths {
+            std::fs::write(path, "").unwrap();
+            assert!(recent.insert(Kind::Model, path));
+        }
+        assert!(!recent.insert(Kind::Model, &paths[9]), "the newest is there already");
+        assert!(recent.insert(Kind::Model, &paths[5]));
+        let names = |recent: &Recent| {
+            let name = |path: &PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
+            recent.of(Kind::Model).iter().map(name).collect::<String>()
+        };
+        assert_eq!(names(&recent), "59876432");
+        let text = serde_json::to_string(&recent).unwrap();
+        assert_eq!(parse(&text), Some(recent));
+        std::fs::remove_file(&paths[9]).unwrap();
+        assert_eq!(names(&parse(&text).unwrap()), "5876432");
+    }
+
+    #[test]
+    fn a_damaged_list_counts_as_none() {
+        assert_eq!(["", "7", "{\"models\": 1}"].map(parse), [None, None, None]);
+        assert_eq!(parse("{\"of_a_newer_version\": 1}"), Some(Recent::default()));
+    }
+}
