@@ -173,8 +173,19 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         again.push(again_ms);
         modes.push(json!({ "slug": slug, "first_ms": round(first_ms), "again_ms": round(again_ms) }));
     }
+    // All thumbnails of the gallery: first with their pipelines, then again.
+    let (mut thumbnails, mut count) = (Vec::new(), 0);
+    let all = if args.common.mode.is_empty() { headless.shaders().modes.clone() } else { Vec::new() };
+    for _ in 0..2 {
+        let begin = Instant::now();
+        count = headless.thumbnails((96, 72), &all)?.len();
+        thumbnails.push(ms(begin));
+    }
     Ok(json!({
         "size": [args.common.size.0, args.common.size.1],
+        "thumbnails": count,
+        "thumbnails_first_ms": round(thumbnails[0]),
+        "thumbnails_again_ms": round(thumbnails[1]),
         "frame_ms": summary(wall),
         "device_ms": summary(device),
         "passes": passes,
