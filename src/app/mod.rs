@@ -5,6 +5,7 @@
 
 mod command;
 mod editor;
+mod gallery;
 mod history;
 mod input;
 mod keys;

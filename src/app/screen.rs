@@ -1,5 +1,6 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
+mod gallery;
 mod loops;
 mod probe;
 mod ui;
@@ -20,6 +21,7 @@ use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRender
 use crate::picture;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
+use gallery::Gallery;
 
 /// The CPU prepares a frame while the device draws the one before.
 const FRAMES_IN_FLIGHT: usize = 2;
@@ -40,8 +42,10 @@ pub(super) struct PictureRect {
 /// The screen. Fields drop in order, so renderers go before the swapchain and the surface.
 pub(super) struct Screen {
     ui: UiRenderer,
+    gallery: Gallery,
     view: View,
     frames: Frames,
+    layouts: Arc<SetLayouts>,
     swapchain: Option<Swapchain>,
     surface: Arc<Surface>,
     egui: egui::Context,
@@ -87,6 +91,8 @@ impl Screen {
             Some(gpu.max_image_size() as usize),
         );
         Ok(Self {
+            gallery: Gallery::default(),
+            layouts: layouts.clone(),
             ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
             view: View::new(gpu, layouts, FRAMES_IN_FLIGHT)?,
             frames: Frames::new(gpu, FRAMES_IN_FLIGHT)?,
@@ -149,6 +155,7 @@ impl Screen {
         let drawn = self.survive(drawn)?;
         if drawn.is_none() {
             self.view.forget();
+            self.gallery.forget();
         }
         let shortage = self.shortage.take();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
@@ -201,6 +208,8 @@ impl Screen {
             Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?,
             None => View::clear(&mut encoder, &output),
         }
+        let context = (&self.layouts, pixels_per_point);
+        let next_thumbnails = self.gallery.draw(&mut encoder, slot, viewer, &mut self.ui, context)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
         self.attempts[slot] = viewer.record(window);
@@ -217,7 +226,8 @@ impl Screen {
         let again =
             self.stale || moving || reported || self.awaits_pixel() || viewer.moves() || gets_better || leaves_motion;
         let again = self.awaits_loops() || again;
-        Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
+        let waits = [delay.filter(|delay| *delay < NEVER), next_thumbnails];
+        Ok(if again { Some(Duration::ZERO) } else { waits.into_iter().flatten().min() })
     }
 
     /// Recreates the swapchain if it does not fit the window. Returns whether there is a swapchain.

@@ -28,7 +28,12 @@ enum What {
     Load,
     /// Time to bake an environment, pass by pass, and to read it from the disk cache
     Bake,
+    /// Time to draw a thumbnail of every debug mode: first with their pipelines, then without
+    Thumbnails,
 }
+
+/// Width and height of a thumbnail, pixels.
+const THUMBNAIL: [u32; 2] = [96, 72];
 
 /// Options of `bench`.
 #[derive(clap::Args)]
@@ -62,6 +67,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Frame => frame(&args, &gpu, &compiler)?,
         What::Load => load(&args, &gpu, &compiler, start)?,
         What::Bake => bake(&args, &gpu, &compiler)?,
+        What::Thumbnails => thumbnails(&args, &gpu, &compiler)?,
     };
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);
@@ -173,25 +179,40 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         again.push(again_ms);
         modes.push(json!({ "slug": slug, "first_ms": round(first_ms), "again_ms": round(again_ms) }));
     }
-    // All thumbnails of the gallery: first with their pipelines, then again.
-    let (mut thumbnails, mut count) = (Vec::new(), 0);
-    let all = if args.common.mode.is_empty() { headless.shaders().modes.clone() } else { Vec::new() };
-    for _ in 0..2 {
-        let begin = Instant::now();
-        count = headless.thumbnails((96, 72), &all)?.len();
-        thumbnails.push(ms(begin));
-    }
     Ok(json!({
         "size": [args.common.size.0, args.common.size.1],
-        "thumbnails": count,
-        "thumbnails_first_ms": round(thumbnails[0]),
-        "thumbnails_again_ms": round(thumbnails[1]),
         "frame_ms": summary(wall),
         "device_ms": summary(device),
         "passes": passes,
         "mode_first_ms": summary(first),
         "mode_again_ms": summary(again),
         "modes": modes,
+    }))
+}
+
+/// Draws all thumbnails of the gallery.
+fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+    let model = args.common.model_silently(args.model.as_deref())?;
+    let (source, mut settings) = (args.common.source()?, args.common.settings()?);
+    // As the window draws them.
+    let is_cpu = gpu.info().kind == "cpu";
+    settings.view.msaa = if is_cpu { 1 } else { settings.view.msaa };
+    let size = if is_cpu { THUMBNAIL.map(|side| 2 * side) } else { THUMBNAIL };
+    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    headless.draw()?;
+    let modes = headless.shaders().modes.clone();
+    let mut draw = || -> Result<(usize, f64), Failure> {
+        let begin = Instant::now();
+        let drawn = headless.thumbnails(size.into(), &modes)?.len();
+        Ok((drawn, ms(begin)))
+    };
+    let (count, first) = draw()?;
+    let again = (0..args.samples).map(|_| Ok(draw()?.1)).collect::<Result<Vec<f64>, Failure>>()?;
+    Ok(json!({
+        "size": size,
+        "thumbnails": count,
+        "first_ms": round(first),
+        "again_ms": summary(again),
     }))
 }
 

@@ -5,6 +5,7 @@ mod camera;
 mod environment;
 mod keys;
 mod lights;
+mod mode_tile;
 mod model;
 mod modes;
 mod output;
@@ -22,6 +23,7 @@ use std::ops::RangeInclusive;
 use egui::{Response, Slider, Ui, Vec2};
 
 use super::command::Command;
+use super::gallery::GalleryState;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::viewer::Viewer;
@@ -50,6 +52,7 @@ pub(super) struct PanelState {
     pub(super) show_model_warnings: bool,
     /// Slug of the mode that the list was last scrolled to.
     scrolled_to: String,
+    pub(super) gallery: GalleryState,
     timing: timing::Timing,
 }
 
@@ -65,6 +68,7 @@ impl PanelState {
             search: String::new(),
             show_model_warnings: true,
             scrolled_to: String::new(),
+            gallery: GalleryState::default(),
             timing: timing::Timing::default(),
         }
     }
@@ -98,6 +102,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let whole = ui.max_rect();
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
+    viewer.panels.gallery.begin_frame();
     viewer.panels.remember(&viewer.session.settings.environment.name);
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, readings);
@@ -111,6 +116,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     overlay::show(ui.ctx(), viewer, readings, picture, commands);
     keys::show(ui.ctx(), &mut viewer.panels.show_keys);
     palette::show(ui.ctx(), viewer, whole, commands);
+    viewer.panels.gallery.end_frame(ui.ctx());
     picture
 }
 

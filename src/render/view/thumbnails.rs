@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::declared::{Drawn, Given};
 use super::passes::{ColorTarget, Passes};
 use super::{BoundFrame, View};
-use crate::gpu::{Encoder, Gpu, GpuError, Image, ImageDesc, Rect, SetLayouts, Swapchain, Use, vk};
+use crate::gpu::{Encoder, Gpu, GpuError, Image, ImageDesc, Rect, SetLayouts, Use, vk};
 
 /// Draws thumbnails. It has targets of its own and shares nothing with the large picture but the resources of its frames.
 pub struct Thumbnails {
@@ -110,7 +110,8 @@ impl Thumbnails {
         self.view.forget();
     }
 
-    /// An image for `columns` x `rows` thumbnails of `size` pixels, which shaders can sample.
+    /// An image for `columns` x `rows` thumbnails of `size` pixels, which shaders can sample. They read linear values of what thumbnails
+    /// store with the sRGB curve, as egui expects.
     ///
     /// # Errors
     /// Out of memory.
@@ -118,6 +119,6 @@ impl Thumbnails {
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::SAMPLED | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
         let (width, height) = (size.0 * columns, size.1 * rows);
-        Image::new(gpu, "thumbnails", ImageDesc::new(width, height, Swapchain::FORMAT, usage))
+        Image::new(gpu, "thumbnails", ImageDesc::new(width, height, vk::Format::B8G8R8A8_SRGB, usage))
     }
 }
