@@ -115,7 +115,7 @@ impl Gallery {
         let has_data = |mode: &&Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
         let is_seen = |mode: &&Mode| has_data(mode) || viewer.panels.gallery.visible.contains(&mode.slug);
         let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&viewer.gpu));
-        let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(|mode| is_stale(mode))).collect();
+        let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
         if stale.is_empty() {
             if self.drawn > 0 {
                 emit(viewer.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
@@ -150,7 +150,7 @@ impl Gallery {
     ) -> Result<Option<Duration>, GpuError> {
         let Some(Shown { settings, scene, revisions, target, size, .. }) = &self.shown else { return Ok(None) };
         let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
-        let (mut ready, mut missing) = (Vec::new(), VecDeque::new());
+        let (mut ready, mut missing, mut is_new) = (Vec::new(), VecDeque::new(), false);
         for set in stale {
             let inputs = FrameInputs {
                 settings,
@@ -164,11 +164,13 @@ impl Gallery {
             let state = Arc::new(FrameState::of_modes(&inputs, &set));
             match viewer.resources.bind(&state, false)? {
                 Some(frame) => ready.push((set, frame)),
-                None if self.asked.insert(set[0].slug.clone()) => missing.push_back(state.pipelines.clone()),
-                None => {}
+                None => {
+                    is_new |= self.asked.insert(set[0].slug.clone());
+                    missing.push_back(state.pipelines.clone());
+                }
             }
         }
-        if let Some(pipelines) = viewer.resources.pipelines().filter(|_| !missing.is_empty()) {
+        if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new) {
             viewer.threads.worker.build_thumbnails(pipelines, missing);
         }
         if ready.is_empty() {

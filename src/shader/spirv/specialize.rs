@@ -269,6 +269,22 @@ mod tests {
     }
 
     #[test]
+    fn several_values_keep_the_code_that_one_of_them_needs() {
+        let module = module();
+        let both = specialize_several(&module, &[(8, 1)], 7, &[2, 3]).unwrap();
+        let mut found = extended(&both);
+        found.sort_unstable();
+        // first() stays, since second() is taken for x.y > 0 only.
+        assert_eq!(found, [13, 14, 27]);
+        assert_eq!(count(&both, op::SPEC_CONSTANT) + count(&both, op::SPEC_CONSTANT_OP), 0);
+        // The condition of the loop over the values is one more than those of the stage.
+        assert_eq!(count(&both, op::LOOP_MERGE), count(&module, op::LOOP_MERGE) + 1);
+        let third = specialize_several(&module, &[(8, 1)], 7, &[3, 3]).map(|words| extended(&words));
+        assert_eq!(third, None, "values that are the same leave nothing to choose");
+        assert_eq!(specialize_several(&module, &[], 9, &[2, 3]), None, "the stage has no such constant");
+    }
+
+    #[test]
     fn garbage_comes_back() {
         for words in
             [vec![], vec![1, 2, 3], vec![0x0723_0203, 0, 0, 9, 0, 0], vec![0x0723_0203, 0, 0, 9, 0, 0xffff_0036]]
