@@ -31,6 +31,11 @@ pub enum Event<'a> {
         /// Shader generation.
         generation: u64,
     },
+    /// The thumbnails in sight show what the picture shows.
+    Thumbnails {
+        /// How many were drawn since the last event.
+        drawn: usize,
+    },
     /// An environment was baked, or loaded from the disk cache.
     Bake(&'a BakeReport),
     /// A picture was rendered in a mode that accumulates random paths.

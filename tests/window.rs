@@ -7,6 +7,7 @@ mod window {
     mod controls;
     mod endurance;
     mod faults;
+    mod gallery;
     mod keys;
     mod layout;
     mod losses;

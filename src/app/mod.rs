@@ -7,6 +7,7 @@ mod command;
 mod dialog;
 mod difference;
 mod editor;
+mod gallery;
 mod history;
 mod input;
 mod keys;

@@ -1,6 +1,7 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
 mod error_map;
+mod gallery;
 mod loops;
 mod probe;
 mod reference;
@@ -24,6 +25,7 @@ use crate::picture;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use error_map::ErrorMap;
+use gallery::Gallery;
 use reference::ReferenceView;
 
 /// The CPU prepares a frame while the device draws the one before.
@@ -43,8 +45,10 @@ pub(super) struct PictureRect {
 /// The screen. Fields drop in order, so renderers go before the swapchain and the surface.
 pub(super) struct Screen {
     ui: UiRenderer,
+    gallery: Gallery,
     view: View,
     frames: Frames,
+    layouts: Arc<SetLayouts>,
     swapchain: Option<Swapchain>,
     surface: Arc<Surface>,
     egui: egui::Context,
@@ -98,6 +102,8 @@ impl Screen {
             Some(gpu.max_image_size() as usize),
         );
         Ok(Self {
+            gallery: Gallery::default(),
+            layouts: layouts.clone(),
             ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
             view: View::new(gpu, layouts, FRAMES_IN_FLIGHT)?,
             frames: Frames::new(gpu, FRAMES_IN_FLIGHT)?,
@@ -163,6 +169,7 @@ impl Screen {
         if drawn.is_none() {
             self.view.forget();
             (self.reference, self.thumbnails, self.thumbnail) = (None, None, None);
+            self.gallery.forget();
         }
         let shortage = self.shortage.take();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
@@ -221,6 +228,8 @@ impl Screen {
         }
         self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
         self.record_thumbnail(&mut encoder, slot, viewer)?;
+        let context = (&self.layouts, pixels_per_point);
+        let next_thumbnails = self.gallery.draw(&mut encoder, slot, viewer, &mut self.ui, context)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
         self.attempts[slot] = viewer.record(window);
@@ -245,7 +254,8 @@ impl Screen {
             || gets_better
             || leaves_motion;
         let again = self.awaits_loops() || again;
-        Ok(if again { Some(Duration::ZERO) } else { delay.filter(|delay| *delay < NEVER) })
+        let waits = [delay.filter(|delay| *delay < NEVER), next_thumbnails];
+        Ok(if again { Some(Duration::ZERO) } else { waits.into_iter().flatten().min() })
     }
 
     /// Recreates the swapchain if it does not fit the window. Returns whether there is a swapchain.

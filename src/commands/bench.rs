@@ -28,7 +28,12 @@ enum What {
     Load,
     /// Time to bake an environment, pass by pass, and to read it from the disk cache
     Bake,
+    /// Time to draw a thumbnail of every debug mode: first with their pipelines, then without
+    Thumbnails,
 }
+
+/// Width and height of a thumbnail, pixels.
+const THUMBNAIL: [u32; 2] = [96, 72];
 
 /// Options of `bench`.
 #[derive(clap::Args)]
@@ -62,6 +67,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Frame => frame(&args, &gpu, &compiler)?,
         What::Load => load(&args, &gpu, &compiler, start)?,
         What::Bake => bake(&args, &gpu, &compiler)?,
+        What::Thumbnails => thumbnails(&args, &gpu, &compiler)?,
     };
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);
@@ -181,6 +187,32 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         "mode_first_ms": summary(first),
         "mode_again_ms": summary(again),
         "modes": modes,
+    }))
+}
+
+/// Draws all thumbnails of the gallery.
+fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+    let model = args.common.model_silently(args.model.as_deref())?;
+    let (source, mut settings) = (args.common.source()?, args.common.settings()?);
+    // As the window draws them.
+    let is_cpu = gpu.info().kind == "cpu";
+    settings.view.msaa = if is_cpu { 1 } else { settings.view.msaa };
+    let size = if is_cpu { THUMBNAIL.map(|side| 2 * side) } else { THUMBNAIL };
+    let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
+    headless.draw()?;
+    let modes = headless.shaders().modes.clone();
+    let mut draw = || -> Result<(usize, f64), Failure> {
+        let begin = Instant::now();
+        let drawn = headless.thumbnails(size.into(), &modes)?.len();
+        Ok((drawn, ms(begin)))
+    };
+    let (count, first) = draw()?;
+    let again = (0..args.samples).map(|_| Ok(draw()?.1)).collect::<Result<Vec<f64>, Failure>>()?;
+    Ok(json!({
+        "size": size,
+        "thumbnails": count,
+        "first_ms": round(first),
+        "again_ms": summary(again),
     }))
 }
 

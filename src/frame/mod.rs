@@ -7,6 +7,7 @@ mod baked;
 mod date;
 mod formats;
 mod keys;
+mod mode_sets;
 mod pipeline_key;
 mod pipelines;
 mod scene;
@@ -22,6 +23,7 @@ pub use date::Date;
 pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
 pub use keys::{Keys, key_names};
+pub use mode_sets::{SharedMode, mode_sets};
 pub(crate) use pipeline_key::PipelineKey;
 pub(crate) use pipelines::shared_features;
 pub use pipelines::{MaterialVariant, PipelineRequest};
@@ -139,6 +141,17 @@ pub(crate) struct Sun {
 impl FrameState {
     /// The state of a picture. Pure: equal inputs give equal states.
     pub fn new(inputs: &FrameInputs<'_>) -> Self {
+        let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
+        Self::with_pipelines(inputs, PipelineRequest::new(settings, shaders, scene, target))
+    }
+
+    /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model but the tone map are left out.
+    pub fn of_modes(inputs: &FrameInputs<'_>, modes: &[&Mode]) -> Self {
+        let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
+        Self::with_pipelines(inputs, PipelineRequest::of_modes(settings, shaders, scene, target, modes))
+    }
+
+    fn with_pipelines(inputs: &FrameInputs<'_>, pipelines: PipelineRequest) -> Self {
         let FrameInputs { settings, shaders, scene, revisions, clock, size, target } = *inputs;
         let size = (size.0.max(1), size.1.max(1));
         let nothing = Model::default();
@@ -147,7 +160,6 @@ impl FrameState {
         let camera = frame(bounds, &model.outline, &settings.camera, size.0 as f32 / size.1 as f32);
         let mut lights = lights(&settings.lights, model, 0.0);
         lights.truncate(MAX_LIGHTS);
-        let pipelines = PipelineRequest::new(settings, shaders, scene, target);
         let lit = settings.environment.is_lit();
         let clip_from_world = camera.clip_from_world();
         let turn = settings.environment.rotation.to_radians();

@@ -56,6 +56,8 @@ pub(crate) struct PipelineKey {
     pub(crate) format: vk::Format,
     pub(crate) samples: u32,
     pub(crate) specialization: Specialization,
+    /// Ids of the modes that its fragment stage computes, each for a target of its own; empty for the mode in `specialization`.
+    pub(crate) modes: Vec<u32>,
 }
 
 impl PipelineKey {

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::Scene;
 use super::formats::{MEAN_FORMAT, TargetFormat, pass_format};
 use super::pipeline_key::{KeyPass, PipelineKey};
+use super::{Scene, SharedMode};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
     self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
@@ -63,6 +63,8 @@ pub struct PipelineRequest {
     pub draws_model: bool,
     /// The pass whose image is shown instead of the picture.
     pub shown_pass: Option<String>,
+    /// The modes that are drawn at once, each to a target of its own: see `frame::mode_sets`. Empty for a picture of `mode` alone.
+    pub modes: Vec<SharedMode>,
 }
 
 /// The properties of the settings that select the passes of a picture.
@@ -157,6 +159,7 @@ impl PipelineRequest {
             passes,
             draws_model,
             shown_pass,
+            modes: Vec::new(),
         }
     }
 
@@ -205,6 +208,7 @@ impl PipelineRequest {
             format: self.target.color,
             samples: self.target.samples,
             specialization: self.material_constants(material),
+            modes: self.modes.iter().map(|mode| mode.id).collect(),
         }
     }
 
@@ -267,13 +271,32 @@ impl PipelineRequest {
         specialization: Specialization,
     ) -> PipelineKey {
         let class = PrimitiveClass::Triangles;
-        PipelineKey { pass: KeyPass(pass.clone()), raster, class, format, samples: 1, specialization }
+        PipelineKey {
+            pass: KeyPass(pass.clone()),
+            raster,
+            class,
+            format,
+            samples: 1,
+            specialization,
+            modes: Vec::new(),
+        }
     }
 
     /// The pipeline of the tone map.
     pub(crate) fn tonemap_key(&self) -> Option<PipelineKey> {
+        self.tonemap_key_of(self.encode)
+    }
+
+    /// The pipelines of the tone map of each mode that is drawn.
+    pub(crate) fn tonemap_keys(&self) -> impl Iterator<Item = PipelineKey> {
+        let modes = self.modes.iter().map(|mode| mode.encode);
+        let only = self.modes.is_empty().then_some(self.encode);
+        modes.chain(only).filter_map(|encode| self.tonemap_key_of(encode))
+    }
+
+    fn tonemap_key_of(&self, encode: u32) -> Option<PipelineKey> {
         let pass = self.pass_of(|pass| pass.part == Part::Tonemap)?;
-        let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, self.encode)];
+        let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, encode)];
         let specialization = own.iter().chain(&self.constants).copied().collect();
         Some(self.triangle_key(pass, Raster::Solid, Swapchain::FORMAT, specialization))
     }
@@ -330,7 +353,7 @@ impl PipelineRequest {
     /// The pipeline with which a pass that is not the model's own draws a material of the model.
     pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
         let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
-        let key = self.key_with_model(pass, material, raster);
+        let key = PipelineKey { modes: Vec::new(), ..self.key_with_model(pass, material, raster) };
         match pass.note.to {
             Target::Image => PipelineKey { format: pass_format(pass.note.format), samples: 1, ..key },
             _ => key,
@@ -366,7 +389,7 @@ impl PipelineRequest {
 
     pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
         let others = self.passes.iter().filter(|pass| pass.part != Part::Model);
-        self.model_keys().chain(self.tonemap_key()).chain(others.flat_map(|pass| self.pass_keys(pass)))
+        self.model_keys().chain(self.tonemap_keys()).chain(others.flat_map(|pass| self.pass_keys(pass)))
     }
 }
 

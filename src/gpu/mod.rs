@@ -34,7 +34,7 @@ pub use resources::sampler::{Sampler, SamplerDesc};
 pub use resources::uses::Uses;
 pub use window::surface::Surface;
 pub use window::swapchain::{Acquired, Swapchain};
-pub use window::ui::UiRenderer;
+pub use window::ui::{UiImage, UiRenderer};
 
 /// Vulkan's enums, for formats, usages and topologies in the signatures of this module.
 pub use ash::vk;

@@ -5,6 +5,7 @@ mod error;
 mod hints;
 mod pixel;
 mod sequence;
+mod thumbnails;
 
 use std::collections::BTreeSet;
 use std::panic::resume_unwind;
@@ -23,6 +24,7 @@ use crate::shader::{Change, Compiler, ShaderSet, Source};
 pub use draw::Step;
 pub use error::HeadlessError;
 pub use sequence::Sequence;
+pub use thumbnails::Thumbnail;
 
 /// A session, a device and one view.
 pub struct Headless {

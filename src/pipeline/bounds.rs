@@ -6,8 +6,8 @@ use crate::gpu::{Gpu, GpuError, ShaderModule, Uses, fault};
 use crate::interface::{self, ALPHA_BLEND, FLAG_NOT_FINITE, MODE_FINAL, SPEC_ALPHA_MODE, SPEC_MODE};
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::spirv::loops::{self, Bounds, Overrun, Place};
-use crate::shader::spirv::optimize;
 use crate::shader::spirv::uses::{used_bindings, used_bytes};
+use crate::shader::spirv::{optimize, specialize_several};
 use crate::shader::{Compiler, Diagnostic, ShaderSet, Source, Stage, StageKind, TreePath};
 
 /// Rounds that a pixel or a vertex may take. A GPU runs some 2000 invocations per multiprocessor at a time, so that whatever its
@@ -41,7 +41,28 @@ pub(super) fn shader_module(
     constants: &[(u32, u32)],
     is_on_display: bool,
 ) -> Result<Arc<ShaderModule>, GpuError> {
-    let mut words = stage.specialize(constants);
+    bounded_module(gpu, stage, stage.specialize(constants), constants, is_on_display)
+}
+
+/// The same for a fragment stage that computes several `modes`, each for a target of its own. `None` if the stage does not depend on
+/// the mode, or not in a way that allows it.
+pub(super) fn module_of_modes(
+    gpu: &Arc<Gpu>,
+    stage: &Stage,
+    constants: &[(u32, u32)],
+    modes: &[u32],
+) -> Option<Result<Arc<ShaderModule>, GpuError>> {
+    let words = specialize_several(&stage.spirv, constants, SPEC_MODE, modes)?;
+    Some(bounded_module(gpu, stage, words, constants, false))
+}
+
+fn bounded_module(
+    gpu: &Arc<Gpu>,
+    stage: &Stage,
+    mut words: Vec<u32>,
+    constants: &[(u32, u32)],
+    is_on_display: bool,
+) -> Result<Arc<ShaderModule>, GpuError> {
     let (path, kind) = (stage.path.as_str(), stage.kind);
     let stores = match kind {
         StageKind::Compute => true,

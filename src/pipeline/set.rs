@@ -12,7 +12,7 @@ use crate::gpu::{
     ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, SetLayouts,
     ShaderModule, Specialization,
 };
-use crate::pipeline::bounds::shader_module;
+use crate::pipeline::bounds::{module_of_modes, shader_module};
 use crate::pipeline::textures::PassTextures;
 use crate::shader::graph::{Input, Inputs, Part};
 use crate::shader::{GraphPass, ShaderSet, Stage};
@@ -203,6 +203,18 @@ impl PipelineSet {
     /// The driver rejects a pipeline. The others stay.
     pub fn build(&self, request: &PipelineRequest) -> Result<usize, GpuError> {
         let number = self.requests.fetch_add(1, Ordering::SeqCst) + 1;
+        self.build_as(number, request)
+    }
+
+    /// [`PipelineSet::build`] for thumbnails, which does not count as a request of its own: it replaces no pipeline of a picture.
+    ///
+    /// # Errors
+    /// As [`PipelineSet::build`].
+    pub(crate) fn build_aside(&self, request: &PipelineRequest) -> Result<usize, GpuError> {
+        self.build_as(self.requests.load(Ordering::SeqCst), request)
+    }
+
+    fn build_as(&self, number: u64, request: &PipelineRequest) -> Result<usize, GpuError> {
         let keys: HashSet<PipelineKey> = request.keys().filter(|key| !self.is_pending(key)).collect();
         let missing: Vec<PipelineKey> =
             keys.into_iter().filter(|key| !lock(&self.graphics).touch(key, number)).collect();
@@ -308,7 +320,14 @@ impl PipelineSet {
         let is_on_display = matches!(pass.part, Part::Tonemap | Part::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
         let front = &pass.front;
-        let (vertex, fragment) = (module(&front.vertex)?, module(&pass.note.stage)?);
+        let vertex = module(&front.vertex)?;
+        let fragment = match &*key.modes {
+            [] => module(&pass.note.stage)?,
+            modes => {
+                let several = module_of_modes(&self.gpu, self.stage(&pass.note.stage)?, &key.specialization, modes);
+                several.ok_or_else(|| GpuError::NoStage(format!("{} in several modes", pass.note.stage)))??
+            }
+        };
         let geometry = front.geometry.as_deref().map(module).transpose()?;
         let tessellation = match &front.tessellation {
             Some([control, evaluation]) => Some([module(control)?, module(evaluation)?]),
@@ -324,7 +343,8 @@ impl PipelineSet {
         let layout = self.layout(&pass.inputs, &modules, draws_model);
         let layout = layout.map_err(|error| of_pass(pass, error))?;
         let more = pass.note.also.iter().map(|(_, format)| pass_format(*format));
-        let colors: Vec<_> = std::iter::once(key.format).chain(more).collect();
+        let modes = key.modes.iter().skip(1).map(|_| key.format);
+        let colors: Vec<_> = std::iter::once(key.format).chain(more).chain(modes).collect();
         let desc = PipelineDesc {
             vertex: &vertex,
             tessellation: tessellation.as_ref().map(|[control, evaluation]| [&**control, &**evaluation]),

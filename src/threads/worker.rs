@@ -2,7 +2,7 @@
 
 mod thread;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -54,6 +54,8 @@ pub(crate) enum WorkerMessage {
     Completed(Box<Reload>),
     /// The result of the last [`Worker::build`].
     Built(Result<(), String>),
+    /// The pipelines of some thumbnails are there, or cannot be built.
+    ThumbnailsBuilt,
 }
 
 /// Changed files, and the times of the first event and of the settled set.
@@ -75,6 +77,8 @@ enum Job {
     Edit(Edit),
     OpenTree(Source),
     Build(Build),
+    /// Pipelines of thumbnails: what is built when there is nothing else to do. Replaces an earlier job of this kind.
+    Thumbnails(Arc<PipelineSet>, VecDeque<PipelineRequest>),
     /// The first frame of the last reload is on screen.
     Shown,
 }
@@ -133,6 +137,7 @@ impl Worker {
             edits_taken: 0,
             has_compiled: false,
             panics: 0,
+            thumbnails: None,
             unfinished: false,
             is_shown: false,
             recorder: recorder.clone(),
@@ -165,6 +170,11 @@ impl Worker {
             self.asked = Some((set.clone(), request.clone()));
             self.send(Job::Build((set.clone(), request.clone())));
         }
+    }
+
+    /// Builds pipelines of thumbnails, one request after the other, as long as no other work waits. Replaces the requests before.
+    pub(crate) fn build_thumbnails(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
+        self.send(Job::Thumbnails(set.clone(), requests));
     }
 
     /// Marks the newest build as successful, or lets a failed one be tried again.

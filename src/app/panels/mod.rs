@@ -6,6 +6,7 @@ mod compare;
 mod environment;
 mod keys;
 mod lights;
+mod mode_tile;
 mod model;
 mod modes;
 mod output;
@@ -23,6 +24,7 @@ mod top_bar;
 use egui::{Ui, Vec2};
 
 use super::command::Command;
+use super::gallery::GalleryState;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
@@ -50,6 +52,7 @@ pub(super) struct PanelState {
     pub(super) show_model_warnings: bool,
     /// Slug of the mode that the list was last scrolled to.
     scrolled_to: String,
+    pub(super) gallery: GalleryState,
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
     files: overlay::diagnostics::Files,
@@ -68,6 +71,7 @@ impl PanelState {
             search: String::new(),
             show_model_warnings: true,
             scrolled_to: String::new(),
+            gallery: GalleryState::default(),
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
             files: overlay::diagnostics::Files::default(),
@@ -101,6 +105,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
     viewer.panels.timeline.is_visible = false;
+    viewer.panels.gallery.begin_frame();
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
         let mut layout = std::mem::take(&mut viewer.panels.layout);
@@ -116,6 +121,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
     palette::show(ui.ctx(), viewer, whole, commands);
+    viewer.panels.gallery.end_frame(ui.ctx());
     picture
 }
 

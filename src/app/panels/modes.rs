@@ -1,12 +1,16 @@
-//! The list of debug modes by group, with the selected mode highlighted and a search.
+//! The debug modes by group, as a gallery of thumbnails or as a list, with a search. The picture previews the mode that the mouse rests
+//! on.
 
 use egui::{RichText, Ui, vec2};
 
-use super::{PanelState, QUIET};
+use super::{PanelState, QUIET, mode_tile};
 use crate::shader::ShaderSet;
 use crate::shader::annotation::Mode;
 
-/// Shows the list. `current` is the slug of the selected mode. `features` are those of the model; modes for which it has no data are
+/// Width of the button that switches between gallery and list, points.
+const TOGGLE: f32 = 56.0;
+
+/// Shows the modes. `current` is the slug of the selected mode. `features` are those of the model; modes for which it has no data are
 /// folded away.
 pub(super) fn show(
     ui: &mut Ui,
@@ -19,12 +23,16 @@ pub(super) fn show(
         ui.label(RichText::new("Compiling shaders…").color(QUIET));
         return;
     };
-    let PanelState { search, scrolled_to, .. } = state;
+    let PanelState { search, scrolled_to, gallery, .. } = state;
     ui.horizontal(|ui| {
-        let width = ui.available_width() - if search.is_empty() { 0.0 } else { 24.0 };
+        let width = ui.available_width() - TOGGLE - if search.is_empty() { 0.0 } else { 24.0 };
         ui.add(egui::TextEdit::singleline(search).hint_text("Search modes").desired_width(width));
         if !search.is_empty() && ui.small_button("x").on_hover_text("Show all modes").clicked() {
             search.clear();
+        }
+        let (name, hint) = if gallery.is_on { ("List", "Show names only") } else { ("Gallery", "Show thumbnails") };
+        if ui.add_sized([TOGGLE - 6.0, 18.0], egui::Button::new(name).small()).on_hover_text(hint).clicked() {
+            gallery.is_on = !gallery.is_on;
         }
     });
     let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
@@ -40,22 +48,36 @@ pub(super) fn show(
     };
     let mut chosen = None;
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let (columns, size) = mode_tile::columns(ui.available_width());
+        gallery.size = size;
+        let is_gallery = gallery.is_on;
         for modes in found.chunk_by(|a, b| a.1.group == b.1.group) {
             let group = &modes[0].1.group;
             let (shown, folded): (Vec<_>, Vec<_>) = modes.iter().copied().partition(|(_, mode)| has_data(mode));
             ui.add_space(6.0);
             ui.label(RichText::new(group).small().color(QUIET));
             let mut list = |ui: &mut Ui, modes: &[(usize, &Mode)]| {
-                for (index, mode) in modes {
+                let mut item = |ui: &mut Ui, (index, mode): &(usize, &Mode)| {
                     let is_current = *current == mode.slug;
-                    let response = row(ui, *index, mode, is_current);
+                    let response = match is_gallery {
+                        true => mode_tile::show(ui, mode, keys(*index, mode).first().copied(), is_current, gallery),
+                        false => row(ui, *index, mode, is_current),
+                    };
+                    let response = response.on_hover_text(format!("{}\n\n--mode {}", mode.doc, mode.slug));
                     if is_current && *scrolled_to != mode.slug {
                         scrolled_to.clone_from(&mode.slug);
                         response.scroll_to_me(None);
                     }
+                    if response.hovered() {
+                        gallery.hover(&mode.slug);
+                    }
                     if response.clicked() {
                         chosen = Some(mode.slug.clone());
                     }
+                };
+                match is_gallery {
+                    true => mode_tile::grid(ui, columns, modes, &mut item),
+                    false => modes.iter().for_each(|mode| item(ui, mode)),
                 }
             };
             list(ui, &shown);
@@ -74,12 +96,17 @@ pub(super) fn show(
 
 /// Shows a mode with its keys at the right.
 fn row(ui: &mut Ui, index: usize, mode: &Mode, is_current: bool) -> egui::Response {
-    let digit = (index < 10).then(|| char::from_digit((index as u32 + 1) % 10, 10)).flatten();
-    let keys = mode.key.into_iter().chain(digit).map(String::from).collect::<Vec<_>>().join(" ");
+    let keys = keys(index, mode).into_iter().map(String::from).collect::<Vec<_>>().join(" ");
     let keys = RichText::new(keys).small().monospace().color(QUIET);
     let button =
         egui::Button::selectable(is_current, &mode.name).right_text(keys).min_size(vec2(ui.available_width(), 18.0));
-    ui.add(button.truncate()).on_hover_text(format!("{}\n\n--mode {}", mode.doc, mode.slug))
+    ui.add(button.truncate())
+}
+
+/// The keys that select a mode: its letter, and a digit for the first ten.
+fn keys(index: usize, mode: &Mode) -> Vec<char> {
+    let digit = (index < 10).then(|| char::from_digit((index as u32 + 1) % 10, 10)).flatten();
+    mode.key.into_iter().chain(digit).collect()
 }
 
 /// What the search looks through, in small letters.

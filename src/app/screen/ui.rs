@@ -20,6 +20,11 @@ impl Screen {
         self.read_pixel();
         self.take_thumbnail(viewer);
         self.take_copies(viewer);
+        if self.gallery.is_misfit(&viewer.gpu, &viewer.panels.gallery, self.egui.pixels_per_point()) {
+            // SYNC: rare, because thumbnails change their size only with the width of their panel.
+            self.frames.wait_all()?;
+            self.gallery.drop_texture(&mut self.ui, &mut viewer.panels.gallery);
+        }
         let readings = Readings {
             device_ms: self.frames.last_device_ms(),
             passes: self.frames.pass_times().to_vec(),

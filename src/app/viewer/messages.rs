@@ -25,6 +25,8 @@ impl Viewer {
         match message {
             Message::Worker(WorkerMessage::Built(Ok(()))) => self.threads.worker.built(),
             Message::Worker(WorkerMessage::Built(Err(message))) => self.say(message),
+            // The message wakes the window, which draws the thumbnails.
+            Message::Worker(WorkerMessage::ThumbnailsBuilt) => {}
             Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source }) => {
                 self.shader.compiling = false;
                 self.shader.tree = source.name();

@@ -21,6 +21,21 @@ impl Viewer {
     pub(in crate::app) fn next_frame(
         &mut self,
         size: (u32, u32),
+        prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
+    ) -> Result<Option<BoundFrame>, GpuError> {
+        let Some(preview) = self.panels.gallery.preview().map(str::to_owned) else {
+            return self.frame_of_settings(size, prepare);
+        };
+        // A preview is no setting: it is not recorded, and ends when the mouse leaves the mode.
+        let selected = std::mem::replace(&mut self.session.settings.mode, preview);
+        let frame = self.frame_of_settings(size, prepare);
+        self.session.settings.mode = selected;
+        frame
+    }
+
+    fn frame_of_settings(
+        &mut self,
+        size: (u32, u32),
         mut prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
     ) -> Result<Option<BoundFrame>, GpuError> {
         let is_animated = self.is_animated();
@@ -136,7 +151,9 @@ impl Viewer {
         let shown = self.shown()?;
         let request = &shown.pipelines;
         let paths = request.accumulates.then(|| frames.saturating_mul(request.paths_per_frame()));
-        title(shown.mode()?, self.session.mode(), paths)
+        let preview = self.panels.gallery.preview();
+        let selected = preview.and_then(|slug| shown.shaders.modes.iter().find(|mode| mode.slug == slug));
+        title(shown.mode()?, selected.or_else(|| self.session.mode()), paths)
     }
 }
 

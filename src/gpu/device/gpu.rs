@@ -159,6 +159,11 @@ impl Gpu {
         self.properties.limits.max_image_dimension2_d
     }
 
+    /// Largest number of color targets of a draw.
+    pub fn max_color_targets(&self) -> u32 {
+        self.properties.limits.max_color_attachments
+    }
+
     /// Largest width and height of a cube map's face, in pixels.
     pub fn max_cube_size(&self) -> u32 {
         self.properties.limits.max_image_dimension_cube

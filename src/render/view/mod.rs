@@ -5,6 +5,7 @@ mod capture;
 mod declared;
 mod passes;
 mod targets;
+mod thumbnails;
 mod uniforms;
 
 use std::sync::Arc;
@@ -14,6 +15,7 @@ use glam::Mat4;
 use capture::PixelReadback;
 pub use capture::{Capture, Readback};
 use targets::{TargetDesc, Targets};
+pub use thumbnails::Thumbnails;
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
 use declared::{Blocks, DeclaredPasses, Drawn, Given};
@@ -21,7 +23,7 @@ use declared::{Blocks, DeclaredPasses, Drawn, Given};
 use super::bound_frame::BoundFrame;
 use crate::frame::TargetFormat;
 use crate::gpu::{
-    Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
+    DescriptorSet, Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };
 use crate::shader::PixelValue;
 use crate::shader::graph::Input;
@@ -154,16 +156,8 @@ impl View {
         if self.targets.is_none() {
             return Ok(());
         }
-        let sources = Sources {
-            environment: frame.environment.clone(),
-            tables: frame.tables.clone(),
-            measured: frame.measured.clone(),
-            traced: frame.traced.clone(),
-        };
-        let in_flight = &mut self.in_flight[slot];
         // This can fail, so it comes before the view changes.
-        let set = in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?;
-        in_flight.blocks.write(&self.gpu, frame.state.pass_blocks())?;
+        let set = self.frame_set(slot, frame)?;
         let (width, height) = frame.state.size;
         let at_output = Rect { x: output.at.0, y: output.at.1, width, height };
         let has_display_passes = DeclaredPasses::has_display_passes(frame);
@@ -192,7 +186,7 @@ impl View {
         }
         let given = Given { picture: Some(&targets.color), behind: targets.behind.as_ref(), ..Given::default() };
         let sets = self.declared.sets_of(&drawn, &given, frame.state.pipelines.model_keys())?;
-        let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only };
+        let passes = passes::Passes { layouts: &self.layouts, targets, frame, sets: &sets, only, more: &[] };
         if redrawn {
             passes.model(encoder);
             encoder.transition(&targets.color, Use::Color, Use::Sampled);
@@ -223,6 +217,20 @@ impl View {
             passes::copy(encoder, &display, output);
         }
         Ok(())
+    }
+
+    /// Set 0 of a frame in a slot, with the blocks of its passes.
+    fn frame_set(&mut self, slot: usize, frame: &BoundFrame) -> Result<Arc<DescriptorSet>, GpuError> {
+        let sources = Sources {
+            environment: frame.environment.clone(),
+            tables: frame.tables.clone(),
+            measured: frame.measured.clone(),
+            traced: frame.traced.clone(),
+        };
+        let in_flight = &mut self.in_flight[slot];
+        let set = in_flight.uniforms.set(&self.layouts, &sources, &self.shared)?;
+        in_flight.blocks.write(&self.gpu, frame.state.pass_blocks())?;
+        Ok(set)
     }
 
     /// Whether this frame draws the model, so that it begins a new picture. An accumulating mode adds a frame to the mean

@@ -25,6 +25,22 @@ pub(super) struct Passes<'a> {
     pub(super) sets: &'a PassSets,
     /// The part of the picture to shade; `None` is all of it.
     pub(super) only: Option<Rect>,
+    /// The targets of further modes that are drawn at once: color, and multisampled color if there is more than one sample.
+    pub(super) more: &'a [ColorTarget],
+}
+
+/// Resolved and multisampled HDR color of one mode.
+pub(super) struct ColorTarget {
+    pub(super) color: Arc<Image>,
+    /// `None` with one sample per pixel.
+    pub(super) multisampled: Option<Arc<Image>>,
+}
+
+impl ColorTarget {
+    /// The image that draws write.
+    fn drawn(&self) -> &Arc<Image> {
+        self.multisampled.as_ref().unwrap_or(&self.color)
+    }
 }
 
 /// Draws in the order that blending and depth require.
@@ -53,6 +69,43 @@ impl Passes<'_> {
             encoder.pass("behind", |encoder| self.behind(encoder, &sorted.opaque, behind));
         }
         encoder.pass("model", |encoder| self.surfaces(encoder, &sorted));
+    }
+
+    /// Draws the surfaces of several modes at once, each mode to its own target, and the sky to each. Transmissive surfaces show nothing
+    /// behind them. Leaves all color targets in [`Use::Color`].
+    pub(super) fn modes(&self, encoder: &mut Encoder) {
+        let targets = self.targets;
+        let first = ColorTarget { color: targets.color.clone(), multisampled: targets.multisampled.clone() };
+        let all: Vec<&ColorTarget> = std::iter::once(&first).chain(self.more).collect();
+        for image in all.iter().flat_map(|target| std::iter::once(&target.color).chain(&target.multisampled)) {
+            encoder.transition(image, Use::Undefined, Use::Color);
+        }
+        encoder.transition(&targets.depth, Use::Undefined, Use::Depth);
+        let sorted =
+            self.frame.scene.as_ref().map(|scene| sort(scene, self.frame.state.camera.eye)).unwrap_or_default();
+        let drawn: Vec<Arc<Image>> = self.more.iter().map(|target| target.drawn().clone()).collect();
+        let attachments = Attachments {
+            more: &drawn,
+            clear: Some([0.0; 4]),
+            depth: Some(&targets.depth),
+            goes_on: true,
+            ..Attachments::of(first.drawn())
+        };
+        encoder.begin_rendering(&attachments);
+        for draws in [&sorted.opaque, &sorted.transmissive, &sorted.blended] {
+            self.draw(encoder, draws, PipelineRequest::model_key);
+        }
+        encoder.end_rendering();
+        for target in all {
+            encoder.transition(target.drawn(), Use::Color, Use::Color);
+            encoder.transition(&targets.depth, Use::Depth, Use::Depth);
+            let resolve = target.multisampled.as_ref().map(|_| &target.color);
+            let attachments =
+                Attachments { resolve, depth: Some(&targets.depth), goes_on: true, ..Attachments::of(target.drawn()) };
+            encoder.begin_rendering(&attachments);
+            self.background(encoder);
+            encoder.end_rendering();
+        }
     }
 
     /// Draws the surfaces that `behind` has not drawn, and the sky.
@@ -148,8 +201,21 @@ impl Passes<'_> {
 
     /// Tone maps the picture in `sets` to `rect` of `output`. The rest of `output` becomes black.
     pub(super) fn tone_map(&self, encoder: &mut Encoder, sets: &PassSets, output: &Arc<Image>, rect: Rect) {
+        let key = self.request().tonemap_key();
+        self.tone_map_with(encoder, key.as_ref(), sets, output, rect);
+    }
+
+    /// [`Passes::tone_map`] with the pipeline of one of several modes.
+    pub(super) fn tone_map_with(
+        &self,
+        encoder: &mut Encoder,
+        key: Option<&PipelineKey>,
+        sets: &PassSets,
+        output: &Arc<Image>,
+        rect: Rect,
+    ) {
         encoder.begin_rendering(&cleared(output));
-        if let Some(pipeline) = self.request().tonemap_key().and_then(|key| self.pipeline(&key)) {
+        if let Some(pipeline) = key.and_then(|key| self.pipeline(key)) {
             encoder.set_viewport(rect);
             // After a resize, the previous picture may be larger than its output.
             encoder.set_scissor(self.only.unwrap_or(within(rect, whole(output))));

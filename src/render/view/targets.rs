@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::passes::ColorTarget;
 use crate::frame::TargetFormat;
 use crate::gpu::{Gpu, GpuError, Image, ImageDesc, vk};
 use crate::scene::mips;
@@ -69,6 +70,15 @@ impl Targets {
             false => None,
         };
         Ok(Self { desc, color, multisampled, depth, resolved_depth, behind, mean })
+    }
+
+    /// Another color target of the same size and format.
+    pub(super) fn another_color(&self, gpu: &Arc<Gpu>) -> Result<ColorTarget, GpuError> {
+        let color = Image::new(gpu, "hdr color", *self.color.desc())?;
+        let multisampled = self.multisampled.as_ref();
+        let multisampled =
+            multisampled.map(|image| Image::new(gpu, "multisampled color", *image.desc())).transpose()?;
+        Ok(ColorTarget { color, multisampled })
     }
 
     /// The depth that passes read.

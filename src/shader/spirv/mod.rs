@@ -18,4 +18,4 @@ pub mod uses;
 
 pub use hash::behavior_hash;
 pub use optimize::optimize;
-pub use specialize::specialize;
+pub use specialize::{specialize, specialize_several};

@@ -59,6 +59,7 @@ pub const IEQUAL: u32 = 170;
 pub const INOT_EQUAL: u32 = 171;
 pub const UGREATER_THAN: u32 = 172;
 pub const UGREATER_THAN_EQUAL: u32 = 174;
+pub const ULESS_THAN: u32 = 176;
 pub const EMIT_VERTEX: u32 = 218;
 pub const END_PRIMITIVE: u32 = 219;
 pub const ATOMIC_COMPARE_EXCHANGE: u32 = 230;

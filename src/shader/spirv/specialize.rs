@@ -6,11 +6,13 @@
 //! 2.11, for the rules of structured control flow, and section 3.52 for the opcodes.
 
 pub(super) mod control_flow;
+mod several;
 
 use foldhash::{HashMap, HashSet, HashSetExt};
 
 use super::opcode as op;
 use control_flow::Function;
+pub use several::specialize_several;
 
 const SPEC_ID: u32 = 1;
 /// Words before the first instruction of a module.
@@ -57,15 +59,28 @@ fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
     let all = instructions(words)?;
     let (globals, code) = all.split_at(first_function(&all));
     let mut known = Known::default();
-    let globals = known.globals(globals, values)?;
+    let mut globals = known.globals(globals, values)?;
     let mut functions: Vec<Function> =
         code.split_inclusive(|i| opcode(i) == op::FUNCTION_END).map(Function::parse).collect::<Option<_>>()?;
-    known.returned = functions.iter().filter_map(|f| Some((f.id, f.constant(&known)?))).collect();
-    let mut removed = HashSet::new();
-    for function in &mut functions {
-        function.fold(&known, &mut removed);
+    fold(&mut functions, &mut known, &mut globals, HashSet::new())?;
+    let mut out = words[..HEADER].to_vec();
+    out.extend(globals.iter().flatten());
+    functions.iter().for_each(|f| f.write(&mut out));
+    Some(out)
+}
+
+/// Takes the branches that known values decide. Drops the functions that the entry point no longer reaches, and the names and
+/// decorations of everything that is dropped. `removed`: ids that were dropped before.
+fn fold(
+    functions: &mut Vec<Function>,
+    known: &mut Known,
+    globals: &mut Vec<Instruction>,
+    mut removed: HashSet<Id>,
+) -> Option<()> {
+    known.returned = functions.iter().filter_map(|f| Some((f.id, f.constant(known)?))).collect();
+    for function in functions.iter_mut() {
+        function.fold(known, &mut removed);
     }
-    // Find the functions that are reachable from the entry point.
     let entry = globals.iter().find(|i| opcode(i) == op::ENTRY_POINT)?.get(2).copied()?;
     let (mut called, mut open) = (HashSet::from_iter([entry]), vec![entry]);
     while let Some(id) = open.pop() {
@@ -75,14 +90,12 @@ fn specialized(words: &[u32], values: &[(u32, u32)]) -> Option<Vec<u32>> {
     for function in functions.iter().filter(|f| !called.contains(&f.id)) {
         function.results(&mut removed);
     }
-    let is_kept = |i: &&Instruction| match opcode(i) {
+    functions.retain(|f| called.contains(&f.id));
+    globals.retain(|i| match opcode(i) {
         op::NAME | op::DECORATE => i.get(1).is_some_and(|target| !removed.contains(target)),
         _ => true,
-    };
-    let mut out = words[..HEADER].to_vec();
-    out.extend(globals.iter().filter(is_kept).flatten());
-    functions.iter().filter(|f| called.contains(&f.id)).for_each(|f| f.write(&mut out));
-    Some(out)
+    });
+    Some(())
 }
 
 /// Values known at compile time.
@@ -253,6 +266,22 @@ mod tests {
             assert_eq!(count(&folded, op::SPEC_CONSTANT), 0);
             assert!(folded.len() < module.len());
         }
+    }
+
+    #[test]
+    fn several_values_keep_the_code_that_one_of_them_needs() {
+        let module = module();
+        let both = specialize_several(&module, &[(8, 1)], 7, &[2, 3]).unwrap();
+        let mut found = extended(&both);
+        found.sort_unstable();
+        // first() stays, since second() is taken for x.y > 0 only.
+        assert_eq!(found, [13, 14, 27]);
+        assert_eq!(count(&both, op::SPEC_CONSTANT) + count(&both, op::SPEC_CONSTANT_OP), 0);
+        // The condition of the loop over the values is one more than those of the stage.
+        assert_eq!(count(&both, op::LOOP_MERGE), count(&module, op::LOOP_MERGE) + 1);
+        let third = specialize_several(&module, &[(8, 1)], 7, &[3, 3]).map(|words| extended(&words));
+        assert_eq!(third, None, "values that are the same leave nothing to choose");
+        assert_eq!(specialize_several(&module, &[], 9, &[2, 3]), None, "the stage has no such constant");
     }
 
     #[test]

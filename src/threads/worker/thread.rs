@@ -1,6 +1,6 @@
 //! The worker's thread: takes jobs, compiles edits first, then builds the newest pipeline request.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,6 +11,7 @@ use crossbeam_channel::{Receiver, RecvTimeoutError};
 
 use super::{Build, Edit, Job, Snapshot, WorkerMessage};
 use crate::file_kind::FileKind;
+use crate::frame::PipelineRequest;
 use crate::gpu::fault;
 use crate::message::panic_text;
 use crate::pipeline::{Outcome, PipelineSet, Reloader};
@@ -44,6 +45,8 @@ pub(super) struct Thread {
     pub(super) has_compiled: bool,
     /// Panics since the last reload that ended.
     pub(super) panics: u32,
+    /// The thumbnails whose pipelines are still to be built, and the set that gets them.
+    pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
     /// Whether the last reload has left stages to [`Thread::finish`].
     pub(super) unfinished: bool,
     /// Whether the first frame of the last reload is on screen. Until then, the driver needs the CPU.
@@ -76,7 +79,8 @@ impl Thread {
             let mut waiting = Vec::new();
             // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is
             // closing.
-            if edit.is_none() && (self.is_stale() || (build.is_none() && !(self.unfinished && self.is_shown))) {
+            let has_more = build.is_some() || (self.unfinished && self.is_shown) || self.has_thumbnails();
+            if edit.is_none() && (self.is_stale() || !has_more) {
                 match self.next_job() {
                     Ok(job) => waiting.push(job),
                     Err(RecvTimeoutError::Timeout) => waiting.push(Job::Shown),
@@ -94,11 +98,13 @@ impl Thread {
                         edit = Some(Edit::new(Change::All, Instant::now()));
                     }
                     Job::Build(newest) => build = Some(newest),
+                    Job::Thumbnails(set, requests) => self.thumbnails = Some((set, requests)),
                 }
             }
             if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
-                // Drop a request for an older set. The window sends one for the new set.
+                // Drop requests for an older set. The window sends one for the new set.
                 build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
+                self.thumbnails = None;
             } else if self.is_stale() {
                 // The edit goes first.
             } else if self.unfinished && (self.is_shown || build.is_some()) {
@@ -114,6 +120,8 @@ impl Thread {
                 let built = if pending { Err(PENDING.to_owned()) } else { built };
                 self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
                 self.build_ahead(&set);
+            } else {
+                self.build_thumbnail();
             }
         }
     }
@@ -222,6 +230,25 @@ impl Thread {
             true => self.inbox.recv_timeout(LONGEST_FRAME),
             false => self.inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
         }
+    }
+
+    /// Whether pipelines of thumbnails can be built. Until all stages are compiled, an edit is not finished.
+    fn has_thumbnails(&self) -> bool {
+        !self.unfinished && self.thumbnails.as_ref().is_some_and(|(_, requests)| !requests.is_empty())
+    }
+
+    /// Builds the pipelines of the next thumbnails.
+    fn build_thumbnail(&mut self) {
+        if !self.has_thumbnails() {
+            return;
+        }
+        let Some((set, requests)) = &mut self.thumbnails else { return };
+        // The window shows no thumbnail where this fails.
+        let built = requests.pop_front().map(|request| set.build_aside(&request));
+        if let Some(Err(error)) = built {
+            tracing::debug!("no thumbnails: {error}");
+        }
+        self.outbox.send(Message::Worker(WorkerMessage::ThumbnailsBuilt));
     }
 
     /// Builds the modes before and after the current one, which `[` and `]` select, unless other work waits.

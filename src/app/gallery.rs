@@ -1,0 +1,74 @@
+//! What the gallery of modes and the screen tell each other: which thumbnails are in sight, where they lie in their texture, and which
+//! mode the mouse rests on.
+
+use std::collections::{BTreeSet, HashMap};
+use std::time::Duration;
+
+/// The time for which the mouse rests on a mode before the picture shows it.
+const REST: Duration = Duration::from_millis(300);
+
+/// The gallery's side of the panel of modes.
+pub(super) struct GalleryState {
+    /// Whether the modes are shown as thumbnails; else as a list.
+    pub(super) is_on: bool,
+    /// Slugs of the modes whose thumbnails are in sight in this frame.
+    pub(super) visible: BTreeSet<String>,
+    /// Width and height of a thumbnail, points.
+    pub(super) size: egui::Vec2,
+    /// The texture with all thumbnails.
+    pub(super) texture: Option<egui::TextureId>,
+    /// Where the thumbnail of a mode is in the texture, from 0 to 1.
+    pub(super) places: HashMap<String, egui::Rect>,
+    /// The mode under the mouse in this frame.
+    hovered: Option<String>,
+    /// The mode that the picture shows while the mouse rests on it.
+    preview: Option<String>,
+}
+
+impl Default for GalleryState {
+    fn default() -> Self {
+        Self {
+            is_on: true,
+            visible: BTreeSet::new(),
+            size: egui::Vec2::ZERO,
+            texture: None,
+            places: HashMap::new(),
+            hovered: None,
+            preview: None,
+        }
+    }
+}
+
+impl GalleryState {
+    /// Forgets what was in sight in the frame before.
+    pub(super) fn begin_frame(&mut self) {
+        self.visible.clear();
+        self.hovered = None;
+    }
+
+    /// Reports that the mouse is on a mode.
+    pub(super) fn hover(&mut self, slug: &str) {
+        self.hovered = Some(slug.to_owned());
+    }
+
+    /// Decides which mode the picture shows instead of the selected one. Once a mode is previewed, the next one needs no rest.
+    pub(super) fn end_frame(&mut self, egui: &egui::Context) {
+        let Some(hovered) = self.hovered.take() else {
+            self.preview = None;
+            return;
+        };
+        let rested = egui.input(|input| input.pointer.time_since_last_movement());
+        let left = REST.as_secs_f32() - rested;
+        let is_held = egui.input(|input| input.pointer.any_down());
+        if left <= 0.0 && !is_held {
+            self.preview = Some(hovered);
+        } else if self.preview.as_ref() != Some(&hovered) {
+            egui.request_repaint_after(Duration::from_secs_f32(left.max(0.01)));
+        }
+    }
+
+    /// The mode that the picture shows instead of the selected one.
+    pub(super) fn preview(&self) -> Option<&str> {
+        self.preview.as_deref()
+    }
+}

@@ -1,0 +1,282 @@
+//! The thumbnails of the gallery on the device: which are out of date, when they are drawn, and where.
+//!
+//! Thumbnails wait for everything else. They are drawn when the picture has come to rest, a few in each frame, those in sight alone, with
+//! pipelines that the worker builds when it has nothing else to do. A failure drops them without a word.
+
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::app::gallery::GalleryState;
+use crate::app::viewer::Viewer;
+use crate::events::{Event, emit};
+use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene, TargetFormat, mode_sets};
+use crate::gpu::{Encoder, Gpu, GpuError, SetLayouts, UiImage, UiRenderer, Use};
+use crate::render::{GpuEnvironment, Thumbnails};
+use crate::settings::Settings;
+use crate::shader::{Mode, ShaderSet};
+
+use super::FRAMES_IN_FLIGHT;
+
+/// The time without a change after which thumbnails are drawn.
+const REST: Duration = Duration::from_millis(150);
+/// The same on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
+const REST_ON_CPU: Duration = Duration::from_millis(500);
+/// Draws of thumbnails, each of several modes, in one frame. On a GPU each takes less than a millisecond.
+const DRAWS_PER_FRAME: usize = 3;
+/// Thumbnails in a row of the texture.
+const COLUMNS: u32 = 16;
+
+/// Everything that thumbnails show, but the mode.
+#[derive(PartialEq)]
+struct Shown {
+    settings: Settings,
+    generation: u64,
+    scene: Scene,
+    revisions: Revisions,
+    environment: usize,
+    target: TargetFormat,
+    /// Pixels of a thumbnail.
+    size: (u32, u32),
+}
+
+/// The thumbnails of the gallery.
+#[derive(Default)]
+pub(super) struct Gallery {
+    renderer: Option<Thumbnails>,
+    /// The texture, and the size of its thumbnails in pixels.
+    atlas: Option<(UiImage, (u32, u32))>,
+    /// Whether the texture has been drawn to.
+    is_drawn: bool,
+    /// The place of each mode in the texture.
+    cells: HashMap<String, u32>,
+    /// The modes whose thumbnails show `shown`.
+    fresh: HashSet<String>,
+    shown: Option<Shown>,
+    since: Option<Instant>,
+    /// The first modes of the sets whose pipelines the worker was asked for since the last change.
+    asked: HashSet<String>,
+    /// How many were drawn since the gallery was last up to date.
+    drawn: usize,
+    /// No thumbnails are drawn until something changes: memory is short.
+    failed: bool,
+}
+
+impl Gallery {
+    /// Whether the texture must be dropped: its thumbnails have another size, or memory is short.
+    pub(super) fn is_misfit(&self, gpu: &Gpu, state: &GalleryState, pixels_per_point: f32) -> bool {
+        let size = pixels(state, scale(gpu) * pixels_per_point);
+        self.atlas.as_ref().is_some_and(|(_, drawn)| self.failed || *drawn != size)
+    }
+
+    /// Drops the texture. The caller has waited for the frames that use it.
+    pub(super) fn drop_texture(&mut self, ui: &mut UiRenderer, state: &mut GalleryState) {
+        if let Some((image, _)) = self.atlas.take() {
+            ui.remove_image(image);
+        }
+        (state.texture, self.renderer) = (None, None);
+        state.places.clear();
+        self.cells.clear();
+        self.fresh.clear();
+    }
+
+    /// Draws thumbnails that are in sight and out of date, if the picture rests. Returns the time until the next frame is needed; `None`
+    /// if all are done. A lack of memory is no error.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub(super) fn draw(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        viewer: &mut Viewer,
+        ui: &mut UiRenderer,
+        (layouts, pixels_per_point): (&Arc<SetLayouts>, f32),
+    ) -> Result<Option<Duration>, GpuError> {
+        if viewer.panels.gallery.visible.is_empty() || viewer.recorder.is_careful() {
+            return Ok(None);
+        }
+        let scale = scale(&viewer.gpu) * pixels_per_point;
+        let Some((shaders, shown)) = shown(viewer, pixels(&viewer.panels.gallery, scale)) else {
+            return Ok(None);
+        };
+        if self.shown.as_ref() != Some(&shown) {
+            self.fresh.clear();
+            self.asked.clear();
+            (self.shown, self.since, self.failed) = (Some(shown), Some(Instant::now()), false);
+        }
+        if self.failed {
+            return Ok(None);
+        }
+        let is_stale =
+            |mode: &&Mode| viewer.panels.gallery.visible.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
+        // All modes are split, not those in sight alone, so that scrolling needs no other pipelines.
+        let features = viewer.session.features();
+        let has_data = |mode: &&Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
+        let is_seen = |mode: &&Mode| has_data(mode) || viewer.panels.gallery.visible.contains(&mode.slug);
+        let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&viewer.gpu));
+        let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
+        if stale.is_empty() {
+            if self.drawn > 0 {
+                emit(viewer.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
+            }
+            return Ok(None);
+        }
+        let rest = if viewer.gpu_is_fast() { REST } else { REST_ON_CPU };
+        let rested = self.since.map_or(rest, |since| since.elapsed());
+        if rested < rest {
+            return Ok(Some(rest - rested));
+        }
+        let drawn = self.draw_sets(encoder, slot, viewer, ui, layouts, &shaders, stale);
+        match drawn {
+            Err(GpuError::OutOfMemory(_)) => {
+                self.failed = true;
+                Ok(Some(Duration::ZERO))
+            }
+            drawn => drawn,
+        }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the parts of a screen that a draw needs")]
+    fn draw_sets(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        viewer: &mut Viewer,
+        ui: &mut UiRenderer,
+        layouts: &Arc<SetLayouts>,
+        shaders: &Arc<ShaderSet>,
+        stale: Vec<Vec<&Mode>>,
+    ) -> Result<Option<Duration>, GpuError> {
+        let Some(Shown { settings, scene, revisions, target, size, .. }) = &self.shown else { return Ok(None) };
+        let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
+        let (mut ready, mut missing, mut is_new) = (Vec::new(), VecDeque::new(), false);
+        for set in stale {
+            let inputs = FrameInputs {
+                settings,
+                shaders,
+                scene: Some(scene),
+                revisions: *revisions,
+                clock: Clock::default(),
+                size: *size,
+                target: *target,
+            };
+            let state = Arc::new(FrameState::of_modes(&inputs, &set));
+            match viewer.resources.bind(&state, false)? {
+                Some(frame) => ready.push((set, frame)),
+                None => {
+                    is_new |= self.asked.insert(set[0].slug.clone());
+                    missing.push_back(state.pipelines.clone());
+                }
+            }
+        }
+        if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new) {
+            viewer.threads.worker.build_thumbnails(pipelines, missing);
+        }
+        if ready.is_empty() {
+            return Ok(None);
+        }
+        let rows = (shaders.modes.len() as u32).div_ceil(COLUMNS).max(1);
+        let size = *size;
+        self.provide(&viewer.gpu, layouts, ui, (size, rows))?;
+        let (Some(renderer), Some((image, _))) = (&mut self.renderer, &self.atlas) else { return Ok(None) };
+        let atlas = image.image().clone();
+        let before = if std::mem::replace(&mut self.is_drawn, true) { Use::Sampled } else { Use::Undefined };
+        encoder.transition(&atlas, before, Use::CopyTo);
+        let mut result = Ok(());
+        for (index, (set, frame)) in ready.iter().take(draws).enumerate() {
+            let cells: Vec<u32> = set
+                .iter()
+                .map(|mode| {
+                    let next = self.cells.len() as u32;
+                    *self.cells.entry(mode.slug.clone()).or_insert(next)
+                })
+                .collect();
+            let corner = |cell: &u32| (cell % COLUMNS * size.0, cell / COLUMNS * size.1);
+            let corners: Vec<(u32, u32)> = cells.iter().map(corner).collect();
+            result = renderer.draw(encoder, slot * DRAWS_PER_FRAME + index, frame, &atlas, &corners);
+            if result.is_err() {
+                break;
+            }
+            let gallery = &mut viewer.panels.gallery;
+            for (mode, (x, y)) in set.iter().zip(corners) {
+                let (width, height) = (atlas.desc().width as f32, atlas.desc().height as f32);
+                let at = egui::pos2(x as f32 / width, y as f32 / height);
+                let place = egui::Rect::from_min_size(at, egui::vec2(size.0 as f32 / width, size.1 as f32 / height));
+                gallery.places.insert(mode.slug.clone(), place);
+                self.fresh.insert(mode.slug.clone());
+            }
+            self.drawn += set.len();
+            gallery.texture = Some(image.texture);
+        }
+        // The user interface may sample the texture in this frame.
+        encoder.transition(&atlas, Use::CopyTo, Use::Sampled);
+        result.map(|()| Some(Duration::ZERO))
+    }
+
+    /// Creates what thumbnails of `size` pixels need.
+    fn provide(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        layouts: &Arc<SetLayouts>,
+        ui: &mut UiRenderer,
+        (size, rows): ((u32, u32), u32),
+    ) -> Result<(), GpuError> {
+        if self.renderer.is_none() {
+            self.renderer = Some(Thumbnails::new(gpu, layouts, FRAMES_IN_FLIGHT * DRAWS_PER_FRAME)?);
+        }
+        if self.atlas.is_none() {
+            let image = Thumbnails::atlas(gpu, size, (COLUMNS, rows))?;
+            self.atlas = Some((ui.add_image(&image)?, size));
+            self.is_drawn = false;
+        }
+        Ok(())
+    }
+
+    /// Draws all thumbnails again: the commands of a frame were not submitted.
+    pub(super) fn forget(&mut self) {
+        self.fresh.clear();
+        self.is_drawn = false;
+        if let Some(renderer) = &mut self.renderer {
+            renderer.forget();
+        }
+    }
+}
+
+/// What thumbnails of `size` pixels show now. `None` while the shaders of the picture, or its resources, are not complete.
+fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
+    let state = viewer.shown()?;
+    let shaders = viewer.session.shaders.clone()?;
+    let is_current = state.shaders.generation == shaders.generation && !viewer.shader.compiling;
+    if !is_current || !shaders.pending.is_empty() || viewer.times_next_frame() {
+        return None;
+    }
+    let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());
+    let shown = Shown {
+        settings: Settings { mode: String::new(), ..viewer.session.settings.clone() },
+        generation: shaders.generation,
+        scene: viewer.session.scene()?,
+        revisions: viewer.session.revisions,
+        environment: environment as usize,
+        target: target(viewer, state.pipelines.target),
+        size,
+    };
+    Some((shaders, shown))
+}
+
+/// A software device spends most of the time of multisampled thumbnails on small triangles. It draws twice the size instead, with one
+/// sample per pixel, which egui halves.
+fn target(viewer: &Viewer, picture: TargetFormat) -> TargetFormat {
+    if viewer.gpu_is_fast() { picture } else { TargetFormat { samples: 1, ..picture } }
+}
+
+/// Pixels of a thumbnail per pixel of the window, along each side.
+fn scale(gpu: &Gpu) -> f32 {
+    if gpu.info().kind == "cpu" { 2.0 } else { 1.0 }
+}
+
+/// Width and height of a thumbnail in pixels.
+fn pixels(state: &GalleryState, scale: f32) -> (u32, u32) {
+    let side = |points: f32| ((points * scale).round() as u32).clamp(1, 512);
+    (side(state.size.x), side(state.size.y))
+}
