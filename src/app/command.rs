@@ -17,6 +17,45 @@ pub(super) enum CompareWith {
     Version(u64),
 }
 
+/// A side of the model, as in Blender: glTF models face +Z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Front,
+    Back,
+    Right,
+    Left,
+    Top,
+    Bottom,
+}
+
+impl Side {
+    pub(super) const ALL: [Self; 6] = [Self::Front, Self::Back, Self::Right, Self::Left, Self::Top, Self::Bottom];
+
+    /// Its name, and its key.
+    pub(super) fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Front => ("front", "Numpad 1"),
+            Self::Back => ("back", "Ctrl+Numpad 1"),
+            Self::Right => ("right", "Numpad 3"),
+            Self::Left => ("left", "Ctrl+Numpad 3"),
+            Self::Top => ("top", "Numpad 7"),
+            Self::Bottom => ("bottom", "Ctrl+Numpad 7"),
+        }
+    }
+
+    /// Azimuth and elevation of a camera there, degrees.
+    pub(super) fn angles(self) -> [f32; 2] {
+        match self {
+            Self::Front => [0.0, 0.0],
+            Self::Back => [180.0, 0.0],
+            Self::Right => [90.0, 0.0],
+            Self::Left => [-90.0, 0.0],
+            Self::Top => [0.0, 90.0],
+            Self::Bottom => [0.0, -90.0],
+        }
+    }
+}
+
 /// A command to the viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
@@ -28,6 +67,8 @@ pub(super) enum Command {
     Redo,
     /// Move the camera so that it sees the whole model.
     FrameModel,
+    /// Frame the model, seen from this side.
+    ViewFrom(Side),
     /// Write the picture to `specula-N.png`.
     Screenshot,
     /// Close the window.

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::command::{Command, CompareWith};
+use super::command::{Command, CompareWith, Side};
 use super::dialog::Dialog;
 use super::keys;
 use super::screen::Screen;
@@ -67,6 +67,10 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             }
             if is_space && !taken && !event.repeat && !*is_synthetic {
                 return viewer.hold_reference(true);
+            }
+            if let Some(side) = side(event.physical_key, screen.mouse.modifiers).filter(|_| !taken) {
+                viewer.execute(Command::ViewFrom(side));
+                return true;
             }
             let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
             !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
@@ -190,6 +194,17 @@ fn fly_key(camera: &mut CameraController, code: KeyCode, pressed: bool) -> bool 
         camera.fly[axis] = 0.0;
     }
     pressed
+}
+
+/// The side of the model that a key of the numeric keypad asks for.
+fn side(key: PhysicalKey, modifiers: ModifiersState) -> Option<Side> {
+    let opposite = modifiers.control_key();
+    match key {
+        PhysicalKey::Code(KeyCode::Numpad1) => Some(if opposite { Side::Back } else { Side::Front }),
+        PhysicalKey::Code(KeyCode::Numpad3) => Some(if opposite { Side::Left } else { Side::Right }),
+        PhysicalKey::Code(KeyCode::Numpad7) => Some(if opposite { Side::Bottom } else { Side::Top }),
+        _ => None,
+    }
 }
 
 /// Whether a key types nothing and so is never meant for a text.

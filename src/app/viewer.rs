@@ -301,6 +301,11 @@ impl Viewer {
                 self.session.settings.camera.eye = None;
                 self.session.settings.camera.target = None;
             }
+            Command::ViewFrom(side) => {
+                let camera = &mut self.session.settings.camera;
+                (camera.eye, camera.target) = (None, None);
+                [camera.azimuth, camera.elevation] = side.angles();
+            }
             Command::Screenshot => self.screenshot = true,
             Command::Quit => self.quit = true,
             Command::Edit(place) => match editor::open(&place) {

@@ -2,6 +2,7 @@
 
 use image::RgbaImage;
 
+use super::controls::{TILES, WARNING, choose, count};
 use crate::NDF;
 use crate::support::Tree;
 use crate::support::window::Viewer;
@@ -50,13 +51,14 @@ fn a_kept_picture_stays_left_of_the_border() {
     let compared = viewer.running.event("compared");
     assert!(compared["flip"].as_f64() > Some(0.0) && compared["largest"].as_f64() > Some(0.1), "{compared}");
 
-    // Over the edge of the picture, the border shows one of them alone.
+    // Near an edge of the picture, the border shows little but one of them.
     let bar = 30;
     let at = |x: u32| (x, bar + height / 2);
-    viewer.drag(at(middle), at(width - 1));
-    viewer.until("the kept picture", |shot| same(shot, &edited, 0..width - 2));
-    viewer.drag(at(width - 1), at(1));
-    viewer.until("the picture of now", |shot| same(shot, &first, 2..width));
+    let edge = 40;
+    viewer.drag(at(middle), at(width - edge));
+    viewer.until("the kept picture", |shot| same(shot, &edited, 0..width - edge - 1));
+    viewer.drag(at(width - edge), at(edge));
+    viewer.until("the picture of now", |shot| same(shot, &first, edge + 1..width));
     viewer.display.xdotool(&["keydown", "space"]);
     viewer.until("the kept picture while Space is held", |shot| *shot == edited);
     viewer.display.xdotool(&["keyup", "space"]);
@@ -93,6 +95,46 @@ fn an_older_version_follows_the_mode() {
     viewer.display.xdotool(&["keydown", "space"]);
     viewer.until("D before the edit", |shot| *shot == d);
     viewer.display.xdotool(&["keyup", "space"]);
+    viewer.quit();
+}
+
+/// Only after a question, and only where a version differs.
+#[test]
+fn an_older_version_is_written_to_the_files() {
+    let (mut viewer, first) = open();
+    let original = viewer.tree.read(NDF);
+    // Bytes that the compiler does not see stay.
+    let mark = "\u{feff}";
+    edit(&mut viewer, "float a2 = alpha;");
+    let text = viewer.tree.read(NDF);
+    viewer.tree.write(NDF, &format!("{mark}{text}"));
+    choose(&viewer, "write version 1");
+    let panel = 0..230;
+    let is_row = |screen: &RgbaImage, y: u32| count(screen, panel.clone(), y..y + 1, WARNING) > 0;
+    let question = viewer.until_screen("the question", |screen| TILES.into_iter().any(|y| is_row(screen, y)));
+    assert!(viewer.tree.read(NDF).contains("float a2 = alpha;"), "written without an answer");
+    // The answers are below the question, "Write" on the left.
+    let last = TILES.into_iter().rev().find(|y| is_row(&question, *y)).unwrap();
+    viewer.click((22, last + 16));
+    viewer.running.reload(true);
+    // A narrow window shows one side of the picture: now the other one again.
+    choose(&viewer, "panel parameters");
+    viewer.until("the first picture", |shot| *shot == first);
+    assert_eq!(viewer.tree.read(NDF), format!("{mark}{original}"));
+    viewer.quit();
+}
+
+/// The numeric keypad looks from the sides.
+#[test]
+fn the_keypad_sees_the_model_from_its_sides() {
+    let mut viewer =
+        Viewer::open(Tree::new(), &["sphere-grid", "--set", "camera.azimuth=0", "--set", "camera.elevation=0"]);
+    viewer.running.event("ready");
+    let front = viewer.screenshot();
+    viewer.key("KP_3");
+    viewer.until("the right side", |shot| *shot != front);
+    viewer.key("KP_1");
+    viewer.until("the front", |shot| *shot == front);
     viewer.quit();
 }
 

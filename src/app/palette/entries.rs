@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum as _;
 
-use crate::app::command::{Command, CompareWith};
+use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Panel, Preset};
 use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
@@ -154,7 +154,7 @@ pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
     );
     let (used, mut copy) = (numbers::all(settings).filter(|number| number.is_used(settings)), settings.clone());
     entries.extend(used.map(|number| Ask::of_setting(&number, &mut copy).entry()));
-    entries.extend(comparisons(viewer));
+    entries.extend(of_picture(viewer));
     if let Some(shaders) = &viewer.session.shaders {
         constants(&mut entries, shaders, settings);
         parameters(&mut entries, shaders, settings);
@@ -181,8 +181,8 @@ fn files(viewer: &Viewer) -> impl Iterator<Item = Entry> {
     environments.chain(models.map(model)).chain(recent.of(Kind::Tree).iter().cloned().map(tree))
 }
 
-/// What the picture can be compared with, and the versions that can be written to the files.
-fn comparisons(viewer: &Viewer) -> Vec<Entry> {
+/// What depends on what is on screen: comparisons, versions that can be written to the files, sides of the model.
+fn of_picture(viewer: &Viewer) -> Vec<Entry> {
     let compare = |title: String, with| Entry::new("Compare", title, Action::Do(Command::Compare(with)));
     let newest = viewer.shown_generation();
     let mut entries = match viewer.compare.is_on() {
@@ -198,6 +198,11 @@ fn comparisons(viewer: &Viewer) -> Vec<Entry> {
         let title = format!("Write version {} to the files…", version.number);
         entries.push(Entry::new("Compare", title, Action::WriteVersion(version.number)));
     }
+    entries.extend(Side::ALL.map(|side| {
+        let (name, key) = side.words();
+        let entry = Entry::new("Camera", format!("View from the {name}"), Action::Do(Command::ViewFrom(side)));
+        Entry { key: key.to_owned(), ..entry }
+    }));
     if viewer.panels.layout.has_own() {
         entries.push(Entry::new("Layout", "Layout: Own".to_owned(), Action::ArrangeOwn));
     }

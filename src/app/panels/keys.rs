@@ -5,7 +5,7 @@ use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 23] = [
+const KEYS: [(&str, &str); 24] = [
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
@@ -19,6 +19,7 @@ const KEYS: [(&str, &str); 23] = [
     ("hold Space", "the picture before the last edit, or the one that you compare with"),
     ("Ctrl+K", "keep this picture and compare with it; again ends the comparison"),
     ("R, Home", "frame the model"),
+    ("Numpad 1, 3, 7", "see it from the front, the right, the top; with Ctrl from the opposite side"),
     ("L", "let the lights orbit"),
     ("H", "hide the panels"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo and redo a change of the settings"),

@@ -3,7 +3,7 @@
 use egui::{Color32, Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
 use super::theme::{ACCENT, GOOD, QUIET};
-use super::{EDGE, ERROR};
+use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
 use crate::app::difference::{Kind, Line};
 use crate::app::viewer::{Difference, Version, Viewer};
@@ -14,6 +14,10 @@ pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
 const IN_LIST: f32 = 0.625;
 /// Most lines of a difference in the hover text.
 const MOST_LINES: usize = 40;
+
+/// The meaning of the numbers of a comparison.
+const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different both pictures look when one is flipped to the other, \
+    0.7 m from a 4K screen. And the largest difference of a channel of the display";
 
 /// What the panel keeps between frames.
 #[derive(Default)]
@@ -43,6 +47,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
             ui.toggle_value(&mut compare.shows_map, "Difference").on_hover_text(
                 "Cover the picture with FLIP of each pixel: black is equal, white as different as can be",
             );
+            ui.label(monospace(difference_text(compare.difference.as_ref()))).on_hover_text(FLIP);
         }
         false => {
             let hint = "Keep the picture as it is now, with all settings, and compare what follows with it (Ctrl+K)";
@@ -51,15 +56,6 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
             }
         }
     });
-    if compare.is_on() {
-        let text = match &compare.difference {
-            Some(Difference { flip, largest, .. }) => format!("FLIP {flip:.4}   largest {:.0}/255", largest * 255.0),
-            None => "FLIP …".to_owned(),
-        };
-        let hint = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different both pictures look when one is flipped to the other, \
-                    0.7 m from a 4K screen. And the largest difference of a channel of the display";
-        ui.add(Label::new(monospace(text)).truncate()).on_hover_text(hint);
-    }
     if let Some(number) = state.asked {
         ask(ui, viewer, number, &mut state.asked, commands);
     }
@@ -85,6 +81,14 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
             }
         });
     });
+}
+
+/// How much both pictures differ.
+fn difference_text(difference: Option<&Difference>) -> String {
+    match difference {
+        Some(Difference { flip, largest, .. }) => format!("FLIP {flip:.4}  largest {:.0}/255", largest * 255.0),
+        None => "FLIP …".to_owned(),
+    }
 }
 
 /// A version in the panel.
@@ -119,7 +123,7 @@ impl Entry<'_> {
         let texts = 50.0;
         let height = (ui.available_height() - texts - 6.0).clamp(20.0, THUMBNAIL.y);
         let size = THUMBNAIL * (height / THUMBNAIL.y);
-        let width = size.x.max(110.0);
+        let width = size.x.max(156.0);
         let (rect, response) = ui.allocate_exact_size(vec2(width, height + texts) + vec2(6.0, 6.0), Sense::click());
         let inner = rect.shrink(3.0);
         self.paint(ui, &response, Rect::from_min_size(inner.min, size));
@@ -220,7 +224,7 @@ fn ask(ui: &mut Ui, viewer: &Viewer, number: u64, asked: &mut Option<u64>, comma
     let files = viewer.files_of_version(number);
     let names: Vec<&str> = files.iter().filter_map(|(path, _)| path.file_name()?.to_str()).collect();
     let question = format!("Replace what is on disk with version {number} of {}?", names.join(", "));
-    ui.add(Label::new(question).wrap());
+    ui.add(Label::new(RichText::new(question).color(WARNING)).wrap());
     ui.horizontal(|ui| {
         if ui.add_enabled(!files.is_empty(), egui::Button::new("Write")).clicked() {
             commands.push(Command::WriteVersion(number));
