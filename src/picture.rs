@@ -93,6 +93,17 @@ pub fn write_image(image: &DynamicImage, path: &Path) -> Result<(), String> {
     write_bytes(bytes.get_ref(), path).map_err(|e| cannot(e.to_string()))
 }
 
+/// Replaces the content of a file at once, through symbolic links, with the permissions that it has.
+///
+/// # Errors
+/// The system cannot write it; the file is then as it was.
+pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let target = follow_links(path)?;
+    let permissions = target.metadata().ok().map(|metadata| metadata.permissions());
+    part::replace(&target, bytes)?;
+    permissions.map_or(Ok(()), |permissions| std::fs::set_permissions(&target, permissions))
+}
+
 fn write_bytes(bytes: &[u8], path: &Path) -> io::Result<()> {
     if is_stream(path) {
         return OpenOptions::new().write(true).open(path)?.write_all(bytes);

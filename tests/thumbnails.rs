@@ -75,6 +75,7 @@ fn modes_without_data_show_a_checkerboard_and_do_not_spoil_the_modes_beside_them
     let mut headless = renderer(model("shader-ball"), settings(&[]), SMALL);
     let wanted = modes(&headless, &["uv1", "clearcoat", "sheen-color", "roughness", "position"]);
     let thumbnails = headless.thumbnails(SMALL, &wanted).unwrap();
+    assert_eq!((wanted.len(), thumbnails.len()), (5, 5));
     for thumbnail in &thumbnails {
         let capture = support::render(&mut headless, &thumbnail.slug);
         let same = capture.rgba8.chunks_exact(4).zip(thumbnail.rgba8.chunks_exact(4)).filter(|(a, b)| a[..3] == b[..3]);
@@ -113,7 +114,9 @@ fn masked_blended_and_layered_materials_have_thumbnails() {
         let mut headless = renderer(model(name), settings(&["environment.name=studio"]), SMALL);
         let wanted =
             modes(&headless, &["shading-normal", "roughness", "clearcoat", "transmission", "sheen-color", "alpha"]);
-        for thumbnail in headless.thumbnails(SMALL, &wanted).unwrap() {
+        let thumbnails = headless.thumbnails(SMALL, &wanted).unwrap();
+        assert_eq!((wanted.len(), thumbnails.len()), (6, 6), "{name}");
+        for thumbnail in thumbnails {
             let large = support::render(&mut headless, &thumbnail.slug);
             let equal =
                 large.rgba8.chunks_exact(4).zip(thumbnail.rgba8.chunks_exact(4)).filter(|(a, b)| a[..3] == b[..3]);

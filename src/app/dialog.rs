@@ -12,9 +12,8 @@ pub(super) enum Dialog {
     Tree,
 }
 
-/// File name extensions that the window opens.
-const EXTENSIONS: [&str; 12] =
-    ["gltf", "glb", "hdr", "exr", "binary", "bin", "glsl", "frag", "fs", "vert", "comp", "toy"];
+/// Extensions of models, environments, measured BRDFs, look files and single shaders.
+const EXTENSIONS: [&str; 11] = ["gltf", "glb", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
 /// Nobody cancels a dialog in less than this. The portal gives the same answer to a cancel and to its own absence.
 const SHORTEST: Duration = Duration::from_millis(300);
 

@@ -51,7 +51,7 @@ impl GalleryState {
         self.hovered = Some(slug.to_owned());
     }
 
-    /// Decides which mode the picture shows instead of the selected one. Once a mode is previewed, the next one needs no rest.
+    /// Decides which mode the picture shows instead of the selected one: that on which the mouse has rested.
     pub(super) fn end_frame(&mut self, egui: &egui::Context) {
         let Some(hovered) = self.hovered.take() else {
             self.preview = None;

@@ -66,6 +66,12 @@ pub(super) struct Screen {
     unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
     /// The attempt number of each of these pictures, see [`Viewer::record`].
     attempts: [Option<u64>; FRAMES_IN_FLIGHT],
+    /// Whether each of these frames has also drawn thumbnails or an older picture, in which a loop may not have ended.
+    has_others: [bool; FRAMES_IN_FLIGHT],
+    /// Whether another frame must follow at once.
+    redraws: bool,
+    /// No thumbnails of versions are drawn: memory is short.
+    lacks_thumbnails: bool,
     /// The last picture in which a loop did not end.
     endless: Option<Arc<FrameState>>,
     /// How many more frames are drawn only to learn whether the loops have ended.
@@ -118,6 +124,9 @@ impl Screen {
             shortage: None,
             unchecked: Default::default(),
             attempts: [None; FRAMES_IN_FLIGHT],
+            has_others: [false; FRAMES_IN_FLIGHT],
+            redraws: false,
+            lacks_thumbnails: false,
             endless: None,
             checks: 0,
             reference: None,
@@ -227,11 +236,17 @@ impl Screen {
             None => View::clear(&mut encoder, &output),
         }
         self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
-        self.record_thumbnail(&mut encoder, slot, viewer)?;
+        let recorded = self.record_thumbnail(&mut encoder, slot, viewer);
+        if self.survive(recorded)?.is_none() {
+            // The newest picture matters more.
+            (self.thumbnails, self.thumbnail, self.shortage) = (None, None, None);
+            self.lacks_thumbnails = true;
+        }
         let context = (&self.layouts, pixels_per_point);
         let next_thumbnails = self.gallery.draw(&mut encoder, slot, viewer, &mut self.ui, context)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
+        self.has_others[slot] |= self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some();
         self.attempts[slot] = viewer.record(window);
         self.frames.submit(encoder, acquired.submission)?;
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
@@ -240,9 +255,11 @@ impl Screen {
         }
 
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let leaves_motion = frame.as_ref().is_some_and(|frame| self.view.is_moving(frame));
-        let accumulates = frame.is_some_and(|frame| frame.state.pipelines.accumulates);
-        let gets_better = accumulates && self.view.accumulated() < View::MOST_ACCUMULATED;
+        let reference = self.reference.as_ref().map(|reference| (&reference.view, &reference.frame));
+        let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference);
+        let leaves_motion = views().any(|(view, frame)| view.is_moving(frame));
+        let gets_better = views()
+            .any(|(view, frame)| frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED);
         let again = self.stale
             || moving
             || reported
@@ -252,6 +269,7 @@ impl Screen {
             || self.error_map.awaits_copies()
             || viewer.moves()
             || gets_better
+            || std::mem::take(&mut self.redraws)
             || leaves_motion;
         let again = self.awaits_loops() || again;
         let waits = [delay.filter(|delay| *delay < NEVER), next_thumbnails];
@@ -311,7 +329,9 @@ impl Screen {
         }
         // SYNC: once per reload, so that the time includes the device's work.
         self.frames.wait_all()?;
-        viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, self.frames.last_device_ms());
+        // A frame with an older picture does not tell what the newest one takes.
+        let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none());
+        viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, device_ms);
         Ok(!viewer.times_next_frame())
     }
 
@@ -329,7 +349,7 @@ impl Screen {
         // SYNC: the CPU reads the picture.
         self.frames.wait()?;
         let Some(capture) = readback.map(|readback| readback.finish()) else { return Ok(()) };
-        match picture::write_numbered(&capture, &viewer.session.settings) {
+        match picture::write_numbered(&capture, &viewer.look()) {
             Ok(path) => {
                 viewer.say(format!("wrote {}", path.display()));
                 emit(viewer.events, &Event::Screenshot { file: &path.display().to_string() });

@@ -323,6 +323,8 @@ impl Viewer {
             Command::OpenTree(path) => {
                 let source = Source::open(path);
                 self.source = source.clone();
+                // Versions of another tree must never be written into this one.
+                self.forget_all_references();
                 self.watch_tree(&source);
                 self.shader.compiling = true;
                 self.threads.worker.open_tree(source);

@@ -17,6 +17,8 @@ const ROUNDS: u32 = 1 << 18;
 const ROUNDS_OF_BAKES: u32 = 1 << 20;
 /// The same on a software device. Mesa's lavapipe ends all loops after 65,535 rounds, those that are not counted here included.
 const ROUNDS_ON_CPU: u32 = 49_152;
+/// The same for several modes in one stage.
+const MOST_ON_CPU: u32 = 60_000;
 /// Rounds of each invocation that begins after another has used up its budget.
 const ROUNDS_AFTER: u32 = 1024;
 const ROUNDS_AFTER_ON_CPU: u32 = 256;
@@ -41,7 +43,7 @@ pub(super) fn shader_module(
     constants: &[(u32, u32)],
     is_on_display: bool,
 ) -> Result<Arc<ShaderModule>, GpuError> {
-    bounded_module(gpu, stage, stage.specialize(constants), constants, is_on_display)
+    bounded_module(gpu, stage, (stage.specialize(constants), 1), constants, is_on_display)
 }
 
 /// The same for a fragment stage that computes several `modes`, each for a target of its own. `None` if the stage does not depend on
@@ -53,13 +55,14 @@ pub(super) fn module_of_modes(
     modes: &[u32],
 ) -> Option<Result<Arc<ShaderModule>, GpuError>> {
     let words = specialize_several(&stage.spirv, constants, SPEC_MODE, modes)?;
-    Some(bounded_module(gpu, stage, words, constants, false))
+    Some(bounded_module(gpu, stage, (words, modes.len() as u32), constants, false))
 }
 
+/// A module of `words` that computes so many modes, each of which may take as many rounds as one alone.
 fn bounded_module(
     gpu: &Arc<Gpu>,
     stage: &Stage,
-    mut words: Vec<u32>,
+    (mut words, modes): (Vec<u32>, u32),
     constants: &[(u32, u32)],
     is_on_display: bool,
 ) -> Result<Arc<ShaderModule>, GpuError> {
@@ -78,8 +81,9 @@ fn bounded_module(
         _ if is(SPEC_ALPHA_MODE, ALPHA_BLEND) && is(SPEC_MODE, MODE_FINAL) => None,
         _ => Some(MARK),
     };
+    let most = if gpu.info().kind == "cpu" { MOST_ON_CPU } else { u32::MAX };
     let bounds = Bounds {
-        rounds: rounds(gpu, kind),
+        rounds: (rounds(gpu, kind) * modes).min(most),
         rounds_after: if gpu.info().kind == "cpu" { ROUNDS_AFTER_ON_CPU } else { ROUNDS_AFTER },
         report: stores.then_some(buffer),
         mark,

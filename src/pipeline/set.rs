@@ -182,7 +182,8 @@ impl PipelineSet {
             let (Some(old), Some(new)) = stages else { return false };
             Arc::ptr_eq(old, new) || old.specialized_hash(constants) == new.specialized_hash(constants)
         };
-        let keys: HashSet<PipelineKey> = request.keys().filter(|key| !self.is_pending(key)).collect();
+        let keys: HashSet<PipelineKey> =
+            request.keys().filter(|key| key.modes.is_empty() && !self.is_pending(key)).collect();
         keys.into_par_iter().for_each(|key| {
             let old = lock(&before.graphics).entries.get(&key).cloned();
             let Some(old) = old.filter(|_| !lock(&self.graphics).entries.contains_key(&key)) else { return };

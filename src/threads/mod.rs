@@ -18,7 +18,7 @@ use crate::comparison::{Comparison, Picture};
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
-use crate::render::{Capture, TraceKey};
+use crate::render::{Readback, TraceKey};
 use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
@@ -35,7 +35,7 @@ pub(crate) enum Message {
     /// Watched files outside the shader tree have changed.
     FilesChanged(BTreeSet<PathBuf>),
     /// The difference of the two pictures that the window compares, or why there is none.
-    Compared(Result<Box<Comparison>, String>),
+    Compared(u64, Result<Box<Comparison>, String>),
     /// The settings of a look file, or why it cannot be used.
     Look(Result<Box<Settings>, String>),
     /// A message for the user.
@@ -55,6 +55,8 @@ pub(crate) enum Role {
     Tracer(TraceKey),
     Reader(MeasuredKey),
     Explainer([u32; 2]),
+    /// Waits for what is outside of Specula, or compares pictures.
+    Waiter,
 }
 
 /// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
@@ -132,14 +134,17 @@ impl Threads {
         }
     }
 
-    /// Compares two pictures on a thread of its own.
-    pub(crate) fn compare(&self, pictures: [Capture; 2]) {
+    /// Compares two pictures, whose copies have finished, on a thread of its own. The result comes with this number.
+    pub(crate) fn compare(&self, number: u64, pictures: [Readback; 2]) {
         self.wait(move || {
-            let of = |capture: Capture| RgbaImage::from_raw(capture.width, capture.height, capture.rgba8);
-            let [a, b] = pictures.map(|capture| of(capture).map(Picture::Display));
+            let of = |readback: Readback| {
+                let (width, height, rgba8) = readback.finish_display();
+                RgbaImage::from_raw(width, height, rgba8)
+            };
+            let [a, b] = pictures.map(|readback| of(readback).map(Picture::Display));
             let compared = a.zip(b).ok_or_else(|| "a picture was not read whole".to_owned());
             let compared = compared.and_then(|(a, b)| Comparison::new(&a, &b));
-            Some(Message::Compared(compared.map(Box::new)))
+            Some(Message::Compared(number, compared.map(Box::new)))
         });
     }
 
@@ -154,8 +159,7 @@ impl Threads {
     /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
     /// window.
     pub(crate) fn wait(&self, work: impl FnOnce() -> Option<Message> + Send + 'static) {
-        let outbox = self.outbox.clone();
-        std::thread::spawn(move || work().into_iter().for_each(|message| outbox.send(message)));
+        self.outbox.spawn(Role::Waiter, |outbox| work().into_iter().for_each(|message| outbox.send(message)));
     }
 
     /// Watches a shader tree instead of the previous one. Changes go to the worker.

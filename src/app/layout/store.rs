@@ -35,7 +35,10 @@ fn parse(text: &str) -> Option<Stored> {
 fn is_whole(tree: &Tree<Panel>) -> bool {
     let panels =
         |panel: &Panel| tree.tiles.tiles().filter(|tile| matches!(tile, Tile::Pane(other) if other == panel)).count();
-    tree.root().is_some_and(|root| tree.tiles.get(root).is_some())
+    let viewport = tree.tiles.find_pane(&Panel::Viewport);
+    let top = std::iter::successors(viewport, |id| tree.tiles.parent_of(*id)).last();
+    top.is_some()
+        && top == tree.root()
         && panels(&Panel::Viewport) == 1
         && Panel::GROUPS.concat().iter().all(|panel| panels(panel) <= 1)
 }

@@ -68,7 +68,8 @@ pub(super) fn show(
                         scrolled_to.clone_from(&mode.slug);
                         response.scroll_to_me(None);
                     }
-                    if response.hovered() {
+                    // Random paths take seconds on a software device.
+                    if response.hovered() && !mode.accumulate && !mode.traces {
                         gallery.hover(&mode.slug);
                     }
                     if response.clicked() {
@@ -85,7 +86,7 @@ pub(super) fn show(
                 let title = RichText::new(format!("{} without data", folded.len())).small().color(QUIET);
                 let header = egui::CollapsingHeader::new(title).id_salt(("without data", group));
                 let header = header.show_unindented(ui, |ui| list(ui, &folded)).header_response;
-                header.on_hover_text("Modes of features that no material of this model has");
+                header.on_hover_text("The scene has no data for these modes");
             }
         }
     });

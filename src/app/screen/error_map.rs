@@ -30,6 +30,8 @@ pub(super) struct ErrorMap {
     measured: Option<Pair>,
     /// The slot of the frame that copies both pictures.
     copied: Option<(usize, [Readback; 2])>,
+    /// The number of the last measurement.
+    number: u64,
 }
 
 impl ErrorMap {
@@ -45,7 +47,8 @@ impl Screen {
     pub(super) fn measure_error(&mut self, viewer: &mut Viewer, live: Option<&BoundFrame>) -> Result<bool, GpuError> {
         let wanted = viewer.compare.is_on() && !viewer.compare.is_held();
         let Some((reference, live)) = self.reference.as_ref().filter(|_| wanted).zip(live) else {
-            self.error_map = ErrorMap::default();
+            self.error_map = ErrorMap { number: self.error_map.number, ..ErrorMap::default() };
+            viewer.compare.measuring = None;
             return Ok(false);
         };
         let numbers = [reference.view.picture(), self.view.picture()];
@@ -54,13 +57,19 @@ impl Screen {
         let pair = Pair { numbers, states };
         let is = |other: &Option<Pair>| other.as_ref().is_some_and(|other| other.is_same(&pair));
         let (rests, is_known) = (is(&self.error_map.last), is(&self.error_map.measured));
-        if is_known || !same_size || viewer.compare.is_measuring || self.error_map.awaits_copies() {
+        if !is_known {
+            // The last measurement is that of other pictures.
+            (viewer.compare.difference, viewer.compare.measuring) = (None, None);
+            self.error_map.copied = None;
+        }
+        if is_known || !same_size {
             self.error_map.last = Some(pair);
             return Ok(false);
         }
         if rests {
             self.copy_pictures(viewer, live)?;
-            viewer.compare.is_measuring = true;
+            self.error_map.number += 1;
+            viewer.compare.measuring = self.error_map.copied.is_some().then_some(self.error_map.number);
             self.error_map.measured = Some(pair);
         } else {
             self.error_map.last = Some(pair);
@@ -90,7 +99,7 @@ impl Screen {
     pub(super) fn take_copies(&mut self, viewer: &Viewer) {
         let is_finished = |(slot, _): &mut (usize, [Readback; 2])| self.frames.is_finished(*slot);
         if let Some((_, copies)) = self.error_map.copied.take_if(is_finished) {
-            viewer.threads.compare(copies.map(Readback::finish));
+            viewer.threads.compare(self.error_map.number, copies);
         }
     }
 }

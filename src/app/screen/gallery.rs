@@ -31,7 +31,8 @@ const COLUMNS: u32 = 16;
 #[derive(PartialEq)]
 struct Shown {
     settings: Settings,
-    generation: u64,
+    /// Address of the shaders: generations may count from 1 again.
+    shaders: usize,
     scene: Scene,
     revisions: Revisions,
     environment: usize,
@@ -54,7 +55,7 @@ pub(super) struct Gallery {
     fresh: HashSet<String>,
     shown: Option<Shown>,
     since: Option<Instant>,
-    /// The first modes of the sets whose pipelines the worker was asked for since the last change.
+    /// The sets, by the slugs of their modes, whose pipelines the worker was asked for since the last change.
     asked: HashSet<String>,
     /// How many were drawn since the gallery was last up to date.
     drawn: usize,
@@ -66,7 +67,11 @@ impl Gallery {
     /// Whether the texture must be dropped: its thumbnails have another size, or memory is short.
     pub(super) fn is_misfit(&self, gpu: &Gpu, state: &GalleryState, pixels_per_point: f32) -> bool {
         let size = pixels(state, scale(gpu) * pixels_per_point);
-        self.atlas.as_ref().is_some_and(|(_, drawn)| self.failed || *drawn != size)
+        let is_full = |image: &UiImage| {
+            let (width, height) = (image.image().desc().width, image.image().desc().height);
+            self.cells.len() as u32 > (width / size.0) * (height / size.1)
+        };
+        self.atlas.as_ref().is_some_and(|(image, drawn)| self.failed || *drawn != size || is_full(image))
     }
 
     /// Drops the texture. The caller has waited for the frames that use it.
@@ -78,6 +83,11 @@ impl Gallery {
         state.places.clear();
         self.cells.clear();
         self.fresh.clear();
+    }
+
+    /// Draws no thumbnails until something changes.
+    pub(super) fn stop(&mut self) {
+        self.failed = true;
     }
 
     /// Draws thumbnails that are in sight and out of date, if the picture rests. Returns the time until the next frame is needed; `None`
@@ -165,7 +175,8 @@ impl Gallery {
             match viewer.resources.bind(&state, false)? {
                 Some(frame) => ready.push((set, frame)),
                 None => {
-                    is_new |= self.asked.insert(set[0].slug.clone());
+                    is_new |=
+                        self.asked.insert(set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" "));
                     missing.push_back(state.pipelines.clone());
                 }
             }
@@ -236,6 +247,8 @@ impl Gallery {
     /// Draws all thumbnails again: the commands of a frame were not submitted.
     pub(super) fn forget(&mut self) {
         self.fresh.clear();
+        // The texture may be undefined.
+        self.failed = true;
         self.is_drawn = false;
         if let Some(renderer) = &mut self.renderer {
             renderer.forget();
@@ -254,7 +267,7 @@ fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
     let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());
     let shown = Shown {
         settings: Settings { mode: String::new(), ..viewer.session.settings.clone() },
-        generation: shaders.generation,
+        shaders: Arc::as_ptr(&shaders) as usize,
         scene: viewer.session.scene()?,
         revisions: viewer.session.revisions,
         environment: environment as usize,

@@ -13,6 +13,12 @@ impl Screen {
                 continue;
             }
             let Some(state) = self.unchecked[slot].take() else { continue };
+            let has_others = std::mem::take(&mut self.has_others[slot]);
+            if self.frames.endless_loop(slot).is_some() && has_others {
+                // It may be a loop of a thumbnail or of an older picture. The picture is drawn again, alone.
+                self.end_others(viewer);
+                continue;
+            }
             if let Some(words) = self.frames.endless_loop(slot) {
                 viewer.versions.cut_short(state.shaders.generation);
                 self.endless = Some(state);
@@ -21,9 +27,22 @@ impl Screen {
             }
             viewer.drawn(&state, self.attempts[slot]);
             if self.endless.take_if(|endless| !endless.is_same(&state)).is_some() {
+                viewer.versions.loops_end(state.shaders.generation);
                 viewer.all_loops_end();
             }
         }
+    }
+
+    /// Draws nothing beside the picture until something changes.
+    fn end_others(&mut self, viewer: &mut Viewer) {
+        self.gallery.stop();
+        viewer.end_comparison();
+        if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
+            viewer.versions.cut_short(number);
+        }
+        self.view.forget();
+        self.checks = FRAMES_IN_FLIGHT;
+        self.redraws = true;
     }
 
     /// Whether to draw one more frame, in which [`Self::check_loops`] checks the frames before. If nothing else

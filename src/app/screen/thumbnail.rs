@@ -11,7 +11,7 @@ pub(super) struct Pending {
     /// The frame that it was drawn with.
     slot: usize,
     /// The version.
-    number: u64,
+    pub(super) number: u64,
     readback: Readback,
 }
 
@@ -23,7 +23,7 @@ impl Screen {
         slot: usize,
         viewer: &Viewer,
     ) -> Result<(), GpuError> {
-        if self.thumbnail.is_some() || viewer.times_next_frame() {
+        if self.thumbnail.is_some() || self.lacks_thumbnails || viewer.times_next_frame() {
             return Ok(());
         }
         let size = THUMBNAIL * self.egui.pixels_per_point();

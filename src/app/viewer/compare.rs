@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{LastComplete, Viewer};
+use super::{LastComplete, Versions, Viewer};
 use crate::app::command::CompareWith;
 use crate::comparison::Comparison;
 use crate::events::{Event, emit};
 use crate::gpu::GpuError;
+use crate::picture;
 use crate::render::BoundFrame;
 use crate::shader::TreePath;
 use crate::threads::Message;
@@ -19,8 +20,8 @@ pub(in crate::app) struct Compare {
     pub(in crate::app) wipe: f32,
     /// Whether only the earlier one is shown (Space).
     is_held: bool,
-    /// Whether the difference is being measured.
-    pub(in crate::app) is_measuring: bool,
+    /// The number of the measurement that is under way.
+    pub(in crate::app) measuring: Option<u64>,
     /// The difference of both.
     pub(in crate::app) difference: Option<Difference>,
     /// Whether the map of the difference covers the picture.
@@ -46,7 +47,7 @@ enum With {
     Kept(Box<LastComplete>, String),
 }
 
-/// The earlier picture in one frame.
+/// What a frame draws of the earlier picture.
 pub(in crate::app) struct Reference {
     pub(in crate::app) frame: BoundFrame,
     /// The part of the width that shows it, from the left, 0..1.
@@ -55,7 +56,7 @@ pub(in crate::app) struct Reference {
 
 impl Default for Compare {
     fn default() -> Self {
-        Self { with: None, wipe: 0.5, is_held: false, is_measuring: false, difference: None, shows_map: false }
+        Self { with: None, wipe: 0.5, is_held: false, measuring: None, difference: None, shows_map: false }
     }
 }
 
@@ -81,8 +82,11 @@ impl Compare {
 
 impl Viewer {
     /// Takes the measured difference.
-    pub(super) fn on_compared(&mut self, compared: Result<Box<Comparison>, String>) {
-        self.compare.is_measuring = false;
+    pub(super) fn on_compared(&mut self, number: u64, compared: Result<Box<Comparison>, String>) {
+        // The result of pictures that have changed since counts for nothing.
+        if self.compare.measuring.take_if(|measuring| *measuring == number).is_none() {
+            return;
+        }
         match compared {
             Ok(compared) if self.compare.is_on() => {
                 let (flip, largest) = (compared.error, compared.largest);
@@ -99,13 +103,14 @@ impl Viewer {
 
     /// Chooses the earlier picture.
     pub(super) fn compare_with(&mut self, with: CompareWith) {
-        self.compare.difference = None;
+        (self.compare.difference, self.compare.measuring) = (None, None);
         self.compare.with = match with {
             CompareWith::Nothing => None,
             CompareWith::Version(number) => Some(With::Version(number)),
             CompareWith::ThisPicture => {
-                let Some(shown) = self.shown.as_ref().filter(|shown| shown.scene.is_some()) else {
-                    return self.say("There is no picture to keep yet");
+                let is_whole = !self.is_cut_short();
+                let Some(shown) = self.shown.as_ref().filter(|shown| is_whole && shown.scene.is_some()) else {
+                    return self.say("There is no whole picture to keep");
                 };
                 let mode = shown.frame.state.mode().map_or("", |mode| mode.name.as_str());
                 let label = format!("{mode}, kept");
@@ -174,7 +179,11 @@ impl Viewer {
             return Ok(None);
         };
         let (set, like) = (version.set.clone(), version.picture.as_ref().map(|picture| picture.frame.clone()));
+        // The mouse may preview a mode.
+        let mode = live.state.mode().map_or_else(|| self.session.settings.mode.clone(), |mode| mode.slug.clone());
+        let selected = std::mem::replace(&mut self.session.settings.mode, mode);
         let state = self.session.frame_state_of(&set.shaders, self.clock, live.state.size, live.state.pipelines.target);
+        self.session.settings.mode = selected;
         let state = Arc::new(state);
         if let Some(frame) = self.resources.bind_older(&set, &state, like.as_ref())? {
             return Ok(Some(Reference { frame, part }));
@@ -193,6 +202,19 @@ impl Viewer {
         self.versions.drop_old();
     }
 
+    /// Ends the comparison and drops all versions.
+    pub(super) fn forget_all_references(&mut self) {
+        (self.compare, self.versions) = (Compare::default(), Versions::default());
+    }
+
+    /// Ends the comparison, since a loop did not end in one of both pictures.
+    pub(in crate::app) fn end_comparison(&mut self) {
+        if self.compare.is_on() || self.compare.is_held {
+            self.compare = Compare::default();
+            self.say("A loop did not end, so the comparison has ended");
+        }
+    }
+
     /// The files in which a version differs from the version on screen, with its text of each. Empty for a tree without a folder.
     pub(in crate::app) fn files_of_version(&self, number: u64) -> Vec<(PathBuf, Arc<str>)> {
         let newest = self.session.shaders.as_ref().map(|shaders| &shaders.texts);
@@ -203,23 +225,46 @@ impl Viewer {
         texts.map(|(path, text)| (root.join(path.as_str()), text.clone())).collect()
     }
 
-    /// Writes the texts of a version over the files in which it differs from the version on screen, on a thread of its own.
+    /// Writes the texts of a version over the files in which it differs from the version on screen, on a thread of its own. What is
+    /// on disk and was never shown, such as an edit with an error, is kept beside each file.
     pub(super) fn write_version(&mut self, number: u64) {
-        let files = self.files_of_version(number);
+        let (files, newest) = (self.files_of_version(number), self.session.shaders.clone());
+        let Some((newest, root)) = newest.zip(self.source.root().map(Path::to_owned)) else { return };
         self.threads.wait(move || {
-            let names: Vec<&str> = files.iter().filter_map(|(path, _)| path.file_name()?.to_str()).collect();
-            let written = files.iter().try_for_each(|(path, text)| write_text(path, text));
+            let shown = |path: &Path| {
+                let path = path.strip_prefix(&root).ok()?.to_str()?;
+                newest.texts.get(&TreePath::from(path)).cloned()
+            };
+            let files: Vec<_> = files.into_iter().map(|(path, text)| (shown(&path), path, text)).collect();
+            let names: Vec<&str> = files.iter().filter_map(|(_, path, _)| path.file_name()?.to_str()).collect();
             let done = || format!("Wrote version {number} of {}", names.join(", "));
-            Some(Message::Say(written.map_or_else(|message| message, |()| done())))
+            Some(Message::Say(write_files(&files).map_or_else(|message| message, |()| done())))
         });
     }
 }
 
-/// Writes a text over a file, which keeps its byte order mark.
-fn write_text(path: &Path, text: &str) -> Result<(), String> {
-    let error = |error: std::io::Error| format!("cannot write {}: {error}", path.display());
+/// A file to write: the text that is shown, its path, and the new text.
+type Write = (Option<Arc<str>>, PathBuf, Arc<str>);
+
+/// Writes files whole, all or none as far as reading them tells. A file keeps its byte order mark.
+fn write_files(files: &[Write]) -> Result<(), String> {
     let mark: &[u8] = b"\xef\xbb\xbf";
-    let has_mark = std::fs::read(path).map_err(error)?.starts_with(mark);
-    let bytes = [if has_mark { mark } else { b"" }, text.as_bytes()].concat();
-    std::fs::write(path, bytes).map_err(error)
+    let mut writes = Vec::new();
+    for (shown, path, text) in files {
+        let error = |error: std::io::Error| format!("cannot write {}: {error}. Nothing was written", path.display());
+        let old = match std::fs::read(path) {
+            Err(missing) if missing.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+            read => read.map_err(error)?,
+        };
+        let (has_mark, old_text) = (old.starts_with(mark), old.strip_prefix(mark).unwrap_or(&old));
+        let is_known = old.is_empty() || old_text == text.as_bytes();
+        if !is_known && shown.as_ref().is_none_or(|shown| old_text != shown.as_bytes()) {
+            let beside = path.with_extension(format!("{}.bak", path.extension().unwrap_or_default().display()));
+            std::fs::write(&beside, &old).map_err(error)?;
+        }
+        writes.push((path, [if has_mark { mark } else { b"" }, text.as_bytes()].concat()));
+    }
+    writes.iter().try_for_each(|(path, bytes)| {
+        picture::replace_file(path, bytes).map_err(|error| format!("cannot write {}: {error}", path.display()))
+    })
 }

@@ -48,7 +48,7 @@ impl Viewer {
                 self.watch_files();
             }
             Message::Look(Err(message)) => self.say(message),
-            Message::Compared(compared) => self.on_compared(compared),
+            Message::Compared(number, compared) => self.on_compared(number, compared),
             Message::Chosen(answer) => {
                 self.is_choosing = false;
                 match answer {
@@ -116,6 +116,8 @@ impl Viewer {
                         emit(self.events, &Event::Diagnostic(warning));
                     }
                 }
+                // The worker drops requests for older sets, so those of a comparison are sent again.
+                self.threads.worker.built();
                 let event = ReloadEvent::new(reload, set.shaders.generation, detect_ms, 0.0);
                 self.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
                 self.session.shaders = Some(set.shaders.clone());
@@ -312,6 +314,10 @@ impl Viewer {
                     self.endless_loop = None;
                 }
                 "explainer"
+            }
+            Role::Waiter => {
+                (self.is_choosing, self.compare.measuring) = (false, None);
+                "waiting"
             }
             Role::Tracer(key) => {
                 if self.threads.baker.has_traced(&key) {

@@ -23,7 +23,8 @@ impl Viewer {
         size: (u32, u32),
         prepare: impl FnMut(&BoundFrame) -> Result<(), GpuError>,
     ) -> Result<Option<BoundFrame>, GpuError> {
-        let Some(preview) = self.panels.gallery.preview().map(str::to_owned) else {
+        let preview = self.panels.gallery.preview().filter(|_| !self.recorder.is_careful());
+        let Some(preview) = preview.map(str::to_owned) else {
             return self.frame_of_settings(size, prepare);
         };
         // A preview is no setting: it is not recorded, and ends when the mouse leaves the mode.
@@ -73,7 +74,7 @@ impl Viewer {
         {
             self.versions.retire(last);
         }
-        if let Some(set) = self.resources.pipelines().filter(|_| has_model && self.versions.get(generation).is_none()) {
+        if let Some(set) = self.resources.pipelines().filter(|set| has_model && !self.versions.has(set)) {
             let edit = self.first_frame.as_ref().filter(|first| first.generation == generation);
             let reload = edit.map(|first| first.event.clone()).or_else(|| self.shader.last.clone()).unwrap_or_default();
             self.versions.add(set, reload);
@@ -112,7 +113,7 @@ impl Viewer {
         // That of the newest waits for the light that its edit changes.
         let is_settled = self.is_complete && self.settled == Some(newest);
         let shown = self.shown.as_ref().filter(|shown| is_settled && shown.scene.is_some());
-        let lacks = self.versions.iter().rev().filter(|version| version.thumbnail.is_none());
+        let lacks = self.versions.without_thumbnail();
         if !self.panels.timeline.is_visible {
             return None;
         }
@@ -139,6 +140,13 @@ impl Viewer {
         self.threads.baker.read(missing.measured);
         self.threads.baker.trace(missing.traced);
         is_empty
+    }
+
+    /// The settings of the picture on screen, from the current camera.
+    pub(in crate::app) fn look(&self) -> Settings {
+        let now = &self.session.settings;
+        let shown = self.shown.as_ref().map_or(now, |shown| &shown.settings);
+        Settings { camera: now.camera.clone(), lights: now.lights.clone(), ..shown.clone() }
     }
 
     /// The state of the picture on screen.

@@ -24,7 +24,7 @@ pub(in crate::app) struct Version {
     pub(in crate::app) reload: ReloadEvent,
     /// Device time of its first frame, milliseconds.
     pub(in crate::app) device_ms: Option<f64>,
-    /// Its picture in small.
+    /// Thumbnail of its last picture.
     pub(in crate::app) thumbnail: Option<egui::TextureHandle>,
     pub(super) set: Arc<PipelineSet>,
     /// Its last complete picture. `None` while it is the newest version, and after the model has changed.
@@ -36,7 +36,7 @@ pub(in crate::app) struct Version {
 }
 
 impl Version {
-    /// The names of the changed files without folders, or what else made this version.
+    /// The names of the changed files without folders, or "whole tree".
     pub(in crate::app) fn title(&self) -> String {
         let names: Vec<&str> = self.reload.changed.iter().map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
         if names.is_empty() { "whole tree".to_owned() } else { names.join(", ") }
@@ -63,8 +63,12 @@ impl Versions {
         self.list.iter_mut().find(|version| version.number == number)
     }
 
-    /// Adds the version that has just come on screen.
+    /// Adds the version that has just come on screen. Generations count from 1 again after another tree was opened or the worker has
+    /// started again; the versions before are then dropped.
     pub(super) fn add(&mut self, set: &Arc<PipelineSet>, reload: ReloadEvent) {
+        if self.list.back().is_some_and(|last| last.number >= set.shaders.generation) {
+            self.list.clear();
+        }
         let (number, since) = (set.shaders.generation, Local::now());
         let (device_ms, thumbnail, picture, is_cut_short) = (None, None, None, false);
         let difference = OnceCell::new();
@@ -85,7 +89,8 @@ impl Versions {
 
     /// Keeps the last picture of a version that a newer one replaces.
     pub(super) fn retire(&mut self, picture: LastComplete) {
-        if let Some(version) = self.get_mut(picture.frame.state.shaders.generation) {
+        let of = self.get_mut(picture.frame.state.shaders.generation).filter(|version| !version.is_cut_short);
+        if let Some(version) = of {
             version.picture = Some(picture);
         }
     }
@@ -104,7 +109,7 @@ impl Versions {
         }
     }
 
-    /// Takes the picture of a version in small.
+    /// Takes the thumbnail of a version.
     pub(in crate::app) fn set_thumbnail(&mut self, number: u64, thumbnail: egui::TextureHandle) {
         if let Some(version) = self.get_mut(number) {
             version.thumbnail = Some(thumbnail);
@@ -116,6 +121,23 @@ impl Versions {
         if let Some(version) = self.get_mut(number) {
             (version.is_cut_short, version.picture) = (true, None);
         }
+    }
+
+    /// Marks a version as good again: a setting had made its loop endless.
+    pub(in crate::app) fn loops_end(&mut self, number: u64) {
+        if let Some(version) = self.get_mut(number) {
+            version.is_cut_short = false;
+        }
+    }
+
+    /// Whether a version is the one of these shaders: numbers may start again.
+    pub(super) fn has(&self, set: &PipelineSet) -> bool {
+        self.list.iter().any(|version| Arc::ptr_eq(&version.set.shaders, &set.shaders))
+    }
+
+    /// Versions that lack a thumbnail, the newest first.
+    pub(super) fn without_thumbnail(&self) -> impl Iterator<Item = &Version> {
+        self.list.iter().rev().filter(|version| version.thumbnail.is_none() && !version.is_cut_short)
     }
 
     /// Whether a version can be shown beside the version `newest`, which is on screen.

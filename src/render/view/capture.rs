@@ -64,12 +64,19 @@ impl Readback {
         Ok(this)
     }
 
-    /// The captured frame. SYNC: after the fence of the submission.
-    pub fn finish(self) -> Capture {
+    /// Width, height and picture alone, as in [`Capture::rgba8`]. SYNC: after the fence of the submission.
+    pub fn finish_display(self) -> (u32, u32, Vec<u8>) {
         let mut rgba8 = self.picture.read();
         rgba8.chunks_exact_mut(4).for_each(|bgra| bgra.swap(0, 2));
-        let mut capture = Capture { width: self.width, height: self.height, rgba8, ..Capture::default() };
-        for pixel in texels(self.raw.content(), self.half).map(PixelValue::decode) {
+        (self.width, self.height, rgba8)
+    }
+
+    /// The captured frame. SYNC: after the fence of the submission.
+    pub fn finish(self) -> Capture {
+        let (raw, half) = (self.raw.clone(), self.half);
+        let (width, height, rgba8) = self.finish_display();
+        let mut capture = Capture { width, height, rgba8, ..Capture::default() };
+        for pixel in texels(raw.content(), half).map(PixelValue::decode) {
             capture.raw.push(pixel.value);
             capture.no_data.push(pixel.no_data);
             capture.not_finite.push(pixel.not_finite);

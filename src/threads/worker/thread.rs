@@ -119,7 +119,10 @@ impl Thread {
                 let built = set.build(&request).map(|_| ()).map_err(|error| error.to_string());
                 let built = if pending { Err(PENDING.to_owned()) } else { built };
                 self.outbox.send(Message::Worker(WorkerMessage::Built(built)));
-                self.build_ahead(&set);
+                // A comparison asks for pipelines of older sets, whose neighboring modes nobody needs.
+                if self.reloader.library().set().is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {
+                    self.build_ahead(&set);
+                }
             } else {
                 self.build_thumbnail();
             }

@@ -119,7 +119,10 @@ impl Module {
             op::NAME | op::DECORATE => !is_dependent(i.get(1)),
             _ => is_kept(i),
         });
-        // A literal may equal an id, which refuses more than necessary.
+        if globals.iter().any(|i| opcode(i) == op::VARIABLE && is_dependent(i.get(4))) {
+            return None;
+        }
+        // This may also match a literal; the rewrite is then refused without need.
         let composes = |i: &Instruction| {
             matches!(
                 opcode(i),
@@ -149,7 +152,7 @@ impl Module {
             return None;
         }
         if *words.get(1)? >= NAMES_PRIVATE {
-            let variables: Vec<Id> = self.dependents.values().map(|dependent| dependent.variable).collect();
+            let variables: Vec<Id> = self.order.iter().map(|id| self.dependents[id].variable).collect();
             self.extend_entry(&variables);
         }
         Some(())

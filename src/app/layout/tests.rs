@@ -1,0 +1,138 @@
+//! The arrangement in windows of different sizes.
+
+use egui_tiles::Tiles;
+
+use super::*;
+
+/// Lays the tiles out in a window of this size, and returns the picture.
+fn shown(layout: &mut Layout, egui: &egui::Context, size: Vec2) -> Rect {
+    let input = egui::RawInput { screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, size)), ..Default::default() };
+    let mut picture = Rect::NOTHING;
+    let _ = egui.run_ui(input, |ui| picture = layout.show(ui, &mut |_, _| {}));
+    picture
+}
+
+/// A layout that is not stored.
+fn unstored(preset: Preset) -> Layout {
+    Layout::of_tree(preset.tree())
+}
+
+#[test]
+fn panels_keep_their_width_and_the_picture_takes_the_rest() {
+    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let widths = [1280.0, 2560.0, 900.0, 1280.0].map(|width| {
+        let picture = shown(&mut layout, &egui, Vec2::new(width, 720.0));
+        (picture.min.x, width - picture.max.x)
+    });
+    for (left, right) in widths {
+        assert!((left - widths[0].0).abs() < 1.5 && (right - widths[0].1).abs() < 1.5, "{widths:?}");
+    }
+    assert!(widths[0].0 > 150.0 && widths[0].1 > 250.0, "{widths:?}");
+    // A narrow window hides the panels on the left, which come back with their width.
+    let narrow = shown(&mut layout, &egui, Vec2::new(640.0, 480.0));
+    assert!(narrow.min.x == 0.0 && narrow.width() > 250.0, "{narrow:?}");
+    let wide = shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
+    assert!((wide.min.x - widths[0].0).abs() < 1.5, "{wide:?}, {widths:?}");
+    // Even in a tiny one there is a picture.
+    assert!(shown(&mut layout, &egui, Vec2::new(300.0, 200.0)).width() > 100.0);
+}
+
+#[test]
+fn every_panel_closes_and_opens_again() {
+    for preset in Preset::ALL {
+        let (egui, mut layout) = (egui::Context::default(), unstored(preset));
+        let size = Vec2::new(1280.0, 720.0);
+        let first = shown(&mut layout, &egui, size);
+        layout.is_changed = false;
+        for panel in Panel::GROUPS.concat() {
+            layout.close(panel);
+            layout.is_changed = false;
+            shown(&mut layout, &egui, size);
+            assert!(!layout.is_open(panel));
+        }
+        assert!(shown(&mut layout, &egui, size).width() > 1270.0, "a column without panels is left");
+        for panel in Panel::GROUPS.concat() {
+            layout.open(panel);
+            layout.is_changed = false;
+            shown(&mut layout, &egui, size);
+            assert!(layout.is_open(panel), "{panel:?}");
+            let mut seen = false;
+            let input =
+                egui::RawInput { screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, size)), ..Default::default() };
+            let _ = egui.run_ui(input, |ui| {
+                layout.show(ui, &mut |_, shown| seen |= shown == panel);
+            });
+            assert!(seen, "{panel:?} is open behind another tab");
+        }
+        assert!(shown(&mut layout, &egui, size).width() > 0.5 * first.width());
+    }
+}
+
+#[test]
+fn panels_that_a_small_window_shrinks_grow_again() {
+    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let [first, small, last] = [1280.0, 400.0, 1280.0].map(|width| {
+        let picture = shown(&mut layout, &egui, Vec2::new(width, 720.0));
+        width - picture.max.x
+    });
+    assert!(small < first - 10.0 && (last - first).abs() < 1.5, "{first}, {small}, {last}");
+}
+
+#[test]
+fn a_panel_that_a_narrow_window_hides_can_be_opened() {
+    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let size = Vec2::new(640.0, 480.0);
+    let left_of_picture = shown(&mut layout, &egui, size).min.x;
+    layout.open(Panel::Modes);
+    layout.is_changed = false;
+    let picture = shown(&mut layout, &egui, size);
+    assert!(left_of_picture == 0.0 && picture.min.x > 100.0 && picture.max.x > 638.0, "{picture:?}");
+}
+
+#[test]
+fn a_preset_keeps_the_arrangement_that_the_user_made() {
+    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
+    layout.close(Panel::Lights);
+    for preset in [Preset::Look, Preset::Debug] {
+        layout.arrange(preset);
+        assert!(layout.is_open(Panel::Lights) && layout.has_own());
+    }
+    layout.arrange_own();
+    assert!(!layout.is_open(Panel::Lights) && layout.is_open(Panel::Modes) && !layout.has_own());
+}
+
+#[test]
+fn a_panel_on_the_picture_moves_beside_it() {
+    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    let size = Vec2::new(1280.0, 720.0);
+    shown(&mut layout, &egui, size);
+    let tiles = &mut layout.tree.tiles;
+    let (picture, lights) = (tiles.find_pane(&Panel::Viewport).unwrap(), tiles.find_pane(&Panel::Lights).unwrap());
+    let (tabs, root) = (tiles.parent_of(lights).unwrap(), tiles.parent_of(picture).unwrap());
+    let container = |tiles: &mut Tiles<Panel>, id, change: &dyn Fn(&mut Container)| match tiles.get_mut(id) {
+        Some(Tile::Container(container)) => change(container),
+        _ => panic!("no container"),
+    };
+    container(tiles, tabs, &|tabs| _ = tabs.remove_child(lights));
+    // As a drop on the middle of the picture leaves it.
+    let new = tiles.insert_tab_tile(vec![picture, lights]);
+    container(tiles, root, &|root| _ = root.replace_child(picture, new));
+    repair(&mut layout.tree);
+    layout.fit.invalidate();
+    let picture = shown(&mut layout, &egui, size);
+    assert!(picture.width() > 200.0 && layout.is_open(Panel::Lights), "{picture:?}");
+    assert!(
+        fit::path_to_picture(&layout.tree.tiles)
+            .into_iter()
+            .all(|[parent, _]| { !matches!(layout.tree.tiles.get_container(parent), Some(Container::Tabs(_))) })
+    );
+}
+
+#[test]
+fn handles_lie_only_between_the_picture_and_panels() {
+    let area = Rect::from_min_max(egui::pos2(0.0, 30.0), egui::pos2(1000.0, 700.0));
+    let picture = area.with_min_x(240.0);
+    let free = fit::without_handles(picture, area, 10.0);
+    assert_eq!(free, picture.with_min_x(250.0));
+}
