@@ -351,7 +351,8 @@ impl Screen {
         let Some(capture) = readback.map(|readback| readback.finish()) else { return Ok(()) };
         match picture::write_numbered(&capture, &viewer.look()) {
             Ok(path) => {
-                viewer.say(format!("wrote {}", path.display()));
+                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+                viewer.say(format!("wrote {}", whole.display()));
                 emit(viewer.events, &Event::Screenshot { file: &path.display().to_string() });
             }
             Err(message) => viewer.say(message),

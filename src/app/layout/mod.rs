@@ -123,14 +123,22 @@ impl Layout {
         }
     }
 
-    /// Notes a change by the user, who then has an arrangement of her own.
+    /// Notes a change by the user, who then has an arrangement of her own. One that she has already stays as it is while she changes
+    /// a preset.
     fn edited(&mut self) {
-        (self.is_changed, self.is_own) = (true, true);
-        self.own = None;
+        self.is_changed = true;
+        self.is_own |= self.own.is_none();
     }
 
     pub(super) fn is_open(&self, panel: Panel) -> bool {
         self.tree.tiles.find_pane(&panel).is_some()
+    }
+
+    /// Whether a panel is open, and not on the side that a narrow window hides.
+    pub(super) fn is_in_sight(&self, panel: Panel) -> bool {
+        let tiles = &self.tree.tiles;
+        let pane = tiles.find_pane(&panel);
+        pane.is_some() && std::iter::successors(pane, |id| tiles.parent_of(*id)).all(|id| tiles.is_visible(id))
     }
 
     /// Shows a panel: in front of the tabs in its tile, beside panels of its group or any other, or in a column of its own. A narrow
@@ -142,9 +150,7 @@ impl Layout {
             self.edited();
         }
         self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(other) if *other == panel));
-        let tiles = &self.tree.tiles;
-        let up = std::iter::successors(tiles.find_pane(&panel), |id| tiles.parent_of(*id));
-        if up.into_iter().any(|id| !tiles.is_visible(id)) {
+        if !self.is_in_sight(panel) {
             self.fit.swap_sides();
         }
     }

@@ -79,7 +79,11 @@ pub(super) fn lines(last: &ReloadEvent) -> (String, String, String) {
     let changed =
         if last.changed.is_empty() { vec!["start".to_owned()] } else { last.changed.iter().map(name).collect() };
     let stages = if last.stages.is_empty() { "nothing to do".to_owned() } else { last.stages.join(" ") };
-    let edit = format!("{} -> {}", changed.join(" "), in_short(&last.stages));
+    // A save that repairs a failed one compiles nothing if the text is the last good one again.
+    let edit = match last.changed.is_empty() && last.stages.is_empty() {
+        true => "repaired: the last good text again".to_owned(),
+        false => format!("{} -> {}", changed.join(" "), in_short(&last.stages)),
+    };
     let times = match last.ok {
         true => format!(
             "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",

@@ -123,7 +123,7 @@ impl Entry<'_> {
         let texts = 50.0;
         let height = (ui.available_height() - texts - 6.0).clamp(20.0, THUMBNAIL.y);
         let size = THUMBNAIL * (height / THUMBNAIL.y);
-        let width = size.x.max(156.0);
+        let width = size.x.max(180.0);
         let (rect, response) = ui.allocate_exact_size(vec2(width, height + texts) + vec2(6.0, 6.0), Sense::click());
         let inner = rect.shrink(3.0);
         self.paint(ui, &response, Rect::from_min_size(inner.min, size));
@@ -172,6 +172,8 @@ impl Entry<'_> {
         if response.clicked() && can_show {
             let with = if is_chosen { CompareWith::Nothing } else { CompareWith::Version(version.number) };
             commands.push(Command::Compare(with));
+        } else if response.clicked() && viewer.compare.is_on() {
+            commands.push(Command::Compare(CompareWith::Nothing));
         }
         response.context_menu(|ui| {
             let lines = viewer.versions.difference(version);

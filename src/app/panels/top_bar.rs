@@ -90,7 +90,7 @@ fn panels(ui: &mut Ui, layout: &mut Layout) {
                 ui.separator();
             }
             for panel in group {
-                let mut is_open = layout.is_open(*panel);
+                let mut is_open = layout.is_in_sight(*panel);
                 if ui.checkbox(&mut is_open, panel.title()).changed() {
                     match is_open {
                         true => layout.open(*panel),

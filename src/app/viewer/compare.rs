@@ -103,7 +103,7 @@ impl Viewer {
 
     /// Chooses the earlier picture.
     pub(super) fn compare_with(&mut self, with: CompareWith) {
-        (self.compare.difference, self.compare.measuring) = (None, None);
+        (self.compare.difference, self.compare.measuring, self.compare.shows_map) = (None, None, false);
         self.compare.with = match with {
             CompareWith::Nothing => None,
             CompareWith::Version(number) => Some(With::Version(number)),

@@ -136,7 +136,7 @@ fn area(id: Id, corner: Align2, picture: Rect) -> Area {
     Area::new(id).order(Order::Middle).pivot(corner).fixed_pos(at).constrain_to(picture)
 }
 
-pub(in crate::app::panels) fn card(edge: Color32) -> Frame {
+fn card(edge: Color32) -> Frame {
     Frame::new()
         .fill(Color32::from_rgba_unmultiplied(16, 17, 20, 235))
         .stroke(Stroke::new(1.0, edge))
