@@ -34,6 +34,17 @@ fn edit(viewer: &mut Viewer, new: &str) -> RgbaImage {
     viewer.screenshot()
 }
 
+/// Drags as a hand does: with frames before and after the motion.
+fn drag(viewer: &mut Viewer, from: (u32, u32), to: (u32, u32)) {
+    viewer.move_mouse(from);
+    viewer.screenshot();
+    viewer.display.xdotool(&["mousedown", "1"]);
+    viewer.screenshot();
+    viewer.move_mouse(to);
+    viewer.screenshot();
+    viewer.display.xdotool(&["mouseup", "1"]);
+}
+
 #[test]
 fn a_kept_picture_stays_left_of_the_border() {
     let (mut viewer, first) = open();
@@ -59,9 +70,9 @@ fn a_kept_picture_stays_left_of_the_border() {
     let bar = 30;
     let at = |x: u32| (x, bar + height / 2);
     let edge = 40;
-    viewer.drag(at(middle), at(width - edge));
+    drag(&mut viewer, at(middle), at(width - edge));
     viewer.until("the kept picture", |shot| same(shot, &edited, 0..width - edge - 1));
-    viewer.drag(at(width - edge), at(edge));
+    drag(&mut viewer, at(width - edge), at(edge));
     viewer.until("the picture of now", |shot| same(shot, &first, edge + 1..width));
     viewer.display.xdotool(&["keydown", "space"]);
     viewer.until("the kept picture while Space is held", |shot| *shot == edited);
