@@ -136,3 +136,13 @@ fn specular_antialiasing_widens_a_lobe_by_the_normals_of_a_pixel() {
     let values = shown(&mut headless, "roughness");
     assert!(values.iter().all(|v| (v[0] - values[0][0]).abs() < 1e-5 && v[0] > 0.0), "{:?}", values[0]);
 }
+
+/// With multisampling, an edge pixel's center may lie outside of its triangle, where vertex colors are extrapolated.
+#[test]
+fn no_vertex_color_is_negative_at_an_edge() {
+    let settings = settings(&["view.msaa=4", "view.background=none", "environment.name=none"]);
+    let mut headless = renderer(model("shader-ball"), settings, (960, 474));
+    let capture = render(&mut headless, "base-color");
+    let least = capture.raw.iter().flatten().copied().fold(f32::INFINITY, f32::min);
+    assert!(least >= 0.0, "the base color reaches {least}");
+}

@@ -158,7 +158,8 @@ Surface make_surface(Fragment f, vec3 v) {
         occlusion = texture(occlusion_texture, texture_uv(f, TEXTURE_OCCLUSION)).r;
     }
     base_color *= material.base_color_factor;
-    if ((FEATURES & FEATURE_VERTEX_COLOR) != 0u) base_color *= f.color;
+    // With multisampling, an edge pixel's center may lie outside of the triangle, where a color is extrapolated below 0.
+    if ((FEATURES & FEATURE_VERTEX_COLOR) != 0u) base_color *= max(f.color, vec4(0.0));
 
     Surface s;
     s.position_ws = f.position_ws;

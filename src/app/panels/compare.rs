@@ -33,6 +33,8 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
     let response = area.show(egui, |ui| ui.allocate_response(strip.size(), Sense::drag())).inner;
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.drag_stopped()) {
         compare.wipe = ((at.x - picture.min.x) / picture.width().max(1.0)).clamp(0.0, 1.0);
+        // The next press finds the strip where the last frame had it.
+        egui.request_repaint();
     }
     let is_active = response.hovered() || response.dragged();
     let (stroke, center) = (Stroke::new(if is_active { 2.0 } else { 1.0 }, ACCENT), strip.center());

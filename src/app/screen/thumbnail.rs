@@ -23,6 +23,7 @@ impl Screen {
         slot: usize,
         viewer: &Viewer,
     ) -> Result<(), GpuError> {
+        self.lacks_thumbnails &= viewer.panels.timeline.is_visible;
         if self.thumbnail.is_some() || self.lacks_thumbnails || viewer.times_next_frame() {
             return Ok(());
         }
