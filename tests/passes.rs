@@ -47,10 +47,10 @@ fn sequence(session: &mut Session, frames: u32) -> Capture {
     session.render()
 }
 
-/// The text in the README that begins like this.
+/// The text in one of the READMEs that begins like this.
 fn in_readme(begin: &str) -> String {
-    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let (_, rest) = readme.split_once(&format!("```glsl\n{begin}")).expect("README shows it");
+    let readmes = support::readmes();
+    let (_, rest) = readmes.split_once(&format!("```glsl\n{begin}")).expect("a README shows it");
     format!("{begin}{}", rest.split_once("```").unwrap().0)
 }
 

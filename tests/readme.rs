@@ -1,4 +1,4 @@
-//! The README's snippets, saved into a tree, do what the README says.
+//! The snippets of README.md and shaders/README.md, saved into a tree, do what these pages say.
 
 mod support;
 
@@ -8,9 +8,9 @@ use support::{Session, assert_differ, assert_same, compiler, model, ready, setti
 
 /// The code of the first GLSL block that contains `part`, indented or not.
 fn snippet(part: &str) -> String {
-    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let mut blocks = readme.split("```glsl\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    blocks.find(|block| block.contains(part)).unwrap_or_else(|| panic!("README.md has no block with {part}")).to_owned()
+    let readmes = support::readmes();
+    let mut blocks = readmes.split("```glsl\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    blocks.find(|block| block.contains(part)).unwrap_or_else(|| panic!("no README has a block with {part}")).to_owned()
 }
 
 fn session() -> Session {
@@ -77,5 +77,27 @@ fn the_geometry_stage_of_the_readme() {
     assert_differ(&before, &glow, "the glow");
     ready(&session.save("passes/glow.geom", &snippet("model.geom.glsl")));
     assert_differ(&glow, &session.render(), "the glow, taken apart");
+    passes_check(&session);
+}
+
+#[test]
+fn the_parameters_and_constants_of_the_shader_readme() {
+    let mut session = session();
+    let before = session.render();
+    let params = session.tree.edited("user/params.glsl", "};", &format!("{}\n}};", snippet("rim_width").trim_end()));
+    ready(&session.save("user/params.glsl", &params));
+    let hook = "void user_surface(inout Surface s) {";
+    let user = session.tree.edited("user.glsl", hook, &format!("{}\n{hook}", snippet("PATTERN = 0u")));
+    let body = "if (INVERT) s.base_color = 1.0 - s.base_color;\n    s.emissive += float(PATTERN) * rim_width * rim_color;";
+    ready(&session.save("user.glsl", &user.replace(hook, &format!("{hook}\n    {body}"))));
+    assert_same(&before, &session.render(), "at their defaults they change nothing");
+    session.set("INVERT=true");
+    let inverted = session.render();
+    assert_differ(&before, &inverted, "the switch");
+    session.set("PATTERN=Dots");
+    let dots = session.render();
+    assert_differ(&inverted, &dots, "the choice");
+    session.set("rim_color=0,0,1");
+    assert_differ(&dots, &session.render(), "the color");
     passes_check(&session);
 }

@@ -253,3 +253,9 @@ pub fn srgb(linear: f64) -> f64 {
 pub fn open_image(path: &Path) -> image::DynamicImage {
     image::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
+
+/// The text of README.md and of shaders/README.md.
+pub fn readmes() -> String {
+    let page = |path| std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap();
+    [page("README.md"), page("shaders/README.md")].concat()
+}
