@@ -39,10 +39,10 @@ void store(uint slice, vec4 value) {
 // A value that D, V and F must not have: the caller counts such samples as 0, and Rust warns.
 bool is_wrong(float x) { return isnan(x) || isinf(x) || x < 0.0 || x > 1e20; }
 
-// f: a(c), b(c), 0. Either may be negative; F of a white surface and of glass, f0 a + f90 b, may not. 1e-6: rounding.
-bool is_wrong(vec3 f) {
-    bool is_number = !any(isnan(f)) && !any(isinf(f)) && all(lessThan(abs(f), vec3(1e3)));
-    return !is_number || f.r + f.g < -1e-6 || 0.04 * f.r + f.g < -1e-6;
+// terms: a(c), b(c), 0. Either may be negative; F of a white surface and of glass, f0 a + f90 b, may not. 1e-6: rounding.
+bool is_wrong(vec3 terms) {
+    bool is_number = !any(isnan(terms)) && !any(isinf(terms)) && all(lessThan(abs(terms), vec3(1e3)));
+    return !is_number || terms.r + terms.g < -1e-6 || 0.04 * terms.r + terms.g < -1e-6;
 }
 
 uint wrong = 0u;               // DFG_FLAG bits

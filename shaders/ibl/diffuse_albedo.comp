@@ -31,12 +31,13 @@ void main() {
         vec3 l = sample_cosine(u);
         vec3 h = normalize(l + v);
         Cosines cosines = Cosines(l.z, v.z, h.z, dot(v, h), dot(l, v));
-        vec3 f = f_diffuse(base_color, roughness, alpha_from_roughness(roughness), cosines) * PI;
-        bool is_wrong = any(isnan(f)) || any(isinf(f)) || any(lessThan(f, vec3(0.0))) || any(greaterThan(f, vec3(1e3)));
+        vec3 reflected = f_diffuse(base_color, roughness, alpha_from_roughness(roughness), cosines) * PI;
+        bool is_wrong = any(isnan(reflected)) || any(isinf(reflected)) || any(lessThan(reflected, vec3(0.0)));
+        is_wrong = is_wrong || any(greaterThan(reflected, vec3(1e3)));
         wrong = wrong || is_wrong;
         if (is_wrong) continue;
-        albedo += f;
-        weights += f.z * f_weights(cosines.v_dot_h);
+        albedo += reflected;
+        weights += reflected.z * f_weights(cosines.v_dot_h);
     }
     vec3 q = albedo / (base_color * float(task.samples));
     weights /= max(albedo.z, 1e-6);

@@ -71,14 +71,20 @@ vec3 prefiltered_sky(vec3 d, float level) {
 }
 
 // The mean of radiance around r, weighted by the lobe of the selected models for v = n: the first factor of the split sum
-// (Karis 2013). Level 0 shows the sun itself.
-vec3 prefiltered_radiance(vec3 r, float roughness) {
+// (Karis 2013), without the sun. But level 0 shows the sun itself.
+vec3 prefiltered_without_sun(vec3 r, float roughness) {
     if (!HAS_ENVIRONMENT) return frame.ambient;
-    float level = specular_level(roughness);
-    vec3 d = map_from_world(r);
-    vec3 sky = prefiltered_sky(d, level);
-    if ((FEATURES & FEATURE_SUN) != 0u) sky += sun_radiance(d, roughness) * min(level, 1.0);
-    return frame.environment_intensity * sky;
+    return frame.environment_intensity * prefiltered_sky(map_from_world(r), specular_level(roughness));
+}
+
+// How much of the sun prefiltered_without_sun lacks at this roughness, 0..1, and the environment's intensity.
+float missing_sun(float roughness) { return frame.environment_intensity * min(specular_level(roughness), 1.0); }
+
+// The same with the sun, as a lobe for v = n.
+vec3 prefiltered_radiance(vec3 r, float roughness) {
+    vec3 radiance = prefiltered_without_sun(r, roughness);
+    if ((FEATURES & FEATURE_SUN) != 0u) radiance += missing_sun(roughness) * sun_radiance(map_from_world(r), roughness);
+    return radiance;
 }
 
 // The same with the sheen distribution.

@@ -1,7 +1,7 @@
 // Light from the environment, by the split sum (Karis 2013, "Real Shading in Unreal Engine 4"): each lobe's albedo
 // towards the eye (lighting/albedo.glsl) times its mean incident radiance, from maps that were prefiltered for a
 // lobe with v = n (ibl/prefilter.comp, ibl/irradiance.comp). Without an environment the radiance is the same from
-// everywhere, and the product is exact.
+// everywhere, and the product is exact. The sun of a sky is lit as a lamp is (lighting/sun.glsl).
 //
 // With REFLECTION_SAMPLES, the specular lobe and the coat are sums over directions instead
 // (lighting/sampled_reflections.glsl).
@@ -21,6 +21,7 @@
 #include "lighting/environment.glsl"
 #include "lighting/lobes.glsl"
 #include "lighting/sampled_reflections.glsl"
+#include "lighting/sun.glsl"
 
 // The direction in which to look up a lobe: the mirror direction, shifted towards n for rough lobes, since NoL weights
 // them (Lagarde & de Rousiers 2014, section 4.9.3). The weight of n is within 0.1 of the true mean's at most angles. A
@@ -31,20 +32,45 @@ vec3 lobe_direction(vec3 n, vec3 v, float roughness) {
     return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
 }
 
-// Mean incident radiance of an anisotropic lobe.
+// Mean incident radiance of an anisotropic lobe, without the sun.
 vec3 stretched_radiance(Surface s, vec3 v) {
     vec4 sum = vec4(0.0);
     for (int i = 0; i < STRIPS; ++i) {
         Strip strip = strip_of_lobe(s, v, i);
-        sum += vec4(prefiltered_radiance(lobe_direction(strip.n, v, s.roughness), s.roughness), 1.0) * strip.weight;
+        sum += vec4(prefiltered_without_sun(lobe_direction(strip.n, v, s.roughness), s.roughness), 1.0) * strip.weight;
     }
     return sum.rgb / max(sum.a, 1e-6);
 }
 
-// Mean incident radiance of the base's specular lobe.
-vec3 specular_radiance(Surface s, vec3 v) {
+// Mean incident radiance of the base's specular lobe, without the sun.
+vec3 specular_sky(Surface s, vec3 v) {
     if ((FEATURES & FEATURE_ANISOTROPY) != 0u) return stretched_radiance(s, v);
-    return prefiltered_radiance(lobe_direction(s.n, v, s.roughness), s.roughness);
+    return prefiltered_without_sun(lobe_direction(s.n, v, s.roughness), s.roughness);
+}
+
+// The same with the sun, whose lobe is that of v = n. Lighting adds reflected_sun instead.
+vec3 specular_radiance(Surface s, vec3 v) {
+    vec3 radiance = specular_sky(s, v);
+    if ((FEATURES & FEATURE_SUN) == 0u) return radiance;
+    vec3 direction = map_from_world(lobe_direction(s.n, v, s.roughness));
+    return radiance + missing_sun(s.roughness) * sun_radiance(direction, s.roughness);
+}
+
+// What the base's specular lobe reflects of the environment.
+vec3 reflected_specular(Surface s, vec3 v, vec3 albedo) {
+    if (REFLECTIONS_ARE_SAMPLED) return sampled_specular(s, v);
+    vec3 light = albedo * specular_sky(s, v);
+    if ((FEATURES & FEATURE_SUN) != 0u) light += missing_sun(s.roughness) * reflected_sun(s, v, false);
+    return light;
+}
+
+// The same for the coat.
+vec3 reflected_coat(Surface s, vec3 v, vec3 albedo) {
+    if (REFLECTIONS_ARE_SAMPLED) return sampled_coat(s, v);
+    vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
+    vec3 light = albedo * prefiltered_without_sun(direction, s.clearcoat_roughness);
+    if ((FEATURES & FEATURE_SUN) != 0u) light += missing_sun(s.clearcoat_roughness) * reflected_sun(s, v, true);
+    return light;
 }
 
 // Occlusion is the open fraction of the hemisphere. glTF says that it dims indirect light, but not how it dims a narrow
@@ -64,14 +90,10 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
     Lobes light = no_light();
     light.diffuse = albedo.diffuse * irradiance;
     light.multiple = albedo.multiple * irradiance;
-    if (REFLECTIONS_ARE_SAMPLED) light.specular = sampled_specular(s, v);
-    else light.specular = albedo.specular * specular_radiance(s, v);
-    light.specular *= specular_occlusion(n_dot_v, visibility, s.roughness);
+    light.specular = reflected_specular(s, v, albedo.specular) * specular_occlusion(n_dot_v, visibility, s.roughness);
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
-        vec3 direction = lobe_direction(s.clearcoat_n, v, s.clearcoat_roughness);
-        if (REFLECTIONS_ARE_SAMPLED) light.clearcoat = sampled_coat(s, v);
-        else light.clearcoat = albedo.clearcoat * prefiltered_radiance(direction, s.clearcoat_roughness);
-        light.clearcoat *= specular_occlusion(n_dot_v_of(s.clearcoat_n, v), visibility, s.clearcoat_roughness);
+        float occlusion = specular_occlusion(n_dot_v_of(s.clearcoat_n, v), visibility, s.clearcoat_roughness);
+        light.clearcoat = reflected_coat(s, v, albedo.clearcoat) * occlusion;
     }
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
         light.sheen = albedo.sheen * prefiltered_sheen(reflect(-v, s.n), s.sheen_roughness) * visibility;

@@ -18,12 +18,12 @@
 
 #include "interface.glsl"
 #include "brdf/energy/dfg_table.glsl"
-#include "brdf/evaluate.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 #include "lighting/environment.glsl"
 #include "lighting/lobe_frame.glsl"
+#include "lighting/sun.glsl"
 
 const uint PREFILTERED = 0u;
 //@ui "Reflections" choice Prefiltered=0 Sampled32=32 Sampled64=64 Sampled128=128 group="Sampling" doc="Of the environment: from prefiltered maps, or by a sum over directions in each pixel, which follows every edit of D, V and F and costs time"
@@ -56,12 +56,6 @@ vec3 mean_radiance_around(vec3 l, float pdf, float offset) {
     return prefiltered_sky(map_from_world(l), level);
 }
 
-// f |NoL| of the coat or of the base's specular lobe.
-vec3 weight_of(Surface s, vec3 v, vec3 l, bool is_coat) {
-    Brdf brdf = evaluate_brdf(s, l, v);
-    return (is_coat ? brdf.clearcoat : brdf.specular) * abs(dot(s.n, l));
-}
-
 // The sum over samples. Their density is that of the GGX whose facets spread as widely as those of the selected D
 // (ggx_roughness). The points form a spiral, which covers the spherical cap of visible normals evenly.
 vec3 reflected_sky(Surface s, vec3 v, LobeFrame lobe, float roughness, bool is_coat) {
@@ -78,15 +72,6 @@ vec3 reflected_sky(Surface s, vec3 v, LobeFrame lobe, float roughness, bool is_c
         if (pdf > 0.0) sum += mean_radiance_around(l, pdf, offset) * weight_of(s, v, l, is_coat) / pdf;
     }
     return sum / float(REFLECTION_SAMPLES);
-}
-
-// The sun is a lamp whose disk widens the lobe by its variance, as in lobe_weight_of_light.
-vec3 reflected_sun(Surface s, vec3 v, bool is_coat) {
-    vec2 roughness = vec2(s.roughness, s.clearcoat_roughness);
-    vec2 widened = sqrt(sqrt(roughness * roughness * roughness * roughness + frame.sun_variance));
-    s.roughness = widened.x;
-    s.clearcoat_roughness = widened.y;
-    return frame.sun_intensity * weight_of(s, v, world_from_map(frame.sun_direction), is_coat);
 }
 
 vec3 sampled_reflection(Surface s, vec3 v, LobeFrame lobe, float roughness, bool is_coat) {

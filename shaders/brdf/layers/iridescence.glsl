@@ -50,11 +50,11 @@ vec3 f_film(vec3 f0, float ior, float nm, float c) {
     vec3 r123 = clamp(r12 * r23, 1e-5, 0.9999);   // keeps the square root and the quotient below finite
     vec3 r = sqrt(r123);
     vec3 rs = t12 * t12 * r23 / (1.0 - r123);
-    vec3 f = r12 + rs;
+    vec3 fresnel = r12 + rs;
     vec3 order = (rs - t12) * r;
-    f += 2.0 * order * film_sensitivity(path_nm, shift);
-    f += 2.0 * order * r * film_sensitivity(2.0 * path_nm, 2.0 * shift);
-    return saturate(f);
+    fresnel += 2.0 * order * film_sensitivity(path_nm, shift);
+    fresnel += 2.0 * order * r * film_sensitivity(2.0 * path_nm, 2.0 * shift);
+    return saturate(fresnel);
 }
 
 #endif

@@ -17,12 +17,12 @@ float screen_visibility(vec3 position_ws) {
     float distance_m = -(frame.view_from_world * vec4(position_ws, 1.0)).z;
     vec2 size = ceil(0.5 * frame.viewport_px);
     vec2 texel = gl_FragCoord.xy / frame.viewport_px * size - 0.5;
-    vec2 f = fract(texel);
+    vec2 part = fract(texel);
     vec2 corner = (floor(texel) + 1.0) / size;
     vec4 hidden = textureGather(occlusion, corner, 0);
     vec4 apart = abs(textureGather(occlusion, corner, 1) / distance_m - 1.0);
     // A gather holds (0, 1), (1, 1), (1, 0), (0, 0). 1e-4: if no texel is of this surface, all count.
-    vec4 weight = vec4((1.0 - f.x) * f.y, f.x * f.y, f.x * (1.0 - f.y), (1.0 - f.x) * (1.0 - f.y));
+    vec4 weight = vec4((1.0 - part.x) * part.y, part.x * part.y, part.x * (1.0 - part.y), (1.0 - part.x) * (1.0 - part.y));
     weight *= max(1.0 - 50.0 * apart, 1e-4);
     return 1.0 - dot(hidden, weight) / dot(weight, vec4(1.0));
 }

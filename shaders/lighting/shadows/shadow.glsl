@@ -21,10 +21,10 @@ uniform sampler2D shadow_map;
 float hard_visibility(vec2 uv, float depth) {
     vec2 texel = uv * SHADOW_MAP_PX - 0.5;
     vec2 corner = floor(texel);
-    vec2 f = texel - corner;
+    vec2 part = texel - corner;
     // A gather holds (0, 1), (1, 1), (1, 0), (0, 0), around a corner of four texels.
     vec4 lit = vec4(lessThanEqual(textureGather(shadow_map, (corner + 1.0) / SHADOW_MAP_PX), vec4(depth)));
-    return mix(mix(lit.w, lit.z, f.x), mix(lit.x, lit.y, f.x), f.y);
+    return mix(mix(lit.w, lit.z, part.x), mix(lit.x, lit.y, part.x), part.y);
 }
 
 // Samples of a disk of radius 1, at equal distances along a spiral (Vogel 1979). `turn`: 0..1, another for each pixel.

@@ -39,10 +39,10 @@ vec4 newest_at(ivec2 pixel) {
 // small, are left out, and bilinear samples fetch pairs of texels.
 vec4 mean_before(vec2 at_px) {
     vec2 center = floor(at_px - 0.5) + 0.5;
-    vec2 f = at_px - center;
-    vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
-    vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
-    vec2 w3 = f * f * (-0.5 + 0.5 * f);
+    vec2 part = at_px - center;
+    vec2 w0 = part * (-0.5 + part * (1.0 - 0.5 * part));
+    vec2 w1 = 1.0 + part * part * (-2.5 + 1.5 * part);
+    vec2 w3 = part * part * (-0.5 + 0.5 * part);
     vec2 w12 = 1.0 - w0 - w3;
     vec2 low = (center - 1.0) / pass.size_px;
     vec2 middle = (center + (w12 - w1) / w12) / pass.size_px;
