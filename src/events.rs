@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::learn::Finding;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::BakeReport;
 use crate::shader::Diagnostic;
@@ -53,6 +54,15 @@ pub enum Event<'a> {
         flip: f64,
         /// Largest difference of a channel of the display, 0..1.
         largest: f64,
+    },
+    /// The goals of the exercise that is open were measured.
+    Exercise {
+        /// Its name, as `03-fresnel`.
+        name: &'a str,
+        /// Whether all goals are reached.
+        passed: bool,
+        /// What was found about each.
+        goals: &'a [Finding],
     },
     /// A screenshot was written.
     Screenshot {

@@ -17,6 +17,7 @@
 //! - [`recovery`]: what a window hands to the process that takes its place after a loss.
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
 //! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
+//! - [`learn`]: exercises, and the measurements that check them.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
 //! - [`app`]: the window.
 //!
@@ -34,6 +35,7 @@ pub mod frame;
 pub mod gpu;
 pub mod headless;
 pub mod interface;
+pub mod learn;
 pub mod measure;
 pub mod message;
 pub mod picture;
@@ -44,4 +46,5 @@ pub mod scene;
 pub mod session;
 pub mod settings;
 pub mod shader;
+mod state;
 mod threads;

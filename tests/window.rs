@@ -10,6 +10,7 @@ mod window {
     mod gallery;
     mod keys;
     mod layout;
+    mod learn;
     mod losses;
     mod panels;
     mod passes;

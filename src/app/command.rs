@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::dialog::Dialog;
 use super::editor::Place;
+use super::learn::LearnCommand;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
 
@@ -83,6 +84,10 @@ pub(super) enum Command {
     Edit(Place),
     /// Let the user choose a file or folder to open.
     Choose(Dialog),
+    /// Write the built-in shaders to this folder, or to one that the user chooses, and open them.
+    NewTree(Option<PathBuf>),
+    /// What the panel of exercises asks for.
+    Learn(LearnCommand),
     /// Open a shader tree.
     OpenTree(PathBuf),
     /// Open a model.

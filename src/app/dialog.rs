@@ -10,6 +10,8 @@ pub(super) enum Dialog {
     File,
     /// A folder with a shader tree.
     Tree,
+    /// A folder to write the shaders to.
+    New,
 }
 
 /// Extensions of models, environments, measured BRDFs, look files and single shaders.
@@ -29,6 +31,7 @@ pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, String> {
             files.add_filter("Models, environments, shaders", &EXTENSIONS).add_filter("All files", &["*"]).pick_file()
         }
         Dialog::Tree => rfd::FileDialog::new().set_title("Open a shader tree").pick_folder(),
+        Dialog::New => rfd::FileDialog::new().set_title("A folder for the shaders").pick_folder(),
     };
     answer(chosen, start.elapsed())
 }

@@ -8,17 +8,18 @@ mod dialog;
 mod difference;
 mod editor;
 mod gallery;
+mod hint;
 mod history;
 mod input;
 mod keys;
 mod layout;
+mod learn;
 mod numbers;
 mod palette;
 mod panels;
 mod playback;
 mod recent;
 mod screen;
-mod state;
 mod status;
 mod viewer;
 
@@ -39,6 +40,7 @@ use crate::recovery::Recorder;
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
+use crate::state;
 
 use crate::threads::loader::{self, Reading};
 use crate::threads::{Message, Outbox, watch_files};

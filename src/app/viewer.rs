@@ -1,6 +1,7 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod compare;
+mod learning;
 mod messages;
 mod picture;
 mod recording;
@@ -11,7 +12,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::command::{Command, open_as};
+use super::hint;
 use super::history::History;
+use super::learn::Learning;
 use super::panels::PanelState;
 use super::playback::Playback;
 use super::status::{Notices, ShaderStatus};
@@ -93,6 +96,8 @@ pub(super) struct Viewer {
     /// The time of animated shaders.
     pub(super) playback: Playback,
     pub(super) history: History,
+    /// The exercise that is open.
+    pub(super) learning: Learning,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
@@ -142,7 +147,7 @@ impl Viewer {
         let source = options.source;
         let recorder = options.recorder;
         let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, outbox);
-        let threads = Threads::start((gpu, layouts), worker, early.watcher, outbox);
+        let threads = Threads::start((gpu, layouts), &options.compiler, worker, early.watcher, outbox);
         let mut viewer = Self {
             session,
             panels: PanelState::restored(),
@@ -153,6 +158,7 @@ impl Viewer {
             start: options.start,
             playback: Playback::default(),
             history: History::default(),
+            learning: Learning::restored(),
             gpu: gpu.clone(),
             resources,
             threads,
@@ -176,6 +182,7 @@ impl Viewer {
             quit: false,
         };
         viewer.watch_tree(&source);
+        viewer.find_exercise();
         viewer.begin_loading(options.model, early.reading);
         viewer.report_loss();
         Ok(viewer)
@@ -320,6 +327,12 @@ impl Viewer {
             Command::Say(text) => self.say(text),
             Command::Compare(with) => self.compare_with(with),
             Command::WriteVersion(number) => self.write_version(number),
+            Command::NewTree(_) if self.is_choosing => self.say("The file dialog is already open"),
+            Command::NewTree(folder) => {
+                self.is_choosing = true;
+                self.threads.wait(move || Some(Message::NewTree(hint::write_tree(folder))));
+            }
+            Command::Learn(command) => self.learn(command),
             Command::OpenTree(path) => {
                 let source = Source::open(path);
                 self.source = source.clone();
@@ -328,6 +341,7 @@ impl Viewer {
                 self.watch_tree(&source);
                 self.shader.compiling = true;
                 self.threads.worker.open_tree(source);
+                self.find_exercise();
             }
             Command::OpenModel(path) => self.load_model(Some(path)),
             Command::OpenEnvironment(path) => self.session.settings.environment.name = path.display().to_string(),

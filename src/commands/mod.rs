@@ -13,6 +13,7 @@ mod common;
 mod diff;
 mod help;
 mod info;
+mod learn;
 mod modes;
 mod new;
 mod probe;
@@ -66,6 +67,8 @@ enum Command {
     Info(info::Args),
     /// Write the shader tree to a new folder, to start from
     New(new::Args),
+    /// Learn shading: exercises that Specula checks, in the window or in a terminal
+    Learn(learn::Args),
     /// Measure reloads, frames and loading
     Bench(bench::Args),
     /// Compare pictures, or folders of them
@@ -159,6 +162,7 @@ pub fn main(start: Instant) -> ExitCode {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::New(args)) => new::run(&args),
+        Some(Command::Learn(args)) => learn::run(args, start),
         Some(Command::Bench(args)) => bench::run(args, start),
         Some(Command::Diff(args)) => diff::run(&args),
         Some(Command::Brdf(args)) => brdf::run(args),

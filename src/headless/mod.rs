@@ -58,15 +58,38 @@ impl Headless {
         size: (u32, u32),
     ) -> Result<(Self, Reload), HeadlessError> {
         let mut this = Self::open(gpu, compiler, source, model, settings, size)?;
-        let reload = this.update(Change::All);
-        match &reload.outcome {
-            Outcome::Ready(_) => {}
-            Outcome::Failed(diagnostics) => return Err(HeadlessError::Shaders(diagnostics.clone())),
-            Outcome::Unchanged { .. } => return Err(HeadlessError::Shaders(Vec::new())),
-        }
+        let reload = this.compile_all()?;
         this.check_settings()?;
         this.provide()?;
         Ok((this, reload))
+    }
+
+    /// Like [`Headless::new`], with the stages that [`crate::measure::Bench`] needs. Unknown names in the settings are accepted, and
+    /// the resources of a frame are created when it is rendered.
+    ///
+    /// # Errors
+    /// As [`Headless::new`].
+    pub fn measuring(
+        gpu: &Arc<Gpu>,
+        compiler: &Arc<Compiler>,
+        source: Source,
+        model: Model,
+        settings: Settings,
+        size: (u32, u32),
+    ) -> Result<Self, HeadlessError> {
+        let mut this = Self::open(gpu, compiler, source.clone(), model, settings, size)?;
+        this.reloader = Reloader::measuring(gpu, &this.layouts, compiler, source);
+        this.compile_all()?;
+        Ok(this)
+    }
+
+    fn compile_all(&mut self) -> Result<Reload, HeadlessError> {
+        let reload = self.update(Change::All);
+        match &reload.outcome {
+            Outcome::Ready(_) => Ok(reload),
+            Outcome::Failed(diagnostics) => Err(HeadlessError::Shaders(diagnostics.clone())),
+            Outcome::Unchanged { .. } => Err(HeadlessError::Shaders(Vec::new())),
+        }
     }
 
     /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the picture needs, and

@@ -10,7 +10,7 @@ use super::limits::beyond_limits;
 use super::set::PipelineSet;
 use super::textures::PassTextures;
 use crate::frame::PipelineRequest;
-use crate::frame::stages::stages;
+use crate::frame::stages::{all_stages, stages};
 
 /// Compiles a shader tree and builds its pipelines. In the window the worker thread owns it; headless calls it directly.
 pub struct Reloader {
@@ -63,13 +63,16 @@ impl Reload {
 impl Reloader {
     /// A reloader for the tree of `source`. Compiles nothing yet.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, compiler: &Arc<Compiler>, source: Source) -> Self {
-        Self {
-            gpu: gpu.clone(),
-            layouts: layouts.clone(),
-            library: Library::new(source, compiler.clone(), &stages()),
-            current: None,
-            unbuilt: false,
-        }
+        Self::with(gpu, layouts, Library::new(source, compiler.clone(), &stages()))
+    }
+
+    /// The same with the stages that measure the BRDF.
+    pub fn measuring(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, compiler: &Arc<Compiler>, source: Source) -> Self {
+        Self::with(gpu, layouts, Library::new(source, compiler.clone(), &all_stages()))
+    }
+
+    fn with(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, library: Library) -> Self {
+        Self { gpu: gpu.clone(), layouts: layouts.clone(), library, current: None, unbuilt: false }
     }
 
     /// Reads another tree, or the same one as if for the first time. Compiles nothing yet.

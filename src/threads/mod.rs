@@ -2,6 +2,7 @@
 //! ARCHITECTURE.md shows which thread sends what.
 
 pub(crate) mod baker;
+pub(crate) mod checker;
 pub(crate) mod loader;
 pub(crate) mod worker;
 
@@ -17,11 +18,13 @@ use winit::event_loop::EventLoopProxy;
 use crate::comparison::{Comparison, Picture};
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
+use crate::learn::Exercise;
 use crate::message::panic_text;
 use crate::render::{Readback, TraceKey};
 use crate::settings::Settings;
-use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
+use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
+use checker::{Checked, Checker};
 use loader::{Loaded, Loader};
 use worker::{Worker, WorkerMessage};
 
@@ -42,6 +45,14 @@ pub(crate) enum Message {
     Say(String),
     /// The file dialog has closed: the chosen path, none if the user cancels it, or a message if there is no dialog.
     Chosen(Result<Option<PathBuf>, String>),
+    /// A folder with the built-in shaders has been written; `None` if the user cancels the dialog, or a message.
+    NewTree(Result<Option<PathBuf>, String>),
+    /// The tree of an exercise has been written to this folder, or a message.
+    Prepared(&'static Exercise, Result<PathBuf, String>),
+    /// The exercise whose tree is in this folder.
+    Exercise(PathBuf, Option<&'static Exercise>),
+    /// The goals of an exercise were measured.
+    Checked(Checked),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
 }
@@ -55,6 +66,7 @@ pub(crate) enum Role {
     Tracer(TraceKey),
     Reader(MeasuredKey),
     Explainer([u32; 2]),
+    Checker,
     /// Waits for what is outside of Specula, or compares pictures.
     Waiter,
 }
@@ -109,6 +121,7 @@ pub(crate) struct Threads {
     pub(crate) worker: Worker,
     pub(crate) loader: Loader,
     pub(crate) baker: Baker,
+    pub(crate) checker: Checker,
     /// Threads that look for the line of a loop.
     explainers: Vec<JoinHandle<()>>,
     outbox: Outbox,
@@ -118,6 +131,7 @@ impl Threads {
     /// The threads beside the worker. `file_watcher` watches the files of the model that is being read.
     pub(crate) fn start(
         device: (&Arc<Gpu>, &Arc<SetLayouts>),
+        compiler: &Arc<Compiler>,
         worker: Worker,
         file_watcher: Option<Watcher>,
         outbox: &Outbox,
@@ -129,6 +143,7 @@ impl Threads {
             worker,
             loader: Loader::new(device, outbox),
             baker: Baker::new(device.0, outbox),
+            checker: Checker::new(device.0, compiler, outbox),
             explainers: Vec::new(),
             outbox: outbox.clone(),
         }
@@ -169,7 +184,10 @@ impl Threads {
             return Ok(());
         }
         let (changes, tree) = (self.worker.changes(), source.clone());
+        // An edit comes before the measurement of the one before.
+        let supersede = self.checker.superseding();
         let on_batch = move |batch: Batch| {
+            supersede();
             let paths = batch.paths.iter().flat_map(|path| tree.changed(path)).collect();
             changes(Change::Paths(paths), batch.first_event);
         };

@@ -130,7 +130,21 @@ impl Viewer {
         Self::start(tree, more, &[("SPECULA_FAULT", fault)])
     }
 
+    /// [`Self::open`] with the hint of the first start, which all other windows have dismissed.
+    pub fn at_first_start(tree: Tree, more: &[&str]) -> Self {
+        let mut viewer = Self::start_anew(tree, more, &[]);
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
     fn start(tree: Tree, more: &[&str], environment: &[(&str, &str)]) -> Self {
+        std::fs::create_dir_all(tree.beside("state/specula")).unwrap();
+        std::fs::write(tree.beside("state/specula/hint.json"), "{}").unwrap();
+        Self::start_anew(tree, more, environment)
+    }
+
+    fn start_anew(tree: Tree, more: &[&str], environment: &[(&str, &str)]) -> Self {
         let display = Display::new();
         let mut command = display.view(&tree);
         // Records of the session lie here, so a test can see whether they are removed.

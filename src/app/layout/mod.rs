@@ -35,12 +35,13 @@ pub(super) enum Panel {
     Lights,
     Output,
     Camera,
+    Learn,
 }
 
 impl Panel {
     /// All panels that can be closed, in groups that share a tile at first.
     pub(super) const GROUPS: [&[Self]; 4] = [
-        &[Self::Modes, Self::Model],
+        &[Self::Modes, Self::Model, Self::Learn],
         &[Self::Shaders, Self::Timeline, Self::Timing],
         &[Self::Parameters, Self::Passes],
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
@@ -60,6 +61,7 @@ impl Panel {
             Self::Lights => "Lights",
             Self::Output => "Output",
             Self::Camera => "Camera",
+            Self::Learn => "Learn",
         }
     }
 }

@@ -7,6 +7,8 @@ use super::Panel;
 /// Widths of the columns beside the picture, in points.
 const LEFT: f32 = 236.0;
 const RIGHT: f32 = 318.0;
+/// Width of the column with an exercise, which is text.
+const LESSON: f32 = 400.0;
 /// Height of the timeline below the picture, in points.
 const BELOW: f32 = 190.0;
 
@@ -19,16 +21,19 @@ pub(in crate::app) enum Preset {
     Look,
     /// The versions of the shaders below the picture.
     Compare,
+    /// An exercise beside the picture.
+    Learn,
 }
 
 impl Preset {
-    pub(in crate::app) const ALL: [Self; 3] = [Self::Debug, Self::Look, Self::Compare];
+    pub(in crate::app) const ALL: [Self; 4] = [Self::Debug, Self::Look, Self::Compare, Self::Learn];
 
     pub(in crate::app) fn title(self) -> &'static str {
         match self {
             Self::Debug => "Debug",
             Self::Look => "Look",
             Self::Compare => "Compare",
+            Self::Learn => "Learn",
         }
     }
 
@@ -37,6 +42,7 @@ impl Preset {
             Self::Debug => "Modes and shaders on the left, all settings on the right",
             Self::Look => "Light, output and parameters on the right, nothing on the left",
             Self::Compare => "The timeline of your edits below the picture, parameters on the right",
+            Self::Learn => "An exercise beside the picture: short lessons about shading, which Specula checks",
         }
     }
 
@@ -62,6 +68,11 @@ impl Preset {
                 let left = linear(tiles, LinearDir::Vertical, vec![(picture, 1.0), (below, BELOW)]);
                 vec![(left, 1.0), (column(tiles, &right), RIGHT)]
             }
+            Self::Learn => {
+                let below: [(&[Panel], f32); 2] =
+                    [(&[Panel::Learn], 3.0), (&[Panel::Parameters, Panel::Modes, Panel::Shaders], 1.0)];
+                vec![(column(tiles, &below), LESSON), (picture, 1.0)]
+            }
         };
         let root = linear(tiles, LinearDir::Horizontal, columns);
         Tree::new("layout", root, std::mem::take(tiles))
@@ -71,7 +82,9 @@ impl Preset {
 /// Groups of tabs, one above the other, with their shares of the height.
 fn column(tiles: &mut Tiles<Panel>, groups: &[(&[Panel], f32)]) -> TileId {
     let rows = groups.iter().map(|(panels, share)| {
-        let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+        // An exercise wants a column of its own.
+        let is_shown = |panel: &&Panel| **panel != Panel::Learn || panels.len() == 1;
+        let panes = panels.iter().filter(is_shown).map(|panel| tiles.insert_pane(*panel)).collect();
         (tiles.insert_tab_tile(panes), *share)
     });
     let rows = rows.collect();

@@ -5,6 +5,7 @@ mod camera;
 mod compare;
 mod environment;
 mod keys;
+mod learn;
 mod lights;
 mod mode_tile;
 mod model;
@@ -25,6 +26,7 @@ use egui::{Ui, Vec2};
 
 use super::command::Command;
 use super::gallery::GalleryState;
+use super::hint::Hint;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
@@ -56,6 +58,7 @@ pub(super) struct PanelState {
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
     files: overlay::diagnostics::Files,
+    pub(super) hint: Hint,
 }
 
 impl PanelState {
@@ -75,6 +78,7 @@ impl PanelState {
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
             files: overlay::diagnostics::Files::default(),
+            hint: Hint::restored(),
         }
     }
 }
@@ -149,6 +153,9 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.timeline = state;
         return;
     }
+    if panel == Panel::Learn {
+        return learn::show(ui, &viewer.learning, &viewer.session.diagnostics, commands);
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
@@ -157,7 +164,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline => {}
+        Panel::Viewport | Panel::Timeline | Panel::Learn => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);

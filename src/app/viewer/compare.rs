@@ -244,10 +244,10 @@ impl Viewer {
 }
 
 /// A file to write: the text that is shown, its path, and the new text.
-type Write = (Option<Arc<str>>, PathBuf, Arc<str>);
+pub(super) type Write = (Option<Arc<str>>, PathBuf, Arc<str>);
 
 /// Writes files whole, all or none as far as reading them tells. A file keeps its byte order mark.
-fn write_files(files: &[Write]) -> Result<(), String> {
+pub(super) fn write_files(files: &[Write]) -> Result<(), String> {
     let mark: &[u8] = b"\xef\xbb\xbf";
     let mut writes = Vec::new();
     for (shown, path, text) in files {

@@ -56,6 +56,16 @@ impl Viewer {
                     Err(message) => self.say(message),
                 }
             }
+            Message::NewTree(answer) => {
+                self.is_choosing = false;
+                match answer {
+                    Ok(path) => path.into_iter().for_each(|path| self.execute(Command::OpenTree(path))),
+                    Err(message) => self.say(message),
+                }
+            }
+            Message::Prepared(exercise, prepared) => self.on_prepared(exercise, prepared),
+            Message::Exercise(folder, exercise) => self.on_exercise(folder, exercise),
+            Message::Checked(checked) => self.on_checked(checked),
             Message::Panicked(role, text) => self.on_panic(role, &text),
         }
     }
@@ -97,13 +107,15 @@ impl Viewer {
     fn on_reload(&mut self, reload: &Reload, detect_ms: f64) {
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
         match &reload.outcome {
-            Outcome::Unchanged { cleared: false } => {}
+            Outcome::Unchanged { cleared: false } => self.check_again(),
             Outcome::Unchanged { cleared: true } => {
+                self.check_again();
                 self.endless_loop = None;
                 self.session.diagnostics.clear();
                 self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
             }
             Outcome::Failed(diagnostics) => {
+                self.learning.checking = None;
                 self.show_errors(diagnostics);
                 self.report(ReloadEvent::new(reload, generation, detect_ms, 0.0));
             }
@@ -314,6 +326,11 @@ impl Viewer {
                     self.endless_loop = None;
                 }
                 "explainer"
+            }
+            Role::Checker => {
+                self.threads.checker.failed();
+                self.learning.checking = None;
+                "checking"
             }
             Role::Waiter => {
                 (self.is_choosing, self.compare.measuring) = (false, None);

@@ -53,6 +53,7 @@ impl Viewer {
             let generation = state.shaders.generation;
             if is_complete && state.scene.is_some() && self.settled.replace(generation) != Some(generation) {
                 emit(self.events, &Event::Settled { generation });
+                self.check_exercise();
             }
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
             let shown = LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() };

@@ -166,6 +166,11 @@ impl Common {
         Ok(settings)
     }
 
+    /// Puts settings before those of the command line, which come on top.
+    pub fn begin_with(&mut self, assignments: &[String]) {
+        self.set.splice(0..0, assignments.iter().cloned());
+    }
+
     /// Takes a shader file that stands where the model may stand for the shader tree.
     pub fn take_shader(&mut self, model: &mut Option<PathBuf>) {
         if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {

@@ -28,6 +28,11 @@ pub struct Args {
 }
 
 impl Args {
+    /// The options of another command that opens the window.
+    pub fn of(model: Option<PathBuf>, common: Common) -> Self {
+        Self { model, common }
+    }
+
     /// The model as given on the command line.
     pub fn model(&self) -> Option<&Path> {
         self.model.as_deref()

@@ -1,6 +1,7 @@
 //! The overlay: diagnostics, messages, loading state, the mode and the value under the mouse.
 
 pub(super) mod diagnostics;
+mod hint;
 
 use std::sync::Arc;
 
@@ -38,6 +39,9 @@ pub(super) fn show(
         if hides {
             viewer.session.diagnostics.clear();
         }
+    }
+    if viewer.panels.visible && viewer.session.diagnostics.is_empty() {
+        hint::show(egui, viewer, picture, commands);
     }
     warnings(egui, viewer, picture);
     notice(egui, viewer, picture, free);

@@ -10,12 +10,12 @@ fn file(name: &str) -> Option<PathBuf> {
 }
 
 /// The text of a file, if it is there and can be read.
-pub(super) fn load(name: &str) -> Option<String> {
+pub(crate) fn load(name: &str) -> Option<String> {
     std::fs::read_to_string(file(name)?).ok()
 }
 
 /// Writes a file. A failure costs only what the file remembers, so it is traced and not reported.
-pub(super) fn save(name: &str, text: &str) {
+pub(crate) fn save(name: &str, text: &str) {
     let Some(path) = file(name) else { return };
     let written = || -> std::io::Result<()> {
         std::fs::create_dir_all(path.parent().unwrap_or(&path))?;

@@ -1,0 +1,91 @@
+//! The exercise that is open in the window, and what has been measured of it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::difference::{Line, difference};
+use crate::learn::{Exercise, Finding, Progress};
+use crate::shader::{ShaderSet, TreePath};
+
+/// What the panel of exercises asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum LearnCommand {
+    /// Open the exercise with this number.
+    Open(usize),
+    /// Show the list of exercises.
+    List,
+    /// Show one hint more.
+    Hint,
+    /// Show what the solution changes, or hide it.
+    Solution,
+    /// Write the solution over the files.
+    Solve,
+    /// Write the files of the start over the files.
+    StartOver,
+    /// Open the file of the exercise in the editor.
+    Edit,
+}
+
+/// How far the measurement of the goals is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) enum Measured {
+    /// Nothing has been measured yet.
+    #[default]
+    Nothing,
+    /// A finding for each goal.
+    Findings(Vec<Finding>),
+    /// Why the tree was not measured.
+    Failed(String),
+}
+
+/// The exercise that is open.
+#[derive(Default)]
+pub(super) struct Learning {
+    /// `None`: the tree is none of an exercise, and the panel shows the list.
+    pub(super) exercise: Option<&'static Exercise>,
+    /// Folder of its tree.
+    pub(super) folder: PathBuf,
+    pub(super) progress: Progress,
+    pub(super) measured: Measured,
+    /// Number of the request whose result is awaited.
+    pub(super) checking: Option<u64>,
+    /// Whether the list is shown although an exercise is open.
+    pub(super) shows_list: bool,
+    /// What the solution changes in the files as they are now, while it is shown.
+    pub(super) solution: Option<Vec<Line>>,
+    /// Whether the user is asked before the files of the start are written.
+    pub(super) asks: bool,
+}
+
+impl Learning {
+    pub(super) fn restored() -> Self {
+        Self { progress: Progress::load(), ..Self::default() }
+    }
+
+    /// The folder that holds the folders of the exercises.
+    pub(super) fn parent(&self) -> PathBuf {
+        let standard = || std::path::absolute("specula-learn").unwrap_or_else(|_| "specula-learn".into());
+        self.progress.folder.clone().unwrap_or_else(standard)
+    }
+
+    /// Takes the exercise of a tree that has been opened.
+    pub(super) fn open(&mut self, folder: &Path, exercise: Option<&'static Exercise>) {
+        let progress = std::mem::take(&mut self.progress);
+        *self = Self { exercise, folder: folder.to_owned(), progress, ..Self::default() };
+    }
+
+    /// Whether all goals are reached.
+    pub(super) fn is_solved(&self) -> bool {
+        matches!(&self.measured, Measured::Findings(all) if all.iter().all(|finding| finding.passed))
+    }
+
+    /// Compares the solution with the files on screen.
+    pub(super) fn update_solution(&mut self, shaders: Option<&ShaderSet>) {
+        let Some((exercise, shaders)) = self.exercise.zip(shaders).filter(|_| self.solution.is_some()) else { return };
+        let after: BTreeMap<TreePath, Arc<str>> =
+            exercise.solution().map(|(path, text)| (path.clone(), Arc::from(text))).collect();
+        let before = after.keys().filter_map(|path| Some((path.clone(), shaders.texts.get(path)?.clone()))).collect();
+        self.solution = Some(difference(&before, &after));
+    }
+}

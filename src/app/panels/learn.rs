@@ -1,0 +1,89 @@
+//! The panel Learn: the exercise that is open with its goals, or the list of all.
+
+mod lesson;
+mod list;
+
+use egui::{RichText, ScrollArea, Ui};
+
+use crate::app::command::Command;
+use crate::app::learn::{LearnCommand, Learning};
+use crate::shader::{Diagnostic, Severity};
+
+use super::theme::{ACCENT, QUIET};
+use crate::learn::exercises;
+
+/// Shows the panel.
+pub(super) fn show(ui: &mut Ui, learning: &Learning, diagnostics: &[Diagnostic], commands: &mut Vec<Command>) {
+    bar(ui, learning, commands);
+    let is_broken = diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+    let exercise = learning.exercise.filter(|_| !learning.shows_list);
+    // Each exercise scrolls by itself.
+    let id = exercise.map_or("list", |exercise| exercise.name.as_str());
+    ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| match exercise {
+        Some(exercise) => lesson::show(ui, learning, exercise, is_broken, commands),
+        None => list::show(ui, learning, commands),
+    });
+}
+
+/// Where the student is, and how to go on.
+fn bar(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
+    let all = exercises();
+    let number = learning.exercise.filter(|_| !learning.shows_list).map(|exercise| exercise.number);
+    let mut ask = |command| commands.push(Command::Learn(command));
+    ui.horizontal(|ui| {
+        if let Some(number) = number {
+            let text = RichText::new(format!("Exercise {number} of {}", all.len())).small().color(QUIET);
+            ui.label(text);
+        } else {
+            ui.label(
+                RichText::new(format!("{} of {} solved", learning.progress.solved(), all.len())).small().color(QUIET),
+            );
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let button = |ui: &mut Ui, text: &str, hover: &str, to: Option<usize>| {
+                let button = ui.add_enabled(to.is_some(), egui::Button::new(text)).on_hover_text(hover);
+                to.filter(|_| button.clicked())
+            };
+            let (before, after) = (number.map(|n| n - 1), number.map(|n| n + 1));
+            let exists = |n: &usize| (1..=all.len()).contains(n);
+            if number.is_some() {
+                let next = button(ui, "Next ▶", "Open the next exercise", after.filter(exists));
+                let previous = button(ui, "◀ Previous", "Open the exercise before", before.filter(exists));
+                next.or(previous).into_iter().for_each(|number| ask(LearnCommand::Open(number)));
+            }
+            let is_toggle = learning.exercise.is_some();
+            let text = if learning.shows_list { "Back" } else { "All" };
+            if is_toggle && ui.button(text).on_hover_text("The list of all exercises").clicked() {
+                ask(LearnCommand::List);
+            }
+        });
+    });
+    dots(ui, learning, commands);
+    ui.separator();
+}
+
+/// A dot for each exercise: filled when it is solved. A click opens it.
+fn dots(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for exercise in exercises() {
+            let is_open = learning.exercise.is_some_and(|open| open.number == exercise.number);
+            let (rect, response) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::click());
+            let record = learning.progress.of(exercise);
+            let color = if record.solved { super::theme::GOOD } else { QUIET };
+            let (center, radius) = (rect.center(), if is_open { 6.0 } else { 4.5 });
+            match record.solved {
+                true => _ = ui.painter().circle_filled(center, radius, color),
+                false => _ = ui.painter().circle_stroke(center, radius, egui::Stroke::new(1.5, color)),
+            }
+            if is_open {
+                ui.painter().circle_stroke(center, radius + 2.5, egui::Stroke::new(1.5, ACCENT));
+            }
+            let state = if record.solved { "solved" } else { "not solved yet" };
+            let hover = format!("{}: {}\n{}, {state}", exercise.number, exercise.title, exercise.idea);
+            if response.on_hover_text(hover).on_hover_cursor(egui::CursorIcon::PointingHand).clicked() {
+                commands.push(Command::Learn(LearnCommand::Open(exercise.number)));
+            }
+        }
+    });
+}

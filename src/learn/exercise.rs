@@ -1,0 +1,228 @@
+//! An exercise, as `assets/learn/NN-name/exercise.toml` describes it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use include_dir::{Dir, DirEntry};
+use serde::Deserialize;
+
+use super::goal::Goal;
+use crate::settings::Settings;
+use crate::shader::{Source, TreePath, embedded};
+
+/// How hard an exercise is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Level {
+    /// A line to change.
+    Easy,
+    /// Some lines to write.
+    Medium,
+    /// An equation to derive or a file to write.
+    Hard,
+}
+
+/// A change of the shipped tree.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Edit {
+    /// Path in the tree.
+    file: String,
+    /// A text that the shipped file has exactly once.
+    find: String,
+    /// The text in its place.
+    put: String,
+}
+
+/// The file to open in the editor.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// Path in the tree.
+    pub file: String,
+    /// A text in the line to open.
+    pub at: String,
+}
+
+/// The fields of `exercise.toml`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Data {
+    title: String,
+    level: Level,
+    /// What the exercise teaches, in a few words.
+    idea: String,
+    text: String,
+    source: String,
+    hints: Vec<String>,
+    #[serde(default)]
+    model: Option<String>,
+    /// Settings of the picture, as `--set` takes them.
+    #[serde(default)]
+    set: Vec<String>,
+    open: Place,
+    /// What is wrong with the shipped tree at the start.
+    #[serde(default)]
+    fault: Vec<Edit>,
+    /// What the solution adds to the shipped tree.
+    #[serde(default)]
+    solution: Vec<Edit>,
+    goal: Vec<Goal>,
+}
+
+/// An exercise.
+#[derive(Clone, Debug)]
+pub struct Exercise {
+    /// Its place in the list, from 1.
+    pub number: usize,
+    /// Name of its folder, as `03-fresnel`.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// How hard it is.
+    pub level: Level,
+    /// What it teaches, in a few words.
+    pub idea: String,
+    /// The explanation: paragraphs, and formulas in lines that begin with four spaces.
+    pub text: String,
+    /// Where the equation is from: author, year, number.
+    pub source: String,
+    /// Hints, from a nudge to almost the solution.
+    pub hints: Vec<String>,
+    /// The built-in model that it shows.
+    pub model: String,
+    /// The file to open in the editor.
+    pub open: Place,
+    /// The goals, all of which must be reached.
+    pub goals: Vec<Goal>,
+    set: Vec<String>,
+    /// The files that differ from the shipped tree, at the start and when it is solved.
+    start: BTreeMap<TreePath, String>,
+    solved: BTreeMap<TreePath, String>,
+}
+
+impl Exercise {
+    /// Reads the folder of an exercise.
+    ///
+    /// # Errors
+    /// A message: a file is missing or wrong, or an edit does not fit the shipped tree.
+    pub fn read(folder: &Dir<'_>) -> Result<Self, String> {
+        let name = folder.path().file_name().and_then(|name| name.to_str()).unwrap_or_default().to_owned();
+        let error = |message: String| format!("exercise {name}: {message}");
+        let number = name.split('-').next().and_then(|number| number.parse().ok());
+        let number = number.ok_or_else(|| error("the name does not begin with a number".into()))?;
+        let text = text_of(folder, "exercise.toml").ok_or_else(|| error("exercise.toml is missing".into()))?;
+        let data: Data = toml::from_str(text).map_err(|e| error(e.to_string()))?;
+        let mut start = files(folder, "start");
+        let mut solved = files(folder, "start");
+        solved.extend(files(folder, "solution"));
+        for (edits, texts) in [(&data.fault, &mut start), (&data.solution, &mut solved)] {
+            for edit in edits {
+                apply(edit, texts).map_err(&error)?;
+            }
+        }
+        // A file that the start changes is the shipped one when it is solved, unless the solution changes it too.
+        for path in start.keys() {
+            if let Some(shipped) = shipped(path).filter(|_| !solved.contains_key(path)) {
+                solved.insert(path.clone(), shipped);
+            }
+        }
+        let Data { title, level, idea, text, source, hints, model, set, open, goal: goals, .. } = data;
+        let model = model.unwrap_or_else(|| crate::scene::BUILT_IN[0].to_owned());
+        Ok(Self { number, name, title, level, idea, text, source, hints, model, open, goals, set, start, solved })
+    }
+
+    /// The name without the number, as `fresnel`.
+    pub fn slug(&self) -> &str {
+        self.name.split_once('-').map_or(&self.name, |(_, slug)| slug)
+    }
+
+    /// The settings of its picture, as `--set` takes them.
+    pub fn settings(&self) -> &[String] {
+        &self.set
+    }
+
+    /// Changes settings to those of the exercise's picture.
+    ///
+    /// # Errors
+    /// A message: a setting does not exist.
+    pub fn apply_settings(&self, settings: &mut Settings) -> Result<(), String> {
+        self.set.iter().try_for_each(|assignment| settings.assign(assignment))
+    }
+
+    /// The whole tree at the start.
+    pub fn start_tree(&self) -> Source {
+        tree(&self.start)
+    }
+
+    /// The whole tree when it is solved.
+    pub fn solved_tree(&self) -> Source {
+        tree(&self.solved)
+    }
+
+    /// The files that the solution changes, with their texts at the end.
+    pub fn solution(&self) -> impl Iterator<Item = (&TreePath, &str)> {
+        let is_changed = |(path, text): &(&TreePath, &String)| self.text_at_start(path).as_ref() != Some(*text);
+        self.solved.iter().filter(is_changed).map(|(path, text)| (path, text.as_str()))
+    }
+
+    /// The text of a file at the start.
+    pub fn text_at_start(&self, path: &TreePath) -> Option<String> {
+        self.start.get(path).cloned().or_else(|| shipped(path))
+    }
+
+    /// The line to open in a file with this text, from 1.
+    pub fn line_to_open(&self, text: &str) -> Option<u32> {
+        let line = text.lines().position(|line| line.contains(&self.open.at))?;
+        u32::try_from(line + 1).ok()
+    }
+}
+
+/// The shipped tree with these files in place of its own.
+fn tree(files: &BTreeMap<TreePath, String>) -> Source {
+    let mut all: BTreeMap<TreePath, String> =
+        embedded::list(None).into_iter().filter_map(|path| Some((path.clone(), shipped(&path)?))).collect();
+    all.extend(files.clone());
+    Source::Memory(all)
+}
+
+fn shipped(path: &TreePath) -> Option<String> {
+    String::from_utf8(embedded::read(None, path)?.to_vec()).ok()
+}
+
+fn apply(edit: &Edit, texts: &mut BTreeMap<TreePath, String>) -> Result<(), String> {
+    let path = TreePath::parse(&edit.file).ok_or_else(|| format!("{} is no path in a tree", edit.file))?;
+    let text = texts.get(&path).cloned().or_else(|| shipped(&path));
+    let text = text.ok_or_else(|| format!("the tree has no {path}"))?;
+    match text.matches(&edit.find).count() {
+        1 => _ = texts.insert(path, text.replacen(&edit.find, &edit.put, 1)),
+        count => return Err(format!("{path} has `{}` {count} times, expected once", edit.find)),
+    }
+    Ok(())
+}
+
+fn text_of<'a>(folder: &'a Dir<'_>, name: &str) -> Option<&'a str> {
+    folder.get_file(folder.path().join(name))?.contents_utf8()
+}
+
+/// The files below `part` of an exercise's folder, by their paths in the tree.
+fn files(folder: &Dir<'_>, part: &str) -> BTreeMap<TreePath, String> {
+    let mut found = BTreeMap::new();
+    let root = folder.path().join(part);
+    if let Some(directory) = folder.get_dir(&root) {
+        collect(directory, &root, &mut found);
+    }
+    found
+}
+
+fn collect(directory: &Dir<'_>, root: &Path, found: &mut BTreeMap<TreePath, String>) {
+    for entry in directory.entries() {
+        match entry {
+            DirEntry::Dir(directory) => collect(directory, root, found),
+            DirEntry::File(file) => {
+                let path = file.path().strip_prefix(root).ok().and_then(Path::to_str).and_then(TreePath::parse);
+                found.extend(path.zip(file.contents_utf8().map(str::to_owned)));
+            }
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The folder in which a student works on an exercise: the whole tree, so that it opens as any other, and the text.
+
+use std::path::{Path, PathBuf};
+
+use super::{Exercise, exercises};
+use crate::picture::replace_file;
+use crate::shader::is_specula_tree;
+
+/// The text of the exercise, for the student's editor. Its last line says which exercise the tree is of.
+const TEXT: &str = "EXERCISE.md";
+/// Begins the last line of the text.
+const MARK: &str = "<!-- specula learn ";
+
+/// Writes the tree of an exercise below `parent`, unless it is there already, and returns its folder.
+///
+/// # Errors
+/// A message: the folder cannot be written, or holds something else.
+pub fn prepare(parent: &Path, exercise: &Exercise) -> Result<PathBuf, String> {
+    let folder = parent.join(&exercise.name);
+    if exercise_of(&folder).is_some_and(|found| found.name == exercise.name) && is_specula_tree(&folder) {
+        return Ok(folder);
+    }
+    let error = |error: &dyn std::fmt::Display| {
+        format!("cannot write exercise {} to {}: {error}", exercise.number, folder.display())
+    };
+    let is_used = std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some());
+    if is_used {
+        return Err(error(&"the folder holds other files. Choose another with --dir"));
+    }
+    let source = exercise.start_tree();
+    for path in source.list() {
+        let target = folder.join(path.as_str());
+        let bytes = source.read_bytes(&path).map_err(|e| error(&e))?;
+        let written =
+            std::fs::create_dir_all(target.parent().unwrap_or(&folder)).and_then(|()| std::fs::write(&target, bytes));
+        written.map_err(|e| error(&e))?;
+    }
+    // The text comes last: a folder with it is whole.
+    replace_file(&folder.join(TEXT), page(exercise).as_bytes()).map_err(|e| error(&e))?;
+    Ok(folder)
+}
+
+/// The exercise whose tree this folder holds.
+pub fn exercise_of(folder: &Path) -> Option<&'static Exercise> {
+    let text = std::fs::read_to_string(folder.join(TEXT)).ok()?;
+    let name = text.lines().rev().find_map(|line| line.strip_prefix(MARK))?.split_whitespace().next()?;
+    exercises().iter().find(|exercise| exercise.name == name)
+}
+
+/// The exercise as a page of Markdown.
+fn page(exercise: &Exercise) -> String {
+    let Exercise { number, title, text, source, open, goals, name, .. } = exercise;
+    let goals: String = goals.iter().map(|goal| format!("- {}\n", goal.says)).collect();
+    format!(
+        "# Exercise {number}: {title}\n\n{}\n\nEdit `{}` and save.\n\n## Goal\n\n{goals}\nSource: {source}\n\n{MARK}{name} -->\n",
+        text.trim(),
+        open.file
+    )
+}

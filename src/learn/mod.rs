@@ -1,0 +1,55 @@
+//! `specula learn`: exercises in which a student repairs or extends the shaders, and the program checks the result.
+//!
+//! An exercise is data in `assets/learn/NN-name/`: a text, what is wrong with the shipped tree at its start, and a list of goals
+//! that are measured. Nothing of it is compiled into a special case: [`Exercise::read`] takes any folder of that form.
+
+mod exercise;
+mod folder;
+mod goal;
+mod lab;
+mod measured;
+mod progress;
+mod shown;
+#[cfg(test)]
+mod tests;
+
+use std::sync::LazyLock;
+
+use include_dir::{Dir, include_dir};
+
+pub use exercise::{Exercise, Level, Place};
+pub use folder::{exercise_of, prepare};
+pub use goal::{Finding, Goal};
+pub use lab::{Lab, LearnError};
+pub use progress::{Progress, Record};
+
+/// The exercises that the program embeds, with their texts.
+static EXERCISES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/assets/learn");
+
+/// All exercises, in order.
+pub fn exercises() -> &'static [Exercise] {
+    static ALL: LazyLock<Vec<Exercise>> = LazyLock::new(|| {
+        let mut folders: Vec<&Dir<'_>> = EXERCISES.dirs().collect();
+        folders.sort_by_key(|folder| folder.path());
+        // A test reads every exercise, so none is left out.
+        folders.into_iter().filter_map(|folder| Exercise::read(folder).ok()).collect()
+    });
+    &ALL
+}
+
+/// The exercise with this number, slug (`fresnel`) or folder name (`03-fresnel`).
+///
+/// # Errors
+/// A message with the nearest name.
+pub fn find(name: &str) -> Result<&'static Exercise, String> {
+    let all = exercises();
+    let is_named =
+        |exercise: &&Exercise| name.parse() == Ok(exercise.number) || name == exercise.slug() || name == exercise.name;
+    all.iter().find(is_named).ok_or_else(|| {
+        let hint = crate::message::did_you_mean(name, all.iter().map(Exercise::slug));
+        format!(
+            "there is no exercise '{name}'.{hint} It can be 1 to {} or a name; `specula learn list` lists them",
+            all.len()
+        )
+    })
+}

@@ -1,0 +1,74 @@
+//! What a student has done, kept between runs in `learn.json`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Exercise, exercises};
+use crate::state;
+
+const FILE: &str = "learn.json";
+
+/// What a student has done of an exercise.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Record {
+    /// Whether all goals were reached once.
+    pub solved: bool,
+    /// How many hints were read.
+    pub hints: usize,
+    /// Whether the solution was shown.
+    pub saw_solution: bool,
+}
+
+/// What a student has done.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Progress {
+    /// By the names of the exercises.
+    records: BTreeMap<String, Record>,
+    /// Where the folders of the exercises are, absolute.
+    pub folder: Option<PathBuf>,
+}
+
+impl Progress {
+    /// The progress of the runs before. A file that cannot be read counts as none.
+    pub fn load() -> Self {
+        state::load(FILE).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+    }
+
+    /// Keeps it for the next run.
+    pub fn save(&self) {
+        match serde_json::to_string(self) {
+            Ok(text) => state::save(FILE, &text),
+            Err(error) => tracing::debug!("the progress was not stored: {error}"),
+        }
+    }
+
+    /// The record of an exercise.
+    pub fn of(&self, exercise: &Exercise) -> Record {
+        self.records.get(&exercise.name).cloned().unwrap_or_default()
+    }
+
+    /// Changes the record of an exercise, and keeps the progress if that changes anything.
+    pub fn update(&mut self, exercise: &Exercise, change: impl FnOnce(&mut Record)) {
+        let before = self.of(exercise);
+        let record = self.records.entry(exercise.name.clone()).or_default();
+        change(record);
+        if *record != before {
+            self.save();
+        }
+    }
+
+    /// How many exercises are solved.
+    pub fn solved(&self) -> usize {
+        exercises().iter().filter(|exercise| self.of(exercise).solved).count()
+    }
+
+    /// The first exercise that is not solved, or the last one.
+    pub fn next(&self) -> Option<&'static Exercise> {
+        let all = exercises();
+        all.iter().find(|exercise| !self.of(exercise).solved).or(all.last())
+    }
+}

@@ -1,0 +1,96 @@
+//! The checker: measures the exercise that is open after each good reload. The newest request wins, and a measurement ends between
+//! two goals when a newer edit has come.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread::JoinHandle;
+
+use crossbeam_channel::{Sender, unbounded};
+
+use super::{Message, Outbox, Role};
+use crate::gpu::Gpu;
+use crate::learn::{Exercise, Finding, Lab, LearnError};
+use crate::shader::{Compiler, Source};
+
+/// What the checker has found out.
+pub(crate) struct Checked {
+    /// Number of the request.
+    pub(crate) number: u64,
+    /// A finding for each goal, or why there are none.
+    pub(crate) result: Result<Vec<Finding>, String>,
+}
+
+struct Request {
+    number: u64,
+    exercise: &'static Exercise,
+    source: Source,
+}
+
+/// The thread, which starts with the first request. Dropping this waits for the goal that is being measured.
+pub(crate) struct Checker {
+    gpu: Arc<Gpu>,
+    compiler: Arc<Compiler>,
+    outbox: Outbox,
+    /// The number of the newest request. A measurement with another number is superseded.
+    newest: Arc<AtomicU64>,
+    thread: Option<(Sender<Request>, JoinHandle<()>)>,
+}
+
+impl Checker {
+    pub(crate) fn new(gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, outbox: &Outbox) -> Self {
+        let (gpu, compiler, outbox) = (gpu.clone(), compiler.clone(), outbox.clone());
+        Self { gpu, compiler, outbox, newest: Arc::default(), thread: None }
+    }
+
+    /// Measures a tree. Returns the number of the request.
+    pub(crate) fn check(&mut self, exercise: &'static Exercise, source: Source) -> u64 {
+        let number = self.supersede();
+        let (sender, _) = self.thread.get_or_insert_with(|| {
+            let (gpu, compiler, newest) = (self.gpu.clone(), self.compiler.clone(), self.newest.clone());
+            let (sender, requests) = unbounded::<Request>();
+            let run = move |outbox: &Outbox| {
+                let mut lab = Lab::new(&gpu, &compiler);
+                for Request { number, exercise, source } in requests {
+                    let is_old = || newest.load(Ordering::Relaxed) != number;
+                    if is_old() {
+                        continue;
+                    }
+                    let result = match lab.check(exercise, &source, is_old) {
+                        Err(LearnError::Superseded) => continue,
+                        result => result.map_err(|error| error.to_string()),
+                    };
+                    outbox.send(Message::Checked(Checked { number, result }));
+                }
+            };
+            (sender, self.outbox.spawn(Role::Checker, run))
+        });
+        let _ = sender.send(Request { number, exercise, source });
+        number
+    }
+
+    /// Ends the measurement that is under way. Returns the number of the next request.
+    pub(crate) fn supersede(&self) -> u64 {
+        self.newest.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    /// Ends the measurement that is under way, from another thread.
+    pub(crate) fn superseding(&self) -> impl Fn() + Send + 'static {
+        let newest = self.newest.clone();
+        move || _ = newest.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// Forgets the thread, which has panicked. The next request starts another one.
+    pub(crate) fn failed(&mut self) {
+        self.thread = None;
+    }
+}
+
+impl Drop for Checker {
+    fn drop(&mut self) {
+        self.supersede();
+        if let Some((sender, thread)) = self.thread.take() {
+            drop(sender);
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! The hint of the first start, and an exercise that is solved in an editor.
+
+use image::RgbaImage;
+use serde_json::Value;
+
+use super::controls::{ACCENT, count};
+use crate::support::Tree;
+use crate::support::window::Viewer;
+
+#[test]
+fn an_exercise_is_solved_by_an_edit() {
+    let tree = Tree::new();
+    let folder = specula::learn::prepare(&tree.beside(""), specula::learn::find("1").unwrap()).unwrap();
+    let mut viewer = Viewer::open(tree, &["--shaders", "01-roughness", "--size", "900x600"]);
+    let goals = |event: &Value| event["goals"].as_array().unwrap().clone();
+    let first = viewer.running.event("exercise");
+    assert_eq!((&first["name"], &first["passed"]), (&"01-roughness".into(), &false.into()), "{first}");
+    assert!(goals(&first)[0]["found"].as_str().unwrap().contains("was expected"), "{first}");
+
+    let file = folder.join("brdf/ndf.glsl");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replace("float a2 = alpha;", "float a2 = alpha * alfa;")).unwrap();
+    viewer.running.reload(false);
+    std::fs::write(&file, text.replace("float a2 = alpha;", "float a2 = alpha * alpha;")).unwrap();
+    let solved = viewer.running.event("exercise");
+    assert_eq!(solved["passed"], true, "{solved}");
+    assert!(goals(&solved).iter().all(|goal| goal["passed"] == true), "{solved}");
+    let progress = std::fs::read_to_string(viewer.tree.beside("state/specula/learn.json")).unwrap();
+    assert!(progress.contains("01-roughness") && progress.contains("true"), "{progress}");
+    viewer.quit();
+}
+
+#[test]
+fn the_hint_of_the_first_start_is_dismissed_once() {
+    let (width, height) = (900, 600);
+    let shows_hint = |screen: &RgbaImage| count(screen, 0..width, height / 2..height - 30, ACCENT) > 300;
+    let mut viewer = Viewer::at_first_start(Tree::new(), &["sphere-grid", "--size", "900x600"]);
+    viewer.running.event("ready");
+    let screen = viewer.until_screen("the hint", shows_hint);
+    // The lower edge of the card is its lowest long line; "Got it" is the last of the buttons above it.
+    let is_edge = |y: &u32| count(&screen, 0..width, *y..*y + 1, ACCENT) > 150;
+    let bottom = (height / 2..height - 30).rev().find(is_edge).unwrap();
+    let left = (0..width).find(|x| count(&screen, *x..*x + 1, bottom - 40..bottom, ACCENT) > 20).unwrap();
+    viewer.click((left + 220, bottom - 20));
+    viewer.until_screen("no hint", |screen| !shows_hint(screen));
+    assert!(viewer.tree.beside("state/specula/hint.json").is_file());
+    viewer.quit();
+}
