@@ -17,6 +17,7 @@
 //! - [`recovery`]: what a window hands to the process that takes its place after a loss.
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
 //! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
+//! - [`write_back`]: writes changed values into the files of a shader tree.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
 //! - [`app`]: the window.
 //!
@@ -45,3 +46,4 @@ pub mod session;
 pub mod settings;
 pub mod shader;
 mod threads;
+pub mod write_back;

@@ -1,6 +1,7 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod compare;
+mod edits;
 mod messages;
 mod picture;
 mod recording;
@@ -33,6 +34,8 @@ use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{Message, Outbox, Threads};
 pub(super) use compare::{Compare, Difference, Reference};
+use edits::Edits;
+pub(super) use edits::NO_FOLDER;
 use picture::target;
 pub(super) use picture::value_text;
 pub(super) use versions::Version;
@@ -103,6 +106,7 @@ pub(super) struct Viewer {
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
     pub(super) compare: Compare,
+    pub(super) edits: Edits,
     /// The time in the last frame.
     clock: Clock,
     /// Whether nothing was missing for the last frame.
@@ -143,6 +147,7 @@ impl Viewer {
         let recorder = options.recorder;
         let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, outbox);
         let threads = Threads::start((gpu, layouts), worker, early.watcher, outbox);
+        let edits = Edits::new(&session.settings.expression);
         let mut viewer = Self {
             session,
             panels: PanelState::restored(),
@@ -161,6 +166,7 @@ impl Viewer {
             shown: None,
             versions: Versions::default(),
             compare: Compare::default(),
+            edits,
             clock: Clock::default(),
             is_complete: false,
             first_frame: None,
@@ -320,11 +326,14 @@ impl Viewer {
             Command::Say(text) => self.say(text),
             Command::Compare(with) => self.compare_with(with),
             Command::WriteVersion(number) => self.write_version(number),
+            Command::Draft(edits) => self.draft(edits),
+            Command::WriteEdits(edits) => self.write_edits(edits),
             Command::OpenTree(path) => {
                 let source = Source::open(path);
                 self.source = source.clone();
                 // Versions of another tree must never be written into this one.
                 self.forget_all_references();
+                self.edits.forget_draft();
                 self.watch_tree(&source);
                 self.shader.compiling = true;
                 self.threads.worker.open_tree(source);

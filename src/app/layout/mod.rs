@@ -29,6 +29,7 @@ pub(super) enum Panel {
     Shaders,
     Timeline,
     Timing,
+    Expression,
     Parameters,
     Passes,
     Environment,
@@ -41,7 +42,7 @@ impl Panel {
     /// All panels that can be closed, in groups that share a tile at first.
     pub(super) const GROUPS: [&[Self]; 4] = [
         &[Self::Modes, Self::Model],
-        &[Self::Shaders, Self::Timeline, Self::Timing],
+        &[Self::Shaders, Self::Timeline, Self::Timing, Self::Expression],
         &[Self::Parameters, Self::Passes],
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
     ];
@@ -54,6 +55,7 @@ impl Panel {
             Self::Shaders => "Shaders",
             Self::Timeline => "Timeline",
             Self::Timing => "GPU time",
+            Self::Expression => "Expression",
             Self::Parameters => "Parameters",
             Self::Passes => "Passes",
             Self::Environment => "Environment",
