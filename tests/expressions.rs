@@ -147,7 +147,7 @@ fn a_watched_line_is_found_after_an_edit_and_costs_no_other_stage() {
     tree.write(NDF, &ndf.replace("// D: the", "// One more line.\n\n// D: the"));
     let paths = Change::Paths(BTreeSet::from([TreePath::from(NDF)]));
     let (moved, _) = ready(library.update(&paths));
-    assert_eq!((library.watched_line(), moved.pending.len()), (Some(line + 2), 0));
+    assert_eq!((moved.watched.as_ref().map(|(_, line)| *line), moved.pending.len()), (Some(line + 2), 0));
     assert!(moved.warnings.is_empty(), "{:?}", moved.warnings);
 
     // Without the variable, the picture goes on, and the mode waits.

@@ -242,7 +242,8 @@ fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut Shown, commands: &mut Vec<C
                     "{} in the file. Drag to see the picture with another number; Write keeps it",
                     literal.text
                 );
-                changed |= ui.add(drag).on_hover_text(hint).changed();
+                let drag = ui.add_enabled(draft.is_none() || is_own, drag).on_hover_text(hint);
+                changed |= drag.on_disabled_hover_text("Write or cancel the numbers of the other line first").changed();
             }
         });
         if changed {

@@ -10,7 +10,7 @@ use super::Viewer;
 use crate::settings::{ExpressionSettings, ShaderValue};
 use crate::shader::rewrite::{Edit, applied, defaults};
 use crate::shader::values::is_default;
-use crate::shader::{Change, ShaderSet, TreePath};
+use crate::shader::{Change, Expression, ShaderSet, TreePath};
 use crate::threads::Message;
 use crate::write_back;
 
@@ -106,11 +106,17 @@ impl Viewer {
         }
     }
 
-    /// Ends the dragging if the file has changed otherwise. Drops settings whose values have become defaults.
+    /// Ends the dragging if the file has changed otherwise. Keeps the line of the watched expression. Drops settings whose values have become defaults.
     pub(super) fn follow_edits(&mut self, shaders: &ShaderSet) {
         let is_other = |draft: &Draft| shaders.texts.get(&draft.path).is_none_or(|text| !draft.is_of(text));
         if self.edits.draft.as_ref().is_some_and(is_other) {
             self.end_draft();
+        }
+        let expression = &mut self.session.settings.expression;
+        let watched = Expression::parse(&expression.at, expression.evaluation).ok();
+        if let Some((of_set, line)) = shaders.watched.as_ref().filter(|(of_set, _)| Some(of_set) == watched.as_ref()) {
+            expression.at = Expression { line: *line, ..of_set.clone() }.to_string();
+            self.edits.watched.clone_from(expression);
         }
         let settings = &mut self.session.settings.shader;
         self.edits.written.retain(|name, value| {

@@ -151,7 +151,9 @@ impl Library {
                 return Update::Unchanged { cleared };
             }
         }
-        let set = ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts };
+        let watched = self.watched();
+        let set =
+            ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, watched };
         let set = Arc::new(set);
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)

@@ -21,7 +21,7 @@ use crate::shader::annotation::{Constant, Mode, Parameter};
 use crate::shader::compile::Compiler;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, unique};
-use crate::shader::expression;
+use crate::shader::expression::{self, Expression};
 use crate::shader::graph::Graph;
 use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
@@ -80,6 +80,8 @@ pub struct ShaderSet {
     pub warnings: Vec<Diagnostic>,
     /// The texts of all files that the stages depend on.
     pub texts: BTreeMap<TreePath, Arc<str>>,
+    /// The watched expression, and its line now, after edits above it.
+    pub watched: Option<(Expression, u32)>,
 }
 
 impl ShaderSet {

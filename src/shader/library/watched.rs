@@ -74,13 +74,20 @@ impl Library {
         if self.watched.as_ref().map(|watched| &watched.expression) == expression.as_ref() {
             return None;
         }
+        // The same with the line where it is now.
+        if let (Some(watched), Some(new)) = (&mut self.watched, &expression)
+            && (Expression { line: watched.line, ..watched.expression.clone() }) == *new
+        {
+            watched.expression = new.clone();
+            return None;
+        }
         self.watched = expression.map(|expression| Watched { line: expression.line, expression, file: None });
         Some(Change::Paths(BTreeSet::from([TreePath::from(STAGE)])))
     }
 
-    /// The line of the watched expression now, after edits above it.
-    pub fn watched_line(&self) -> Option<u32> {
-        self.watched.as_ref().map(|watched| watched.line)
+    /// The watched expression, and its line now, after edits above it.
+    pub(super) fn watched(&self) -> Option<(Expression, u32)> {
+        self.watched.as_ref().map(|watched| (watched.expression.clone(), watched.line))
     }
 
     /// The tree as its stages see it. Finds the watched expression in it.
