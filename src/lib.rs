@@ -18,6 +18,7 @@
 //! - [`headless`], [`measure`]: render, and measure the BRDF, without a window.
 //! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
 //! - [`learn`]: exercises, and the measurements that check them.
+//! - [`write_back`]: writes changed values into the files of a shader tree.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
 //! - [`app`]: the window.
 //!
@@ -48,3 +49,4 @@ pub mod settings;
 pub mod shader;
 mod state;
 mod threads;
+pub mod write_back;

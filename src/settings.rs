@@ -3,6 +3,7 @@
 mod assign;
 mod catalog;
 mod environment;
+mod expression;
 mod lights;
 mod look;
 mod material;
@@ -17,6 +18,7 @@ use crate::message::did_you_mean;
 pub use assign::unknown_setting;
 pub use catalog::{Setting, catalog, limits, told};
 pub use environment::EnvironmentSettings;
+pub use expression::ExpressionSettings;
 pub use lights::{LightSettings, LightSource, OrbitLight, RectLight};
 pub use look::LookError;
 pub use material::MaterialOverride;
@@ -40,6 +42,8 @@ pub struct Settings {
     pub environment: EnvironmentSettings,
     /// File of a measured BRDF, which the modes of the group Measured show; empty for none.
     pub measured: String,
+    /// The expression that the mode `expression` shows.
+    pub expression: ExpressionSettings,
     /// Exposure, tone mapping, background, multisampling.
     pub view: ViewSettings,
     /// Declared passes that are switched on or off, by name. The others are as their `//@pass` says.
@@ -72,6 +76,7 @@ impl Default for Settings {
             material: MaterialOverride::default(),
             environment: EnvironmentSettings::default(),
             measured: String::new(),
+            expression: ExpressionSettings::default(),
             view: ViewSettings::default(),
             passes: BTreeMap::new(),
             shader: BTreeMap::new(),

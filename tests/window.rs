@@ -6,6 +6,7 @@ mod window {
     mod compare;
     mod controls;
     mod endurance;
+    mod expressions;
     mod faults;
     mod gallery;
     mod keys;

@@ -7,6 +7,7 @@ use super::editor::Place;
 use super::learn::LearnCommand;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
+use crate::shader::rewrite::Edit;
 
 /// What the picture is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,6 +81,10 @@ pub(super) enum Command {
     Compare(CompareWith),
     /// Write the texts of a version of the shaders over the files of the tree.
     WriteVersion(u64),
+    /// Show the picture with these numbers in the texts, without a change of the files; none goes back to the files.
+    Draft(Vec<Edit>),
+    /// Write values into the files.
+    WriteEdits(Vec<Edit>),
     /// Open a file or folder in the user's editor.
     Edit(Place),
     /// Let the user choose a file or folder to open.

@@ -1,6 +1,7 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod compare;
+mod edits;
 mod learning;
 mod messages;
 mod picture;
@@ -36,6 +37,8 @@ use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
 use crate::threads::{Message, Outbox, Threads};
 pub(super) use compare::{Compare, Difference, Reference};
+use edits::Edits;
+pub(super) use edits::NO_FOLDER;
 use picture::target;
 pub(super) use picture::value_text;
 pub(super) use versions::Version;
@@ -108,6 +111,7 @@ pub(super) struct Viewer {
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
     pub(super) compare: Compare,
+    pub(super) edits: Edits,
     /// The time in the last frame.
     clock: Clock,
     /// Whether nothing was missing for the last frame.
@@ -148,6 +152,7 @@ impl Viewer {
         let recorder = options.recorder;
         let worker = Worker::start((gpu, layouts), &options.compiler, source.clone(), snapshot, &recorder, outbox);
         let threads = Threads::start((gpu, layouts), &options.compiler, worker, early.watcher, outbox);
+        let edits = Edits::new(&session.settings.expression);
         let mut viewer = Self {
             session,
             panels: PanelState::restored(),
@@ -167,6 +172,7 @@ impl Viewer {
             shown: None,
             versions: Versions::default(),
             compare: Compare::default(),
+            edits,
             clock: Clock::default(),
             is_complete: false,
             first_frame: None,
@@ -333,11 +339,14 @@ impl Viewer {
                 self.threads.wait(move || Some(Message::NewTree(hint::write_tree(folder))));
             }
             Command::Learn(command) => self.learn(command),
+            Command::Draft(edits) => self.draft(edits),
+            Command::WriteEdits(edits) => self.write_edits(edits),
             Command::OpenTree(path) => {
                 let source = Source::open(path);
                 self.source = source.clone();
                 // Versions of another tree must never be written into this one.
                 self.forget_all_references();
+                self.edits.forget_draft();
                 self.watch_tree(&source);
                 self.shader.compiling = true;
                 self.threads.worker.open_tree(source);

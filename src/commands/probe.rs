@@ -7,6 +7,7 @@ use specula::frame::FrameState;
 use specula::headless::Headless;
 use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
 use specula::shader::PixelValue;
+use specula::shader::expression;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
@@ -39,7 +40,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(mut args: Args) -> Result<(), Failure> {
     args.common.take_shader(&mut args.model);
-    let slugs = std::mem::take(&mut args.common.mode);
+    let mut slugs = std::mem::take(&mut args.common.mode);
     let (x, y) = args.at;
     let (width, height) = args.common.size;
     if x >= width || y >= height {
@@ -52,6 +53,9 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     }
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;
+    if slugs.is_empty() && !settings.expression.at.is_empty() {
+        slugs.push(expression::MODE.to_owned());
+    }
     slugs.iter().for_each(|slug| warn_unmeasured(slug, &settings));
     let source = args.common.source()?;
     let gpu = args.common.gpu()?;

@@ -19,7 +19,7 @@ use crate::render::{BakeError, BakeReport, BoundFrame, GpuModel, Resources, View
 use crate::scene::Model;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, ShaderSet, Source};
+use crate::shader::{Change, Compiler, Severity, ShaderSet, Source};
 
 pub use draw::Step;
 pub use error::HeadlessError;
@@ -58,6 +58,7 @@ impl Headless {
         size: (u32, u32),
     ) -> Result<(Self, Reload), HeadlessError> {
         let mut this = Self::open(gpu, compiler, source, model, settings, size)?;
+        this.watch()?;
         let reload = this.compile_all()?;
         this.check_settings()?;
         this.provide()?;
@@ -113,6 +114,7 @@ impl Headless {
         let settings = &this.session.settings;
         let names_passes =
             !settings.passes.is_empty() || !settings.shader.is_empty() || settings.mode.starts_with("pass:");
+        this.watch()?;
         let reloader = &mut this.reloader;
         let (compiled, model) = std::thread::scope(|scope| {
             let compiled = scope.spawn(|| reloader.compile_first_picture(names_passes));
@@ -341,12 +343,27 @@ impl Headless {
         if let Some(problem) = self.session.problems(false).into_iter().next() {
             return Err(HeadlessError::Settings(problem));
         }
+        if let Some(change) = self.watch()?
+            && let Outcome::Failed(diagnostics) = self.update(change).outcome
+        {
+            return Err(HeadlessError::Shaders(diagnostics));
+        }
         let mut state = self.frame_state()?;
         if state.pipelines.needs_pending(&state.shaders) {
             self.finish_or_fail()?;
             state = self.frame_state()?;
+            // A watched expression that does not compile stays pending.
+            if state.pipelines.needs_pending(&state.shaders) {
+                let errors = self.session.diagnostics.iter().filter(|found| found.severity == Severity::Error);
+                return Err(HeadlessError::Shaders(errors.cloned().collect()));
+            }
         }
         self.resources.provide(&Arc::new(state)).map_err(|error| self.explained(error.into()))
+    }
+
+    /// Watches the expression of the settings.
+    fn watch(&mut self) -> Result<Option<Change>, HeadlessError> {
+        self.reloader.watch(&self.session.settings.expression).map_err(HeadlessError::Settings)
     }
 
     fn finish_or_fail(&mut self) -> Result<(), HeadlessError> {

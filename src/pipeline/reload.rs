@@ -4,7 +4,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::gpu::{Gpu, SetLayouts};
-use crate::shader::{Change, Compiler, Diagnostic, Library, Report, ShaderSet, Source, StageKind, TreePath, Update};
+use crate::settings::ExpressionSettings;
+use crate::shader::{
+    Change, Compiler, Diagnostic, Expression, Library, Report, ShaderSet, Source, StageKind, TreePath, Update,
+};
 
 use super::limits::beyond_limits;
 use super::set::PipelineSet;
@@ -83,6 +86,18 @@ impl Reloader {
     /// Reads the tree from another source. The next update must name the files whose texts this changes.
     pub fn set_source(&mut self, source: Source) {
         self.library.set_source(source);
+    }
+
+    /// Watches the expression of the settings. Returns what the next update must name, if anything differs.
+    ///
+    /// # Errors
+    /// A message if the setting is no place and expression. Nothing is watched then.
+    pub fn watch(&mut self, settings: &ExpressionSettings) -> Result<Option<Change>, String> {
+        let ExpressionSettings { at, evaluation } = settings;
+        let parsed = (!at.is_empty()).then(|| Expression::parse(at, *evaluation)).transpose();
+        let message = parsed.as_ref().err().map(|error| format!("expression.at: {error}"));
+        let change = self.library.watch(parsed.unwrap_or_default());
+        message.map_or(Ok(change), Err)
     }
 
     /// The shader tree.

@@ -25,10 +25,11 @@ pub struct Setting {
 }
 
 /// Path, unit and meaning of every setting. A `*` in a path stands for the number of an orbiting light.
-const DESCRIBED: [(&str, &str, &str); 38] = [
+const DESCRIBED: [(&str, &str, &str); 39] = [
     ("mode", "", "Debug mode; `specula modes` lists them"),
     ("variant", "", "Variant of the model; without one its own materials"),
     ("measured", "", "File of a measured BRDF, for the modes `measured...`"),
+    ("expression.at", "", "Expression of the shaders that the mode `expression` shows: FILE:LINE:NAME"),
     ("camera.eye", "meters", "Position of the camera; without it the model is framed"),
     ("camera.target", "meters", "Point that the camera looks at; without it the center of the model"),
     ("camera.fovy", "degrees", "Vertical field of view"),
@@ -67,7 +68,13 @@ const DESCRIBED: [(&str, &str, &str); 38] = [
 ];
 
 /// The rest of [`DESCRIBED`]: what each can be is no range of floats.
-const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 5] = [
+const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 6] = [
+    (
+        "expression.evaluation",
+        "",
+        "0 to 4294967295",
+        "Which evaluation of the expression in a pixel counts, from 1; 0: the last",
+    ),
     ("view.background", "", "", "none (transparent), env, or #rrggbb"),
     ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
     ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),

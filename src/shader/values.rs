@@ -30,15 +30,21 @@ pub fn misfits(values: &Values, shaders: &ShaderSet) -> Vec<String> {
 }
 
 fn constant_bits(constant: &Constant, value: &ShaderValue) -> Result<u32, String> {
-    let number = fitting(value, constant.scalar, &constant.choices)
-        .ok_or_else(|| misfit(&constant.name, value, &takes_constant(constant), &constant.choices))?;
-    within(&constant.name, constant.range, &[number])?;
+    let number = constant_number(constant, value)?;
     Ok(match constant.scalar {
         Scalar::Bool => u32::from(number != 0.0),
         Scalar::Float => (number as f32).to_bits(),
         Scalar::Int => (number as i32).cast_unsigned(),
         Scalar::Uint => number as u32,
     })
+}
+
+/// A value as the number of a constant.
+pub(super) fn constant_number(constant: &Constant, value: &ShaderValue) -> Result<f64, String> {
+    let number = fitting(value, constant.scalar, &constant.choices)
+        .ok_or_else(|| misfit(&constant.name, value, &takes_constant(constant), &constant.choices))?;
+    within(&constant.name, constant.range, &[number])?;
+    Ok(number)
 }
 
 /// The `PARAMS_SIZE` bytes of the uniform block `Params`. A parameter whose value does not fit has its default.
@@ -81,7 +87,8 @@ fn write(block: &mut [u8], offset: u32, parameter: &Parameter, values: &Values) 
     }
 }
 
-fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Result<Vec<f64>, String> {
+/// The numbers of a parameter, one per component; without a value its default.
+pub(super) fn parameter_numbers(parameter: &Parameter, value: Option<&ShaderValue>) -> Result<Vec<f64>, String> {
     let Some(value) = value else { return Ok(parameter.default.clone()) };
     let numbers = match value {
         ShaderValue::Vector(numbers) => Some(numbers.clone()),
@@ -155,6 +162,20 @@ fn takes(scalar: Scalar, components: usize, choices: &[(String, i64)], range: Op
         Scalar::Float => format!("a number{within}"),
         Scalar::Uint if range.is_none() => "a whole number, 0 or more".to_owned(),
         Scalar::Int | Scalar::Uint => format!("a whole number{within}"),
+    }
+}
+
+/// Whether a value is the default of the constant or parameter of this name.
+pub(crate) fn is_default(shaders: &ShaderSet, name: &str, value: &ShaderValue) -> bool {
+    let constant = shaders.constants.iter().find(|constant| constant.name == name);
+    let parameter = shaders.parameters.iter().find(|parameter| parameter.name == name);
+    match (constant, parameter) {
+        (Some(constant), _) => constant_bits(constant, value) == Ok(constant.default),
+        (None, Some(parameter)) => {
+            let narrow = |numbers: &[f64]| numbers.iter().map(|number| *number as f32).collect::<Vec<_>>();
+            parameter_numbers(parameter, Some(value)).is_ok_and(|now| narrow(&now) == narrow(&parameter.default))
+        }
+        (None, None) => false,
     }
 }
 

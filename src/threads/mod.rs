@@ -39,6 +39,8 @@ pub(crate) enum Message {
     FilesChanged(BTreeSet<PathBuf>),
     /// The difference of the two pictures that the window compares, or why there is none.
     Compared(u64, Result<Box<Comparison>, String>),
+    /// What was written into the files of the shader tree, or why nothing was.
+    Written(Result<String, String>),
     /// The settings of a look file, or why it cannot be used.
     Look(Result<Box<Settings>, String>),
     /// A message for the user.

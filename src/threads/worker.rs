@@ -17,7 +17,7 @@ use crate::interface::{FEATURE_NORMAL_TEXTURE, FEATURE_PACKED_OCCLUSION};
 use crate::pipeline::{PipelineSet, Reload, Reloader};
 use crate::recovery::Recorder;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, ShaderSet, Source};
+use crate::shader::{Change, Compiler, ShaderSet, Source, TreePath};
 use thread::Thread;
 
 /// The settings, scene and target that the window draws now. A reload builds their pipelines.
@@ -76,6 +76,8 @@ type Build = (Arc<PipelineSet>, PipelineRequest);
 enum Job {
     Edit(Edit),
     OpenTree(Source),
+    /// Reads the same tree from another source, which changes these files.
+    Read(Source, BTreeSet<TreePath>),
     Build(Build),
     /// Pipelines of thumbnails: what is built when there is nothing else to do. Replaces an earlier job of this kind.
     Thumbnails(Arc<PipelineSet>, VecDeque<PipelineRequest>),
@@ -86,7 +88,7 @@ enum Job {
 impl Job {
     /// Whether the job makes a running reload stale.
     fn is_edit(&self) -> bool {
-        matches!(self, Self::Edit(_) | Self::OpenTree(_))
+        matches!(self, Self::Edit(_) | Self::OpenTree(_) | Self::Read(..))
     }
 }
 
@@ -190,6 +192,11 @@ impl Worker {
     /// Opens another shader tree.
     pub(crate) fn open_tree(&self, source: Source) {
         self.send(Job::OpenTree(source));
+    }
+
+    /// Reads the same tree from another source, in which these files have other texts.
+    pub(crate) fn read_from(&self, source: Source, changed: BTreeSet<TreePath>) {
+        self.send(Job::Read(source, changed));
     }
 
     fn send(&self, job: Job) {

@@ -29,6 +29,7 @@ pub(super) enum Panel {
     Shaders,
     Timeline,
     Timing,
+    Expression,
     Parameters,
     Passes,
     Environment,
@@ -42,7 +43,7 @@ impl Panel {
     /// All panels that can be closed, in groups that share a tile at first.
     pub(super) const GROUPS: [&[Self]; 4] = [
         &[Self::Modes, Self::Model, Self::Learn],
-        &[Self::Shaders, Self::Timeline, Self::Timing],
+        &[Self::Shaders, Self::Timeline, Self::Timing, Self::Expression],
         &[Self::Parameters, Self::Passes],
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
     ];
@@ -55,6 +56,7 @@ impl Panel {
             Self::Shaders => "Shaders",
             Self::Timeline => "Timeline",
             Self::Timing => "GPU time",
+            Self::Expression => "Expression",
             Self::Parameters => "Parameters",
             Self::Passes => "Passes",
             Self::Environment => "Environment",

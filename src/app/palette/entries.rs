@@ -8,6 +8,7 @@ use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Panel, Preset};
 use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
+use crate::app::panels::expression::watch;
 use crate::app::panels::parameters::default_of;
 use crate::app::panels::passes::{internal, is_of_pass, is_switch};
 use crate::app::panels::rows::choice_name;
@@ -39,6 +40,12 @@ pub(super) enum Action {
     ArrangeOwn,
     /// Asks in the timeline whether to write a version to the files.
     WriteVersion(u64),
+    /// Shows the field for an expression.
+    AskExpression,
+    /// Shows an expression of the shaders over the model.
+    Watch(String),
+    /// Asks whether to write the values of parameters to the files.
+    WriteDefaults,
     TogglePanels,
     ShowKeys,
 }
@@ -216,6 +223,8 @@ pub(super) fn commands() -> Vec<Entry> {
         ("Open a shader tree", "folder", "", Action::Do(Command::Choose(Dialog::Tree))),
         ("Frame the model", "camera", "R", Action::Do(Command::FrameModel)),
         ("Reload all shaders", "compile", "F5", Action::Do(Command::Reload)),
+        ("Watch an expression of the shaders…", "variable value debug line", "", Action::AskExpression),
+        ("Write the values of parameters to GLSL…", "save defaults annotation", "", Action::WriteDefaults),
         ("Undo", "", "Ctrl+Z", Action::Do(Command::Undo)),
         ("Redo", "", "Ctrl+Shift+Z", Action::Do(Command::Redo)),
         ("Screenshot", "capture PNG", "F12", Action::Do(Command::Screenshot)),
@@ -346,6 +355,13 @@ pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Comman
             viewer.panels.layout.open(Panel::Timeline);
             viewer.panels.timeline.ask(number);
         }
+        Action::AskExpression => {
+            viewer.panels.visible = true;
+            viewer.panels.layout.open(Panel::Expression);
+            viewer.panels.expression.focus();
+        }
+        Action::Watch(at) => watch(settings, at),
+        Action::WriteDefaults => viewer.panels.defaults.ask(None),
         Action::TogglePanels => viewer.panels.visible ^= true,
         Action::ShowKeys => viewer.panels.show_keys = true,
     }

@@ -10,6 +10,7 @@ use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 use super::command::Command;
 use super::panels::theme::{EDGE, ERROR, PANEL, QUIET};
 use super::viewer::Viewer;
+use crate::shader::Expression;
 use entries::{Action, Ask, Entry, act, entries};
 use search::{Found, find};
 
@@ -53,7 +54,12 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, area: egui::Rect, 
         return;
     }
     let mut palette = std::mem::take(&mut viewer.panels.palette);
-    let entries = entries(viewer);
+    let mut entries = entries(viewer);
+    if let Ok(expression) = Expression::parse(&palette.query, 0) {
+        let action = Action::Watch(expression.to_string());
+        let entry = Entry::new("Expression", format!("Watch {}", palette.query.trim()), action);
+        entries.insert(0, Entry { words: palette.query.clone(), ..entry });
+    }
     let chosen = window(egui, &mut palette, &entries, area);
     palette.is_open &= chosen.is_none();
     viewer.panels.palette = palette;

@@ -3,7 +3,9 @@
 
 mod camera;
 mod compare;
+pub(super) mod defaults;
 mod environment;
+pub(super) mod expression;
 mod keys;
 mod learn;
 mod lights;
@@ -57,6 +59,8 @@ pub(super) struct PanelState {
     pub(super) gallery: GalleryState,
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
+    pub(super) expression: expression::ExpressionState,
+    pub(super) defaults: defaults::Asked,
     files: overlay::diagnostics::Files,
     pub(super) hint: Hint,
 }
@@ -77,6 +81,8 @@ impl PanelState {
             gallery: GalleryState::default(),
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
+            expression: expression::ExpressionState::default(),
+            defaults: defaults::Asked::default(),
             files: overlay::diagnostics::Files::default(),
             hint: Hint::restored(),
         }
@@ -125,6 +131,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
     palette::show(ui.ctx(), viewer, whole, commands);
+    defaults::show(ui.ctx(), viewer, commands);
     viewer.panels.gallery.end_frame(ui.ctx());
     picture
 }
@@ -156,6 +163,12 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     if panel == Panel::Learn {
         return learn::show(ui, &viewer.learning, &viewer.session.diagnostics, commands);
     }
+    if panel == Panel::Expression {
+        let mut state = std::mem::take(&mut viewer.panels.expression);
+        expression::show(ui, viewer, &mut state, commands);
+        viewer.panels.expression = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
@@ -164,7 +177,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline | Panel::Learn => {}
+        Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Expression => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);

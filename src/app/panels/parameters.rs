@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use egui::{Response, Ui};
 
+use super::defaults;
 use super::passes::is_of_pass;
 use super::rows::{self, Row, edit_number, heading, set_option, short};
 use crate::app::numbers::{component, of_constant, of_parameter};
@@ -50,7 +51,9 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     let names = parameters.iter().map(|p| &p.name).chain(constants.iter().map(|c| &c.name));
     let set: Vec<&String> = names.filter(|name| values.contains_key(*name)).collect();
     let button = ui.add_enabled(!set.is_empty(), egui::Button::new("Defaults"));
-    if button.on_hover_text("Reset all parameters above to the values in the shader files").clicked() {
+    let resets = button.on_hover_text("Reset all parameters above to the values in the shader files").clicked();
+    defaults::button(ui, !set.is_empty());
+    if resets {
         set.into_iter().for_each(|name| drop(values.remove(name)));
     }
 }
@@ -104,11 +107,12 @@ fn setting(
     let now = value.as_ref().map_or_else(|| default_text(about), |value| option_of(value, about));
     let row = Row { name: label, doc, option: set_option(name, &now), is_changed: value.is_some(), is_indented };
     let mut new = None;
-    let resets = row.show(ui, |ui| {
+    let edit = |ui: &mut Ui| {
         let (edited, response) = control(ui, value.as_ref());
         new = edited;
         response
-    });
+    };
+    let resets = row.show_with(ui, edit, |ui| defaults::menu(ui, name, value.is_some()));
     if resets {
         values.remove(name);
     } else if let Some(new) = new {

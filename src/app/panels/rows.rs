@@ -39,13 +39,26 @@ pub(super) struct Row<'a> {
 impl Row<'_> {
     /// Shows the row with its control. Returns whether the user resets the setting.
     pub(super) fn show(self, ui: &mut Ui, control: impl FnOnce(&mut Ui) -> Response) -> bool {
+        self.show_with(ui, control, |_| {})
+    }
+
+    /// The same with more in the menu of the name.
+    pub(super) fn show_with(
+        self,
+        ui: &mut Ui,
+        control: impl FnOnce(&mut Ui) -> Response,
+        more: impl FnOnce(&mut Ui),
+    ) -> bool {
         ui.horizontal(|ui| {
             let title = self.title(ui);
             let response = control(ui);
             response.on_hover_ui(|ui| self.about(ui));
             let mut resets = self.is_changed && title.double_clicked();
             if !self.option.is_empty() {
-                title.context_menu(|ui| resets |= self.menu(ui));
+                title.context_menu(|ui| {
+                    resets |= self.menu(ui);
+                    more(ui);
+                });
             }
             title.on_hover_ui(|ui| self.about(ui));
             resets

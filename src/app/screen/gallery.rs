@@ -261,7 +261,7 @@ fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
     let state = viewer.shown()?;
     let shaders = viewer.session.shaders.clone()?;
     let is_current = state.shaders.generation == shaders.generation && !viewer.shader.compiling;
-    if !is_current || !shaders.pending.is_empty() || viewer.times_next_frame() {
+    if !is_current || !shaders.is_complete() || viewer.times_next_frame() {
         return None;
     }
     let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());

@@ -48,6 +48,7 @@ impl Viewer {
                 self.watch_files();
             }
             Message::Look(Err(message)) => self.say(message),
+            Message::Written(written) => self.on_written(written),
             Message::Compared(number, compared) => self.on_compared(number, compared),
             Message::Chosen(answer) => {
                 self.is_choosing = false;
@@ -87,6 +88,7 @@ impl Viewer {
                 self.set_diagnostics(set.shaders.warnings.clone());
                 self.session.shaders = Some(set.shaders.clone());
                 self.resources.set_pipelines(set);
+                self.follow_edits(&set.shaders);
                 self.versions.complete(set);
                 if !self.names_checked || self.session.mode().is_none() {
                     self.check_names();
@@ -134,6 +136,7 @@ impl Viewer {
                 self.first_frame = Some(FirstFrame { generation: set.shaders.generation, event });
                 self.session.shaders = Some(set.shaders.clone());
                 self.resources.set_pipelines(set);
+                self.follow_edits(&set.shaders);
                 self.check_names();
             }
         }
@@ -158,7 +161,7 @@ impl Viewer {
     /// Reports settings and modes that the shaders lack. The settings stay, because the next edit may declare them.
     /// Unknown names are reported once, when all stages have compiled: a stage that is pending may declare them.
     fn check_names(&mut self) {
-        let is_complete = self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty());
+        let is_complete = self.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete());
         // The window switches the ground on by itself, and a tree need not have one.
         let lacks = |shaders: &Arc<ShaderSet>| shaders.graph.pass(GROUND).is_none();
         if is_complete && !self.names_checked && self.session.shaders.as_ref().is_some_and(lacks) {

@@ -44,7 +44,7 @@ impl Viewer {
         let target = target(&self.gpu, &self.session.settings);
         let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
         let state = Arc::new(state);
-        let is_complete = self.request_missing(&state) && state.shaders.pending.is_empty();
+        let is_complete = self.request_missing(&state) && state.shaders.is_complete();
         (self.clock, self.is_complete) = (clock, is_complete);
         // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
@@ -78,7 +78,7 @@ impl Viewer {
         if let Some(set) = self.resources.pipelines().filter(|set| has_model && !self.versions.has(set)) {
             let edit = self.first_frame.as_ref().filter(|first| first.generation == generation);
             let reload = edit.map(|first| first.event.clone()).or_else(|| self.shader.last.clone()).unwrap_or_default();
-            self.versions.add(set, reload);
+            self.versions.add(set, reload, self.edits.draft().is_some());
         }
     }
 
@@ -130,6 +130,7 @@ impl Viewer {
     fn request_missing(&mut self, state: &FrameState) -> bool {
         let (settings, scene) = (self.session.settings.clone(), state.scene.clone());
         self.threads.worker.set_snapshot(Snapshot { settings, scene, target: state.pipelines.target });
+        self.watch_expression();
         let Some(set) = self.resources.pipelines() else { return false };
         let missing = self.resources.missing(state);
         let is_empty = missing.is_empty();

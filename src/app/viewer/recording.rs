@@ -26,7 +26,7 @@ impl Viewer {
     /// Records that the device has drawn the frame of `attempt`, and if the frame was complete, its shaders.
     pub(in crate::app) fn drawn(&self, state: &FrameState, attempt: Option<u64>) {
         attempt.into_iter().for_each(|attempt| self.recorder.drawn(attempt));
-        if self.settled == Some(state.shaders.generation) && state.shaders.pending.is_empty() {
+        if self.settled == Some(state.shaders.generation) && state.shaders.is_complete() {
             self.recorder.drawn_all(&state.shaders);
         }
     }

@@ -31,6 +31,8 @@ pub(in crate::app) struct Version {
     pub(super) picture: Option<LastComplete>,
     /// Whether a loop did not end in its picture.
     is_cut_short: bool,
+    /// Whether it has numbers that are dragged. The next version takes its place.
+    is_draft: bool,
     /// Its texts compared with those of the version before.
     difference: OnceCell<Vec<Line>>,
 }
@@ -65,9 +67,20 @@ impl Versions {
 
     /// Adds the version that has just come on screen. Generations count from 1 again after another tree was opened or the worker has
     /// started again; the versions before are then dropped.
-    pub(super) fn add(&mut self, set: &Arc<PipelineSet>, reload: ReloadEvent) {
+    pub(super) fn add(&mut self, set: &Arc<PipelineSet>, reload: ReloadEvent, is_draft: bool) {
         if self.list.back().is_some_and(|last| last.number >= set.shaders.generation) {
             self.list.clear();
+        }
+        let ends_draft = self.list.back().is_some_and(|last| last.is_draft);
+        if ends_draft {
+            self.list.pop_back();
+        }
+        // Another watched expression is no version: the texts of the tree are the same.
+        let may_be_same = ends_draft || reload.changed.is_empty();
+        let is_same = |last: &&mut Version| may_be_same && last.set.shaders.texts == set.shaders.texts;
+        if let Some(last) = self.list.back_mut().filter(is_same) {
+            (last.number, last.picture, last.set) = (set.shaders.generation, None, set.clone());
+            return;
         }
         let (number, since) = (set.shaders.generation, Local::now());
         let (device_ms, thumbnail, picture, is_cut_short) = (None, None, None, false);
@@ -82,6 +95,7 @@ impl Versions {
             set,
             picture,
             is_cut_short,
+            is_draft,
             difference,
         });
         self.list.drain(..self.list.len().saturating_sub(MOST));
@@ -106,6 +120,13 @@ impl Versions {
     pub(super) fn time(&mut self, number: u64, first_frame_ms: f64, device_ms: Option<f64>) {
         if let Some(version) = self.get_mut(number) {
             (version.reload.first_frame_ms, version.device_ms) = (first_frame_ms, device_ms);
+        }
+    }
+
+    /// Keeps the newest version although its numbers were dragged: they are in the files now.
+    pub(super) fn keep_draft(&mut self) {
+        if let Some(last) = self.list.back_mut() {
+            last.is_draft = false;
         }
     }
 

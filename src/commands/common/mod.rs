@@ -15,7 +15,7 @@ use specula::picture;
 use specula::scene::{self, LoadOptions, Model};
 use specula::settings::{LightSource, Settings, Tonemap};
 use specula::shader::embedded::Example;
-use specula::shader::{Compiler, ShaderSet, Source, is_specula_tree};
+use specula::shader::{Compiler, Expression, ShaderSet, Source, expression, is_specula_tree};
 
 use super::Failure;
 use names::{check_environment, check_model_path};
@@ -66,6 +66,9 @@ pub struct Common {
     /// Debug mode; `specula modes` lists them
     #[arg(long, value_name = "NAME")]
     pub mode: Vec<String>,
+    /// Watch an expression of the shaders, as brdf/ndf.glsl:24:a2: the mode `expression` shows its value. A column may stand before the name
+    #[arg(long, value_name = "FILE:LINE:NAME")]
+    watch_expr: Option<String>,
     /// Change any setting, as view.msaa=1, or a shader parameter, as NDF=Beckmann; may repeat. `specula help set` lists all
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
@@ -146,6 +149,11 @@ impl Common {
         }
         if let Some(background) = &self.background {
             settings.view.background.clone_from(background);
+        }
+        if let Some(expression) = &self.watch_expr {
+            Expression::parse(expression, 0).map_err(|error| Failure::Usage(format!("--watch-expr {error}")))?;
+            settings.expression.at.clone_from(expression);
+            settings.mode = expression::MODE.to_owned();
         }
         settings.view.pass_memory = self.memory.unwrap_or(settings.view.pass_memory);
         match self.mode.as_slice() {

@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use super::passes::modes_of;
 use super::slot::Slot;
+use super::watched::is_watched;
 use super::{Library, Report, ShaderSet, Stage, Update};
 use crate::shader::annotation::{self, Annotations};
 use crate::shader::compile::include::files_of;
 use crate::shader::contract::{self, Texts};
 use crate::shader::diagnostic::{Diagnostic, Severity, unique};
+use crate::shader::expression;
 use crate::shader::graph::{Graph, GraphPass, Input, PassStage, unlike_neighbors};
 use crate::shader::source::TreePath;
 use crate::shader::source::snapshot::Snapshot;
@@ -41,8 +43,11 @@ impl Library {
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
         // A stage that has never compiled adds the annotations of its files. One that draws an image of its own adds them once it
         // has compiled, since its parameters are its own.
-        let is_unseen = |slot: &&Slot| is_partial && slot.good.is_none() && !slot.is_good();
-        let replacing = if is_partial { self.replacing(snapshot) } else { BTreeSet::new() };
+        // A watched expression that does not compile is left out in any case.
+        let may_lack = |slot: &Slot| is_partial || is_watched(&slot.path);
+        let is_unseen = |slot: &&Slot| may_lack(slot) && slot.good.is_none() && !slot.is_good();
+        let mut replacing = if is_partial { self.replacing(snapshot) } else { BTreeSet::new() };
+        replacing.insert(TreePath::from(expression::STAGE));
         let is_shared = |place: usize, path: &TreePath| place < self.fixed || replacing.contains(path);
         let unseen = self.slots.iter().enumerate().filter(|(place, slot)| is_shared(*place, &slot.path));
         let unseen = unseen.map(|(_, slot)| slot).filter(is_unseen);
@@ -59,8 +64,11 @@ impl Library {
                     warnings.extend(built.warnings.iter().cloned());
                     modules.insert(&slot.path, &built.stage);
                 }
-                Some(Err(broken)) if !is_partial => errors.extend(broken.diagnostics.iter().cloned()),
-                Some(Err(_)) | None => {
+                Some(Err(broken)) if !may_lack(slot) => errors.extend(broken.diagnostics.iter().cloned()),
+                current @ (Some(Err(_)) | None) => {
+                    if let Some(Err(broken)) = current.as_ref().filter(|_| is_watched(&slot.path)) {
+                        warnings.extend(broken.diagnostics.iter().cloned());
+                    }
                     let good = slot.good.iter();
                     files.extend(good.clone().flat_map(|built| &built.stage.dependencies));
                     warnings.extend(good.flat_map(|built| &built.warnings).cloned());
@@ -72,7 +80,7 @@ impl Library {
         }
         // The parameters of passes and what they read stay known while the passes are pending.
         let passes = self.slots.iter().skip(self.fixed);
-        let goods = passes.filter_map(|slot| slot.good.as_ref().filter(|_| is_partial));
+        let goods = passes.filter_map(|slot| slot.good.as_ref().filter(|_| may_lack(slot)));
         let goods = goods.map(|built| (&built.stage.path, &*built.stage));
         let known: BTreeMap<&TreePath, &Stage> = goods.chain(modules.clone()).collect();
         let reflections: Vec<&Reflection> = known.values().map(|stage| &stage.reflection).collect();
@@ -85,6 +93,10 @@ impl Library {
         let unseen = self.slots.iter().skip(self.fixed).filter(is_unseen);
         let unseen = unseen.filter(|slot| !replacing.contains(&slot.path));
         annotations.passes.extend(unseen.flat_map(|slot| annotation::passes_of(snapshot, &slot.path)));
+        let watched = known.iter().find(|(path, _)| is_watched(path)).map(|(_, stage)| &stage.spirv);
+        let watched = watched.and_then(|spirv| expression::components_of(spirv));
+        let modes = annotations.modes.iter_mut().filter(|mode| mode.stage == expression::STAGE);
+        modes.zip(watched).for_each(|(mode, components)| mode.components = components);
         let declared = known.into_iter().map(|(path, stage)| {
             let texts = stage.texts(snapshot);
             (path.to_string(), PassStage { kind: stage.kind, reflection: &stage.reflection, texts })
@@ -139,7 +151,9 @@ impl Library {
                 return Update::Unchanged { cleared };
             }
         }
-        let set = ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts };
+        let watched = self.watched();
+        let set =
+            ShaderSet { generation, stages, pending, modes, constants, parameters, graph, warnings, texts, watched };
         let set = Arc::new(set);
         self.set = Some(Arc::clone(&set));
         Update::Ready(set, report)

@@ -6,6 +6,7 @@ pub mod check;
 mod link;
 mod passes;
 mod slot;
+mod watched;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -20,6 +21,7 @@ use crate::shader::annotation::{Constant, Mode, Parameter};
 use crate::shader::compile::Compiler;
 use crate::shader::contract;
 use crate::shader::diagnostic::{Diagnostic, unique};
+use crate::shader::expression::{self, Expression};
 use crate::shader::graph::Graph;
 use crate::shader::incremental::FileCache;
 use crate::shader::source::snapshot::Snapshot;
@@ -28,6 +30,7 @@ use crate::shader::source::{Source, TreePath};
 use beside::fragment_of;
 use link::Linked;
 use slot::{Built, Done, Slot, build};
+use watched::{View, Watched};
 
 pub use slot::Stage;
 
@@ -77,6 +80,15 @@ pub struct ShaderSet {
     pub warnings: Vec<Diagnostic>,
     /// The texts of all files that the stages depend on.
     pub texts: BTreeMap<TreePath, Arc<str>>,
+    /// The watched expression, and its line now, after edits above it.
+    pub watched: Option<(Expression, u32)>,
+}
+
+impl ShaderSet {
+    /// Whether no stage is still to be compiled. A watched expression that does not compile costs only its own mode.
+    pub fn is_complete(&self) -> bool {
+        self.pending.iter().all(|path| path == expression::STAGE)
+    }
 }
 
 /// The stages that an update compiled, and how long it took.
@@ -121,6 +133,8 @@ pub struct Library {
     failed: bool,
     /// Whether the next update links, even if no stage has changed: the source may refuse other texts.
     relink: bool,
+    /// The expression that is shown over the model.
+    watched: Option<Watched>,
 }
 
 impl Library {
@@ -129,7 +143,8 @@ impl Library {
         let slots: Vec<Slot> = stages.iter().map(|path| Slot::new(TreePath::from(*path))).collect();
         let (cache, source, idle) = (FileCache::default(), Arc::new(source), BTreeSet::new());
         let (fixed, beside) = (slots.len(), BTreeSet::new());
-        Self { source, compiler, cache, slots, fixed, idle, beside, set: None, failed: false, relink: false }
+        let (set, failed, relink, watched) = (None, false, false, None);
+        Self { source, compiler, cache, slots, fixed, idle, beside, set, failed, relink, watched }
     }
 
     /// The tree.
@@ -162,6 +177,7 @@ impl Library {
     pub fn dependencies(&self) -> BTreeSet<TreePath> {
         let mut out = BTreeSet::from([TreePath::from(contract::INTERFACE_FILE)]);
         out.extend(self.slots.iter().flat_map(Slot::dependencies).cloned());
+        out.retain(|path| !expression::is_virtual(path));
         out
     }
 
@@ -185,15 +201,17 @@ impl Library {
         let source = Arc::clone(&self.source);
         let snapshot = Snapshot::new(&source);
         self.find_passes(change, &snapshot);
+        let view = self.view(snapshot);
+        let snapshot = &view.snapshot;
         let mut report = Report { changed: self.changed(change), ..Report::default() };
 
-        let stale = self.stale(change, &snapshot);
+        let stale = self.stale(change, &view);
         if !stale.moved && self.slots.iter().all(|slot| slot.current.is_some()) && stale.compile.is_empty() {
             return Update::Unchanged { cleared: false };
         }
         let (first, rest): (Vec<_>, Vec<_>) = stale.compile.into_iter().partition(|(_, path)| is_first(path));
         let is_whole = matches!(change, Change::All);
-        self.compile(&first, &snapshot, is_whole, &mut report, || false);
+        self.compile(&first, &view, is_whole, &mut report, || false);
         let is_complete = rest.is_empty() && self.slots.iter().all(Slot::is_good);
         if !is_complete && first.iter().any(|(index, _)| self.slots[*index].is_new()) {
             for (index, _) in &rest {
@@ -201,15 +219,15 @@ impl Library {
             }
             // An error may come from a stage that is not compiled yet, so only a complete update reports it.
             let firsts_are_good = self.slots.iter().all(|slot| !is_first(&slot.path) || slot.is_good());
-            if let Some(Ok(linked)) = firsts_are_good.then(|| self.link(&snapshot, true)) {
+            if let Some(Ok(linked)) = firsts_are_good.then(|| self.link(snapshot, true)) {
                 report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
-                return self.commit(linked, self.next_generation(), &snapshot, report);
+                return self.commit(linked, self.next_generation(), snapshot, report);
             }
         }
-        self.compile(&rest, &snapshot, is_whole, &mut report, || false);
-        let linked = self.link(&snapshot, false);
+        self.compile(&rest, &view, is_whole, &mut report, || false);
+        let linked = self.link(snapshot, false);
         report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
-        self.conclude(linked, self.next_generation(), &snapshot, report)
+        self.conclude(linked, self.next_generation(), snapshot, report)
     }
 
     /// The first update, in two steps: [`Library::finish`] compiles the stages of debug modes, and unless `with_all_passes`
@@ -219,6 +237,7 @@ impl Library {
         let snapshot = Snapshot::new(&source);
         self.find_passes(&Change::All, &snapshot);
         let mut later = self.replacing(&snapshot);
+        later.insert(TreePath::from(expression::STAGE));
         if !with_all_passes {
             later.extend(self.passes_off(&snapshot));
         }
@@ -233,20 +252,21 @@ impl Library {
         let Some(generation) = pending.map(|set| set.generation) else { return Update::Unchanged { cleared: false } };
         let start = Instant::now();
         let source = Arc::clone(&self.source);
-        let snapshot = Snapshot::new(&source);
-        if self.slots.iter().any(|slot| !slot.is_current(&snapshot)) {
+        let view = self.view(Snapshot::new(&source));
+        let snapshot = &view.snapshot;
+        if self.slots.iter().any(|slot| !slot.is_current(view.of(&slot.path))) {
             return Update::Unchanged { cleared: false };
         }
         let rest = self.slots.iter().map(|slot| slot.path.clone()).enumerate();
         let rest: Vec<_> = rest.filter(|(index, _)| self.slots[*index].current.is_none()).collect();
         let mut report = Report::default();
-        self.compile(&rest, &snapshot, false, &mut report, superseded);
+        self.compile(&rest, &view, false, &mut report, superseded);
         if self.slots.iter().any(|slot| slot.current.is_none()) {
             return Update::Unchanged { cleared: false };
         }
-        let linked = self.link(&snapshot, false);
+        let linked = self.link(snapshot, false);
         report.compile_ms = start.elapsed().as_secs_f64() * 1e3;
-        self.conclude(linked, generation, &snapshot, report)
+        self.conclude(linked, generation, snapshot, report)
     }
 
     fn next_generation(&self) -> u64 {
@@ -258,7 +278,7 @@ impl Library {
     fn compile(
         &mut self,
         stages: &[(usize, TreePath)],
-        snapshot: &Snapshot<'_>,
+        view: &View<'_>,
         is_whole: bool,
         report: &mut Report,
         superseded: impl Fn() -> bool + Sync,
@@ -270,7 +290,10 @@ impl Library {
             .par_iter()
             .zip(bases)
             .filter(|_| !superseded())
-            .map(|((index, path), base)| (*index, build(compiler, snapshot, cache, path, base)))
+            .map(|((index, path), base)| {
+                let build = || view.explained(path, build(compiler, view.of(path), cache, path, base));
+                (*index, view.refused(path).unwrap_or_else(build))
+            })
             .collect();
         for (index, Done { outcome, ms }) in compiled {
             let slot = &mut self.slots[index];
@@ -287,7 +310,7 @@ impl Library {
     }
 
     /// Restores results that are already known for the current text, and lists the stages to compile.
-    fn stale(&mut self, change: &Change, snapshot: &Snapshot<'_>) -> Stale {
+    fn stale(&mut self, change: &Change, view: &View<'_>) -> Stale {
         let paths = match change {
             Change::All => {
                 let compile = self.slots.iter().map(|slot| slot.path.clone()).enumerate().collect();
@@ -305,7 +328,7 @@ impl Library {
             if matches!(slot.current, Some(Ok(_))) && !hit {
                 continue;
             }
-            match slot.recall(snapshot) {
+            match slot.recall(view.of(&slot.path)) {
                 Some(moved) => stale.moved |= moved,
                 None => stale.compile.push((index, slot.path.clone())),
             }

@@ -33,6 +33,7 @@ impl Source {
     /// The tree with fewer files held back, and the paths whose texts this changes. `None` if nothing is to be released. All
     /// refused texts are released together as soon as one of them changes, since only together they are known to be good or bad.
     pub fn released(&self) -> Option<(Self, BTreeSet<TreePath>)> {
+        // A number is being dragged: what is held back stays so.
         let Self::Held(held) = self else { return None };
         let disk = &held.tree;
         let still = held.refused.iter().all(|(path, hash)| text_hash(&disk.read(path)) == *hash);
@@ -48,12 +49,12 @@ impl Source {
 
     /// The files whose texts are refused, with the hashes of these texts.
     pub fn refused(&self) -> BTreeMap<TreePath, u64> {
-        if let Self::Held(held) = self { held.refused.clone() } else { BTreeMap::new() }
+        if let Self::Held(held) = self.without_draft() { held.refused.clone() } else { BTreeMap::new() }
     }
 
     /// An error for each refused file.
     pub fn refusals(&self) -> Vec<Diagnostic> {
-        let Self::Held(held) = self else { return Vec::new() };
+        let Self::Held(held) = self.without_draft() else { return Vec::new() };
         let message = format!("{}, so it is refused until it changes; the last good text is used", held.cause);
         held.refused.keys().map(|path| Diagnostic::error(self.display_path(path), message.clone())).collect()
     }

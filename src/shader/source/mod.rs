@@ -1,6 +1,7 @@
 //! Sources of shader text: a directory, the tree inside the binary, or memory (for tests).
 
 pub(super) mod directory;
+pub mod draft;
 pub mod embedded;
 pub mod held;
 pub mod pattern;
@@ -19,6 +20,7 @@ use serde::Serialize;
 
 use crate::shader::diagnostic::Diagnostic;
 
+use draft::Draft;
 use embedded::Example;
 use held::Held;
 use read::{check_text, names_in, read_bytes, read_file};
@@ -145,6 +147,8 @@ pub enum Source {
     Disk(PathBuf),
     /// A directory, some of whose files are held back: see [`Source::held`].
     Held(Arc<Held>),
+    /// A tree with another text of one file in memory: see [`Source::with_draft`].
+    Draft(Arc<Draft>),
     /// The tree inside the binary, or that of an example.
     Embedded(Option<Example>),
     /// A single file of another playground.
@@ -182,6 +186,7 @@ impl Source {
                 Some(text) => Ok(text.clone()),
                 None => held.tree().read(path),
             },
+            Self::Draft(draft) => draft.read(path),
             Self::Toy(toy) => toy.read(path),
             Self::Embedded(example) => check_text(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
             Self::Memory(files) => check_text(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
@@ -193,6 +198,7 @@ impl Source {
         match self {
             Self::Disk(root) => read_bytes(&root.join(path.as_str()), MAX_IMAGE_BYTES),
             Self::Held(held) => held.tree().read_bytes(path),
+            Self::Draft(draft) => draft.tree().read_bytes(path),
             Self::Toy(toy) => toy.read_bytes(path),
             Self::Memory(files) => Ok(files.get(path).ok_or(SourceError::Missing)?.clone().into_bytes()),
             Self::Embedded(example) => Ok(embedded::read(*example, path).ok_or(SourceError::Missing)?.to_vec()),
@@ -203,6 +209,7 @@ impl Source {
     pub fn display_path(&self, path: &TreePath) -> String {
         match (self, self.root()) {
             (Self::Held(held), _) => held.tree().display_path(path),
+            (Self::Draft(draft), _) => draft.tree().display_path(path),
             (Self::Toy(toy), _) => toy.display_path(path),
             (_, Some(root)) if root == Path::new(".") => path.to_string(),
             (_, Some(root)) => root.join(path.as_str()).display().to_string(),
@@ -215,6 +222,7 @@ impl Source {
     pub fn list(&self) -> Vec<TreePath> {
         match (self, self.root()) {
             (Self::Held(held), _) => held.tree().list(),
+            (Self::Draft(draft), _) => draft.tree().list(),
             (Self::Toy(toy), _) => toy.list(),
             (_, Some(root)) => {
                 let tree_path = |path: &PathBuf| {
@@ -237,6 +245,7 @@ impl Source {
         let mut names = match self {
             Self::Disk(root) => names_in(&root.join(folder)),
             Self::Held(held) => held.tree().folder(folder),
+            Self::Draft(draft) => draft.tree().folder(folder),
             Self::Toy(toy) => toy.names_in(folder),
             Self::Embedded(_) | Self::Memory(_) => {
                 let in_folder = |path: &TreePath| {
@@ -255,6 +264,7 @@ impl Source {
         match self {
             Self::Disk(root) => Some(root),
             Self::Held(held) => held.tree().root(),
+            Self::Draft(draft) => draft.tree().root(),
             Self::Embedded(_) | Self::Memory(_) | Self::Toy(_) => None,
         }
     }
@@ -263,6 +273,7 @@ impl Source {
     pub fn location(&self) -> Option<&Path> {
         match self {
             Self::Held(held) => held.tree().location(),
+            Self::Draft(draft) => draft.tree().location(),
             Self::Toy(toy) => Some(toy.file()),
             _ => self.root(),
         }
@@ -272,6 +283,7 @@ impl Source {
     pub fn files(&self) -> Vec<PathBuf> {
         match self {
             Self::Held(held) => held.tree().files(),
+            Self::Draft(draft) => draft.tree().files(),
             Self::Toy(toy) => toy.watched(),
             _ => Vec::new(),
         }
@@ -281,6 +293,7 @@ impl Source {
     pub fn changed(&self, file: &Path) -> Vec<TreePath> {
         match self {
             Self::Held(held) => held.tree().changed(file),
+            Self::Draft(draft) => draft.tree().changed(file),
             Self::Toy(toy) => toy.changed(file),
             _ => {
                 let relative = self.root().and_then(|root| file.strip_prefix(root).ok());
@@ -295,6 +308,7 @@ impl Source {
             Self::Toy(toy) => toy.problems(),
             // Its texts are not those on disk while some are held back.
             Self::Held(held) if held.is_released() => held.tree().problems(),
+            Self::Draft(draft) => draft.tree().problems(),
             _ => Vec::new(),
         }
     }
@@ -305,6 +319,7 @@ impl Source {
         match self {
             Self::Toy(toy) => toy.explained(diagnostic),
             Self::Held(held) => held.tree().explained(diagnostic),
+            Self::Draft(draft) => draft.tree().explained(diagnostic),
             _ => diagnostic,
         }
     }
@@ -313,6 +328,7 @@ impl Source {
     pub fn name(&self) -> String {
         match self {
             Self::Embedded(Some(example)) => format!("examples:{}", example.name()),
+            Self::Draft(draft) => draft.tree().name(),
             _ => self.location().map_or_else(|| "built-in shaders".to_owned(), |root| root.display().to_string()),
         }
     }

@@ -13,22 +13,38 @@ pub type Read = Result<Arc<str>, SourceError>;
 #[derive(Debug)]
 pub struct Snapshot<'a> {
     source: &'a Source,
-    files: Mutex<BTreeMap<TreePath, Read>>,
+    files: Arc<Mutex<BTreeMap<TreePath, Read>>>,
+    /// Texts that this snapshot has in place of those in `files`.
+    over: BTreeMap<TreePath, Read>,
 }
 
 impl<'a> Snapshot<'a> {
     /// An empty snapshot. It reads a file at its first use.
     pub fn new(source: &'a Source) -> Self {
-        Self { source, files: Mutex::default() }
+        Self::holding(source, BTreeMap::new())
     }
 
     /// A snapshot that has these files already.
     pub fn holding(source: &'a Source, files: BTreeMap<TreePath, Read>) -> Self {
-        Self { source, files: Mutex::new(files) }
+        Self { source, files: Arc::new(Mutex::new(files)), over: BTreeMap::new() }
+    }
+
+    /// The same snapshot with other texts in place of some.
+    #[must_use]
+    pub fn over(&self, texts: BTreeMap<TreePath, Read>) -> Self {
+        Self { source: self.source, files: self.files.clone(), over: texts }
+    }
+
+    /// Sets the text of a file that the tree does not have.
+    pub fn put(&self, path: &TreePath, read: Read) {
+        self.files.lock().unwrap_or_else(PoisonError::into_inner).insert(path.clone(), read);
     }
 
     /// The text of a file at the first call.
     pub fn read(&self, path: &TreePath) -> Read {
+        if let Some(over) = self.over.get(path) {
+            return over.clone();
+        }
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = files.get(path) {
             return known.clone();

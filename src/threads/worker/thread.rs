@@ -97,6 +97,10 @@ impl Thread {
                         self.reloader.open(source);
                         edit = Some(Edit::new(Change::All, Instant::now()));
                     }
+                    Job::Read(source, paths) => {
+                        self.reloader.set_source(source);
+                        edit = Some(join(edit, Edit::new(Change::Paths(paths), Instant::now())));
+                    }
                     Job::Build(newest) => build = Some(newest),
                     Job::Thumbnails(set, requests) => self.thumbnails = Some((set, requests)),
                 }
@@ -147,6 +151,7 @@ impl Thread {
             |shaders: &Arc<ShaderSet>| snapshot.lock().unwrap_or_else(PoisonError::into_inner).request(shaders);
         let superseded = || edits.load(Ordering::SeqCst) > taken;
         let change = self.release(edit.change);
+        let change = self.watch(change);
         let before = self.try_texts(&change);
         let reload = self.reloader.update_first(change, false, request, superseded);
         self.panics = 0;
@@ -157,7 +162,7 @@ impl Thread {
             Outcome::Ready(set) => Some(set.clone()),
             Outcome::Unchanged { .. } | Outcome::Failed(_) => None,
         };
-        self.unfinished = set.as_ref().is_some_and(|set| !set.shaders.pending.is_empty());
+        self.unfinished = set.as_ref().is_some_and(|set| !set.shaders.is_complete());
         self.is_shown = false;
         let source = self.reloader.library().source().clone();
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
@@ -184,6 +189,19 @@ impl Thread {
         let Some((source, paths)) = self.reloader.library().source().released() else { return change };
         self.reloader.set_source(source);
         change.and(Change::Paths(paths))
+    }
+
+    /// Adds the stage of a watched expression to a change, if the settings watch another one.
+    fn watch(&mut self, change: Change) -> Change {
+        let expression = self.snapshot().settings.expression;
+        match self.reloader.watch(&expression) {
+            Ok(Some(watched)) => change.and(watched),
+            Ok(None) => change,
+            Err(message) => {
+                self.outbox.send(Message::Say(message));
+                change
+            }
+        }
     }
 
     /// Records the texts of the change before they are used. Returns what [`Recorder::try_texts`] does.
@@ -258,7 +276,7 @@ impl Thread {
     fn build_ahead(&self, set: &Arc<PipelineSet>) {
         let (snapshot, modes) = (self.snapshot(), &set.shaders.modes);
         // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
-        if snapshot.scene.is_none() || !set.shaders.pending.is_empty() || self.recorder.is_careful() {
+        if snapshot.scene.is_none() || !set.shaders.is_complete() || self.recorder.is_careful() {
             return;
         }
         let request = snapshot.request(&set.shaders);

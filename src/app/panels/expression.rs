@@ -1,0 +1,343 @@
+//! The panel Expression: shows the value of an expression of the shaders over the model, and offers the numbers of its line as
+//! sliders.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
+
+use super::{ACCENT, ERROR, QUIET};
+use crate::app::command::Command;
+use crate::app::difference::{Kind, Line};
+use crate::app::viewer::{NO_FOLDER, Viewer};
+use crate::settings::Settings;
+use crate::shader::expression::{MODE, place_of, variables};
+use crate::shader::rewrite::{Edit, Literal, literals, spelled_like};
+use crate::shader::{Expression, TreePath};
+
+/// Most edited lines that the panel offers.
+const MOST_LINES: usize = 8;
+
+/// State of the panel between frames.
+#[derive(Default)]
+pub(in crate::app) struct ExpressionState {
+    /// The text of the field.
+    field: String,
+    /// The setting that the field was last set to.
+    known: String,
+    /// Why the text of the field cannot be watched.
+    error: Option<String>,
+    takes_focus: bool,
+    /// The line of the field.
+    shown: Option<Shown>,
+}
+
+/// A line of the shaders, with what it offers.
+struct Shown {
+    path: TreePath,
+    line: u32,
+    text: Arc<str>,
+    variables: Vec<(String, String)>,
+    /// The line before any of its numbers is dragged.
+    before: String,
+    numbers: Vec<(Literal, f64)>,
+}
+
+impl Shown {
+    fn new(path: &TreePath, line: u32, text: &Arc<str>) -> Option<Self> {
+        let before = line_of(text, line)?.to_owned();
+        let numbers = literals(text, line).into_iter().map(|literal| (literal.clone(), literal.value)).collect();
+        let variables = variables(text, line);
+        Some(Self { path: path.clone(), line, text: text.clone(), variables, before, numbers })
+    }
+
+    /// The edits that make the dragged numbers those of the line.
+    fn edits(&self) -> Vec<Edit> {
+        let dragged = self.numbers.iter().filter(|(literal, value)| *value != literal.value);
+        dragged
+            .map(|(literal, value)| Edit {
+                path: self.path.clone(),
+                name: literal.text.clone(),
+                line: self.line,
+                bytes: literal.bytes.clone(),
+                before: self.before.clone(),
+                new: spelled_like(&literal.text, *value),
+            })
+            .collect()
+    }
+}
+
+impl ExpressionState {
+    /// Gives the field the keys in the next frame.
+    pub(in crate::app) fn focus(&mut self) {
+        self.takes_focus = true;
+    }
+
+    /// Shows a line, with what it offers.
+    pub(in crate::app) fn show_line(&mut self, file: &str, line: u32) {
+        (self.field, self.error) = (format!("{file}:{line}:"), None);
+    }
+}
+
+/// Shows the value of an expression over the model.
+pub(in crate::app) fn watch(settings: &mut Settings, at: String) {
+    (settings.expression.at, settings.mode) = (at, MODE.to_owned());
+}
+
+fn line_of(text: &str, line: u32) -> Option<&str> {
+    text.lines().nth((line as usize).checked_sub(1)?)
+}
+
+/// Shows the panel.
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut ExpressionState, commands: &mut Vec<Command>) {
+    let settings = &mut viewer.session.settings;
+    if state.known != settings.expression.at {
+        state.known.clone_from(&settings.expression.at);
+        state.field.clone_from(&settings.expression.at);
+        state.error = None;
+    }
+    field(ui, settings, state);
+    if let Some(error) = &state.error {
+        ui.add(Label::new(RichText::new(error).small().color(ERROR)).wrap());
+    }
+    find_line(viewer, state);
+    match state.shown.take() {
+        Some(mut shown) => {
+            line(ui, &mut shown, state);
+            offered(ui, &mut viewer.session.settings, &shown, state);
+            numbers(ui, viewer, &mut shown, commands);
+            state.shown = Some(shown);
+        }
+        None => suggestions(ui, viewer, state),
+    }
+}
+
+/// The field for the expression, and the buttons beside it.
+fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
+    let is_on = !settings.expression.at.is_empty();
+    ui.horizontal(|ui| {
+        let room = ui.available_width() - 62.0;
+        let edit = TextEdit::singleline(&mut state.field).desired_width(room).font(egui::TextStyle::Monospace);
+        let edit = ui.add(edit.hint_text("brdf/ndf.glsl:24 a2"));
+        if std::mem::take(&mut state.takes_focus) {
+            edit.request_focus();
+        }
+        let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        edit.on_hover_text(
+            "FILE:LINE and a variable or an expression of the shaders. Enter shows its value over the model, as a mode. \
+             `return` is what the line returns",
+        );
+        let is_shown = is_on && state.field == settings.expression.at;
+        let (name, hint) = match is_shown {
+            true => ("Stop", "Go back to the picture"),
+            false => ("Watch", "Show the value over the model (Enter)"),
+        };
+        let clicked = ui.add_sized(vec2(52.0, 20.0), Button::new(name)).on_hover_text(hint).clicked();
+        if clicked && is_shown {
+            settings.expression.at.clear();
+            if settings.mode == MODE {
+                settings.mode = Settings::default().mode;
+            }
+        } else if clicked || entered {
+            match Expression::parse(&state.field, 0) {
+                Ok(expression) => {
+                    state.error = None;
+                    watch(settings, expression.to_string());
+                }
+                Err(message) => state.error = (!state.field.is_empty()).then_some(message),
+            }
+        }
+    });
+}
+
+/// Finds the line that the field names.
+fn find_line(viewer: &Viewer, state: &mut ExpressionState) {
+    let Some(shaders) = &viewer.session.shaders else { return };
+    let found = place_of(&state.field).and_then(|(file, line)| {
+        let ends = |path: &&TreePath| path.as_str().strip_suffix(file).is_some_and(|rest| rest.ends_with('/'));
+        let exact = shaders.texts.get_key_value(&TreePath::from(file));
+        let (path, text) = exact.or_else(|| shaders.texts.iter().find(|(path, _)| ends(path)))?;
+        Some((path, text, line))
+    });
+    let Some((path, text, line)) = found else {
+        state.shown = None;
+        return;
+    };
+    let is_dragged = viewer.edits.draft().is_some();
+    let is_same = state.shown.as_ref().is_some_and(|shown| {
+        (&shown.path, shown.line) == (path, line)
+            && (is_dragged || Arc::ptr_eq(&shown.text, text) || shown.text == *text)
+    });
+    if !is_same {
+        state.shown = Shown::new(path, line, text);
+    }
+}
+
+/// The line itself, with its number to step through the file.
+fn line(ui: &mut Ui, shown: &mut Shown, state: &mut ExpressionState) {
+    ui.horizontal(|ui| {
+        ui.add(Label::new(RichText::new(shown.path.as_str()).small().color(QUIET)).truncate());
+        let mut number = shown.line;
+        let last = u32::try_from(shown.text.lines().count()).unwrap_or(u32::MAX);
+        let drag = ui.add(DragValue::new(&mut number).range(1..=last.max(1)).speed(0.2).prefix("line "));
+        if drag.on_hover_text("The line whose variables and numbers are below. Drag to step through the file").changed()
+        {
+            state.show_line(shown.path.as_str(), number);
+        }
+    });
+    let text = RichText::new(shown.before.trim()).monospace().size(11.5);
+    ui.add(Label::new(text).truncate()).on_hover_text(shown.before.trim());
+}
+
+/// The variables that the line offers, and which evaluation counts.
+fn offered(ui: &mut Ui, settings: &mut Settings, shown: &Shown, state: &mut ExpressionState) {
+    let watched = Expression::parse(&settings.expression.at, 0).ok();
+    let watched =
+        watched.filter(|watched| watched.line == shown.line && settings.mode == MODE).map(|watched| watched.text);
+    let returns = shown.before.trim_start().starts_with("return").then(|| ("return".to_owned(), "value".to_owned()));
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
+        for (name, kind) in returns.iter().chain(&shown.variables) {
+            let text = RichText::new(name).monospace().size(11.5);
+            let button = ui.selectable_label(watched.as_ref() == Some(name), text);
+            if button.on_hover_text(format!("{kind} {name}: click to see its value over the model")).clicked() {
+                state.error = None;
+                watch(settings, format!("{}:{}:{name}", shown.path, shown.line));
+            }
+        }
+    });
+    if watched.is_some() {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("Evaluation").small());
+            let value = &mut settings.expression.evaluation;
+            let text = |number: f64, _: std::ops::RangeInclusive<usize>| match number {
+                0.0 => "last".to_owned(),
+                number => format!("{number:.0}"),
+            };
+            let parse = |text: &str| if text.trim() == "last" { Some(0.0) } else { text.trim().parse().ok() };
+            let drag = DragValue::new(value).range(0..=100_000).speed(0.05).custom_formatter(text).custom_parser(parse);
+            ui.add(drag).on_hover_text(
+                "Which evaluation of the line in a pixel is shown, where it runs more than once: in a loop, or for each \
+                 light. `lights.chosen` selects one light",
+            );
+        });
+    }
+}
+
+/// The numbers of the line as sliders.
+fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut Shown, commands: &mut Vec<Command>) {
+    let draft = viewer.edits.draft();
+    let is_here = |edit: &Edit| edit.path == shown.path && edit.line == shown.line;
+    let is_own = draft.is_some_and(|draft| draft.edits.first().is_some_and(is_here));
+    if !shown.numbers.is_empty() {
+        let mut changed = false;
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new("Numbers").small().color(QUIET));
+            for (literal, value) in &mut shown.numbers {
+                let speed = if literal.is_whole { 0.05 } else { 0.005 * literal.value.abs().max(0.1) };
+                let drag = DragValue::new(value).speed(speed).max_decimals(5);
+                let drag =
+                    if literal.is_whole { drag.range(0.0..=f64::from(u32::MAX)).fixed_decimals(0) } else { drag };
+                let hint = format!(
+                    "{} in the file. Drag to see the picture with another number; Write keeps it",
+                    literal.text
+                );
+                let drag = ui.add_enabled(draft.is_none() || is_own, drag).on_hover_text(hint);
+                changed |= drag.on_disabled_hover_text("Write or cancel the numbers of the other line first").changed();
+            }
+        });
+        if changed {
+            // What is compiled is an f32 or a whole number.
+            for (literal, value) in &mut shown.numbers {
+                *value = if literal.is_whole { value.round() } else { *value };
+            }
+            commands.push(Command::Draft(shown.edits()));
+        }
+    }
+    let Some(draft) = draft else { return };
+    ui.horizontal(|ui| {
+        if !is_own && let Some(edit) = draft.edits.first() {
+            ui.label(RichText::new(format!("{}:{}", edit.path, edit.line)).small().color(ACCENT));
+        }
+        let write = ui.add_enabled(viewer.has_folder(), Button::new("Write"));
+        let changes: Vec<String> = draft.edits.iter().map(|edit| format!("{} -> {}", edit.old(), edit.new)).collect();
+        let hint = format!("Write into the file: {}", changes.join(", "));
+        if write.on_hover_text(hint).on_disabled_hover_text(NO_FOLDER).clicked() {
+            commands.push(Command::WriteEdits(draft.edits.clone()));
+        }
+        if ui.button("Cancel").on_hover_text("Go back to the numbers in the file").clicked() {
+            commands.push(Command::Draft(Vec::new()));
+            for (literal, value) in &mut shown.numbers {
+                *value = literal.value;
+            }
+        }
+    });
+}
+
+/// Lines to begin with: those with errors, and those of the last edit.
+fn suggestions(ui: &mut Ui, viewer: &Viewer, state: &mut ExpressionState) {
+    let newest = viewer.versions.iter().next_back();
+    let edited = newest.map(|version| edited_lines(viewer.versions.difference(version))).unwrap_or_default();
+    let text = match edited.is_empty() {
+        true => "Type a file and a line to see the variables and numbers that it offers.",
+        false => "Lines of the last edit:",
+    };
+    ui.label(RichText::new(text).small().color(QUIET));
+    ui.horizontal_wrapped(|ui| {
+        for (path, line) in edited {
+            let name = path.rsplit('/').next().unwrap_or(&path);
+            let text = RichText::new(format!("{name}:{line}")).monospace().size(11.5).color(ACCENT);
+            if ui.add(Button::new(text).frame(false)).on_hover_text(format!("Show what {path}:{line} offers")).clicked()
+            {
+                state.show_line(&path, line);
+            }
+        }
+    });
+}
+
+/// The first lines that a difference adds, by file.
+fn edited_lines(difference: &[Line]) -> Vec<(String, u32)> {
+    let mut out: BTreeMap<(String, u32), ()> = BTreeMap::new();
+    let (mut file, mut line) = (String::new(), 1);
+    for Line { kind, text } in difference {
+        match kind {
+            Kind::Place => match text.strip_prefix("@@ line ").and_then(|number| number.parse().ok()) {
+                Some(number) => line = number,
+                None => file.clone_from(text),
+            },
+            Kind::Removed => {}
+            Kind::Same => line += 1,
+            Kind::Added => {
+                if text[1..].trim().chars().any(char::is_alphanumeric) {
+                    out.insert((file.clone(), line), ());
+                }
+                line += 1;
+            }
+        }
+    }
+    out.into_keys().take(MOST_LINES).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::difference::difference;
+
+    #[test]
+    fn the_lines_of_an_edit_are_offered() {
+        let tree = |text: &str| BTreeMap::from([(TreePath::from("brdf/a.glsl"), Arc::<str>::from(text))]);
+        let lines = difference(&tree("a;\nb;\nc;\nd;\n"), &tree("a;\nB;\nc;\n}\nd;\ne;\n"));
+        assert_eq!(edited_lines(&lines), [("brdf/a.glsl".to_owned(), 2), ("brdf/a.glsl".to_owned(), 6)]);
+    }
+
+    #[test]
+    fn dragged_numbers_become_edits() {
+        let text: Arc<str> = "float f(float x) {\n    return 0.5 * x + 2.0;\n}\n".into();
+        let mut shown = Shown::new(&"a.glsl".into(), 2, &text).unwrap();
+        assert_eq!(shown.variables, [("x".to_owned(), "float".to_owned())]);
+        assert!(shown.edits().is_empty());
+        shown.numbers[1].1 = 3.25;
+        let edits = shown.edits();
+        assert_eq!((edits[0].old(), edits[0].new.as_str(), edits.len()), ("2.0", "3.25", 1));
+    }
+}

@@ -1,0 +1,180 @@
+//! What the window changes in the shaders: the watched expression, numbers that are dragged, and values that become defaults in the
+//! files.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::Viewer;
+use crate::settings::{ExpressionSettings, ShaderValue};
+use crate::shader::rewrite::{Edit, applied, defaults};
+use crate::shader::values::is_default;
+use crate::shader::{Change, Expression, ShaderSet, TreePath};
+use crate::threads::Message;
+use crate::write_back;
+
+/// What to do with a tree that has no folder.
+pub(in crate::app) const NO_FOLDER: &str = "These shaders are no folder on disk: `specula new DIR` writes them to one, which you can \
+    open and edit";
+
+/// Changes of the shaders that are under way.
+#[derive(Default)]
+pub(in crate::app) struct Edits {
+    /// The expression that the worker knows of.
+    watched: ExpressionSettings,
+    /// Numbers of a line that are dragged.
+    draft: Option<Draft>,
+    /// Values that were written to the files. Each setting is dropped once a reload has made its value the default.
+    written: BTreeMap<String, ShaderValue>,
+}
+
+/// Numbers that are dragged, and not in the file yet.
+pub(in crate::app) struct Draft {
+    pub(in crate::app) edits: Vec<Edit>,
+    path: TreePath,
+    line: u32,
+    base: Arc<str>,
+}
+
+impl Draft {
+    /// Whether a text of the file differs from that on disk in the dragged line at most.
+    fn is_of(&self, text: &str) -> bool {
+        let other = |number: usize| number + 1 != self.line as usize;
+        let rest = |text: &str| -> Vec<String> {
+            text.split('\n').enumerate().filter(|(number, _)| other(*number)).map(|(_, line)| line.to_owned()).collect()
+        };
+        rest(text) == rest(&self.base)
+    }
+}
+
+impl Edits {
+    /// The edits at the start, when the worker begins with this expression.
+    pub(super) fn new(watched: &ExpressionSettings) -> Self {
+        Self { watched: watched.clone(), ..Self::default() }
+    }
+
+    /// The numbers that are dragged.
+    pub(in crate::app) fn draft(&self) -> Option<&Draft> {
+        self.draft.as_ref()
+    }
+
+    /// Forgets numbers that are dragged: another tree is opened.
+    pub(super) fn forget_draft(&mut self) {
+        self.draft = None;
+    }
+}
+
+impl Viewer {
+    /// Tells the worker of another watched expression. It reads the settings.
+    pub(super) fn watch_expression(&mut self) {
+        let expression = &self.session.settings.expression;
+        if self.edits.watched != *expression {
+            self.edits.watched = expression.clone();
+            self.threads.worker.change(Change::Paths(BTreeSet::new()), Instant::now());
+        }
+    }
+
+    /// Shows the picture with these numbers in place of those in the file; no edits go back to the file.
+    pub(super) fn draft(&mut self, edits: Vec<Edit>) {
+        let Some(shaders) = &self.session.shaders else { return };
+        let Some(path) = edits.first().map(|edit| edit.path.clone()) else { return self.end_draft() };
+        let line = edits.first().map_or(0, |edit| edit.line);
+        let base = match &self.edits.draft {
+            Some(draft) if draft.path == path && draft.line == line => Some(draft.base.clone()),
+            Some(_) => {
+                self.end_draft();
+                None
+            }
+            None => shaders.texts.get(&path).cloned(),
+        };
+        let Some(base) = base else { return };
+        let text = applied(base.as_bytes(), &edits).ok().and_then(|bytes| String::from_utf8(bytes).ok());
+        let Some(text) = text else {
+            return self.say(format!("{path} has changed; choose the number again"));
+        };
+        let source = self.source.with_draft(&path, &base, &text.into());
+        self.edits.draft = Some(Draft { edits, path: path.clone(), line, base });
+        self.threads.worker.read_from(source, BTreeSet::from([path]));
+    }
+
+    /// Goes back to the numbers in the file.
+    pub(super) fn end_draft(&mut self) {
+        if let Some(draft) = self.edits.draft.take() {
+            let source = self.source.without_draft().clone();
+            self.threads.worker.read_from(source, BTreeSet::from([draft.path]));
+        }
+    }
+
+    /// Ends the dragging if the file has changed otherwise. Keeps the line of the watched expression. Drops settings whose values have become defaults.
+    pub(super) fn follow_edits(&mut self, shaders: &ShaderSet) {
+        let is_other = |draft: &Draft| shaders.texts.get(&draft.path).is_none_or(|text| !draft.is_of(text));
+        if self.edits.draft.as_ref().is_some_and(is_other) {
+            self.end_draft();
+        }
+        let expression = &mut self.session.settings.expression;
+        let watched = Expression::parse(&expression.at, expression.evaluation).ok();
+        if let Some((of_set, line)) = shaders.watched.as_ref().filter(|(of_set, _)| Some(of_set) == watched.as_ref()) {
+            expression.at = Expression { line: *line, ..of_set.clone() }.to_string();
+            self.edits.watched.clone_from(expression);
+        }
+        let settings = &mut self.session.settings.shader;
+        self.edits.written.retain(|name, value| {
+            let is_written = is_default(shaders, name, value);
+            if is_written && settings.get(name) == Some(value) {
+                settings.remove(name);
+            }
+            !is_written
+        });
+    }
+
+    /// The edits that would make the values of the settings defaults, or that of `only` one name; or why there are none.
+    pub(in crate::app) fn edits_of_defaults(&self, only: Option<&str>) -> Result<Vec<Edit>, String> {
+        let Some(shaders) = &self.session.shaders else { return Ok(Vec::new()) };
+        let display = |path: &TreePath| self.source.display_path(path);
+        defaults(shaders, &self.session.settings.shader, only, display)
+    }
+
+    /// Whether the tree is a folder on disk, so that its files can be written.
+    pub(in crate::app) fn has_folder(&self) -> bool {
+        self.source.root().is_some()
+    }
+
+    /// Writes edits into the files of the tree, on a thread of its own.
+    pub(super) fn write_edits(&mut self, edits: Vec<Edit>) {
+        let Some(root) = self.source.root().map(Path::to_owned) else { return self.say(NO_FOLDER) };
+        let values = &self.session.settings.shader;
+        let names = edits.iter().filter_map(|edit| Some((edit.name.clone(), values.get(&edit.name)?.clone())));
+        self.edits.written.extend(names);
+        self.threads.wait(move || {
+            let written = write_back::write(&root, &edits);
+            Some(Message::Written(written.map(|()| told(&edits))))
+        });
+    }
+
+    /// Takes the result of writing.
+    pub(super) fn on_written(&mut self, written: Result<String, String>) {
+        match written {
+            Ok(text) => {
+                // The file has the dragged numbers now, so nothing is compiled.
+                if self.edits.draft.is_some() {
+                    self.versions.keep_draft();
+                }
+                self.end_draft();
+                self.say(text);
+            }
+            Err(message) => {
+                self.edits.written.clear();
+                self.say(message);
+            }
+        }
+    }
+}
+
+/// What was written, in a line.
+fn told(edits: &[Edit]) -> String {
+    let changes: Vec<String> =
+        edits.iter().map(|edit| format!("{} = {}", edit.name, edit.new.trim_start_matches([' ', '=']))).collect();
+    let files: BTreeSet<&str> = edits.iter().map(|edit| edit.path.as_str()).collect();
+    format!("Wrote {} to {}", changes.join(", "), files.into_iter().collect::<Vec<_>>().join(", "))
+}

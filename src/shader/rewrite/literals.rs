@@ -1,0 +1,130 @@
+//! The numbers in a line of code.
+
+use std::ops::Range;
+
+use crate::shader::source::text::{Line, is_word, lines};
+
+/// A number in a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Literal {
+    /// Its bytes in the line.
+    pub bytes: Range<usize>,
+    /// Its text, without a sign.
+    pub text: String,
+    /// Its value.
+    pub value: f64,
+    /// Whether it is an `int` or `uint`.
+    pub is_whole: bool,
+}
+
+/// The numbers in the code of a line, from the left. Those of directives are left out, and those in the name of something.
+pub fn literals(text: &str, number: u32) -> Vec<Literal> {
+    let all = lines(text);
+    let Some(line) = all.get((number as usize).wrapping_sub(1)) else { return Vec::new() };
+    if line.code.trim_start().starts_with('#') { Vec::new() } else { of_line(line) }
+}
+
+fn of_line(line: &Line<'_>) -> Vec<Literal> {
+    let code = &line.code;
+    let bytes = code.as_bytes();
+    let mut out = Vec::new();
+    let mut at = 0;
+    while at < bytes.len() {
+        let is_start =
+            bytes[at].is_ascii_digit() || (bytes[at] == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit));
+        let before = at.checked_sub(1).map(|before| bytes[before]);
+        // A digit behind a letter belongs to a name, as in `vec3`; behind a dot, to nothing that can be dragged.
+        let is_free = before.is_none_or(|b| !(is_word(b as char) || b == b'.'));
+        if !is_start || !is_free {
+            at += 1;
+            continue;
+        }
+        let length = length(&code[at..]);
+        out.extend(parsed(&code[at..at + length], at));
+        at += length;
+    }
+    out
+}
+
+/// The bytes of the number at the start of a text.
+fn length(text: &str) -> usize {
+    let mut previous = ' ';
+    let goes_on = |c: char| {
+        let is_sign = matches!(c, '+' | '-') && matches!(previous, 'e' | 'E') && !text.starts_with("0x");
+        previous = c;
+        is_word(c) || c == '.' || is_sign
+    };
+    let mut goes_on = goes_on;
+    text.find(|c| !goes_on(c)).unwrap_or(text.len())
+}
+
+fn parsed(text: &str, start: usize) -> Option<Literal> {
+    let bytes = start..start + text.len();
+    let lower = text.to_ascii_lowercase();
+    let (value, is_whole) = if let Some(digits) = lower.strip_prefix("0x") {
+        (u32::from_str_radix(digits.trim_end_matches('u'), 16).ok()? as f64, true)
+    } else if lower.contains(['.', 'e']) || lower.ends_with('f') {
+        (lower.trim_end_matches('f').trim_end_matches('l').parse::<f64>().ok()?, false)
+    } else {
+        let digits = lower.trim_end_matches('u');
+        let is_octal = digits.len() > 1 && digits.starts_with('0');
+        let value = if is_octal { u32::from_str_radix(digits, 8).ok()? } else { digits.parse::<u32>().ok()? };
+        (f64::from(value), true)
+    };
+    value.is_finite().then(|| Literal { bytes, text: text.to_owned(), value, is_whole })
+}
+
+/// A number written like a literal: a float with a point and the same suffix, a whole number, which is not negative, with its `u`.
+pub fn spelled_like(literal: &str, value: f64) -> String {
+    let lower = literal.to_ascii_lowercase();
+    let is_whole = lower.starts_with("0x") || !(lower.contains(['.', 'e']) || lower.ends_with('f'));
+    if is_whole {
+        let suffix = if lower.ends_with('u') { &literal[literal.len() - 1..] } else { "" };
+        return format!("{}{suffix}", value.round().clamp(0.0, f64::from(u32::MAX)) as u32);
+    }
+    let suffix = if lower.ends_with('f') { &literal[literal.len() - 1..] } else { "" };
+    let number = format!("{}{suffix}", float(value));
+    // A sign may stand before it already.
+    if number.starts_with('-') { format!("({number})") } else { number }
+}
+
+/// A float as GLSL writes it: the shortest decimal that is the same `f32`, with a point or an exponent.
+pub(super) fn float(value: f64) -> String {
+    let value = value as f32;
+    let plain = value.to_string();
+    if value != 0.0 && !(1e-5..1e7).contains(&value.abs()) {
+        return format!("{value:e}");
+    }
+    if plain.contains('.') { plain } else { plain + ".0" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_a_line() {
+        let text = "#define A 1.0\nvec3 c = vec3(1.0, .5f, 2e-3) * a1.x + 16u + 0x1F - m[2] - 1.0; // 7.0\n";
+        let texts: Vec<String> = literals(text, 2).into_iter().map(|literal| literal.text).collect();
+        assert_eq!(texts, ["1.0", ".5f", "2e-3", "16u", "0x1F", "2", "1.0"]);
+        let values: Vec<f64> = literals(text, 2).into_iter().map(|literal| literal.value).collect();
+        assert_eq!(values, [1.0, 0.5, 2e-3, 16.0, 31.0, 2.0, 1.0]);
+        assert!(literals(text, 1).is_empty() && literals(text, 9).is_empty() && literals(text, 0).is_empty());
+    }
+
+    #[test]
+    fn a_new_number_has_the_type_of_the_old() {
+        for (old, value, new) in [
+            ("1.0", 2.0, "2.0"),
+            ("1.0", 0.25, "0.25"),
+            (".5f", 0.75, "0.75f"),
+            ("2e-3", 1e-6, "1e-6"),
+            ("1.0", -0.5, "(-0.5)"),
+            ("16u", 3.4, "3u"),
+            ("4", 5.0, "5"),
+            ("4u", -5.0, "0u"),
+        ] {
+            assert_eq!(spelled_like(old, value), new, "{old}");
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! An expression of the shaders is shown over the model, and follows edits.
+
+use image::RgbaImage;
+
+use super::controls::choose;
+use crate::support::window::Viewer;
+use crate::support::{Tree, glb, line_of};
+
+const USER: &str = "user.glsl";
+
+fn is_color(shot: &RgbaImage, color: [u8; 3]) -> bool {
+    let at = (shot.width() / 2, shot.height() / 2);
+    shot.get_pixel(at.0, at.1).0[..3].iter().zip(color).all(|(a, b)| a.abs_diff(b) <= 1)
+}
+
+#[test]
+fn an_expression_is_watched_by_the_palette() {
+    let tree = Tree::new();
+    std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let mut viewer = Viewer::open(tree, &["model.glb"]);
+    viewer.running.event("ready");
+    let picture = viewer.screenshot();
+    let original = viewer.tree.read(USER);
+    let head = "void user_surface(inout Surface s) {";
+    let line = line_of(&original, head);
+
+    choose(&viewer, &format!("{USER}:{line}:vec3(0.25, 0.5, 1.0) * 0.8"));
+    viewer.until("the value of the expression", |shot| is_color(shot, [51, 102, 204]));
+    // The line is found again below another one.
+    let edited = original.replace(head, &format!("float half_of(float x) {{ return 0.5 * x; }}\n\n{head}"));
+    viewer.tree.write(USER, &edited);
+    viewer.running.reload(true);
+    viewer.until("the value after an edit", |shot| is_color(shot, [51, 102, 204]));
+
+    // An expression that does not compile leaves the picture as it is.
+    let watched = viewer.screenshot();
+    choose(&viewer, &format!("{USER}:{}:nothing", line + 2));
+    let diagnostic = viewer.running.event("diagnostic");
+    let message = diagnostic["message"].as_str().unwrap_or_default();
+    assert!(message.contains("cannot watch `nothing`"), "{diagnostic}");
+    assert_eq!(diagnostic["line"].as_u64(), Some(u64::from(line) + 2));
+    assert!(viewer.screenshot() == watched, "a wrong expression has cost the picture");
+
+    choose(&viewer, "final");
+    viewer.until("the picture", |shot| *shot == picture);
+    viewer.quit();
+}
