@@ -10,6 +10,7 @@ mod editor;
 mod gallery;
 mod history;
 mod input;
+mod inspector;
 mod keys;
 mod layout;
 mod numbers;

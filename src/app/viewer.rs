@@ -1,6 +1,7 @@
 //! The state of the window's thread: session, resources and the last complete picture. No other thread uses them.
 
 mod compare;
+mod inspect;
 mod messages;
 mod picture;
 mod recording;
@@ -306,6 +307,7 @@ impl Viewer {
                 (camera.eye, camera.target) = (None, None);
                 [camera.azimuth, camera.elevation] = side.angles();
             }
+            Command::Pick(at) => self.inspect(at),
             Command::Screenshot => self.screenshot = true,
             Command::Quit => self.quit = true,
             Command::Edit(place) => match editor::open(&place) {

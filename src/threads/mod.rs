@@ -3,6 +3,7 @@
 
 pub(crate) mod baker;
 pub(crate) mod loader;
+pub(crate) mod measurer;
 pub(crate) mod worker;
 
 use std::collections::BTreeSet;
@@ -23,6 +24,7 @@ use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
 use loader::{Loaded, Loader};
+use measurer::Measurer;
 use worker::{Worker, WorkerMessage};
 
 /// Messages of the threads to the window.
@@ -36,6 +38,8 @@ pub(crate) enum Message {
     FilesChanged(BTreeSet<PathBuf>),
     /// The difference of the two pictures that the window compares, or why there is none.
     Compared(u64, Result<Box<Comparison>, String>),
+    /// The curves of a pixel's material.
+    Curves(Box<measurer::Measured>),
     /// The settings of a look file, or why it cannot be used.
     Look(Result<Box<Settings>, String>),
     /// A message for the user.
@@ -55,6 +59,8 @@ pub(crate) enum Role {
     Tracer(TraceKey),
     Reader(MeasuredKey),
     Explainer([u32; 2]),
+    /// Measures the BRDF.
+    Measurer,
     /// Waits for what is outside of Specula, or compares pictures.
     Waiter,
 }
@@ -109,6 +115,7 @@ pub(crate) struct Threads {
     pub(crate) worker: Worker,
     pub(crate) loader: Loader,
     pub(crate) baker: Baker,
+    pub(crate) measurer: Measurer,
     /// Threads that look for the line of a loop.
     explainers: Vec<JoinHandle<()>>,
     outbox: Outbox,
@@ -129,6 +136,7 @@ impl Threads {
             worker,
             loader: Loader::new(device, outbox),
             baker: Baker::new(device.0, outbox),
+            measurer: Measurer::new(device.0, outbox),
             explainers: Vec::new(),
             outbox: outbox.clone(),
         }

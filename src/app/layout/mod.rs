@@ -31,6 +31,7 @@ pub(super) enum Panel {
     Timing,
     Parameters,
     Passes,
+    Inspector,
     Environment,
     Lights,
     Output,
@@ -42,7 +43,7 @@ impl Panel {
     pub(super) const GROUPS: [&[Self]; 4] = [
         &[Self::Modes, Self::Model],
         &[Self::Shaders, Self::Timeline, Self::Timing],
-        &[Self::Parameters, Self::Passes],
+        &[Self::Parameters, Self::Passes, Self::Inspector],
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
     ];
 
@@ -56,6 +57,7 @@ impl Panel {
             Self::Timing => "GPU time",
             Self::Parameters => "Parameters",
             Self::Passes => "Passes",
+            Self::Inspector => "Inspector",
             Self::Environment => "Environment",
             Self::Lights => "Lights",
             Self::Output => "Output",

@@ -4,6 +4,7 @@
 mod camera;
 mod compare;
 mod environment;
+mod inspector;
 mod keys;
 mod lights;
 mod mode_tile;
@@ -25,6 +26,7 @@ use egui::{Ui, Vec2};
 
 use super::command::Command;
 use super::gallery::GalleryState;
+use super::inspector::Inspector;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
@@ -53,6 +55,7 @@ pub(super) struct PanelState {
     /// Slug of the mode that the list was last scrolled to.
     scrolled_to: String,
     pub(super) gallery: GalleryState,
+    pub(super) inspector: Inspector,
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
     files: overlay::diagnostics::Files,
@@ -72,6 +75,7 @@ impl PanelState {
             show_model_warnings: true,
             scrolled_to: String::new(),
             gallery: GalleryState::default(),
+            inspector: Inspector::default(),
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
             files: overlay::diagnostics::Files::default(),
@@ -105,6 +109,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
     viewer.panels.timeline.is_visible = false;
+    viewer.panels.inspector.is_visible = false;
     viewer.panels.gallery.begin_frame();
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
@@ -117,6 +122,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
         PictureArea { rect: whole, free: whole }
     };
     compare::show(ui.ctx(), viewer, picture.rect);
+    inspector::marker(ui.ctx(), &viewer.panels.inspector, picture.rect);
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
@@ -149,6 +155,12 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.timeline = state;
         return;
     }
+    if panel == Panel::Inspector {
+        let mut state = std::mem::take(&mut viewer.panels.inspector);
+        inspector::show(ui, viewer, &mut state);
+        viewer.panels.inspector = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
@@ -157,7 +169,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline => {}
+        Panel::Viewport | Panel::Timeline | Panel::Inspector => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
