@@ -2,6 +2,7 @@
 #version 460
 #include "interface.glsl"
 #include "common/pixel.glsl"
+#include "common/picture_px.glsl"
 #include "lighting/environment.glsl"
 #include "user/background.glsl"
 
@@ -12,7 +13,7 @@ layout(location = 0) out vec4 out_color;
 // The direction from the eye through the pixel, not normalized. With an infinite far plane the unprojected point has
 // w = 0, and its xyz is the direction. With a finite one w > 0, and xyz - w eye is the direction.
 vec3 direction_ws() {
-    vec2 clip = gl_FragCoord.xy / frame.viewport_px * 2.0 - 1.0;
+    vec2 clip = picture_px() / frame.viewport_px * 2.0 - 1.0;
     vec4 far = frame.world_from_clip * vec4(clip, 0.0, 1.0);
     return far.xyz - far.w * frame.eye_ws;
 }

@@ -64,6 +64,32 @@ pub enum Event<'a> {
         /// What was found about each.
         goals: &'a [Finding],
     },
+    /// The inspector has read a pixel.
+    Inspected {
+        /// Pixels from the upper left corner of the picture.
+        pixel: [u32; 2],
+        /// Shader generation.
+        generation: u64,
+        /// Whether the model covers the pixel.
+        hit: bool,
+        /// Name of the node, if the model covers the pixel.
+        node: Option<&'a str>,
+        /// Name of its material.
+        material: Option<&'a str>,
+        /// The values by slug of the mode, as `specula probe` prints them.
+        modes: serde_json::Map<String, serde_json::Value>,
+    },
+    /// The inspector has measured the BRDF of a pixel's material.
+    Curves {
+        /// Shader generation.
+        generation: u64,
+        /// Whether the shaders before the last edit were measured too.
+        before: bool,
+        /// Albedo at the normal, linear RGB, or nothing if it could not be measured.
+        albedo: Option<[f32; 3]>,
+        /// How long it took.
+        ms: f64,
+    },
     /// A screenshot was written.
     Screenshot {
         /// Its path.

@@ -1,8 +1,12 @@
 //! Measures the BRDF of the user's shaders on the device: albedo, reciprocity, the integral of D, lobes.
 
+mod curves;
+
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
+
+pub use curves::{Curves, Hemisphere, Material, prepare};
 
 use crate::frame::stages::MEASURE_STAGES;
 use crate::frame::{PipelineRequest, TablesKey, TargetFormat};
@@ -70,7 +74,7 @@ pub struct Worst {
 
 /// f NoV of each lobe, in 1/sr, linear RGB: the intensity that leaves per unit area under an irradiance of 1.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Lobe {
     /// Diffuse.
     pub diffuse: [f32; 3],
@@ -163,6 +167,11 @@ impl Bench {
     /// As [`Bench::new`].
     pub fn with(&self, settings: &Settings) -> Result<Self, GpuError> {
         Self::on(self.shared.clone(), settings)
+    }
+
+    /// Whether the shaders have this stage.
+    fn has(&self, stage: &str) -> bool {
+        self.shared.set.shaders.stages.contains_key(stage)
     }
 
     fn on(shared: Arc<Shared>, settings: &Settings) -> Result<Self, GpuError> {

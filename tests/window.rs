@@ -9,6 +9,7 @@ mod window {
     mod expressions;
     mod faults;
     mod gallery;
+    mod inspector;
     mod keys;
     mod layout;
     mod learn;

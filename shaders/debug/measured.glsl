@@ -7,6 +7,7 @@
 #include "brdf/surface.glsl"
 #include "common/color.glsl"
 #include "common/fragment.glsl"
+#include "common/picture_px.glsl"
 #include "debug/absent.glsl"
 #include "debug/modes.glsl"
 #include "lighting/punctual.glsl"
@@ -36,7 +37,7 @@ MeasuredLight measured_light(Fragment f, Surface s, vec3 v, LightRange range) {
 
 // `left` and `right` of the center of the view, with a white line two pixels wide between them.
 vec3 split(vec3 left, vec3 right) {
-    float x = gl_FragCoord.x - 0.5 * frame.viewport_px.x;
+    float x = picture_px().x - 0.5 * frame.viewport_px.x;
     if (abs(x) < 1.0) return vec3(1.0 / frame.exposure);
     return x < 0.0 ? left : right;
 }

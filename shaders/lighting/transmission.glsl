@@ -12,6 +12,7 @@
 #include "brdf/layers/transmission.glsl"
 #include "brdf/surface.glsl"
 #include "common/math.glsl"
+#include "common/picture_px.glsl"
 #include "lighting/environment.glsl"
 
 // The opaque scene with mip levels, as common/pixel.glsl stores it. A level is a mean of many pixels, from which flags and
@@ -34,7 +35,7 @@ vec3 refracted(Surface s, vec3 v, float ior) { return refract(-v, s.n, ior > 0.0
 // the current pixel.
 vec2 picture_uv(vec3 position_ws) {
     vec4 clip = frame.clip_from_world * vec4(position_ws, 1.0);
-    vec2 here = gl_FragCoord.xy / frame.viewport_px;
+    vec2 here = picture_px() / frame.viewport_px;
     return clip.w > 0.0 ? 0.5 + 0.5 * clip.xy / clip.w : here;
 }
 

@@ -71,6 +71,8 @@ pub(super) enum Command {
     FrameModel,
     /// Frame the model, seen from this side.
     ViewFrom(Side),
+    /// Inspect this pixel of the picture, counted from its upper left corner: the user has clicked it.
+    Pick([u32; 2]),
     /// Write the picture to `specula-N.png`.
     Screenshot,
     /// Close the window.

@@ -29,6 +29,8 @@ pub(super) struct Mouse {
     modifiers: ModifiersState,
     /// Time and place of the last press of the left button, for double clicks.
     last_press: Option<(Instant, Vec2)>,
+    /// Where the left button went down, unless the mouse has been dragged since or the press was the second of a double click.
+    click: Option<Vec2>,
 }
 
 /// Most time between the presses of a double click.
@@ -85,6 +87,8 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 MouseButton::Left => {
                     let was = std::mem::replace(&mut screen.mouse.left, pressed);
                     let is_double = pressed && is_double_click(&mut screen.mouse);
+                    let click = screen.mouse.click.take();
+                    screen.mouse.click = (pressed && !is_double).then_some(screen.mouse.at);
                     match pressed {
                         true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
                         false if was => viewer.playback.release(),
@@ -92,6 +96,10 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                     }
                     if is_double {
                         return focus(viewer, screen);
+                    }
+                    if let Some((x, y)) = click.filter(|_| !pressed).and_then(|_| screen.mouse_pixel()) {
+                        viewer.execute(Command::Pick([x, y]));
+                        return true;
                     }
                 }
                 MouseButton::Middle => screen.mouse.middle = pressed,
@@ -109,6 +117,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             let is_over = inside(screen, at);
             let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
             screen.mouse.at = at;
+            screen.mouse.click.take_if(|from| from.distance(at) > SAME_PLACE);
             if screen.mouse.left {
                 viewer.playback.drag(in_picture(screen, at));
             }
@@ -248,6 +257,7 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
         Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
         Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
         Key::Named(NamedKey::Escape) if viewer.panels.show_keys => viewer.panels.show_keys = false,
+        Key::Named(NamedKey::Escape) if viewer.panels.inspector.is_pinned() => viewer.panels.inspector.pin = None,
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {

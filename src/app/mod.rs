@@ -11,6 +11,7 @@ mod gallery;
 mod hint;
 mod history;
 mod input;
+mod inspector;
 mod keys;
 mod layout;
 mod learn;

@@ -2,6 +2,7 @@
 
 mod error_map;
 mod gallery;
+mod inspector;
 mod loops;
 mod probe;
 mod reference;
@@ -26,6 +27,7 @@ use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use error_map::ErrorMap;
 use gallery::Gallery;
+use inspector::PixelReader;
 use reference::ReferenceView;
 
 /// The CPU prepares a frame while the device draws the one before.
@@ -46,6 +48,7 @@ pub(super) struct PictureRect {
 pub(super) struct Screen {
     ui: UiRenderer,
     gallery: Gallery,
+    inspector: PixelReader,
     view: View,
     frames: Frames,
     layouts: Arc<SetLayouts>,
@@ -109,6 +112,7 @@ impl Screen {
         );
         Ok(Self {
             gallery: Gallery::default(),
+            inspector: PixelReader::default(),
             layouts: layouts.clone(),
             ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
             view: View::new(gpu, layouts, FRAMES_IN_FLIGHT)?,
@@ -179,6 +183,7 @@ impl Screen {
             self.view.forget();
             (self.reference, self.thumbnails, self.thumbnail) = (None, None, None);
             self.gallery.forget();
+            self.inspector.forget();
         }
         let shortage = self.shortage.take();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
@@ -244,9 +249,13 @@ impl Screen {
         }
         let context = (&self.layouts, pixels_per_point);
         let next_thumbnails = self.gallery.draw(&mut encoder, slot, viewer, &mut self.ui, context)?;
+        self.inspector.take(&self.frames, Some(slot), viewer);
+        let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
+        let next_values = self.inspector.draw(&mut encoder, slot, viewer, &self.layouts, of_pixel)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
-        self.has_others[slot] |= self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some();
+        self.has_others[slot] |=
+            self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some() || next_values.is_some();
         self.attempts[slot] = viewer.record(window);
         self.frames.submit(encoder, acquired.submission)?;
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
@@ -272,7 +281,7 @@ impl Screen {
             || std::mem::take(&mut self.redraws)
             || leaves_motion;
         let again = self.awaits_loops() || again;
-        let waits = [delay.filter(|delay| *delay < NEVER), next_thumbnails];
+        let waits = [delay.filter(|delay| *delay < NEVER), next_thumbnails, next_values];
         Ok(if again { Some(Duration::ZERO) } else { waits.into_iter().flatten().min() })
     }
 

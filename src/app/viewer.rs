@@ -2,6 +2,7 @@
 
 mod compare;
 mod edits;
+mod inspect;
 mod learning;
 mod messages;
 mod picture;
@@ -319,6 +320,7 @@ impl Viewer {
                 (camera.eye, camera.target) = (None, None);
                 [camera.azimuth, camera.elevation] = side.angles();
             }
+            Command::Pick(at) => self.inspect(at),
             Command::Screenshot => self.screenshot = true,
             Command::Quit => self.quit = true,
             Command::Edit(place) => match editor::open(&place) {

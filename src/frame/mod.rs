@@ -224,6 +224,11 @@ impl FrameState {
         self.shaders.modes.iter().find(|mode| mode.id == self.pipelines.mode)
     }
 
+    /// Factor from a value before exposure to one after it.
+    pub(crate) fn exposure(&self) -> f32 {
+        self.constants.exposure
+    }
+
     /// Whether both states draw the same picture, bit for bit.
     pub fn is_same(&self, other: &Self) -> bool {
         self.is_same_with(other, &self.constants, &other.constants) && self.pass_blocks == other.pass_blocks

@@ -95,6 +95,12 @@ impl Scene {
         self.model.instances.iter().enumerate().filter(move |(index, _)| is_visible(*index)).map(|(_, i)| i)
     }
 
+    /// Index of the material of an instance in `Model::materials`; `None` is the material override.
+    pub(crate) fn material_of(&self, instance: &Instance) -> Option<usize> {
+        let own = self.model.primitives.get(instance.primitive).map(|primitive| primitive.material_in(self.variant));
+        own.filter(|_| self.material_override.is_none())
+    }
+
     /// The material override, if it is enabled.
     pub(crate) fn replacement(&self) -> Option<Material> {
         self.material_override.as_ref().map(override_material)

@@ -19,6 +19,9 @@ pub(crate) const TABLE_STAGES: [&str; 3] = ["ibl/dfg.comp", "ibl/diffuse_albedo.
 pub const MEASURE_STAGES: [&str; 4] =
     ["measure/furnace.comp", "measure/reciprocity.comp", "measure/normalization.comp", "measure/lobe.comp"];
 
+/// The stage that measures the BRDF over the hemisphere, for the window. A tree need not have it.
+pub const HEMISPHERE_STAGE: &str = "measure/hemisphere.comp";
+
 /// The stages that a shader tree must have besides those of its passes.
 pub fn stages() -> Vec<&'static str> {
     let baked = TABLE_STAGES.into_iter().chain(RADIANCE_STAGES).chain(PREFILTER_STAGES).chain(SHEEN_STAGES);

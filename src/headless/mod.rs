@@ -3,6 +3,7 @@
 mod draw;
 mod error;
 mod hints;
+mod inspect;
 mod pixel;
 mod sequence;
 mod thumbnails;

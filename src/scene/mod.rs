@@ -33,7 +33,7 @@ pub use lights::{light_count, lights, view_of_light};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pack::pack_material;
-pub use pick::{near_pixel, point_at};
+pub use pick::{hit_at, near_pixel, point_at};
 pub use texture_source::{TextureSource, texture_sources};
 
 /// Options of a load.

@@ -30,22 +30,27 @@ pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u
 
 /// The nearest point of the model's triangles, world space, that the middle of the pixel `at` sees in a picture of this size. Hidden
 /// back faces and transparent surfaces count too. `None` beside the model.
-pub fn point_at(model: &Model, view: &CameraView, (width, height): (u32, u32), at: (u32, u32)) -> Option<Vec3> {
+pub fn point_at(model: &Model, view: &CameraView, size: (u32, u32), at: (u32, u32)) -> Option<Vec3> {
+    hit_at(model, view, size, at).map(|(_, point)| point)
+}
+
+/// [`point_at`], with the index of the instance that the point is on.
+pub fn hit_at(model: &Model, view: &CameraView, (width, height): (u32, u32), at: (u32, u32)) -> Option<(usize, Vec3)> {
     let across = 2.0 * (at.0 as f32 + 0.5) / width.max(1) as f32 - 1.0;
     let up = 1.0 - 2.0 * (at.1 as f32 + 0.5) / height.max(1) as f32;
     let (half, forward) = ((0.5 * view.fovy_rad).tan(), view.forward());
     let right = forward.cross(view.up);
     let ray = forward + right * (across * half * view.aspect) + view.up * (up * half);
-    let distances = model.instances.iter().flat_map(|instance| {
+    let distances = model.instances.iter().enumerate().flat_map(|(index, instance)| {
         let primitive = &model.primitives[instance.primitive];
         let place = |index: u32| {
             instance.world_from_object.transform_point3(primitive.vertices[index as usize].position.into()) - view.eye
         };
         let triangles = triangles(primitive.topology, &primitive.indices);
-        triangles.into_iter().filter_map(move |triangle| distance(ray, triangle.map(place)))
+        triangles.into_iter().filter_map(move |triangle| Some((index, distance(ray, triangle.map(place))?)))
     });
-    let nearest = distances.min_by(f32::total_cmp)?;
-    Some(view.eye + ray * nearest)
+    let (instance, nearest) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    Some((instance, view.eye + ray * nearest))
 }
 
 /// Where a ray from the origin meets a triangle, in lengths of `ray` (Moller & Trumbore 1997).

@@ -4,6 +4,7 @@
 pub(crate) mod baker;
 pub(crate) mod checker;
 pub(crate) mod loader;
+pub(crate) mod measurer;
 pub(crate) mod worker;
 
 use std::collections::BTreeSet;
@@ -26,6 +27,7 @@ use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
 use checker::{Checked, Checker};
 use loader::{Loaded, Loader};
+use measurer::Measurer;
 use worker::{Worker, WorkerMessage};
 
 /// Messages of the threads to the window.
@@ -41,6 +43,8 @@ pub(crate) enum Message {
     Compared(u64, Result<Box<Comparison>, String>),
     /// What was written into the files of the shader tree, or why nothing was.
     Written(Result<String, String>),
+    /// The curves of a pixel's material.
+    Curves(Box<measurer::Measured>),
     /// The settings of a look file, or why it cannot be used.
     Look(Result<Box<Settings>, String>),
     /// A message for the user.
@@ -69,6 +73,8 @@ pub(crate) enum Role {
     Reader(MeasuredKey),
     Explainer([u32; 2]),
     Checker,
+    /// Measures the BRDF.
+    Measurer,
     /// Waits for what is outside of Specula, or compares pictures.
     Waiter,
 }
@@ -124,6 +130,7 @@ pub(crate) struct Threads {
     pub(crate) loader: Loader,
     pub(crate) baker: Baker,
     pub(crate) checker: Checker,
+    pub(crate) measurer: Measurer,
     /// Threads that look for the line of a loop.
     explainers: Vec<JoinHandle<()>>,
     outbox: Outbox,
@@ -146,6 +153,7 @@ impl Threads {
             loader: Loader::new(device, outbox),
             baker: Baker::new(device.0, outbox),
             checker: Checker::new(device.0, compiler, outbox),
+            measurer: Measurer::new(device.0, outbox),
             explainers: Vec::new(),
             outbox: outbox.clone(),
         }

@@ -81,6 +81,8 @@ enum Job {
     Build(Build),
     /// Pipelines of thumbnails: what is built when there is nothing else to do. Replaces an earlier job of this kind.
     Thumbnails(Arc<PipelineSet>, VecDeque<PipelineRequest>),
+    /// The same of the modes that the inspector reads, which come before thumbnails.
+    Inspected(Arc<PipelineSet>, VecDeque<PipelineRequest>),
     /// The first frame of the last reload is on screen.
     Shown,
 }
@@ -140,6 +142,7 @@ impl Worker {
             has_compiled: false,
             panics: 0,
             thumbnails: None,
+            inspected: None,
             unfinished: false,
             is_shown: false,
             recorder: recorder.clone(),
@@ -177,6 +180,11 @@ impl Worker {
     /// Builds pipelines of thumbnails, one request after the other, as long as no other work waits. Replaces the requests before.
     pub(crate) fn build_thumbnails(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
         self.send(Job::Thumbnails(set.clone(), requests));
+    }
+
+    /// [`Worker::build_thumbnails`] for the modes that the inspector reads.
+    pub(crate) fn build_inspected(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
+        self.send(Job::Inspected(set.clone(), requests));
     }
 
     /// Marks the newest build as successful, or lets a failed one be tried again.

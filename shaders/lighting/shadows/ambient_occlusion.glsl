@@ -4,6 +4,7 @@
 
 #include "interface.glsl"
 #include "common/math.glsl"
+#include "common/picture_px.glsl"
 
 //@ui "Ambient occlusion" doc="Corners and gaps get less light from the environment (GTAO, Jimenez et al. 2016)"
 layout(constant_id = USER_CONSTANTS + 11) const bool AMBIENT_OCCLUSION = false;
@@ -16,7 +17,7 @@ float screen_visibility(vec3 position_ws) {
     if (!AMBIENT_OCCLUSION) return 1.0;
     float distance_m = -(frame.view_from_world * vec4(position_ws, 1.0)).z;
     vec2 size = ceil(0.5 * frame.viewport_px);
-    vec2 texel = gl_FragCoord.xy / frame.viewport_px * size - 0.5;
+    vec2 texel = picture_px() / frame.viewport_px * size - 0.5;
     vec2 part = fract(texel);
     vec2 corner = (floor(texel) + 1.0) / size;
     vec4 hidden = textureGather(occlusion, corner, 0);

@@ -4,6 +4,7 @@
 
 #include "interface.glsl"
 #include "common/math.glsl"
+#include "common/picture_px.glsl"
 #include "common/sampling.glsl"
 #include "lighting/shadows/tiles.glsl"
 #include "user/params.glsl"
@@ -60,7 +61,7 @@ float along_axis_m(LightDepth of, bool is_parallel, float depth) {
 float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, float per_meter, float angle) {
     const int BLOCKERS = 8;
     const int TAPS = 16;
-    float turn = pixel_noise(gl_FragCoord.xy);
+    float turn = pixel_noise(picture_px());
     float depth = max(seen.z / seen.w, 0.0);
     bool is_parallel = view[0].w == 0.0 && view[1].w == 0.0 && view[2].w == 0.0;
     LightDepth of = light_depth(view, is_parallel);

@@ -32,6 +32,7 @@ pub(super) enum Panel {
     Expression,
     Parameters,
     Passes,
+    Inspector,
     Environment,
     Lights,
     Output,
@@ -44,7 +45,7 @@ impl Panel {
     pub(super) const GROUPS: [&[Self]; 4] = [
         &[Self::Modes, Self::Model, Self::Learn],
         &[Self::Shaders, Self::Timeline, Self::Timing, Self::Expression],
-        &[Self::Parameters, Self::Passes],
+        &[Self::Parameters, Self::Passes, Self::Inspector],
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
     ];
 
@@ -59,6 +60,7 @@ impl Panel {
             Self::Expression => "Expression",
             Self::Parameters => "Parameters",
             Self::Passes => "Passes",
+            Self::Inspector => "Inspector",
             Self::Environment => "Environment",
             Self::Lights => "Lights",
             Self::Output => "Output",

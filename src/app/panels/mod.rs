@@ -6,6 +6,7 @@ mod compare;
 pub(super) mod defaults;
 mod environment;
 pub(super) mod expression;
+mod inspector;
 mod keys;
 mod learn;
 mod lights;
@@ -29,6 +30,7 @@ use egui::{Ui, Vec2};
 use super::command::Command;
 use super::gallery::GalleryState;
 use super::hint::Hint;
+use super::inspector::Inspector;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
@@ -57,6 +59,7 @@ pub(super) struct PanelState {
     /// Slug of the mode that the list was last scrolled to.
     scrolled_to: String,
     pub(super) gallery: GalleryState,
+    pub(super) inspector: Inspector,
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
     pub(super) expression: expression::ExpressionState,
@@ -79,6 +82,7 @@ impl PanelState {
             show_model_warnings: true,
             scrolled_to: String::new(),
             gallery: GalleryState::default(),
+            inspector: Inspector::default(),
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
             expression: expression::ExpressionState::default(),
@@ -115,6 +119,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
     viewer.panels.timeline.is_visible = false;
+    viewer.panels.inspector.is_visible = false;
     viewer.panels.gallery.begin_frame();
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
@@ -127,6 +132,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
         PictureArea { rect: whole, free: whole }
     };
     compare::show(ui.ctx(), viewer, picture.rect);
+    inspector::marker(ui.ctx(), &viewer.panels.inspector, picture.rect);
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
@@ -169,6 +175,12 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.expression = state;
         return;
     }
+    if panel == Panel::Inspector {
+        let mut state = std::mem::take(&mut viewer.panels.inspector);
+        inspector::show(ui, viewer, &mut state);
+        viewer.panels.inspector = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
@@ -177,7 +189,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Expression => {}
+        Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Expression | Panel::Inspector => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);

@@ -19,9 +19,9 @@ use crate::shader::{Mode, ShaderSet};
 use super::FRAMES_IN_FLIGHT;
 
 /// The time without a change after which thumbnails are drawn.
-const REST: Duration = Duration::from_millis(150);
+pub(super) const REST: Duration = Duration::from_millis(150);
 /// The same on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
-const REST_ON_CPU: Duration = Duration::from_millis(500);
+pub(super) const REST_ON_CPU: Duration = Duration::from_millis(500);
 /// Draws of thumbnails, each of several modes, in one frame. On a GPU each takes less than a millisecond.
 const DRAWS_PER_FRAME: usize = 3;
 /// Thumbnails in a row of the texture.
@@ -29,16 +29,16 @@ const COLUMNS: u32 = 16;
 
 /// Everything that thumbnails show, but the mode.
 #[derive(PartialEq)]
-struct Shown {
-    settings: Settings,
+pub(super) struct Shown {
+    pub(super) settings: Settings,
     /// Address of the shaders: generations may count from 1 again.
     shaders: usize,
-    scene: Scene,
-    revisions: Revisions,
+    pub(super) scene: Scene,
+    pub(super) revisions: Revisions,
     environment: usize,
-    target: TargetFormat,
+    pub(super) target: TargetFormat,
     /// Pixels of a thumbnail.
-    size: (u32, u32),
+    pub(super) size: (u32, u32),
 }
 
 /// The thumbnails of the gallery.
@@ -257,7 +257,7 @@ impl Gallery {
 }
 
 /// What thumbnails of `size` pixels show now. `None` while the shaders of the picture, or its resources, are not complete.
-fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
+pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
     let state = viewer.shown()?;
     let shaders = viewer.session.shaders.clone()?;
     let is_current = state.shaders.generation == shaders.generation && !viewer.shader.compiling;

@@ -36,6 +36,7 @@ impl Screen {
     /// Draws nothing beside the picture until something changes.
     fn end_others(&mut self, viewer: &mut Viewer) {
         self.gallery.stop();
+        self.inspector.stop();
         viewer.end_comparison();
         if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
             viewer.versions.cut_short(number);

@@ -19,6 +19,7 @@ impl Screen {
     ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
         self.read_pixel();
         self.take_thumbnail(viewer);
+        self.inspector.take(&self.frames, None, viewer);
         self.take_copies(viewer);
         if self.gallery.is_misfit(&viewer.gpu, &viewer.panels.gallery, self.egui.pixels_per_point()) {
             // SYNC: rare, because thumbnails change their size only with the width of their panel.

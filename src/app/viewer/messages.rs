@@ -41,6 +41,7 @@ impl Viewer {
             Message::Bake(message) => self.on_bake(message),
             Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
+            Message::Curves(measured) => self.on_curves(*measured),
             Message::Say(text) => self.say(text),
             Message::Look(Ok(settings)) => {
                 self.session.settings = *settings;
@@ -334,6 +335,10 @@ impl Viewer {
                 self.threads.checker.failed();
                 self.learning.checking = None;
                 "checking"
+            }
+            Role::Measurer => {
+                self.panels.inspector.asked = None;
+                "measuring"
             }
             Role::Waiter => {
                 (self.is_choosing, self.compare.measuring) = (false, None);

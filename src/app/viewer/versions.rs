@@ -10,6 +10,7 @@ use super::LastComplete;
 use crate::app::difference::{Line, difference};
 use crate::events::ReloadEvent;
 use crate::pipeline::PipelineSet;
+use crate::shader::ShaderSet;
 
 /// Number of versions that are kept. Each holds pipelines, and after an edit of D also the light that was baked with it.
 const MOST: usize = 12;
@@ -164,6 +165,11 @@ impl Versions {
     /// Whether a version can be shown beside the version `newest`, which is on screen.
     pub(in crate::app) fn can_show(&self, version: &Version, newest: u64) -> bool {
         version.number < newest && !version.is_cut_short
+    }
+
+    /// The shaders before those of the version `newest`.
+    pub(super) fn shaders_before(&self, newest: u64) -> Option<Arc<ShaderSet>> {
+        self.list.iter().rev().find(|version| version.number < newest).map(|version| version.set.shaders.clone())
     }
 
     /// The newest version before `newest` that can be shown.

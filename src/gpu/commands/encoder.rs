@@ -258,6 +258,21 @@ impl Encoder {
         }
     }
 
+    /// Maps later draws to a picture of this size, of which the targets hold a part that begins at `origin`. The scissor stays.
+    pub fn set_part_of_picture(&mut self, origin: (u32, u32), size: (u32, u32)) {
+        let viewport = vk::Viewport {
+            x: -(origin.0 as f32),
+            y: -(origin.1 as f32),
+            width: size.0 as f32,
+            height: size.1 as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: this encoder records the command buffer. A picture is at most as large as an image, and viewports may begin as
+        // far outside of their targets.
+        unsafe { self.gpu.device.cmd_set_viewport(self.raw, 0, &[viewport]) };
+    }
+
     /// Sets the interpolation weight of [`crate::gpu::Raster::Averaged`]: 0 keeps the target, 1 replaces it.
     pub fn set_weight(&mut self, weight: f32) {
         // SAFETY: this encoder records the command buffer.

@@ -4,6 +4,7 @@
 mod capture;
 mod declared;
 mod passes;
+mod pixel_modes;
 mod targets;
 mod thumbnails;
 mod uniforms;
@@ -14,6 +15,7 @@ use glam::Mat4;
 
 use capture::PixelReadback;
 pub use capture::{Capture, Readback};
+pub use pixel_modes::PixelModes;
 use targets::{TargetDesc, Targets};
 pub use thumbnails::Thumbnails;
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};

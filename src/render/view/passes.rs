@@ -45,13 +45,13 @@ impl ColorTarget {
 
 /// Draws in the order that blending and depth require.
 #[derive(Default)]
-struct Sorted<'a> {
+pub(super) struct Sorted<'a> {
     /// Opaque and masked, front to back, so that the depth test rejects hidden fragments.
-    opaque: Vec<&'a GpuDraw>,
+    pub(super) opaque: Vec<&'a GpuDraw>,
     /// Transmissive, back to front.
-    transmissive: Vec<&'a GpuDraw>,
+    pub(super) transmissive: Vec<&'a GpuDraw>,
     /// Alpha-blended, back to front.
-    blended: Vec<&'a GpuDraw>,
+    pub(super) blended: Vec<&'a GpuDraw>,
 }
 
 impl Passes<'_> {
@@ -158,7 +158,7 @@ impl Passes<'_> {
     }
 
     /// Draws the passes that add to the model: those that blend, or the others.
-    fn added(&self, encoder: &mut Encoder, blend: bool) {
+    pub(super) fn added(&self, encoder: &mut Encoder, blend: bool) {
         let Some(scene) = &self.frame.scene else { return };
         for pass in self.request().added_passes().filter(|pass| pass.note.blend == blend) {
             let instances = instances(self.frame, pass);
@@ -168,7 +168,7 @@ impl Passes<'_> {
     }
 
     /// Draws what lies behind the model where nothing covers it.
-    fn background(&self, encoder: &mut Encoder) {
+    pub(super) fn background(&self, encoder: &mut Encoder) {
         for pipeline in self.request().background_keys().filter_map(|key| self.pipeline(&key)) {
             self.sets.bind(encoder, pipeline);
             let (list, both, front) =
@@ -243,7 +243,8 @@ impl Passes<'_> {
         Attachments { clear: Some([0.0; 4]), resolve, depth: Some(&targets.depth), ..Attachments::of(color) }
     }
 
-    fn draw(
+    /// Draws surfaces with the pipelines that `key` selects.
+    pub(super) fn draw(
         &self,
         encoder: &mut Encoder,
         draws: &[&GpuDraw],
@@ -348,7 +349,8 @@ fn within(rect: Rect, area: Rect) -> Rect {
     }
 }
 
-fn sort(scene: &GpuScene, eye: Vec3) -> Sorted<'_> {
+/// The draws of a scene in the order that blending and depth require.
+pub(super) fn sort(scene: &GpuScene, eye: Vec3) -> Sorted<'_> {
     let mut by_distance: Vec<_> = scene.draws.iter().collect();
     by_distance.sort_by(|a, b| a.center_ws.distance_squared(eye).total_cmp(&b.center_ws.distance_squared(eye)));
     let mut sorted = Sorted::default();

@@ -47,6 +47,8 @@ pub(super) struct Thread {
     pub(super) panics: u32,
     /// The thumbnails whose pipelines are still to be built, and the set that gets them.
     pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
+    /// The same for the inspector.
+    pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
     /// Whether the last reload has left stages to [`Thread::finish`].
     pub(super) unfinished: bool,
     /// Whether the first frame of the last reload is on screen. Until then, the driver needs the CPU.
@@ -103,12 +105,13 @@ impl Thread {
                     }
                     Job::Build(newest) => build = Some(newest),
                     Job::Thumbnails(set, requests) => self.thumbnails = Some((set, requests)),
+                    Job::Inspected(set, requests) => self.inspected = Some((set, requests)),
                 }
             }
             if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
                 // Drop requests for an older set. The window sends one for the new set.
                 build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
-                self.thumbnails = None;
+                (self.thumbnails, self.inspected) = (None, None);
             } else if self.is_stale() {
                 // The edit goes first.
             } else if self.unfinished && (self.is_shown || build.is_some()) {
@@ -255,7 +258,8 @@ impl Thread {
 
     /// Whether pipelines of thumbnails can be built. Until all stages are compiled, an edit is not finished.
     fn has_thumbnails(&self) -> bool {
-        !self.unfinished && self.thumbnails.as_ref().is_some_and(|(_, requests)| !requests.is_empty())
+        let waiting = [&self.inspected, &self.thumbnails];
+        !self.unfinished && waiting.into_iter().flatten().any(|(_, requests)| !requests.is_empty())
     }
 
     /// Builds the pipelines of the next thumbnails.
@@ -263,8 +267,9 @@ impl Thread {
         if !self.has_thumbnails() {
             return;
         }
-        let Some((set, requests)) = &mut self.thumbnails else { return };
-        // The window shows no thumbnail where this fails.
+        let waiting = [&mut self.inspected, &mut self.thumbnails].into_iter().flatten();
+        let Some((set, requests)) = waiting.into_iter().find(|(_, requests)| !requests.is_empty()) else { return };
+        // The window shows no thumbnail, or no values, where this fails.
         let built = requests.pop_front().map(|request| set.build_aside(&request));
         if let Some(Err(error)) = built {
             tracing::debug!("no thumbnails: {error}");

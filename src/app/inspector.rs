@@ -1,0 +1,137 @@
+//! The inspector: the pinned pixel, its value in every mode, and the curves of its material. The panel shows it, the screen reads it from
+//! the device, and the viewer measures the curves.
+
+pub(super) mod directions;
+pub(super) mod text;
+
+use std::collections::BTreeMap;
+
+use crate::interface::Light;
+use crate::measure::{Curves, Material};
+use crate::scene::CameraView;
+use crate::shader::PixelValue;
+
+use directions::Directions;
+
+/// What the panel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Page {
+    /// The value in every mode.
+    #[default]
+    Values,
+    /// The lobe and the albedo of the material.
+    Lobe,
+}
+
+/// State of the inspector. Nothing is read or measured while its panel is out of sight.
+#[derive(Default)]
+pub(super) struct Inspector {
+    /// Whether the panel is in sight in this frame.
+    pub(super) is_visible: bool,
+    /// The pixel that the user has clicked.
+    pub(super) pin: Option<[u32; 2]>,
+    /// Whether the pixel under the mouse is shown while none is pinned.
+    pub(super) follows: bool,
+    pub(super) page: Page,
+    pub(super) search: String,
+    /// The newest values, also while newer ones are being read.
+    pub(super) reading: Option<Reading>,
+    /// What the newest curves were asked for.
+    pub(super) asked: Option<Asked>,
+    pub(super) curves: Option<Shown>,
+    /// How far the user has turned the lobe in space, degrees.
+    pub(super) turn_deg: f32,
+}
+
+impl Inspector {
+    /// Whether a pixel is pinned, and the user sees it.
+    pub(super) fn is_pinned(&self) -> bool {
+        self.is_visible && self.pin.is_some()
+    }
+}
+
+/// The values of a pixel.
+#[derive(Clone, Debug)]
+pub(super) struct Reading {
+    /// Pixels from the upper left corner of the picture.
+    pub(super) at: [u32; 2],
+    /// Value by slug of the mode, with the number of the picture that it was read from.
+    pub(super) values: BTreeMap<String, (PixelValue, u64)>,
+    /// Number of the picture that values are read from.
+    pub(super) picture: u64,
+    /// Whether all modes were read from that picture.
+    pub(super) is_complete: bool,
+    /// Factor from a value before exposure to one after it.
+    pub(super) exposure: f32,
+    /// The camera and the lights of the picture, world space.
+    pub(super) camera: CameraView,
+    pub(super) lights: Vec<Light>,
+    /// Names of the node and of the material, if the pixel shows a surface of the model.
+    pub(super) names: Option<[String; 2]>,
+}
+
+impl Reading {
+    /// The value of a mode, if it was read.
+    pub(super) fn value(&self, slug: &str) -> Option<PixelValue> {
+        self.values.get(slug).map(|(value, _)| *value)
+    }
+
+    /// Whether the value of a mode is that of an earlier picture.
+    pub(super) fn is_old(&self, slug: &str) -> bool {
+        self.values.get(slug).is_none_or(|(_, picture)| *picture != self.picture)
+    }
+
+    /// The three numbers of a mode that has data here.
+    pub(super) fn numbers(&self, slug: &str) -> Option<[f32; 3]> {
+        let value = self.value(slug).filter(|value| !value.no_data && !value.not_finite)?;
+        // Color is multiplied by coverage.
+        let [r, g, b, coverage] = value.value;
+        (coverage > 0.0).then(|| [r, g, b].map(|number| number / coverage))
+    }
+
+    /// Whether the model covers the pixel. Only modes that draw no background tell.
+    pub(super) fn is_hit(&self) -> bool {
+        const WITHOUT_BACKGROUND: [&str; 3] = ["position", "depth", "shading-normal"];
+        let covers = |value: PixelValue| value.value[3] > 0.0 || value.no_data || value.not_finite;
+        WITHOUT_BACKGROUND.iter().filter_map(|slug| self.value(slug)).any(covers)
+    }
+
+    /// The normal, and the directions to the eye and to the light of this number, from 1; 0 is light 1 too.
+    pub(super) fn directions(&self, light: u32) -> Option<Directions> {
+        let (position, normal) = (self.numbers("position")?, self.numbers("shading-normal")?);
+        let light = self.lights.get(light.max(1) as usize - 1)?;
+        Directions::new(position.into(), normal.into(), self.camera.eye, light)
+    }
+
+    /// The material at the pixel, lit by the light of this number.
+    pub(super) fn material(&self, light: u32) -> Option<Material> {
+        let [base_color, metallic, roughness] = ["base-color", "metallic", "roughness"].map(|slug| self.numbers(slug));
+        let light_deg = self.directions(light)?.light_deg;
+        Some(Material {
+            base_color: base_color?.map(|channel| channel.clamp(0.0, 1.0)),
+            metallic: metallic?[0].clamp(0.0, 1.0),
+            roughness: roughness?[0].clamp(0.0, 1.0),
+            // The measuring stages take a light above the horizon.
+            light_deg: light_deg.min(89.0),
+        })
+    }
+}
+
+/// Inputs of curves. While they are the same, the curves are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Asked {
+    /// Number of the request.
+    pub(super) number: u64,
+    pub(super) material: Material,
+    /// Addresses of the shaders: generations may count from 1 again.
+    pub(super) shaders: [usize; 2],
+    /// The author's constants and parameters, as they are compared.
+    pub(super) settings: String,
+}
+
+/// The curves on screen.
+pub(super) struct Shown {
+    pub(super) of: Material,
+    pub(super) now: Result<Curves, String>,
+    pub(super) before: Option<Curves>,
+}

@@ -1,0 +1,132 @@
+//! The panel Inspector: the values of a pixel in every mode, and the lobe and albedo of its material.
+
+mod lobe;
+mod plot;
+mod solid;
+mod values;
+
+use egui::{Color32, Id, LayerId, Order, Rect, RichText, Stroke, TextEdit, Ui, pos2, vec2};
+
+use super::rows::choose;
+use super::theme::{ACCENT, QUIET};
+use crate::app::inspector::{Inspector, Page, text};
+use crate::app::viewer::Viewer;
+
+/// Radius of the marker of the pinned pixel, points.
+const MARKER: f32 = 5.0;
+
+/// Shows the panel.
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector) {
+    state.is_visible = true;
+    let shaders = viewer.session.shaders.clone().unwrap_or_default();
+    header(ui, state, &shaders.modes);
+    let Some(reading) = &state.reading else {
+        let hint =
+            "Click a pixel of the picture to read its value in every mode. Esc, or a click on the marker, unpins it.";
+        ui.label(RichText::new(hint).small().color(QUIET));
+        return;
+    };
+    ui.horizontal(|ui| {
+        let pages = [
+            (Page::Values, "Values", "The value of this pixel in every mode, before exposure, in world space"),
+            (Page::Lobe, "BRDF", "The lobe and the albedo of this pixel's material, from your GLSL"),
+        ];
+        for (page, name, doc) in pages {
+            ui.selectable_value(&mut state.page, page, name).on_hover_text(doc);
+        }
+        light(ui, &mut viewer.session.settings.lights.chosen, reading.lights.len());
+    });
+    match state.page {
+        Page::Values => {
+            ui.add(TextEdit::singleline(&mut state.search).hint_text("Search values").desired_width(f32::INFINITY));
+            let features = viewer.session.features();
+            values::show(ui, reading, &state.search, &shaders.modes, features, &mut viewer.session.settings.mode);
+        }
+        Page::Lobe => {
+            let chosen = viewer.session.settings.lights.chosen;
+            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                lobe::show(ui, reading, state.curves.as_ref(), state.asked.as_ref(), chosen, &mut state.turn_deg);
+            });
+        }
+    }
+}
+
+/// The pixel, what it shows, and what can be done with it.
+fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
+    ui.horizontal(|ui| {
+        let at = state.pin.or(state.reading.as_ref().filter(|_| state.follows).map(|reading| reading.at));
+        match at {
+            Some([x, y]) => {
+                let label = ui.label(RichText::new(format!("{x}, {y}")).monospace().strong());
+                label.on_hover_text("Pixels from the upper left corner of the picture");
+            }
+            None => drop(ui.label(RichText::new("no pixel").color(QUIET))),
+        }
+        if state.pin.is_some() && ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
+            state.pin = None;
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            copy(ui, state, modes);
+            let follow = ui.checkbox(&mut state.follows, "Follow mouse");
+            follow.on_hover_text("While no pixel is pinned, read the pixel under the mouse once the mouse rests");
+        });
+    });
+    let Some(reading) = &state.reading else { return };
+    let about = match &reading.names {
+        Some([node, material]) => format!("{node} · {material}"),
+        None if reading.is_complete => "The model does not cover this pixel".to_owned(),
+        None => String::new(),
+    };
+    let hover = "Node and material of the nearest surface under the pixel. A surface that a mask or alpha makes invisible counts too";
+    ui.add(egui::Label::new(RichText::new(about).small().color(QUIET)).truncate()).on_hover_text(hover);
+}
+
+/// The menu that copies all values.
+fn copy(ui: &mut Ui, state: &Inspector, modes: &[crate::shader::Mode]) {
+    ui.add_enabled_ui(state.reading.is_some(), |ui| {
+        let menu = ui.menu_button("Copy", |ui| {
+            let Some(reading) = &state.reading else { return };
+            if ui.button("All values as text").clicked() {
+                ui.ctx().copy_text(text::table(reading, modes));
+                ui.close();
+            }
+            if ui.button("All values as JSON").on_hover_text("In the form of `specula probe --json`").clicked() {
+                ui.ctx().copy_text(serde_json::to_string_pretty(&text::json(reading)).unwrap_or_default());
+                ui.close();
+            }
+        });
+        menu.response.on_hover_text("Copy all values of this pixel");
+    });
+}
+
+/// The light whose terms are shown.
+fn light(ui: &mut Ui, chosen: &mut u32, lights: usize) {
+    let name = |light: u32| if light == 0 { "All lights".to_owned() } else { format!("Light {light}") };
+    let list = choose(ui, "inspected light", name(*chosen), |ui| {
+        (0..=lights as u32).for_each(|light| drop(ui.selectable_value(chosen, light, name(light))));
+    });
+    list.on_hover_text(
+        "Light whose BRDF terms, directions and lobe are shown. All lights: the terms and the lobe of light 1, and the sum of the \
+         lobes over all lights",
+    );
+}
+
+/// Marks the pinned pixel in the picture.
+pub(super) fn marker(egui: &egui::Context, state: &Inspector, picture: Rect) {
+    let Some([x, y]) = state.pin.filter(|_| state.is_visible) else { return };
+    let scale = egui.pixels_per_point();
+    let at = picture.min + vec2(x as f32 + 0.5, y as f32 + 0.5) / scale;
+    if !picture.contains(at) {
+        return;
+    }
+    let painter =
+        egui.layer_painter(LayerId::new(Order::Background, Id::new("inspected pixel"))).with_clip_rect(picture);
+    // Visible on light and dark.
+    painter.circle_stroke(at, MARKER, Stroke::new(3.0, Color32::from_black_alpha(170)));
+    painter.circle_stroke(at, MARKER, Stroke::new(1.5, ACCENT));
+    for (dx, dy) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+        let along = |length: f32| pos2(at.x + dx * length, at.y + dy * length);
+        painter.line_segment([along(MARKER), along(MARKER + 4.0)], Stroke::new(3.0, Color32::from_black_alpha(170)));
+        painter.line_segment([along(MARKER), along(MARKER + 4.0)], Stroke::new(1.5, ACCENT));
+    }
+}

@@ -1,0 +1,302 @@
+//! The BRDF of the inspected pixel's material: its lobe in the plane of incidence and in space, and its albedo over the angle. The curves
+//! before the last edit are dashed.
+
+use egui::{Align2, Color32, Pos2, RichText, Sense, Stroke, Ui, vec2};
+
+use super::super::theme::{ACCENT, ERROR, QUIET, WARNING};
+use super::plot::{Chart, HalfDisk, Pen, note};
+use super::solid;
+use crate::app::inspector::directions::Directions;
+use crate::app::inspector::{Asked, Reading, Shown};
+use crate::measure::{Curves, Lobe, Material};
+
+const DIFFUSE: Color32 = Color32::from_rgb(240, 140, 66);
+const SPECULAR: Color32 = Color32::from_rgb(98, 160, 255);
+const MULTIPLE: Color32 = Color32::from_rgb(98, 200, 132);
+const SUM: Color32 = Color32::from_rgb(222, 224, 230);
+/// Height of the polar plot and of the lobe in space, points.
+const TALL: f32 = 170.0;
+/// Height of the charts, points.
+const LOW: f32 = 110.0;
+
+/// The modes of properties that the curves leave out, with the value that glTF gives them where a material does not.
+const LEFT_OUT: [(&str, &str, f32); 9] = [
+    ("clearcoat", "clearcoat", 0.0),
+    ("sheen-color", "sheen", 0.0),
+    ("anisotropy", "anisotropy", 0.0),
+    ("iridescence", "iridescence", 0.0),
+    ("transmission", "transmission", 0.0),
+    ("diffuse-transmission", "diffuse transmission", 0.0),
+    ("specular-factor", "specular factor", 1.0),
+    ("specular-color", "specular color", 0.04),
+    ("ior", "index of refraction", 1.5),
+];
+
+/// Shows the page.
+pub(super) fn show(
+    ui: &mut Ui,
+    reading: &Reading,
+    shown: Option<&Shown>,
+    asked: Option<&Asked>,
+    light: u32,
+    turn_deg: &mut f32,
+) {
+    if !reading.is_hit() {
+        let text = if reading.is_complete { "The model does not cover this pixel" } else { "Reading the pixel…" };
+        ui.label(RichText::new(text).small().color(QUIET));
+        return;
+    }
+    let Some((directions, material)) = reading.directions(light).zip(reading.material(light)) else {
+        ui.label(RichText::new(why_not(reading, light)).small().color(QUIET));
+        return;
+    };
+    about(ui, &material, &directions, reading);
+    let Some(shown) = shown else {
+        ui.label(RichText::new("Measuring…").small().color(QUIET));
+        return;
+    };
+    if asked.is_none_or(|asked| asked.material != shown.of) {
+        ui.label(RichText::new("Measuring… the curves below are those of the material before").small().color(QUIET));
+    }
+    let curves = match &shown.now {
+        Ok(curves) => curves,
+        Err(message) => return drop(ui.label(RichText::new(message).small().color(ERROR))),
+    };
+    let before = shown.before.as_ref();
+    legend(ui, before.is_some());
+    polar(ui, curves, before, &shown.of, &directions);
+    let chart = |ui: &mut Ui, title: &str, doc: &str, of: fn(&Curves) -> &[[f32; 3]]| {
+        ui.label(RichText::new(title).small().color(QUIET)).on_hover_text(doc);
+        albedo(ui, of(curves), before.map(of), directions.eye_deg);
+    };
+    let doc = "Part of the light from a uniform white sky that leaves the surface towards the eye, over the angle of the eye from the \
+        normal: the integral of f NoL over the hemisphere. Red, green and blue";
+    chart(ui, "Albedo", doc, |curves| &curves.albedo);
+    let doc = "The same for a base color of white. 1: the surface reflects all light. More: it gains energy. Less: it loses energy";
+    chart(ui, "White furnace", doc, |curves| &curves.furnace);
+    if let Some(hemisphere) = &curves.hemisphere {
+        let doc = "f NoV over the hemisphere of directions to the eye: a length in each direction. Drag to turn it";
+        ui.label(RichText::new("Lobe in space").small().color(QUIET)).on_hover_text(doc);
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TALL), Sense::drag());
+        *turn_deg = (*turn_deg - 0.7 * response.drag_delta().x).rem_euclid(360.0);
+        if ui.is_rect_visible(rect) {
+            solid::paint(&ui.painter().with_clip_rect(rect), rect, hemisphere, &directions, *turn_deg);
+        }
+        response.on_hover_text(doc);
+    }
+}
+
+/// Why there is nothing to measure.
+fn why_not(reading: &Reading, light: u32) -> String {
+    let missing = ["position", "shading-normal", "base-color", "metallic", "roughness"];
+    let missing: Vec<&str> = missing.into_iter().filter(|slug| reading.numbers(slug).is_none()).collect();
+    match missing.as_slice() {
+        [] if reading.lights.is_empty() => "There is no light: choose some in the panel Lights".to_owned(),
+        [] => format!("Light {} has no direction here", light.max(1)),
+        missing => format!("The pixel has no value of {}, which the curves need", missing.join(", ")),
+    }
+}
+
+/// The material and the angles, and what the curves leave out.
+fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Reading) {
+    let [r, g, b] = material.base_color;
+    let Material { metallic, roughness, .. } = material;
+    let text = format!("base {r:.3} {g:.3} {b:.3}  metallic {metallic:.2}  roughness {roughness:.3}");
+    let doc = "Base color (linear RGB), metallic and roughness of this pixel, which the curves are measured with";
+    ui.label(RichText::new(text).small().monospace()).on_hover_text(doc);
+    let Directions { light_deg, eye_deg, azimuth_deg } = directions;
+    let text = format!("light {light_deg:.1}°  eye {eye_deg:.1}°  azimuth {azimuth_deg:.0}°");
+    let doc = "Angles from the shading normal to the light and to the eye, and the azimuth of the eye: 0° on the side where a mirror \
+        would reflect the light, 180° on the side of the light";
+    ui.label(RichText::new(text).small().monospace()).on_hover_text(doc);
+    if *light_deg >= 90.0 {
+        let text = "The light is below the horizon of this surface; the lobe is that of a light at 89°";
+        ui.label(RichText::new(text).small().color(WARNING));
+    }
+    let left_out = left_out(reading);
+    if !left_out.is_empty() {
+        let text = format!("The curves leave out: {}", left_out.join(", "));
+        let doc =
+            "The measured surface has base color, metallic and roughness. All other properties have glTF's defaults";
+        ui.label(RichText::new(text).small().color(WARNING)).on_hover_text(doc);
+    }
+}
+
+/// The properties of the pixel's material that the curves do not have.
+fn left_out(reading: &Reading) -> Vec<&'static str> {
+    let differs = |slug: &str, default: f32| {
+        let numbers = reading.numbers(slug);
+        numbers.is_some_and(|numbers| numbers.iter().any(|number| (number - default).abs() > 1e-3))
+    };
+    LEFT_OUT.into_iter().filter(|(slug, _, default)| differs(slug, *default)).map(|(_, name, _)| name).collect()
+}
+
+fn legend(ui: &mut Ui, has_before: bool) {
+    ui.horizontal_wrapped(|ui| {
+        let names = [
+            (
+                SUM,
+                "sum",
+                "f NoV: the part of the irradiance that leaves per steradian, 1/sr. Its integral is the albedo",
+            ),
+            (DIFFUSE, "diffuse", "k_d times the selected diffuse model"),
+            (SPECULAR, "specular", "D V F: single scattering between microfacets"),
+            (MULTIPLE, "multiple", "Multiple scattering between microfacets"),
+        ];
+        for (color, name, doc) in names {
+            ui.label(RichText::new(name).small().color(color)).on_hover_text(doc);
+        }
+        if has_before {
+            let doc = "The shaders before the last edit, with the same material and light";
+            ui.label(RichText::new("- - before the last edit").small().color(QUIET)).on_hover_text(doc);
+        }
+    });
+}
+
+/// The lobe in the plane of incidence, with the directions to the light and to the eye.
+fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, directions: &Directions) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TALL), Sense::hover());
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    let painter = ui.painter();
+    let all = curves.lobes.iter().chain(before.into_iter().flat_map(|before| &before.lobes));
+    let most = all.map(|lobe| luminance(sum(lobe))).filter(|value| value.is_finite()).fold(0.0, f32::max);
+    let disk = HalfDisk::within(rect, if most > 0.0 { 1.1 * most } else { 1.0 });
+    disk.axes(painter);
+    for (curves, is_dashed) in before.into_iter().map(|before| (before, true)).chain([(curves, false)]) {
+        let parts: [(Color32, fn(&Lobe) -> [f32; 3]); 4] = [
+            (DIFFUSE, |lobe| lobe.diffuse),
+            (SPECULAR, |lobe| lobe.specular),
+            (MULTIPLE, |lobe| lobe.multiple),
+            (SUM, sum),
+        ];
+        for (color, part) in parts {
+            let count = curves.lobes.len().max(1) as f32;
+            let deg = |index: usize| 180.0 * ((index as f32 + 0.5) / count - 0.5);
+            let points: Vec<Pos2> = curves
+                .lobes
+                .iter()
+                .enumerate()
+                .map(|(index, lobe)| disk.at(deg(index), luminance(part(lobe))))
+                .collect();
+            Pen { color, is_dashed }.line(painter, &points);
+        }
+    }
+    let arrow = |deg: f32, color: Color32, name: &str, inwards: bool| {
+        let (near, far) = (disk.direction(deg, 0.25 * disk.radius), disk.direction(deg, 0.92 * disk.radius));
+        let (from, to) = if inwards { (far, near) } else { (near, far) };
+        painter.arrow(from, to - from, Stroke::new(1.2, color));
+        note(painter, disk.direction(deg, 1.02 * disk.radius), Align2::CENTER_BOTTOM, name);
+    };
+    arrow(-of.light_deg, WARNING, "light", true);
+    let name = if directions.is_in_plane() { "eye" } else { "eye (aside)" };
+    arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT, name, false);
+    response.on_hover_text(
+        "The lobe in the plane of incidence: in each direction to the eye, f NoV in 1/sr as luminance. The light comes from the left. \
+         The arrow of the eye has this pixel's angle; if the eye is aside, it lies outside of this plane",
+    );
+}
+
+/// A chart of albedo over the angle of the eye.
+fn albedo(ui: &mut Ui, now: &[[f32; 3]], before: Option<&[[f32; 3]]>, eye_deg: f32) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LOW), Sense::hover());
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    let painter = ui.painter();
+    let all = now.iter().chain(before.unwrap_or_default()).flatten().copied().filter(|value| value.is_finite());
+    let chart = Chart::within(rect, all.fold(1.1, |most, value| most.max(1.05 * value)));
+    chart.axes(painter);
+    let eye = eye_deg.clamp(0.0, 90.0);
+    let top = chart.rect().min.y;
+    let below = chart.at(eye, 0.0);
+    painter.line_segment([below, Pos2::new(below.x, top)], Stroke::new(1.0, ACCENT));
+    for (values, is_dashed) in before.into_iter().map(|values| (values, true)).chain([(now, false)]) {
+        let channels =
+            [Color32::from_rgb(255, 105, 97), Color32::from_rgb(119, 221, 119), Color32::from_rgb(110, 160, 255)];
+        let is_gray = values.iter().all(|[r, g, b]| (r - g).abs().max((r - b).abs()) < 2e-3);
+        let shown = if is_gray { 1 } else { 3 };
+        for (channel, color) in channels.into_iter().enumerate().take(shown) {
+            let points: Vec<Pos2> = values
+                .iter()
+                .enumerate()
+                .map(|(index, rgb)| chart.at(Curves::angle_deg(index), rgb[channel]))
+                .collect();
+            Pen { color: if is_gray { SUM } else { color }, is_dashed }.line(painter, &points);
+        }
+    }
+    response.on_hover_ui(|ui| {
+        let Some(at) = ui.input(|input| input.pointer.hover_pos()) else { return };
+        let deg = (90.0 * (at.x - chart.rect().min.x) / chart.rect().width())
+            .clamp(0.0, Curves::angle_deg(now.len().max(1) - 1));
+        let nearest = (0..now.len()).min_by(|a, b| {
+            let apart = |index: &usize| (Curves::angle_deg(*index) - deg).abs();
+            apart(a).total_cmp(&apart(b))
+        });
+        let Some(index) = nearest else { return };
+        let text = |values: &[[f32; 3]]| {
+            values.get(index).map(|[r, g, b]| format!("{r:.4} {g:.4} {b:.4}")).unwrap_or_default()
+        };
+        ui.label(RichText::new(format!("{:.0}°  now {}", Curves::angle_deg(index), text(now))).monospace());
+        if let Some(before) = before {
+            ui.label(RichText::new(format!("  before {}", text(before))).monospace());
+        }
+    });
+}
+
+fn sum(lobe: &Lobe) -> [f32; 3] {
+    std::array::from_fn(|c| lobe.diffuse[c] + lobe.specular[c] + lobe.multiple[c])
+}
+
+/// Luminance Y of linear RGB (ITU-R BT.709).
+pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use glam::Vec3;
+
+    use super::*;
+    use crate::scene::{Bounds, CameraView};
+    use crate::shader::PixelValue;
+
+    fn reading(values: &[(&str, [f32; 3])]) -> Reading {
+        let bounds = Bounds { min: Vec3::NEG_ONE, max: Vec3::ONE };
+        let value = |[r, g, b]: [f32; 3]| PixelValue { value: [r, g, b, 1.0], ..PixelValue::default() };
+        let values: BTreeMap<_, _> =
+            values.iter().map(|(slug, numbers)| ((*slug).to_owned(), (value(*numbers), 1))).collect();
+        let camera = CameraView::new(Vec3::Z * 4.0, Vec3::ZERO, 0.6, 1.0, &bounds);
+        Reading {
+            at: [0, 0],
+            values,
+            picture: 1,
+            is_complete: true,
+            exposure: 1.0,
+            camera,
+            lights: Vec::new(),
+            names: None,
+        }
+    }
+
+    #[test]
+    fn only_properties_that_differ_from_the_defaults_are_left_out() {
+        assert!(left_out(&reading(&[("ior", [1.5; 3]), ("clearcoat", [0.0; 3])])).is_empty());
+        let found = left_out(&reading(&[("ior", [1.3; 3]), ("clearcoat", [1.0; 3]), ("anisotropy", [0.0; 3])]));
+        assert_eq!(found, ["clearcoat", "index of refraction"]);
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let known = [("position", [0.0; 3]), ("shading-normal", [0.0, 0.0, 1.0]), ("metallic", [0.0; 3])];
+        assert_eq!(
+            why_not(&reading(&known), 0),
+            "The pixel has no value of base-color, roughness, which the curves need"
+        );
+        let all = [&known[..], &[("base-color", [1.0; 3]), ("roughness", [0.5; 3])]].concat();
+        assert!(why_not(&reading(&all), 0).contains("no light"));
+    }
+}

@@ -1,0 +1,139 @@
+//! The values of a pixel: a row for each mode, in groups. A click on a row shows its mode in the picture.
+
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Align2, Color32, FontId, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+
+use super::super::theme::{ACCENT, EDGE, ERROR, QUIET};
+use crate::app::inspector::{Reading, text};
+use crate::shader::{Mode, PixelValue};
+
+/// Height of a row, points.
+const HEIGHT: f32 = 18.0;
+/// Width and height of a swatch, points.
+const SWATCH: f32 = 12.0;
+/// Width of the column of units, points.
+const UNIT: f32 = 34.0;
+
+/// Shows the rows. `features` are those of the model: modes for which it has no data are folded away, and those without data at the pixel.
+pub(super) fn show(
+    ui: &mut Ui,
+    reading: &Reading,
+    search: &str,
+    modes: &[Mode],
+    features: Option<u32>,
+    current: &mut String,
+) {
+    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
+    let is_found = |mode: &Mode| {
+        let text = format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc).to_lowercase();
+        words.iter().all(|word| text.contains(word))
+    };
+    let has_feature = |mode: &Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
+    let (read, unread): (Vec<&Mode>, Vec<&Mode>) =
+        modes.iter().partition(|mode| reading.value(&mode.slug).is_some() || !has_feature(mode));
+    let found: Vec<&Mode> = read.into_iter().filter(|mode| is_found(mode)).collect();
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        if found.is_empty() {
+            let none = if words.is_empty() { "Reading the pixel…" } else { "No value has these words" };
+            ui.label(RichText::new(none).small().color(QUIET));
+        }
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for modes in found.chunk_by(|a, b| a.group == b.group) {
+            let has_data = |mode: &&Mode| reading.value(&mode.slug).is_some_and(|value| !value.no_data);
+            let (shown, folded): (Vec<&Mode>, Vec<&Mode>) = modes.iter().copied().partition(has_data);
+            ui.add_space(6.0);
+            let group = &modes[0].group;
+            ui.label(RichText::new(group).small().color(QUIET));
+            for mode in shown {
+                if row(ui, reading, mode, *current == mode.slug).clicked() {
+                    current.clone_from(&mode.slug);
+                }
+            }
+            if !folded.is_empty() {
+                let title = RichText::new(format!("{} without data", folded.len())).small().color(QUIET);
+                let header = egui::CollapsingHeader::new(title).id_salt(("no values", group));
+                let header = header.show_unindented(ui, |ui| {
+                    for mode in folded {
+                        ui.label(RichText::new(&mode.name).small().color(QUIET)).on_hover_text(&mode.doc);
+                    }
+                });
+                header.header_response.on_hover_text("This pixel has no data for these modes");
+            }
+        }
+        let left = unread.iter().filter(|mode| is_found(mode)).count();
+        if left > 0 && reading.is_complete {
+            ui.add_space(8.0);
+            let text = format!("{left} modes of random paths and passes are not read here");
+            let names = unread.iter().map(|mode| mode.name.as_str()).collect::<Vec<_>>().join(", ");
+            let doc =
+                format!("Show one of them: its value is in the corner of the picture, under the mouse.\n\n{names}");
+            ui.label(RichText::new(text).small().color(QUIET)).on_hover_text(doc);
+        }
+    });
+}
+
+/// A row: swatch, name, numbers and unit.
+fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let Some(value) = reading.value(&mode.slug).filter(|_| ui.is_rect_visible(rect)) else { return response };
+    let painter = ui.painter();
+    if response.hovered() {
+        painter.rect_filled(rect, 3.0, EDGE);
+    }
+    let middle = rect.center().y;
+    let swatch = Rect::from_center_size(pos2(rect.min.x + 0.5 * SWATCH + 1.0, middle), vec2(SWATCH, SWATCH));
+    paint_swatch(ui, swatch, mode, &value, reading.exposure);
+    let is_old = reading.is_old(&mode.slug);
+    let color = match () {
+        () if value.not_finite => ERROR,
+        () if is_old => QUIET,
+        () => ui.visuals().text_color(),
+    };
+    let unit = ui.painter().layout_no_wrap(mode.unit.clone(), FontId::proportional(10.5), QUIET);
+    painter.galley(pos2(rect.max.x - UNIT + 4.0, middle - 0.5 * unit.size().y), unit, QUIET);
+    let numbers = painter.layout_no_wrap(text::numbers(mode, &value), FontId::monospace(11.0), color);
+    let left_of_numbers = rect.max.x - UNIT - numbers.size().x;
+    painter.galley(pos2(left_of_numbers, middle - 0.5 * numbers.size().y), numbers, color);
+    let name_color = if is_current { ACCENT } else { ui.visuals().text_color() };
+    let mut job = LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(12.0), name_color);
+    let left = rect.min.x + SWATCH + 7.0;
+    job.wrap = TextWrapping::truncate_at_width((left_of_numbers - 6.0 - left).max(10.0));
+    let name = painter.layout_job(job);
+    painter.galley(pos2(left, middle - 0.5 * name.size().y), name, name_color);
+    response.on_hover_ui(|ui| about(ui, mode, &value))
+}
+
+/// What a row shows, in words.
+fn about(ui: &mut Ui, mode: &Mode, value: &PixelValue) {
+    ui.set_max_width(340.0);
+    ui.label(RichText::new(&mode.name).strong());
+    ui.label(&mode.doc);
+    ui.label(RichText::new(value.text(mode).trim().to_owned()).monospace());
+    if value.not_finite {
+        ui.label(RichText::new("The shader has computed NaN or infinity here").color(ERROR));
+    }
+    ui.label(RichText::new(format!("Click shows this mode: --mode {}", mode.slug)).small().color(QUIET));
+}
+
+fn paint_swatch(ui: &Ui, rect: Rect, mode: &Mode, value: &PixelValue, exposure: f32) {
+    let painter = ui.painter();
+    if value.not_finite {
+        painter.rect_filled(rect, 2.0, ERROR);
+        painter.text(rect.center(), Align2::CENTER_CENTER, "!", FontId::proportional(10.0), Color32::BLACK);
+        return;
+    }
+    let linear = text::swatch(mode, value, exposure);
+    // Modes that show data are stored as they are, without the sRGB curve.
+    let color = match mode.encode {
+        crate::shader::Encode::Color => {
+            let [r, g, b] = linear;
+            Color32::from(egui::Rgba::from_rgb(r, g, b))
+        }
+        _ => {
+            let [r, g, b] = linear.map(|channel| (channel * 255.0).round() as u8);
+            Color32::from_rgb(r, g, b)
+        }
+    };
+    painter.rect_filled(rect, 2.0, color);
+    painter.rect_stroke(rect, 2.0, Stroke::new(1.0, Color32::from_gray(70)), StrokeKind::Inside);
+}

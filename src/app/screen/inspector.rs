@@ -1,0 +1,201 @@
+//! The values of the inspected pixel on the device: which are out of date, when they are drawn, and which frame brings them.
+//!
+//! Like thumbnails they wait for everything else. They are drawn when the picture has come to rest, a few sets of modes in each frame, with
+//! pipelines that the worker builds when it has nothing else to do. A failure leaves the values before.
+
+use std::collections::{HashSet, VecDeque};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::FRAMES_IN_FLIGHT;
+use super::gallery::{REST, REST_ON_CPU, Shown, shown};
+use crate::app::viewer::Viewer;
+use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat, mode_sets};
+use crate::gpu::{Encoder, Frames, GpuError, SetLayouts};
+use crate::render::{PixelModes, Thumbnails};
+use crate::shader::{Mode, ShaderSet};
+
+/// Draws of sets of modes in one frame. On a GPU each takes less than a millisecond.
+const DRAWS_PER_FRAME: usize = 3;
+
+/// A draw whose frame may not have finished.
+struct Pending {
+    /// The slot of its frame.
+    slot: usize,
+    /// Its place among the draws of that frame.
+    place: usize,
+    slugs: Vec<String>,
+    /// The picture and pixel that it belongs to.
+    picture: u64,
+}
+
+/// Reads the inspected pixel.
+#[derive(Default)]
+pub(super) struct PixelReader {
+    renderer: Option<PixelModes>,
+    /// What the values show, and at which pixel.
+    shown: Option<(Shown, [u32; 2])>,
+    /// Counts the changes of `shown`.
+    picture: u64,
+    since: Option<Instant>,
+    /// The modes that were drawn since the last change.
+    drawn: HashSet<String>,
+    /// The sets, by the slugs of their modes, whose pipelines the worker was asked for since the last change.
+    asked: HashSet<String>,
+    pending: Vec<Pending>,
+    /// The pixel under the mouse when it was last over the picture.
+    under_mouse: Option<[u32; 2]>,
+    /// Nothing is drawn until something changes: memory is short, or a loop did not end.
+    stopped: bool,
+}
+
+impl PixelReader {
+    /// Draws nothing until something changes.
+    pub(super) fn stop(&mut self) {
+        self.stopped = true;
+    }
+
+    /// Forgets draws whose commands were not submitted.
+    pub(super) fn forget(&mut self) {
+        self.pending.clear();
+        self.drawn.clear();
+        self.stopped = true;
+        if let Some(renderer) = &mut self.renderer {
+            renderer.forget();
+        }
+    }
+
+    /// Takes the values of finished frames. `begun`: the slot whose last frame a wait has found finished.
+    pub(super) fn take(&mut self, frames: &Frames, begun: Option<usize>, viewer: &mut Viewer) {
+        let Some(renderer) = &self.renderer else { return };
+        let is_finished = |slot: usize| begun == Some(slot) || frames.is_finished(slot);
+        let (finished, pending) =
+            std::mem::take(&mut self.pending).into_iter().partition(|draw| is_finished(draw.slot));
+        self.pending = pending;
+        for Pending { slot, place, slugs, picture } in finished as Vec<Pending> {
+            if picture != self.picture {
+                continue;
+            }
+            let values = renderer.values(slot * DRAWS_PER_FRAME + place);
+            viewer.take_values(picture, slugs.into_iter().zip(values));
+        }
+    }
+
+    /// Draws modes that are out of date, if the picture rests. Returns the time until the next frame is needed; `None` if all are drawn and
+    /// read. A lack of memory is no error.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub(super) fn draw(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        viewer: &mut Viewer,
+        layouts: &Arc<SetLayouts>,
+        (size, mouse): ((u32, u32), Option<(u32, u32)>),
+    ) -> Result<Option<Duration>, GpuError> {
+        let inspector = &viewer.panels.inspector;
+        if !inspector.is_visible || viewer.recorder.is_careful() {
+            // The device memory is free for other things while the panel is closed.
+            if self.pending.is_empty() {
+                (self.renderer, self.shown) = (None, None);
+            }
+            return Ok(None);
+        }
+        if let Some((x, y)) = mouse {
+            self.under_mouse = Some([x, y]);
+        }
+        let at = inspector.pin.or(self.under_mouse.filter(|_| inspector.follows));
+        let Some(at) = at.filter(|at| at[0] < size.0 && at[1] < size.1) else { return Ok(None) };
+        let Some((shaders, mut now)) = shown(viewer, size) else { return Ok(None) };
+        now.target = TargetFormat::full(1);
+        let now = (now, at);
+        if self.shown.as_ref() != Some(&now) {
+            if self.shown.as_ref().is_none_or(|(before, _)| *before != now.0) {
+                self.asked.clear();
+            }
+            (self.shown, self.since, self.stopped) = (Some(now), Some(Instant::now()), false);
+            self.drawn.clear();
+            self.picture += 1;
+        }
+        if self.stopped {
+            return Ok(None);
+        }
+        let features = viewer.session.features();
+        let has_data = |mode: &&Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
+        let sets = mode_sets(shaders.modes.iter().filter(has_data), Thumbnails::most_at_once(&viewer.gpu));
+        let is_stale = |set: &Vec<&Mode>| set.iter().any(|mode| !self.drawn.contains(&mode.slug));
+        let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(is_stale).collect();
+        if stale.is_empty() {
+            if self.pending.is_empty() {
+                // The panel shows them with the next frame.
+                return Ok(viewer.values_complete(self.picture).then_some(Duration::ZERO));
+            }
+            return Ok(Some(Duration::ZERO));
+        }
+        let rest = if viewer.gpu_is_fast() { REST } else { REST_ON_CPU };
+        let rested = self.since.map_or(rest, |since| since.elapsed());
+        if rested < rest {
+            return Ok(Some(rest - rested));
+        }
+        match self.draw_sets(encoder, slot, viewer, layouts, &shaders, stale) {
+            Err(GpuError::OutOfMemory(_)) => {
+                self.stopped = true;
+                Ok(Some(Duration::ZERO))
+            }
+            drawn => drawn,
+        }
+    }
+
+    fn draw_sets(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        viewer: &mut Viewer,
+        layouts: &Arc<SetLayouts>,
+        shaders: &Arc<ShaderSet>,
+        stale: Vec<Vec<&Mode>>,
+    ) -> Result<Option<Duration>, GpuError> {
+        let Some((Shown { settings, scene, revisions, target, size, .. }, at)) = &self.shown else { return Ok(None) };
+        let (mut ready, mut missing, mut is_new) = (Vec::new(), VecDeque::new(), false);
+        for set in stale {
+            let inputs = FrameInputs {
+                settings,
+                shaders,
+                scene: Some(scene),
+                revisions: *revisions,
+                clock: Clock::default(),
+                size: *size,
+                target: *target,
+            };
+            let state = Arc::new(FrameState::of_modes(&inputs, &set));
+            match viewer.resources.bind(&state, false)? {
+                Some(frame) => ready.push((set, frame)),
+                None => {
+                    let slugs = set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" ");
+                    is_new |= self.asked.insert(slugs);
+                    missing.push_back(state.pipelines.clone());
+                }
+            }
+        }
+        if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new) {
+            viewer.threads.worker.build_inspected(pipelines, missing);
+        }
+        if ready.is_empty() {
+            return Ok(if self.pending.is_empty() { None } else { Some(Duration::ZERO) });
+        }
+        let renderer = match &mut self.renderer {
+            Some(renderer) => renderer,
+            none => none.insert(PixelModes::new(&viewer.gpu, layouts, FRAMES_IN_FLIGHT * DRAWS_PER_FRAME)?),
+        };
+        let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
+        for (place, (set, frame)) in ready.iter().take(draws).enumerate() {
+            viewer.begin_values(self.picture, *at, &frame.state);
+            renderer.draw(encoder, slot * DRAWS_PER_FRAME + place, frame, (at[0], at[1]))?;
+            let slugs: Vec<String> = set.iter().map(|mode| mode.slug.clone()).collect();
+            self.drawn.extend(slugs.iter().cloned());
+            self.pending.push(Pending { slot, place, slugs, picture: self.picture });
+        }
+        Ok(Some(Duration::ZERO))
+    }
+}

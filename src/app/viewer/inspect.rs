@@ -1,0 +1,135 @@
+//! The inspector's side of the viewer: pins pixels, takes their values, and has the curves of their materials measured.
+
+use std::sync::Arc;
+
+use super::Viewer;
+use crate::app::inspector::{Asked, Page, Reading, Shown, text};
+use crate::events::{Event, emit};
+use crate::frame::FrameState;
+use crate::scene::hit_at;
+use crate::shader::{PixelValue, ShaderSet};
+use crate::threads::measurer::{CurvesRequest, Measured};
+
+/// A click within this many pixels of the pinned one unpins it: the radius of its marker.
+const MARKER: u32 = 6;
+
+impl Viewer {
+    /// Pins a pixel while the inspector is in sight, or unpins it if it is the pinned one.
+    pub(super) fn inspect(&mut self, at: [u32; 2]) {
+        let inspector = &mut self.panels.inspector;
+        if !inspector.is_visible {
+            return;
+        }
+        let is_near = |pin: [u32; 2]| pin[0].abs_diff(at[0]) <= MARKER && pin[1].abs_diff(at[1]) <= MARKER;
+        inspector.pin = if inspector.pin.is_some_and(is_near) { None } else { Some(at) };
+    }
+
+    /// Begins to read the values of a pixel: picture number `picture`, which `state` draws. Earlier values stay until newer ones come.
+    pub(in crate::app) fn begin_values(&mut self, picture: u64, at: [u32; 2], state: &FrameState) {
+        let inspector = &mut self.panels.inspector;
+        if inspector.reading.as_ref().is_some_and(|reading| reading.picture == picture) {
+            return;
+        }
+        let before = inspector.reading.take().map(|reading| reading.values).unwrap_or_default();
+        let is_known = |slug: &str| state.shaders.modes.iter().any(|mode| mode.slug == slug);
+        let values = before.into_iter().filter(|(slug, _)| is_known(slug)).collect();
+        inspector.reading = Some(Reading {
+            at,
+            values,
+            picture,
+            is_complete: false,
+            exposure: state.exposure(),
+            camera: state.camera,
+            lights: state.lights.clone(),
+            names: names(state, at),
+        });
+    }
+
+    /// Takes values of picture number `picture`.
+    pub(in crate::app) fn take_values(&mut self, picture: u64, values: impl Iterator<Item = (String, PixelValue)>) {
+        let Some(reading) = self.panels.inspector.reading.as_mut().filter(|reading| reading.picture == picture) else {
+            return;
+        };
+        reading.values.extend(values.map(|(slug, value)| (slug, (value, picture))));
+    }
+
+    /// Learns that all values of picture number `picture` were taken. Returns whether that is new.
+    pub(in crate::app) fn values_complete(&mut self, picture: u64) -> bool {
+        let mut is_new = false;
+        if let Some(reading) = self.panels.inspector.reading.as_mut().filter(|reading| reading.picture == picture)
+            && !std::mem::replace(&mut reading.is_complete, true)
+        {
+            is_new = true;
+            reading.values.retain(|_, (_, of)| *of == picture);
+            let hit = reading.is_hit();
+            if !hit {
+                reading.names = None;
+            }
+            let [node, material] = match &reading.names {
+                Some(names) => names.each_ref().map(|name| Some(name.as_str())),
+                None => [None; 2],
+            };
+            let values = reading.values.iter();
+            let modes = values.map(|(slug, (value, _))| (slug.clone(), text::json_value(value))).collect();
+            let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+            emit(self.events, &Event::Inspected { pixel: reading.at, generation, hit, node, material, modes });
+        }
+        self.request_curves();
+        is_new
+    }
+
+    /// Has the curves of the inspected material measured, while the page that shows them is in sight. Values are complete then, so the
+    /// newest edit is on screen.
+    fn request_curves(&mut self) {
+        let inspector = &self.panels.inspector;
+        if inspector.page != Page::Lobe || self.is_cut_short() {
+            return;
+        }
+        let chosen = self.session.settings.lights.chosen;
+        let material = inspector.reading.as_ref().filter(|reading| reading.is_hit()).and_then(|of| of.material(chosen));
+        let (Some(material), Some(newest)) = (material, self.session.shaders.clone()) else { return };
+        let before = self.versions.shaders_before(newest.generation);
+        let address = |shaders: &Arc<ShaderSet>| Arc::as_ptr(shaders) as usize;
+        let shaders = [address(&newest), before.as_ref().map_or(0, address)];
+        let settings = format!("{:?}", self.session.settings.shader);
+        let is_asked =
+            |asked: &Asked| (asked.material, asked.shaders, &asked.settings) == (material, shaders, &settings);
+        if inspector.asked.as_ref().is_some_and(is_asked) {
+            return;
+        }
+        let request = CurvesRequest {
+            shaders: [Some(newest), before],
+            tree: self.source.clone(),
+            settings: self.session.settings.clone(),
+            material,
+        };
+        let number = self.threads.measurer.measure(&self.compiler, request);
+        self.panels.inspector.asked = Some(Asked { number, material, shaders, settings });
+    }
+
+    /// Takes curves, if they are those that were asked for last.
+    pub(super) fn on_curves(&mut self, measured: Measured) {
+        let inspector = &mut self.panels.inspector;
+        let Some(asked) = inspector.asked.as_ref().filter(|asked| asked.number == measured.number) else { return };
+        let Measured { now, before, ms, .. } = measured;
+        let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        let albedo = now.as_ref().ok().and_then(|curves| curves.albedo.first().copied());
+        emit(self.events, &Event::Curves { generation, before: before.is_some(), albedo, ms });
+        inspector.curves = Some(Shown { of: asked.material, now, before });
+    }
+}
+
+/// Names of the node and of the material at a pixel.
+fn names(state: &FrameState, at: [u32; 2]) -> Option<[String; 2]> {
+    let scene = state.scene.as_ref()?;
+    let model = scene.model();
+    let (instance, _) = hit_at(model, &state.camera, state.size, (at[0], at[1]))?;
+    let instance = model.instances.get(instance)?;
+    let material = match scene.material_of(instance) {
+        Some(material) => model.materials.get(material)?.name.clone(),
+        None => "material override".to_owned(),
+    };
+    let named = |name: &str, instead: &str| if name.is_empty() { instead.to_owned() } else { name.to_owned() };
+    let primitive = model.primitives.get(instance.primitive)?;
+    Some([named(&instance.node_name, &primitive.name), named(&material, "material without a name")])
+}

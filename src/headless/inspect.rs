@@ -1,0 +1,44 @@
+//! The values of one pixel in many modes, drawn as the window's inspector draws them.
+
+use std::sync::Arc;
+
+use super::{Headless, HeadlessError};
+use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
+use crate::render::{PixelModes, Thumbnails};
+use crate::shader::{Mode, PixelValue};
+
+impl Headless {
+    /// The values of the pixel `at`, counted from the upper left corner, in each of `modes` that can be drawn together with others. The
+    /// order is that in which they are drawn. Unlike [`Headless::pixel`], this leaves out passes after the model, and transmissive
+    /// surfaces show nothing behind them.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn inspect(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<(String, PixelValue)>, HeadlessError> {
+        self.finish_or_fail()?;
+        self.provide()?;
+        let (shaders, scene) = (self.shaders(), self.session.scene());
+        let mut pixel = PixelModes::new(&self.gpu, &self.layouts, 1)?;
+        let mut found = Vec::new();
+        for set in mode_sets(modes, Thumbnails::most_at_once(&self.gpu)) {
+            let inputs = FrameInputs {
+                settings: &self.session.settings,
+                shaders: &shaders,
+                scene: scene.as_ref(),
+                revisions: self.session.revisions,
+                clock: self.clock,
+                size: self.size,
+                target: TargetFormat::full(1),
+            };
+            let state = Arc::new(FrameState::of_modes(&inputs, &set));
+            let frame = self.resources.provide(&state).map_err(|error| self.explained(error.into()))?;
+            let mut encoder = self.frames.begin()?;
+            pixel.draw(&mut encoder, 0, &frame, at)?;
+            self.frames.submit(encoder, Default::default())?;
+            // SYNC: the CPU reads the values.
+            self.frames.wait()?;
+            found.extend(set.iter().map(|mode| mode.slug.clone()).zip(pixel.values(0)));
+        }
+        Ok(found)
+    }
+}

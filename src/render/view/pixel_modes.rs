@@ -1,0 +1,168 @@
+//! The values of one pixel in several modes: only the pixels that share their derivatives are drawn, to targets of two by two pixels.
+
+use std::sync::Arc;
+
+use super::capture::PixelReadback;
+use super::declared::{Drawn, Given};
+use super::passes::{ColorTarget, Passes, Sorted, sort};
+use super::targets::{TargetDesc, Targets};
+use super::{BoundFrame, View};
+use crate::frame::PipelineRequest;
+use crate::gpu::{Attachments, Encoder, Gpu, GpuError, Image, Rect, SetLayouts, Use};
+use crate::shader::PixelValue;
+
+/// Draws a pixel of a frame in several modes at once, and reads the values back. It shares nothing with the large picture but the
+/// resources of its frames.
+pub struct PixelModes {
+    /// Its passes and uniforms. A draw has two slots: one for the passes that the model reads, one for the pixel.
+    view: View,
+    targets: Option<Targets>,
+    /// The targets of the second mode and the following ones.
+    more: Vec<ColorTarget>,
+    /// The copied values of each draw in flight.
+    values: Vec<Vec<PixelReadback>>,
+}
+
+impl PixelModes {
+    /// Width and height of the targets. Graphics hardware shades two by two pixels together and takes derivatives between them.
+    const QUAD: u32 = 2;
+
+    /// Creates the uniforms for this many draws in flight.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, in_flight: usize) -> Result<Self, GpuError> {
+        let values = (0..in_flight).map(|_| Vec::new()).collect();
+        Ok(Self { view: View::new(gpu, layouts, 2 * in_flight)?, targets: None, more: Vec::new(), values })
+    }
+
+    /// Draws the pixel `at`, counted from the upper left corner, of `frame`, a state of [`crate::frame::FrameState::of_modes`] with one
+    /// sample per pixel. `slot` is one of the draws in flight, from 0. Passes after the model are left out, and transmissive surfaces
+    /// show nothing behind them.
+    ///
+    /// # Errors
+    /// Out of memory. Drop this object then, unless the commands are not submitted.
+    pub fn draw(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        frame: &BoundFrame,
+        at: (u32, u32),
+    ) -> Result<(), GpuError> {
+        self.prepare(slot, frame)?;
+        let (of_passes, of_pixel) = (2 * slot, 2 * slot + 1);
+        let view = &mut self.view;
+        let sets = [view.frame_set(of_passes, frame)?, view.frame_set(of_pixel, frame)?];
+        let Some(targets) = &self.targets else { return Ok(()) };
+        let (state, light) = (&frame.state, frame.environment.scale_and_sun());
+        let whole = Rect { x: 0, y: 0, width: state.size.0, height: state.size.1 };
+        let constants = state.constants(whole, light, 0, state.camera.clip_from_world());
+        let origin = (at.0 / Self::QUAD * Self::QUAD, at.1 / Self::QUAD * Self::QUAD);
+        let mut at_pixel = constants;
+        at_pixel.viewport_origin_px = [-(origin.0 as f32), -(origin.1 as f32)];
+        for (slot, constants) in [(of_passes, &constants), (of_pixel, &at_pixel)] {
+            view.in_flight[slot].uniforms.write(constants, &state.lights, state.params());
+        }
+
+        let drawn = |slot: usize| {
+            let (frame_set, constants) = (&sets[slot % 2], if slot == of_pixel { &at_pixel } else { &constants });
+            Drawn { frame, frame_set, blocks: &view.in_flight[slot].blocks, constants, depth: None }
+        };
+        encoder.bind_set(&view.layouts, &sets[0]);
+        view.declared.before_model(encoder, &drawn(of_passes))?;
+        encoder.bind_set(&view.layouts, &sets[1]);
+        let given = Given { picture: Some(&targets.color), ..Given::default() };
+        let pass_sets = view.declared.sets_of(&drawn(of_pixel), &given, state.pipelines.model_keys())?;
+        let more = &self.more[..state.pipelines.modes.len().saturating_sub(1)];
+        let passes = Passes { layouts: &view.layouts, targets, frame, sets: &pass_sets, only: None, more };
+        let all: Vec<&Arc<Image>> =
+            std::iter::once(&targets.color).chain(more.iter().map(|target| &target.color)).collect();
+        encoder.pass("inspector", |encoder| draw_pixel(encoder, &passes, &all, origin));
+        for (image, value) in all.into_iter().zip(&mut self.values[slot]) {
+            encoder.transition(image, Use::Color, Use::Sampled);
+            value.record(encoder, image, Some((at.0 - origin.0, at.1 - origin.1)), 0);
+        }
+        Ok(())
+    }
+
+    /// Creates the targets and buffers that `frame` needs.
+    fn prepare(&mut self, slot: usize, frame: &BoundFrame) -> Result<(), GpuError> {
+        let gpu = self.view.gpu.clone();
+        self.view.declared.prepare(frame)?;
+        let request = &frame.state.pipelines;
+        let desc = TargetDesc {
+            size: (Self::QUAD, Self::QUAD),
+            format: request.target,
+            transmission: false,
+            accumulates: false,
+            reads_depth: false,
+        };
+        let targets = match self.targets.take().filter(|targets| targets.desc == desc) {
+            Some(targets) => targets,
+            None => {
+                self.more.clear();
+                Targets::new(&gpu, desc)?
+            }
+        };
+        while self.more.len() + 1 < request.modes.len() {
+            self.more.push(targets.another_color(&gpu)?);
+        }
+        self.targets = Some(targets);
+        let values = &mut self.values[slot];
+        let count = request.modes.len().max(1);
+        values.truncate(count);
+        while values.len() < count {
+            values.push(PixelReadback::new(&gpu)?);
+        }
+        Ok(())
+    }
+
+    /// The values that the last draw of `slot` has read, in the order of its modes. SYNC: after that draw's fence.
+    pub fn values(&self, slot: usize) -> Vec<PixelValue> {
+        let values = self.values.get(slot).into_iter().flatten();
+        values.filter_map(|value| value.read()).map(|pixel| pixel.value).collect()
+    }
+
+    /// Forgets what is drawn: the commands of a frame were not submitted.
+    pub fn forget(&mut self) {
+        self.view.forget();
+    }
+}
+
+/// Draws the surfaces, what lies behind them, and passes that draw the model too. Leaves all images in [`Use::Color`].
+fn draw_pixel(encoder: &mut Encoder, passes: &Passes<'_>, all: &[&Arc<Image>], origin: (u32, u32)) {
+    let (frame, depth) = (passes.frame, &passes.targets.depth);
+    all.iter().for_each(|image| encoder.transition(image, Use::Undefined, Use::Color));
+    encoder.transition(depth, Use::Undefined, Use::Depth);
+    let sorted: Sorted<'_> = frame.scene.as_ref().map(|scene| sort(scene, frame.state.camera.eye)).unwrap_or_default();
+    let further: Vec<Arc<Image>> = all.iter().skip(1).map(|image| (*image).clone()).collect();
+    let Some(first) = all.first() else { return };
+    let begin = |encoder: &mut Encoder, color: &Arc<Image>, more: &[Arc<Image>], clear| {
+        let attachments = Attachments { more, clear, depth: Some(depth), goes_on: true, ..Attachments::of(color) };
+        encoder.begin_rendering(&attachments);
+        encoder.set_part_of_picture(origin, frame.state.size);
+    };
+    let go_on = |encoder: &mut Encoder| {
+        encoder.end_rendering();
+        all.iter().for_each(|image| encoder.transition(image, Use::Color, Use::Color));
+        encoder.transition(depth, Use::Depth, Use::Depth);
+    };
+    begin(encoder, first, &further, Some([0.0; 4]));
+    passes.draw(encoder, &sorted.opaque, PipelineRequest::model_key);
+    passes.draw(encoder, &sorted.transmissive, PipelineRequest::model_key);
+    go_on(encoder);
+    for color in all {
+        begin(encoder, color, &[], None);
+        passes.added(encoder, false);
+        passes.background(encoder);
+        go_on(encoder);
+    }
+    begin(encoder, first, &further, None);
+    passes.draw(encoder, &sorted.blended, PipelineRequest::model_key);
+    go_on(encoder);
+    for color in all {
+        begin(encoder, color, &[], None);
+        passes.added(encoder, true);
+        encoder.end_rendering();
+    }
+}

@@ -1,0 +1,129 @@
+//! The inspector reads a pixel in many modes at once, and measures its material.
+
+mod support;
+
+use specula::frame::mode_sets;
+use specula::measure::{Curves, Material, prepare};
+use specula::shader::{Change, Library, PixelValue, Source, Update};
+use support::{SIZE, Session, assert_validated, compiler, gpu, model, renderer, settings};
+
+/// The modes of the tree that can be drawn together with others.
+fn modes(headless: &specula::headless::Headless) -> Vec<specula::shader::Mode> {
+    let shaders = headless.shaders();
+    mode_sets(&shaders.modes, 8).into_iter().flatten().cloned().collect()
+}
+
+/// Whether two values are the same, but for the last digits of a float.
+fn is_same(a: &PixelValue, b: &PixelValue) -> bool {
+    let is_close = |(a, b): (&f32, &f32)| (a - b).abs() <= 2e-5 * a.abs().max(b.abs()).max(1e-3);
+    (a.no_data, a.not_finite) == (b.no_data, b.not_finite) && a.value.iter().zip(&b.value).all(is_close)
+}
+
+/// Compares all modes at some pixels, of even and odd rows and columns, with what `specula probe` prints.
+fn compare(name: &str, with: &[&str], pixels: &[(u32, u32)]) {
+    let with = [&["view.msaa=1"], with].concat();
+    let mut headless = renderer(model(name), settings(&with), SIZE);
+    let modes = modes(&headless);
+    assert!(modes.len() > 70, "only {} modes", modes.len());
+    for at in pixels {
+        let found = headless.inspect(*at, &modes).unwrap();
+        assert_eq!(found.len(), modes.len());
+        let probed = headless.pixel(*at, &modes).unwrap();
+        let mut differ = Vec::new();
+        for (mode, probed) in modes.iter().zip(&probed) {
+            let (_, value) = found.iter().find(|(slug, _)| *slug == mode.slug).unwrap();
+            if !is_same(value, probed) {
+                differ.push(format!("{} {value:?} {probed:?}", mode.slug));
+            }
+        }
+        assert!(differ.is_empty(), "{name} at {at:?}:\n{}", differ.join("\n"));
+    }
+    assert_validated();
+}
+
+#[test]
+fn values_are_those_of_probe() {
+    compare("shader-ball", &["environment.name=studio"], &[(48, 30), (47, 31), (50, 37), (2, 2)]);
+}
+
+#[test]
+fn values_of_layered_and_blended_materials_are_those_of_probe() {
+    compare("clearcoat", &["lights.chosen=2"], &[(31, 32), (62, 33)]);
+    compare("sheen", &["environment.name=studio"], &[(31, 32)]);
+}
+
+#[test]
+fn values_with_shadows_and_screen_space_occlusion_are_those_of_probe() {
+    let with = ["environment.name=studio", "shader.SHADOWS=true", "shader.AMBIENT_OCCLUSION=true"];
+    compare("shader-ball", &with, &[(45, 41), (52, 44)]);
+}
+
+#[test]
+fn an_edit_changes_values() {
+    let mut session = Session::new(model("shader-ball"), settings(&[]));
+    let modes = modes(&session.headless);
+    let of = |session: &mut Session, slug: &str| {
+        let found = session.headless.inspect((48, 30), &modes).unwrap();
+        found.into_iter().find(|(other, _)| other == slug).unwrap().1
+    };
+    let before = of(&mut session, "roughness");
+    let line = "else if (MODE == MODE_ROUGHNESS) value = vec3(s.roughness);";
+    let nan = "else if (MODE == MODE_ROUGHNESS) value = vec3(sqrt(-1.0 - s.roughness));";
+    support::ready(&session.edit("debug/surface.glsl", line, nan));
+    assert!(!before.not_finite && of(&mut session, "roughness").not_finite);
+    assert_validated();
+}
+
+/// The texts of a tree with this replacement, as a window knows them.
+fn texts(
+    file: &str,
+    from: &str,
+    to: &str,
+) -> std::collections::BTreeMap<specula::shader::TreePath, std::sync::Arc<str>> {
+    let source = Source::embedded();
+    let stages = specula::frame::stages::stages();
+    let mut library = Library::new(source, compiler().clone(), &stages);
+    let Update::Ready(shaders, _) = library.update(&Change::All) else { panic!("the tree does not compile") };
+    let mut texts = shaders.texts.clone();
+    assert!(texts.keys().all(|path| !path.as_str().starts_with("measure/")), "the window compiles no measuring stage");
+    let path = specula::shader::TreePath::from(file);
+    let edited = texts[&path].replace(from, to);
+    assert!(from == to || *edited != *texts[&path]);
+    texts.insert(path, edited.into());
+    texts
+}
+
+#[test]
+fn curves_are_measured_with_the_texts_of_an_edit() {
+    let tree = Source::embedded();
+    let settings = settings(&[]);
+    let of = |texts| {
+        let bench = prepare(gpu(), compiler(), &tree, &texts, &settings).unwrap();
+        let material = Material { base_color: [0.8, 0.4, 0.2], metallic: 0.0, roughness: 0.5, light_deg: 45.0 };
+        Curves::measure(&bench, &material).unwrap()
+    };
+    let file = "brdf/ndf.glsl";
+    let before = of(texts(file, "", ""));
+    let after = of(texts(file, "float a2 = alpha * alpha;", "float a2 = 4.0 * alpha * alpha;"));
+    assert_eq!((before.lobes.len(), before.albedo.len(), before.furnace.len()), (721, 45, 45));
+    let diffuse = before.lobes[360].diffuse;
+    assert!(diffuse[0] > diffuse[1] && diffuse[1] > diffuse[2], "the color of the base: {diffuse:?}");
+    assert!(before.albedo[0][0] > 0.5 && before.albedo[0][0] < 1.0, "{:?}", before.albedo[0]);
+    assert!(before.furnace[0][2] > before.albedo[0][2], "white reflects more");
+    assert_ne!(before.lobes, after.lobes);
+    // In space, the ring at the angle of the mirror direction has the largest value in that direction.
+    let hemisphere = before.hemisphere.unwrap();
+    assert_eq!(hemisphere.values.len(), hemisphere.azimuths * 32);
+    let ring = &hemisphere.values[16 * hemisphere.azimuths..17 * hemisphere.azimuths];
+    let most = (0..ring.len()).max_by(|a, b| ring[*a][0].total_cmp(&ring[*b][0])).unwrap();
+    assert_eq!(most, 0, "{ring:?}");
+    assert_validated();
+}
+
+#[test]
+fn a_tree_without_measuring_stages_says_so() {
+    let tree = Source::memory([]);
+    let texts = texts("brdf/ndf.glsl", "", "");
+    let Err(message) = prepare(gpu(), compiler(), &tree, &texts, &settings(&[])) else { panic!("measured nothing") };
+    assert!(message.contains("measure/furnace.comp") && message.contains("specula new"), "{message}");
+}

@@ -1,0 +1,64 @@
+//! The inspector: a click pins a pixel, whose values are those of `specula probe`; an edit changes them; Esc unpins.
+
+use serde_json::Value;
+
+use super::controls::{ACCENT, choose, is_about};
+use crate::support::Tree;
+use crate::support::process::run;
+use crate::support::window::Viewer;
+
+/// The place of the clicked pixel in the window: on the model, left of all panels.
+const AT: (u32, u32) = (420, 330);
+/// The mark in the picture covers this pixel of the window, right of the clicked one.
+const MARK: (u32, u32) = (AT.0 + 5, AT.1);
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value
+        .as_array()
+        .unwrap_or_else(|| panic!("no array: {value}"))
+        .iter()
+        .map(|number| number.as_f64().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_click_pins_a_pixel_whose_values_are_those_of_probe_and_follow_edits() {
+    let mut viewer = Viewer::open(Tree::new(), &["--size", "1000x700", "shader-ball", "--set", "lights.chosen=2"]);
+    viewer.running.event("ready");
+    choose(&viewer, "Inspector");
+    let before = viewer.screenshot();
+    viewer.click(AT);
+    let found = viewer.running.event("inspected");
+    assert_eq!((&found["hit"], &found["generation"]), (&true.into(), &1.into()), "{found}");
+    assert!(found["node"].is_string() && found["material"].is_string(), "{found}");
+    viewer.until_screen("the mark", |screen| is_about(screen.get_pixel(MARK.0, MARK.1), ACCENT));
+    assert!(viewer.screenshot() == before, "the mark is no part of the picture");
+
+    // The same pixel of the same picture on the command line.
+    let pixel = numbers(&found["pixel"]);
+    let (at, size) = (format!("{},{}", pixel[0], pixel[1]), format!("{}x{}", before.width(), before.height()));
+    let slugs = ["position", "shading-normal", "base-color", "roughness", "n-dot-l", "d", "specular-lobe"];
+    let modes = slugs.iter().flat_map(|slug| ["--mode", slug]);
+    let args = ["probe", "shader-ball", "--json", "--at", &at, "--size", &size, "--env", "none"];
+    let args: Vec<&str> = args.into_iter().chain(["--set", "lights.chosen=2"]).chain(modes).collect();
+    let probed = run(&viewer.tree.beside(""), &args).expect(0, &[]).json();
+    for slug in slugs {
+        let (value, probed) = (numbers(&found["modes"][slug]), numbers(&probed["modes"][slug]));
+        let is_close = value.iter().zip(&probed).all(|(a, b)| (a - b).abs() <= 1e-4 * b.abs().max(1.0));
+        assert!(is_close, "{slug}: the window {value:?}, probe {probed:?}");
+    }
+
+    // NaN of an edit is told, and its repair too.
+    let surface = viewer.tree.read("debug/surface.glsl");
+    let line = "else if (MODE == MODE_ROUGHNESS) value = vec3(s.roughness);";
+    let broken = "else if (MODE == MODE_ROUGHNESS) value = vec3(sqrt(-1.0 - s.roughness));";
+    assert!(surface.contains(line));
+    viewer.tree.write("debug/surface.glsl", &surface.replace(line, broken));
+    let edited = viewer.running.event("inspected");
+    assert_eq!((&edited["modes"]["roughness"], &edited["generation"]), (&"NaN".into(), &2.into()));
+    assert_eq!(edited["modes"]["position"], found["modes"]["position"]);
+
+    viewer.key("Escape");
+    viewer.until_screen("no mark", |screen| !is_about(screen.get_pixel(MARK.0, MARK.1), ACCENT));
+    viewer.quit();
+}
