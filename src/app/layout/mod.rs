@@ -35,6 +35,7 @@ pub(super) enum Panel {
     Lights,
     Output,
     Camera,
+    Capture,
 }
 
 impl Panel {
@@ -43,7 +44,7 @@ impl Panel {
         &[Self::Modes, Self::Model],
         &[Self::Shaders, Self::Timeline, Self::Timing],
         &[Self::Parameters, Self::Passes],
-        &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
+        &[Self::Environment, Self::Lights, Self::Output, Self::Camera, Self::Capture],
     ];
 
     pub(super) fn title(self) -> &'static str {
@@ -60,6 +61,7 @@ impl Panel {
             Self::Lights => "Lights",
             Self::Output => "Output",
             Self::Camera => "Camera",
+            Self::Capture => "Capture",
         }
     }
 }

@@ -2,6 +2,7 @@
 //! what it shows and sets. `crate::app::layout` arranges them.
 
 mod camera;
+mod capture;
 mod compare;
 mod environment;
 mod keys;
@@ -55,6 +56,7 @@ pub(super) struct PanelState {
     pub(super) gallery: GalleryState,
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
+    capture: capture::CaptureState,
     files: overlay::diagnostics::Files,
 }
 
@@ -74,6 +76,7 @@ impl PanelState {
             gallery: GalleryState::default(),
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
+            capture: capture::CaptureState::default(),
             files: overlay::diagnostics::Files::default(),
         }
     }
@@ -149,6 +152,12 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.timeline = state;
         return;
     }
+    if panel == Panel::Capture {
+        let size = viewer.shown().map_or((0, 0), |state| state.size);
+        let versions = viewer.versions.iter().count();
+        capture::show(ui, &mut viewer.panels.capture, &viewer.controlled.captures, (size, versions), commands);
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
@@ -157,7 +166,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline => {}
+        Panel::Viewport | Panel::Timeline | Panel::Capture => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
