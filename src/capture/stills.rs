@@ -125,6 +125,10 @@ impl Stills {
         let target = self.target()?;
         let state = self.session.frame_state(self.clock, size, target);
         let state: Arc<FrameState> = Arc::new(state.ok_or_else(|| HeadlessError::Shaders(Vec::new()))?);
+        if state.pipelines.needs_pending(&state.shaders) {
+            let mode = &self.session.settings.mode;
+            return Err(HeadlessError::Settings(format!("the shaders of the mode `{mode}` have errors")));
+        }
         if let Some(set) = self.resources.pipelines() {
             // Not as a request of the window's, whose pipelines stay.
             set.build_aside(&state.pipelines)?;

@@ -84,7 +84,7 @@ impl Client {
     /// Notes a command that is to be answered. Waits while too many are.
     pub(super) fn begin(&self) {
         let mut queue = self.0.lock();
-        while queue.open >= MOST_OPEN {
+        while queue.open >= MOST_OPEN && !queue.is_closed {
             queue = self.0.changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
         }
         queue.open += 1;

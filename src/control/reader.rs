@@ -38,9 +38,6 @@ pub(super) fn read(input: impl Read, client: &Client, sender: &Sender<Asked>) {
             Ok(request) => drop(sender.send(Asked { request, reply })),
             Err(message) => reply.error(message),
         }
-        if client.is_closed() {
-            return;
-        }
     }
 }
 

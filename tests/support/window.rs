@@ -125,14 +125,27 @@ impl Viewer {
         viewer
     }
 
+    /// [`Self::open`] with a standard input for [`Running::ask`].
+    pub fn driven(tree: Tree, more: &[&str]) -> Self {
+        let mut viewer = Self::spawn(tree, more, &[], Stdio::piped());
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
     /// [`Self::with_fault`] without waiting for a window.
     pub fn launch(tree: Tree, more: &[&str], fault: &str) -> Self {
         Self::start(tree, more, &[("SPECULA_FAULT", fault)])
     }
 
     fn start(tree: Tree, more: &[&str], environment: &[(&str, &str)]) -> Self {
+        Self::spawn(tree, more, environment, Stdio::null())
+    }
+
+    fn spawn(tree: Tree, more: &[&str], environment: &[(&str, &str)], stdin: Stdio) -> Self {
         let display = Display::new();
         let mut command = display.view(&tree);
+        command.stdin(stdin);
         // Records of the session lie here, so a test can see whether they are removed.
         std::fs::create_dir_all(tree.beside("runtime")).unwrap();
         command.env("XDG_RUNTIME_DIR", tree.beside("runtime"));

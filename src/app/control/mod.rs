@@ -91,7 +91,7 @@ impl Viewer {
             match until {
                 Until::Shown if shows => reply.done(Value::Null),
                 Until::Camera if shows => reply.done(self.camera_json()),
-                Until::Picture(work) if shows => self.begin_capture(reply, work),
+                Until::Picture(work) if shows && self.has_all_modes() => self.begin_capture(reply, work),
                 Until::Reloaded if !self.shader.compiling && (shows || self.has_errors()) => self.reloaded(reply),
                 Until::Model(path) if !self.model.loading => match self.model.is_file(&path) {
                     true => self.controlled.waiting.push((reply, Until::Shown)),
@@ -107,14 +107,11 @@ impl Viewer {
         }
     }
 
-    /// Whether another frame must follow, because a command waits for what one frame does.
+    /// Whether another frame must follow, because a command waits for nothing else. Messages wake the window for all others.
     pub(super) fn has_unanswered(&self) -> bool {
-        self.shows_settings()
-            && self
-                .controlled
-                .waiting
-                .iter()
-                .any(|(_, until)| !matches!(until, Until::Look | Until::Model(_) | Until::Reloaded))
+        let waits_for_frame =
+            |until: &Until| matches!(until, Until::Shown | Until::Camera | Until::Screen(_) | Until::Window(_));
+        self.shows_settings() && self.controlled.waiting.iter().any(|(_, until)| waits_for_frame(until))
     }
 
     /// Answers the commands that wait for a picture which cannot come.
@@ -179,6 +176,11 @@ impl Viewer {
             (reply, Until::Screen(file) | Until::Window(file)) => Some(Shot { reply, file }),
             _ => None,
         }
+    }
+
+    /// Whether every mode has been compiled, or none will be before the next edit.
+    fn has_all_modes(&self) -> bool {
+        self.has_errors() || self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty())
     }
 
     fn has_errors(&self) -> bool {
