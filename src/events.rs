@@ -1,7 +1,8 @@
-//! Events as JSON lines on stdout, for programs that drive Specula (`--events json`).
+//! Events as JSON lines on stdout, for programs that drive Specula (`--events json`), and for the clients of a window's socket.
 
 use serde::Serialize;
 
+use crate::control::Clients;
 use crate::learn::Finding;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::BakeReport;
@@ -89,6 +90,16 @@ pub enum Event<'a> {
         albedo: Option<[f32; 3]>,
         /// How long it took.
         ms: f64,
+    },
+    /// The window accepts clients on a local socket.
+    Listening {
+        /// Its path.
+        socket: &'a str,
+    },
+    /// The window shows a message for a few seconds.
+    Message {
+        /// The message.
+        message: &'a str,
     },
     /// A screenshot was written.
     Screenshot {
@@ -200,15 +211,44 @@ fn to_microseconds(ms: f64) -> f64 {
     (ms * 1e3).round() / 1e3
 }
 
-/// Prints an event if `enabled`.
-pub fn emit(enabled: bool, event: &Event<'_>) {
-    if !enabled {
-        return;
+/// Who gets events.
+pub trait Audience {
+    /// Whether there is nobody.
+    fn is_empty(&self) -> bool;
+    /// Takes the line of an event.
+    fn take(&self, line: &str);
+}
+
+/// Stdout, if `true`.
+impl Audience for bool {
+    fn is_empty(&self) -> bool {
+        !self
     }
-    if let Ok(line) = serde_json::to_string(event) {
+
+    fn take(&self, line: &str) {
         use std::io::Write as _;
         // Specula goes on after the reader has closed the pipe.
         let _ = writeln!(std::io::stdout().lock(), "{line}");
+    }
+}
+
+impl Audience for &Clients {
+    fn is_empty(&self) -> bool {
+        Clients::is_empty(self)
+    }
+
+    fn take(&self, line: &str) {
+        self.send(line);
+    }
+}
+
+/// Sends an event to those who get events.
+pub fn emit(to: impl Audience, event: &Event<'_>) {
+    if to.is_empty() {
+        return;
+    }
+    if let Ok(line) = serde_json::to_string(event) {
+        to.take(&line);
     }
 }
 

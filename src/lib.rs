@@ -12,6 +12,7 @@
 //! - [`frame`]: a picture as a value: the frame state, a pure function of settings, shaders and scene.
 //! - [`pipeline`]: pipelines of a shader generation, and the reload that makes the next.
 //! - [`render`]: draws frame states on a device: resources, views.
+//! - [`control`]: commands from outside, as JSON lines on stdin or on a local socket.
 //! - [`events`]: events as JSON lines.
 //! - [`session`]: what the user works on; it survives the loss of the device.
 //! - [`recovery`]: what a window hands to the process that takes its place after a loss.
@@ -19,6 +20,7 @@
 //! - [`picture`], [`comparison`]: write captured frames to files, and compare pictures.
 //! - [`learn`]: exercises, and the measurements that check them.
 //! - [`write_back`]: writes changed values into the files of a shader tree.
+//! - [`capture`]: contact sheets and animations of many pictures.
 //! - `threads`: what a window does in the background: compiles, loads, bakes.
 //! - [`app`]: the window.
 //!
@@ -28,7 +30,9 @@
 
 pub mod app;
 mod cancel;
+pub mod capture;
 pub mod comparison;
+pub mod control;
 pub mod disk_cache;
 pub mod events;
 pub mod file_kind;

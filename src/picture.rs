@@ -25,14 +25,24 @@ pub fn check_ending(path: &Path) -> Result<(), String> {
     format_of(path).map(|_| ())
 }
 
-/// Writes a frame as `specula-N.png` with the first free number, in the working directory, with its settings. Returns the path.
+/// Writes a frame as [`numbered`], with its settings. Returns the path.
 ///
 /// # Errors
 /// As [`write()`].
 pub fn write_numbered(capture: &Capture, settings: &Settings) -> Result<PathBuf, String> {
-    let free = (1..).map(|n| PathBuf::from(format!("specula-{n}.png"))).find(|path| !path.exists());
-    let path = free.unwrap_or_else(|| "specula.png".into());
+    let path = numbered();
     write(capture, settings, &path).map(|()| path)
+}
+
+/// `specula-N.png` with the first free number, in the working directory.
+pub fn numbered() -> PathBuf {
+    numbered_as("specula", "png")
+}
+
+/// `STEM-N.ENDING` with the first free number, in the working directory.
+pub fn numbered_as(stem: &str, ending: &str) -> PathBuf {
+    let free = (1..).map(|n| PathBuf::from(format!("{stem}-{n}.{ending}"))).find(|path| !path.exists());
+    free.unwrap_or_else(|| format!("{stem}.{ending}").into())
 }
 
 /// Fails before any work when no picture can be written to `path`.

@@ -3,6 +3,7 @@
 
 mod support;
 mod window {
+    mod commands;
     mod compare;
     mod controls;
     mod endurance;

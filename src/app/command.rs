@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::dialog::Dialog;
 use super::editor::Place;
 use super::learn::LearnCommand;
+use crate::control::Request;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
 use crate::shader::rewrite::Edit;
@@ -105,6 +106,10 @@ pub(super) enum Command {
     OpenLook(PathBuf),
     /// Open a measured BRDF and show it.
     OpenMeasured(PathBuf),
+    /// Do what a command from outside would do.
+    Ask(Box<Request>),
+    /// End all captures that are under way.
+    CancelCaptures,
 }
 
 /// The command that opens a dropped file or folder.

@@ -4,6 +4,7 @@
 //! Panels, keys and dropped files change settings or send a `command`.
 
 mod command;
+mod control;
 mod dialog;
 mod difference;
 mod editor;
@@ -28,6 +29,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crossbeam_channel::Receiver;
 use winit::application::ApplicationHandler;
 use winit::dpi::{PhysicalPosition, PhysicalSize};
 use winit::event::{StartCause, WindowEvent};
@@ -35,7 +37,9 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
+use crate::control::{Asked, Clients, Control};
 use crate::disk_cache;
+use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts};
 use crate::recovery::Recorder;
 use crate::scene::LoadOptions;
@@ -70,8 +74,8 @@ pub struct AppOptions {
     pub validation: bool,
     /// Whether models may read files outside their folder.
     pub allow_outside: bool,
-    /// Whether to print events.
-    pub events: bool,
+    /// Those who get events and send commands.
+    pub control: Control,
     /// Start of the program, for the events' times.
     pub start: Instant,
 }
@@ -96,11 +100,17 @@ pub enum AppError {
 ///
 /// # Errors
 /// No display, no device, or a device error.
-pub fn run(options: AppOptions) -> Result<(), AppError> {
+pub fn run(mut options: AppOptions) -> Result<(), AppError> {
+    // Its end writes the last events, so it outlives the window.
+    let control = std::mem::take(&mut options.control);
     let event_loop = EventLoop::<Message>::with_user_event().build().map_err(no_display)?;
     let outbox = Outbox::new(event_loop.create_proxy());
-    let early = Early::begin(&options, &outbox);
-    let mut app = App { outbox, options: Some((options, early)), open: None, result: Ok(()) };
+    if let Some(socket) = control.socket() {
+        emit(control.clients(), &Event::Listening { socket: &socket.display().to_string() });
+    }
+    let early = Early::begin(&options, control.clients(), &outbox);
+    let asked = control.asked();
+    let mut app = App { outbox, asked, options: Some((options, early)), open: None, result: Ok(()) };
     event_loop.run_app(&mut app).map_err(no_display)?;
     app.result
 }
@@ -117,10 +127,11 @@ fn no_display(error: winit::error::EventLoopError) -> AppError {
 struct Early {
     watcher: Option<Watcher>,
     reading: Reading,
+    events: Clients,
 }
 
 impl Early {
-    fn begin(options: &AppOptions, outbox: &Outbox) -> Self {
+    fn begin(options: &AppOptions, events: &Clients, outbox: &Outbox) -> Self {
         // Watch the file before reading it, so that no save is missed in between.
         let files: Vec<PathBuf> = options.model.iter().filter_map(|path| std::path::absolute(path).ok()).collect();
         let watcher = watch_files(&files, outbox).unwrap_or_else(|message| {
@@ -130,12 +141,14 @@ impl Early {
         let compiler = options.compiler.clone();
         std::thread::spawn(move || compiler.warm());
         let reading = loader::read(options.model.clone(), LoadOptions { allow_outside: options.allow_outside });
-        Self { watcher, reading }
+        Self { watcher, reading, events: events.clone() }
     }
 }
 
 struct App {
     outbox: Outbox,
+    /// Commands from outside.
+    asked: Receiver<Asked>,
     options: Option<(AppOptions, Early)>,
     open: Option<Open>,
     result: Result<(), AppError>,
@@ -204,6 +217,7 @@ impl ApplicationHandler<Message> for App {
         let Some((options, early)) = self.options.take() else { return };
         match self.open(event_loop, options, early) {
             Ok(open) => {
+                self.outbox.pass_on(self.asked.clone());
                 open.window.request_redraw();
                 self.open = Some(open);
             }

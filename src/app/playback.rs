@@ -57,6 +57,11 @@ impl Playback {
         (self.last, self.restarted) = (None, true);
     }
 
+    /// Sets the clock to a time. Passes go on from what they drew before.
+    pub(super) fn seek(&mut self, time_s: f32) {
+        (self.clock.time_s, self.last) = (time_s, None);
+    }
+
     /// Whether the clock was set back since the last call. The passes must then restart too.
     pub(super) fn take_restart(&mut self) -> bool {
         std::mem::take(&mut self.restarted)

@@ -6,6 +6,7 @@ mod inspector;
 mod loops;
 mod probe;
 mod reference;
+mod shots;
 mod thumbnail;
 mod ui;
 
@@ -23,12 +24,13 @@ use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::picture;
-use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
+use crate::render::{BoundFrame, Capture, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use error_map::ErrorMap;
 use gallery::Gallery;
 use inspector::PixelReader;
 use reference::ReferenceView;
+use shots::WindowShot;
 
 /// The CPU prepares a frame while the device draws the one before.
 const FRAMES_IN_FLIGHT: usize = 2;
@@ -82,6 +84,8 @@ pub(super) struct Screen {
     /// The picture that the user compares with, while there is one.
     reference: Option<ReferenceView>,
     error_map: ErrorMap,
+    /// The picture of the window that is on its way from the device.
+    window_shot: Option<WindowShot>,
     /// Draws thumbnails of versions while some are missing.
     thumbnails: Option<View>,
     thumbnail: Option<thumbnail::Pending>,
@@ -135,6 +139,7 @@ impl Screen {
             checks: 0,
             reference: None,
             error_map: ErrorMap::default(),
+            window_shot: None,
             thumbnails: None,
             thumbnail: None,
             pixel: None,
@@ -194,6 +199,7 @@ impl Screen {
     /// is an error.
     fn draw_frame(&mut self, window: &Window, viewer: &mut Viewer) -> Result<Option<Duration>, GpuError> {
         if !self.resize(window, viewer)? {
+            viewer.fail_waiting("the window is minimized, so nothing is drawn");
             return Ok(None);
         }
 
@@ -224,6 +230,9 @@ impl Screen {
                 written => written?,
             }
         }
+        if let Some(frame) = &frame {
+            self.take_shots(viewer, frame)?;
+        }
 
         // Record both to a swapchain image. `begin` waits for a frame slot.
         let mut encoder = self.frames.begin()?;
@@ -253,7 +262,7 @@ impl Screen {
         let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
         let next_values = self.inspector.draw(&mut encoder, slot, viewer, &self.layouts, of_pixel)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
-        encoder.transition(&acquired.image, Use::Color, Use::Present);
+        self.record_window_shot(&mut encoder, slot, viewer, &acquired.image)?;
         self.has_others[slot] |=
             self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some() || next_values.is_some();
         self.attempts[slot] = viewer.record(window);
@@ -263,6 +272,7 @@ impl Screen {
             self.stale |= !swapchain.present(&acquired)?;
         }
 
+        viewer.answer();
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
         let reference = self.reference.as_ref().map(|reference| (&reference.view, &reference.frame));
         let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference);
@@ -274,6 +284,8 @@ impl Screen {
             || reported
             || self.awaits_pixel()
             || self.thumbnail.is_some()
+            || self.window_shot.is_some()
+            || viewer.has_unanswered()
             || measures
             || self.error_map.awaits_copies()
             || viewer.moves()
@@ -331,7 +343,7 @@ impl Screen {
         if std::mem::take(&mut self.first) {
             // SYNC: once, so that the time includes the device's work.
             self.frames.wait_all()?;
-            emit(viewer.events, &Event::Window { ms: viewer.start.elapsed().as_secs_f64() * 1e3 });
+            emit(&viewer.events, &Event::Window { ms: viewer.start.elapsed().as_secs_f64() * 1e3 });
         }
         if !viewer.times_next_frame() {
             return Ok(false);
@@ -346,6 +358,20 @@ impl Screen {
 
     /// Writes the picture, without panels, to `specula-N.png` in the working directory.
     fn screenshot(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
+        let Some(capture) = self.read_picture(viewer, frame)? else { return Ok(()) };
+        match picture::write_numbered(&capture, &viewer.look()) {
+            Ok(path) => {
+                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+                viewer.say(format!("wrote {}", whole.display()));
+                emit(&viewer.events, &Event::Screenshot { file: &path.display().to_string() });
+            }
+            Err(message) => viewer.say(message),
+        }
+        Ok(())
+    }
+
+    /// Draws the picture as it is on screen, without panels, and reads it back.
+    fn read_picture(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<Option<Capture>, GpuError> {
         let image = self.view.output_image(frame.state.size)?;
         let mut encoder = self.frames.begin()?;
         self.check_loops(viewer);
@@ -357,16 +383,7 @@ impl Screen {
         self.frames.submit(encoder, Default::default())?;
         // SYNC: the CPU reads the picture.
         self.frames.wait()?;
-        let Some(capture) = readback.map(|readback| readback.finish()) else { return Ok(()) };
-        match picture::write_numbered(&capture, &viewer.look()) {
-            Ok(path) => {
-                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
-                viewer.say(format!("wrote {}", whole.display()));
-                emit(viewer.events, &Event::Screenshot { file: &path.display().to_string() });
-            }
-            Err(message) => viewer.say(message),
-        }
-        Ok(())
+        Ok(readback.map(|readback| readback.finish()))
     }
 }
 

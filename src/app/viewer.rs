@@ -14,6 +14,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::command::{Command, open_as};
+use super::control::Controlled;
 use super::hint;
 use super::history::History;
 use super::learn::Learning;
@@ -22,6 +23,7 @@ use super::playback::Playback;
 use super::status::{Notices, ShaderStatus};
 use super::{AppOptions, Early};
 use super::{dialog, editor};
+use crate::control::Clients;
 use crate::events::{Event, ReloadEvent, emit};
 use crate::frame::{Clock, Revisions, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
@@ -81,6 +83,11 @@ pub(super) struct ModelStatus {
 }
 
 impl ModelStatus {
+    /// Whether the model that was opened by this path is on screen.
+    pub(super) fn is_file(&self, path: &Path) -> bool {
+        self.path.as_deref() == Some(path)
+    }
+
     /// Whether this file is on screen.
     pub(super) fn is_open(&self, path: &Path) -> bool {
         let shown = self.path.as_ref().and_then(|path| std::path::absolute(path).ok());
@@ -95,7 +102,9 @@ pub(super) struct Viewer {
     pub(super) shader: ShaderStatus,
     pub(super) model: ModelStatus,
     pub(super) notices: Notices,
-    pub(super) events: bool,
+    /// Those who get events.
+    pub(super) events: Clients,
+    pub(super) controlled: Controlled,
     pub(super) start: Instant,
     /// The time of animated shaders.
     pub(super) playback: Playback,
@@ -117,6 +126,8 @@ pub(super) struct Viewer {
     clock: Clock,
     /// Whether nothing was missing for the last frame.
     is_complete: bool,
+    /// Whether the last frame showed the settings, and lacked nothing but stages that it does not need.
+    shows_settings: bool,
     first_frame: Option<FirstFrame>,
     /// Whether the names in the settings were compared with those that the shaders declare.
     names_checked: bool,
@@ -160,7 +171,8 @@ impl Viewer {
             shader: ShaderStatus { compiling: true, ..Default::default() },
             model: ModelStatus { path: options.model.clone(), ..Default::default() },
             notices: Notices::default(),
-            events: options.events,
+            events: early.events,
+            controlled: Controlled::default(),
             start: options.start,
             playback: Playback::default(),
             history: History::default(),
@@ -176,6 +188,7 @@ impl Viewer {
             edits,
             clock: Clock::default(),
             is_complete: false,
+            shows_settings: false,
             first_frame: None,
             names_checked: false,
             settled: None,
@@ -234,7 +247,7 @@ impl Viewer {
         if !self.ready && state.scene.is_some() {
             self.ready = true;
             let ms = self.start.elapsed().as_secs_f64() * 1e3;
-            emit(self.events, &Event::Ready { device: &self.gpu.info().name, ms });
+            emit(&self.events, &Event::Ready { device: &self.gpu.info().name, ms });
             // After this build the worker also builds the neighboring modes.
             if let Some(set) = self.resources.pipelines() {
                 self.threads.worker.build(set, &state.pipelines);
@@ -273,13 +286,14 @@ impl Viewer {
     pub(super) fn say(&mut self, text: impl Into<String>) {
         let text = text.into();
         message::tell(&text);
+        emit(&self.events, &Event::Message { message: &text });
         self.notices.say(text);
     }
 
     /// Shows a failure until the user dismisses it.
     fn keep_saying(&mut self, text: String) {
         if self.notices.keep(text.clone()) {
-            emit(self.events, &Event::Failure { message: &text });
+            emit(&self.events, &Event::Failure { message: &text });
             message::tell(text);
         }
     }
@@ -333,6 +347,8 @@ impl Viewer {
                 self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
             Command::Say(text) => self.say(text),
+            Command::Ask(request) => self.ask_self(*request),
+            Command::CancelCaptures => self.cancel_captures(),
             Command::Compare(with) => self.compare_with(with),
             Command::WriteVersion(number) => self.write_version(number),
             Command::NewTree(_) if self.is_choosing => self.say("The file dialog is already open"),

@@ -143,11 +143,7 @@ impl Headless {
         settings: Settings,
         size: (u32, u32),
     ) -> Result<Self, HeadlessError> {
-        let most = gpu.max_image_size();
-        if size.0 > most || size.1 > most {
-            let message = format!("{}x{} is too large; this device draws at most {most} pixels a side", size.0, size.1);
-            return Err(HeadlessError::Settings(message));
-        }
+        check_size(gpu, size)?;
         model.variant(&settings.variant).map_err(HeadlessError::Settings)?;
         let layouts = SetLayouts::new(gpu)?;
         let mut this = Self {
@@ -238,6 +234,18 @@ impl Headless {
     /// The settings of the next [`Headless::render`].
     pub fn settings_mut(&mut self) -> &mut Settings {
         &mut self.session.settings
+    }
+
+    /// Sets the size of the next picture, pixels.
+    ///
+    /// # Errors
+    /// The device cannot draw it.
+    pub fn set_size(&mut self, size: (u32, u32)) -> Result<(), HeadlessError> {
+        check_size(&self.gpu, size)?;
+        if self.size != size {
+            (self.size, self.output) = (size, None);
+        }
+        Ok(())
     }
 
     /// Sets the times of the frames that [`Headless::render`] draws.
@@ -385,4 +393,13 @@ impl Headless {
         let diagnostic = endless_loop(&self.gpu, words, &self.shaders(), library.compiler(), library.source());
         diagnostic.map_or(error, |diagnostic| HeadlessError::Shaders(vec![diagnostic]))
     }
+}
+
+fn check_size(gpu: &Gpu, (width, height): (u32, u32)) -> Result<(), HeadlessError> {
+    let most = gpu.max_image_size();
+    if width > most || height > most {
+        let message = format!("{width}x{height} is too large; this device draws at most {most} pixels a side");
+        return Err(HeadlessError::Settings(message));
+    }
+    Ok(())
 }

@@ -79,7 +79,15 @@ impl<K: PartialEq, T> Slot<K, T> {
     }
 }
 
-/// Pipelines, model, environment, measured BRDF and what random paths trace: the newest of each.
+impl<K: Clone, T> Clone for Slot<K, T> {
+    fn clone(&self) -> Self {
+        Self { made: self.made.clone(), failed: self.failed.clone(), none: self.none.clone() }
+    }
+}
+
+/// Pipelines, model, environment, measured BRDF and what random paths trace: the newest of each. A clone shares what is there, and
+/// then goes its own way.
+#[derive(Clone)]
 pub struct Resources {
     gpu: Arc<Gpu>,
     layouts: Arc<SetLayouts>,

@@ -10,13 +10,16 @@ pub(crate) mod worker;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use crossbeam_channel::Receiver;
 use image::RgbaImage;
 use winit::event_loop::EventLoopProxy;
 
 use crate::comparison::{Comparison, Picture};
+use crate::control::Asked;
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::learn::Exercise;
@@ -59,6 +62,12 @@ pub(crate) enum Message {
     Exercise(PathBuf, Option<&'static Exercise>),
     /// The goals of an exercise were measured.
     Checked(Checked),
+    /// A command from outside.
+    Asked(Box<Asked>),
+    /// Pictures that are done, and of how many, of the capture with this number.
+    Captures(u64, u64, u64),
+    /// The capture with this number has ended.
+    Captured(u64),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
 }
@@ -75,6 +84,7 @@ pub(crate) enum Role {
     Checker,
     /// Measures the BRDF.
     Measurer,
+    Capturer(u64),
     /// Waits for what is outside of Specula, or compares pictures.
     Waiter,
 }
@@ -90,6 +100,14 @@ impl Outbox {
 
     pub(crate) fn send(&self, message: Message) {
         let _ = self.0.send_event(message);
+    }
+
+    /// Sends the commands from outside, on a thread that lasts as long as the process.
+    pub(crate) fn pass_on(&self, asked: Receiver<Asked>) {
+        let outbox = self.clone();
+        let work = move || asked.iter().for_each(|asked| outbox.send(Message::Asked(Box::new(asked))));
+        // Without the thread, commands wait in vain, and the window works as ever.
+        let _ = std::thread::Builder::new().name("specula-asked".to_owned()).spawn(work);
     }
 
     /// Runs `body` on a new thread. If it panics, the window receives a message.
@@ -133,6 +151,10 @@ pub(crate) struct Threads {
     pub(crate) measurer: Measurer,
     /// Threads that look for the line of a loop.
     explainers: Vec<JoinHandle<()>>,
+    /// Threads that draw captures, and what cancels each.
+    capturers: Vec<(Arc<AtomicBool>, JoinHandle<()>)>,
+    /// Held by the capture that is being drawn, so that the others wait.
+    capturing: Arc<Mutex<()>>,
     outbox: Outbox,
 }
 
@@ -155,6 +177,8 @@ impl Threads {
             checker: Checker::new(device.0, compiler, outbox),
             measurer: Measurer::new(device.0, outbox),
             explainers: Vec::new(),
+            capturers: Vec::new(),
+            capturing: Arc::default(),
             outbox: outbox.clone(),
         }
     }
@@ -179,6 +203,27 @@ impl Threads {
         self.explainers.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
             outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
         }));
+    }
+
+    /// Draws the capture with this number on a thread of its own, after those before it. Closing waits for it, and cancels it before.
+    pub(crate) fn capture(
+        &mut self,
+        number: u64,
+        canceled: Arc<AtomicBool>,
+        work: impl FnOnce(&Outbox) + Send + 'static,
+    ) {
+        self.capturers.retain(|(_, thread)| !thread.is_finished());
+        let capturing = self.capturing.clone();
+        let thread = self.outbox.spawn(Role::Capturer(number), move |outbox| {
+            let _alone = capturing.lock().unwrap_or_else(PoisonError::into_inner);
+            work(outbox);
+        });
+        self.capturers.push((canceled, thread));
+    }
+
+    /// The end of the messages to the window, for work that answers later.
+    pub(crate) fn outbox(&self) -> Outbox {
+        self.outbox.clone()
     }
 
     /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
@@ -229,7 +274,9 @@ impl Threads {
 
 impl Drop for Threads {
     fn drop(&mut self) {
-        for thread in self.explainers.drain(..) {
+        self.capturers.iter().for_each(|(canceled, _)| canceled.store(true, Ordering::Relaxed));
+        let capturers = self.capturers.drain(..).map(|(_, thread)| thread);
+        for thread in self.explainers.drain(..).chain(capturers) {
             let _ = thread.join();
         }
     }

@@ -1,7 +1,7 @@
 //! The program as a child process: run to its end, or driven by its events.
 
 use std::ffi::OsStr;
-use std::io::{BufRead as _, BufReader, Read};
+use std::io::{BufRead as _, BufReader, Read, Write as _};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// How long anything may take before a test gives up. Nothing waits this long unless it hangs.
 pub const PATIENCE: Duration = Duration::from_secs(90);
@@ -137,6 +137,43 @@ impl Running {
             Err(RecvTimeoutError::Timeout) => panic!("waited in vain for {what}. {}", self.story()),
             Err(RecvTimeoutError::Disconnected) => panic!("the program ended before {what}. {}", self.story()),
         }
+    }
+
+    /// Writes a line to the program's standard input.
+    #[track_caller]
+    pub fn say(&mut self, line: &str) {
+        writeln!(self.child.stdin.as_mut().expect("a program with a standard input"), "{line}").unwrap();
+    }
+
+    /// Ends the program's standard input.
+    pub fn end_input(&mut self) {
+        drop(self.child.stdin.take());
+    }
+
+    /// Gives a command on standard input and waits for its answer. `command` is an object without `id`.
+    #[track_caller]
+    pub fn ask(&mut self, mut command: Value) -> Value {
+        let id = json!(self.seen.len());
+        command["id"] = id.clone();
+        self.say(&command.to_string());
+        let is_answer = |event: &Value| event["id"] == id && event["event"] != "progress";
+        self.until(&format!("the answer to {command}"), is_answer)
+    }
+
+    /// The result of a command that must succeed.
+    #[track_caller]
+    pub fn done(&mut self, command: Value) -> Value {
+        let answer = self.ask(command.clone());
+        assert_eq!(answer["event"], "done", "{command}: {answer}");
+        answer["result"].clone()
+    }
+
+    /// The message about a command that must fail.
+    #[track_caller]
+    pub fn refused(&mut self, command: Value) -> String {
+        let answer = self.ask(command.clone());
+        assert_eq!(answer["event"], "error", "{command}: {answer}");
+        answer["message"].as_str().unwrap().to_owned()
     }
 
     /// Waits for the first event that `is` accepts.

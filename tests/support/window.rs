@@ -92,6 +92,12 @@ fn missing<T>(program: &str, package: &str, error: &std::io::Error) -> T {
     panic!("{program} is not installed, and the window is not tested without it: apt-get install {package}");
 }
 
+/// Makes the hint of the first start a dismissed one.
+fn dismiss_hint(tree: &Tree) {
+    std::fs::create_dir_all(tree.beside("state/specula")).unwrap();
+    std::fs::write(tree.beside("state/specula/hint.json"), "{}").unwrap();
+}
+
 /// `specula view` on a tree of its own, under validation. Fields drop in order: the program ends before its display.
 pub struct Viewer {
     /// The program.
@@ -125,6 +131,15 @@ impl Viewer {
         viewer
     }
 
+    /// [`Self::open`] with a standard input for [`Running::ask`].
+    pub fn driven(tree: Tree, more: &[&str]) -> Self {
+        dismiss_hint(&tree);
+        let mut viewer = Self::spawn(tree, more, &[], Stdio::piped());
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
     /// [`Self::with_fault`] without waiting for a window.
     pub fn launch(tree: Tree, more: &[&str], fault: &str) -> Self {
         Self::start(tree, more, &[("SPECULA_FAULT", fault)])
@@ -132,21 +147,21 @@ impl Viewer {
 
     /// [`Self::open`] with the hint of the first start, which all other windows have dismissed.
     pub fn at_first_start(tree: Tree, more: &[&str]) -> Self {
-        let mut viewer = Self::start_anew(tree, more, &[]);
+        let mut viewer = Self::spawn(tree, more, &[], Stdio::null());
         viewer.running.event("window");
         viewer.find_window();
         viewer
     }
 
     fn start(tree: Tree, more: &[&str], environment: &[(&str, &str)]) -> Self {
-        std::fs::create_dir_all(tree.beside("state/specula")).unwrap();
-        std::fs::write(tree.beside("state/specula/hint.json"), "{}").unwrap();
-        Self::start_anew(tree, more, environment)
+        dismiss_hint(&tree);
+        Self::spawn(tree, more, environment, Stdio::null())
     }
 
-    fn start_anew(tree: Tree, more: &[&str], environment: &[(&str, &str)]) -> Self {
+    fn spawn(tree: Tree, more: &[&str], environment: &[(&str, &str)], stdin: Stdio) -> Self {
         let display = Display::new();
         let mut command = display.view(&tree);
+        command.stdin(stdin);
         // Records of the session lie here, so a test can see whether they are removed.
         std::fs::create_dir_all(tree.beside("runtime")).unwrap();
         command.env("XDG_RUNTIME_DIR", tree.beside("runtime"));

@@ -38,6 +38,7 @@ pub(super) enum Panel {
     Output,
     Camera,
     Learn,
+    Capture,
 }
 
 impl Panel {
@@ -46,7 +47,7 @@ impl Panel {
         &[Self::Modes, Self::Model, Self::Learn],
         &[Self::Shaders, Self::Timeline, Self::Timing, Self::Expression],
         &[Self::Parameters, Self::Passes, Self::Inspector],
-        &[Self::Environment, Self::Lights, Self::Output, Self::Camera],
+        &[Self::Environment, Self::Lights, Self::Output, Self::Camera, Self::Capture],
     ];
 
     pub(super) fn title(self) -> &'static str {
@@ -66,6 +67,7 @@ impl Panel {
             Self::Output => "Output",
             Self::Camera => "Camera",
             Self::Learn => "Learn",
+            Self::Capture => "Capture",
         }
     }
 }

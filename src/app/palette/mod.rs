@@ -10,6 +10,7 @@ use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 use super::command::Command;
 use super::panels::theme::{EDGE, ERROR, PANEL, QUIET};
 use super::viewer::Viewer;
+use crate::message::did_you_mean;
 use crate::shader::Expression;
 use entries::{Action, Ask, Entry, act, entries};
 use search::{Found, find};
@@ -46,6 +47,38 @@ impl Palette {
     pub(super) fn toggle(&mut self) {
         *self = Self { is_open: !self.is_open, ..Self::default() };
     }
+}
+
+/// The group and title of everything that the palette can do at the moment.
+pub(super) fn titles(viewer: &Viewer) -> Vec<(&'static str, String)> {
+    entries(viewer).into_iter().map(|entry| (entry.group, entry.title)).collect()
+}
+
+/// Does what the entry with this title does. `value` is for an entry that sets a number.
+///
+/// # Errors
+/// A message: no entry has the title, or the value does not fit.
+pub(super) fn run(viewer: &mut Viewer, title: &str, value: Option<f64>) -> Result<(), String> {
+    let entries = entries(viewer);
+    let Some(entry) = entries.iter().find(|entry| entry.title.eq_ignore_ascii_case(title)) else {
+        let hint = did_you_mean(title, entries.iter().map(|entry| entry.title.as_str()));
+        return Err(format!("the palette has no entry `{title}`.{hint} `entries` lists them all"));
+    };
+    let action = match (&entry.action, value) {
+        (Action::Number(ask), Some(value)) => {
+            let value = ask.scale.parse(&value.to_string()).map_err(|why| format!("`{}`: {why}", entry.title))?;
+            Action::Number(Box::new(ask.with(value)))
+        }
+        (Action::Number(ask), None) => {
+            return Err(format!("`{}` needs a `value`: {}", entry.title, ask.scale.range_text()));
+        }
+        (_, Some(_)) => return Err(format!("`{}` takes no value", entry.title)),
+        (action, None) => action.clone(),
+    };
+    let mut commands = Vec::new();
+    act(viewer, action, &mut commands);
+    commands.into_iter().for_each(|command| viewer.execute(command));
+    Ok(())
 }
 
 /// Shows the open palette over `area`, and does what the user chooses.

@@ -2,6 +2,7 @@
 //! what it shows and sets. `crate::app::layout` arranges them.
 
 mod camera;
+mod capture;
 mod compare;
 pub(super) mod defaults;
 mod environment;
@@ -64,6 +65,7 @@ pub(super) struct PanelState {
     pub(super) timeline: timeline::TimelineState,
     pub(super) expression: expression::ExpressionState,
     pub(super) defaults: defaults::Asked,
+    capture: capture::CaptureState,
     files: overlay::diagnostics::Files,
     pub(super) hint: Hint,
 }
@@ -87,6 +89,7 @@ impl PanelState {
             timeline: timeline::TimelineState::default(),
             expression: expression::ExpressionState::default(),
             defaults: defaults::Asked::default(),
+            capture: capture::CaptureState::default(),
             files: overlay::diagnostics::Files::default(),
             hint: Hint::restored(),
         }
@@ -181,6 +184,12 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.inspector = state;
         return;
     }
+    if panel == Panel::Capture {
+        let size = viewer.shown().map_or((0, 0), |state| state.size);
+        let versions = viewer.versions.iter().count();
+        capture::show(ui, &mut viewer.panels.capture, &viewer.controlled.captures, (size, versions), commands);
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
@@ -189,7 +198,8 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Expression | Panel::Inspector => {}
+        Panel::Viewport | Panel::Timeline | Panel::Learn => {}
+        Panel::Expression | Panel::Inspector | Panel::Capture => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);

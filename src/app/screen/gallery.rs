@@ -128,7 +128,7 @@ impl Gallery {
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
         if stale.is_empty() {
             if self.drawn > 0 {
-                emit(viewer.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
+                emit(&viewer.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
             }
             return Ok(None);
         }

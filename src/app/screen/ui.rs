@@ -21,6 +21,7 @@ impl Screen {
         self.take_thumbnail(viewer);
         self.inspector.take(&self.frames, None, viewer);
         self.take_copies(viewer);
+        self.finish_window_shot(viewer);
         if self.gallery.is_misfit(&viewer.gpu, &viewer.panels.gallery, self.egui.pixels_per_point()) {
             // SYNC: rare, because thumbnails change their size only with the width of their panel.
             self.frames.wait_all()?;

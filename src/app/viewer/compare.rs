@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{LastComplete, Versions, Viewer};
+use super::{LastComplete, Version, Versions, Viewer};
 use crate::app::command::CompareWith;
+use crate::capture::VersionPicture;
 use crate::comparison::Comparison;
 use crate::events::{Event, emit};
 use crate::gpu::GpuError;
@@ -90,7 +91,7 @@ impl Viewer {
         match compared {
             Ok(compared) if self.compare.is_on() => {
                 let (flip, largest) = (compared.error, compared.largest);
-                emit(self.events, &Event::Compared { flip, largest });
+                emit(&self.events, &Event::Compared { flip, largest });
                 let map = compared.map().to_rgb8();
                 let size = [map.width() as usize, map.height() as usize];
                 let map = egui::ColorImage::from_rgb(size, map.as_raw()).into();
@@ -194,6 +195,18 @@ impl Viewer {
         let picture = self.versions.get(set.shaders.generation).and_then(|version| version.picture.as_ref());
         let frame = picture.map(|picture| self.interim(picture, self.clock, live.state.size));
         Ok(frame.map(|frame| Reference { frame, part }))
+    }
+
+    /// What a picture of each version needs, the oldest first.
+    pub(in crate::app) fn version_pictures(&self) -> Vec<VersionPicture> {
+        let newest = self.shown_generation();
+        let versions =
+            self.versions.iter().filter(|version| version.number == newest || self.versions.can_show(version, newest));
+        let of = |version: &Version| {
+            let picture = version.picture.as_ref().or(self.shown.as_ref().filter(|_| version.number == newest));
+            VersionPicture { set: version.set.clone(), like: picture.map(|picture| picture.frame.clone()) }
+        };
+        versions.map(of).collect()
     }
 
     /// Ends the comparison and drops old versions, while memory is short.

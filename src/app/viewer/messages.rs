@@ -24,7 +24,10 @@ impl Viewer {
     pub(in crate::app) fn on_message(&mut self, message: Message) {
         match message {
             Message::Worker(WorkerMessage::Built(Ok(()))) => self.threads.worker.built(),
-            Message::Worker(WorkerMessage::Built(Err(message))) => self.say(message),
+            Message::Worker(WorkerMessage::Built(Err(message))) => {
+                self.fail_waiting(&message);
+                self.say(message);
+            }
             // The message wakes the window, which draws the thumbnails.
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => {}
             Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source }) => {
@@ -45,11 +48,18 @@ impl Viewer {
             Message::Say(text) => self.say(text),
             Message::Look(Ok(settings)) => {
                 self.session.settings = *settings;
+                self.look_read(&Ok(()));
                 self.check_names();
                 self.watch_files();
             }
-            Message::Look(Err(message)) => self.say(message),
             Message::Written(written) => self.on_written(written),
+            Message::Look(Err(message)) => {
+                self.say(message.clone());
+                self.look_read(&Err(message));
+            }
+            Message::Asked(asked) => self.on_asked(*asked),
+            Message::Captures(number, done, of) => self.controlled.captures.progress(number, done, of),
+            Message::Captured(number) => self.controlled.captures.ended(number),
             Message::Compared(number, compared) => self.on_compared(number, compared),
             Message::Chosen(answer) => {
                 self.is_choosing = false;
@@ -96,13 +106,13 @@ impl Viewer {
                 }
             }
         }
-        emit(self.events, &Event::Completed(CompletedEvent::new(reload, generation)));
+        emit(&self.events, &Event::Completed(CompletedEvent::new(reload, generation)));
     }
 
     fn show_errors(&mut self, diagnostics: &[Diagnostic]) {
         for diagnostic in diagnostics {
             eprintln!("{}", diagnostic.full());
-            emit(self.events, &Event::Diagnostic(diagnostic));
+            emit(&self.events, &Event::Diagnostic(diagnostic));
         }
         self.set_diagnostics(diagnostics.to_vec());
     }
@@ -128,7 +138,7 @@ impl Viewer {
                 for warning in &self.session.diagnostics {
                     eprintln!("{}", warning.full());
                     if warning.severity == Severity::Error {
-                        emit(self.events, &Event::Diagnostic(warning));
+                        emit(&self.events, &Event::Diagnostic(warning));
                     }
                 }
                 // The worker drops requests for older sets, so those of a comparison are sent again.
@@ -148,14 +158,14 @@ impl Viewer {
         let Some(endless) = self.endless_loop.as_mut().filter(|endless| endless.words == words) else { return };
         let Some(diagnostic) = diagnostic else { return };
         eprintln!("{}", diagnostic.full());
-        emit(self.events, &Event::Diagnostic(&diagnostic));
+        emit(&self.events, &Event::Diagnostic(&diagnostic));
         endless.diagnostic = Some(diagnostic);
         let others = std::mem::take(&mut self.session.diagnostics);
         self.set_diagnostics(others);
     }
 
     pub(super) fn report(&mut self, event: ReloadEvent) {
-        emit(self.events, &Event::Reload(event.clone()));
+        emit(&self.events, &Event::Reload(event.clone()));
         self.shader.last = Some(event);
     }
 
@@ -216,6 +226,7 @@ impl Viewer {
                 if let Some(path) = &loaded.path {
                     self.panels.recent.forget(Kind::Model, path);
                 }
+                self.model_failed(&message);
                 self.say(message);
             }
         }
@@ -233,7 +244,7 @@ impl Viewer {
                         if !environment::BUILT_IN.contains(&key.name.as_str()) {
                             self.panels.recent.remember(Kind::Environment, Path::new(&key.name));
                         }
-                        emit(self.events, &Event::Bake(&environment.report));
+                        emit(&self.events, &Event::Bake(&environment.report));
                         self.resources.set_environment(key, Some(environment));
                     }
                     Err(error) => {
@@ -242,6 +253,7 @@ impl Viewer {
                         }
                         self.panels.recent.forget(Kind::Environment, Path::new(&key.name));
                         self.resources.set_environment(key, None);
+                        self.fail_waiting(&error.to_string());
                         self.say(format!("{error}\nThe previous environment stays."));
                     }
                 }
@@ -260,13 +272,19 @@ impl Viewer {
             }
             BakeMessage::Measured(key, result) => {
                 if self.threads.baker.has_read(&key) {
-                    let result = result.map_err(|message| self.say(message));
+                    let result = result.map_err(|message| {
+                        self.fail_waiting(&message);
+                        self.say(message);
+                    });
                     self.resources.set_measured(key, result.ok());
                 }
             }
             BakeMessage::Traced(key, result) => {
                 if self.threads.baker.has_traced(&key) {
-                    let result = result.map_err(|message| self.say(message));
+                    let result = result.map_err(|message| {
+                        self.fail_waiting(&message);
+                        self.say(message);
+                    });
                     self.resources.set_traced(key, result.ok());
                 }
             }
@@ -339,6 +357,10 @@ impl Viewer {
             Role::Measurer => {
                 self.panels.inspector.asked = None;
                 "measuring"
+            }
+            Role::Capturer(number) => {
+                self.controlled.captures.ended(number);
+                "capturing"
             }
             Role::Waiter => {
                 (self.is_choosing, self.compare.measuring) = (false, None);

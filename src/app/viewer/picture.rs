@@ -44,21 +44,23 @@ impl Viewer {
         let target = target(&self.gpu, &self.session.settings);
         let Some(state) = self.session.frame_state(clock, size, target) else { return Ok(None) };
         let state = Arc::new(state);
-        let is_complete = self.request_missing(&state) && state.shaders.is_complete();
-        (self.clock, self.is_complete) = (clock, is_complete);
+        let lacks_nothing = self.request_missing(&state);
+        let is_complete = lacks_nothing && state.shaders.is_complete();
+        (self.clock, self.is_complete, self.shows_settings) = (clock, is_complete, false);
         // The first picture of a model does not wait for its environment.
         let is_first = self.shown.as_ref().is_none_or(|shown| shown.scene.is_none());
         if let Some(frame) = self.resources.bind(&state, is_first)? {
             prepare(&frame)?;
             let generation = state.shaders.generation;
             if is_complete && state.scene.is_some() && self.settled.replace(generation) != Some(generation) {
-                emit(self.events, &Event::Settled { generation });
+                emit(&self.events, &Event::Settled { generation });
                 self.check_exercise();
             }
             let (settings, revisions) = (self.session.settings.clone(), self.session.revisions);
             let shown = LastComplete { settings, scene: state.scene.clone(), revisions, frame: frame.clone() };
             let last = self.shown.replace(shown);
             self.keep_version(last);
+            self.shows_settings = lacks_nothing;
             return Ok(Some(frame));
         }
         let interim = self.shown.as_ref().map(|shown| self.interim(shown, clock, size));
@@ -142,6 +144,16 @@ impl Viewer {
         self.threads.baker.read(missing.measured);
         self.threads.baker.trace(missing.traced);
         is_empty
+    }
+
+    /// Whether the last frame shows the settings: no interim picture, no light from before, and the model if there is one.
+    pub(in crate::app) fn shows_settings(&self) -> bool {
+        self.shows_settings && !(self.model.loading && self.session.model().is_none())
+    }
+
+    /// The time of the last frame.
+    pub(in crate::app) fn clock(&self) -> Clock {
+        self.clock
     }
 
     /// The settings of the picture on screen, from the current camera.

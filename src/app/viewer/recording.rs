@@ -37,7 +37,7 @@ impl Viewer {
         let Some(loss) = &state.loss else { return };
         let refused = state.refused.keys().map(String::as_str).collect();
         let event = Event::Restarted { cause: &loss.cause, losses: state.losses, refused, reset: &loss.reset };
-        emit(self.events, &event);
+        emit(&self.events, &event);
         match loss.reset.as_slice() {
             [] => self.notices.say(format!("{}. The session goes on.", capitalized(&loss.cause))),
             reset => {

@@ -1,5 +1,6 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
+mod many;
 mod progress;
 mod warnings;
 mod watch;
@@ -7,6 +8,7 @@ mod watch;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use specula::capture::Turn;
 use specula::events::{CompletedEvent, Event, ReloadEvent, emit, in_short};
 use specula::frame::{Date, Keys};
 use specula::headless::{Headless, Sequence, Step};
@@ -16,6 +18,7 @@ use specula::pipeline::{Outcome, Reload};
 use specula::render::Capture;
 use specula::shader::Diagnostic;
 
+use super::common::parse::size;
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
 use super::{Failure, print_diagnostics};
 use progress::Progress;
@@ -30,6 +33,18 @@ pub struct Args {
     /// File to write, .png or .exr (raw values); with `--mode all`, FILE.<mode>.png for each; modes that trace the model then have one path per pixel
     #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
     out: PathBuf,
+    /// Write a contact sheet of modes with their names: modes (those that have data in the model), all, or names as d,f,v
+    #[arg(long, value_name = "MODES", conflicts_with = "turntable")]
+    sheet: Option<String>,
+    /// Size of each picture of a sheet in pixels
+    #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
+    tile: (u32, u32),
+    /// Write a full turn of N frames as an animation, .gif or .webp, or as numbered .png files; 25 frames a second without --fps
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    turntable: Option<u32>,
+    /// What turns in a turntable
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
+    turn: Turn,
     /// Stay, and render again whenever a shader or the model is saved
     #[arg(long)]
     watch: bool,
@@ -39,9 +54,9 @@ pub struct Args {
     /// Time of the first frame for animated shaders, seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     time: f32,
-    /// Frames a second, for animated shaders
-    #[arg(long, value_name = "N", default_value_t = 60.0)]
-    fps: f32,
+    /// Frames a second, for animated shaders [default: 60]
+    #[arg(long, value_name = "N")]
+    fps: Option<f32>,
     /// Keys that are down in all frames, for shaders that read keys, as A,Space,Left; they go down in the first
     #[arg(long, value_name = "NAMES")]
     keys: Option<Keys>,
@@ -60,8 +75,12 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     if all {
         "final".clone_into(&mut settings.mode);
     }
-    check_out(&args.out)?;
-    if !args.time.is_finite() || !(0.001..=100_000.0).contains(&args.fps) {
+    match many::is_asked(&args) {
+        true => many::check(&args)?,
+        false => check_out(&args.out)?,
+    }
+    let fps = args.fps.unwrap_or(60.0);
+    if !args.time.is_finite() || !(0.001..=100_000.0).contains(&fps) {
         return Err(Failure::Usage(
             "--time takes a number of seconds, and --fps 0.001 to 100000 frames a second".into(),
         ));
@@ -75,7 +94,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     headless.set_sequence(Sequence {
         frames: args.frames.unwrap_or(1),
         start_s: args.time,
-        fps: args.fps,
+        fps,
         date: args.date.unwrap_or_default(),
         keys: args.keys.unwrap_or_default(),
     });
@@ -301,6 +320,9 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
 /// Writes the picture, or a picture of each mode.
 fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure> {
     let out = args.out.as_path();
+    if many::is_asked(args) {
+        return many::write(headless, args);
+    }
     if !all {
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;

@@ -2,10 +2,12 @@
 
 pub mod supervisor;
 
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use specula::app::{self, AppError, AppOptions};
+use specula::control::{Control, Socket, socket_path};
 use specula::gpu::{GpuError, watchdog};
 use specula::message;
 use specula::recovery::{GoodTexts, HUNG, LOST, Recorder, State, Work};
@@ -23,6 +25,9 @@ const LARGEST_WINDOW: u32 = 16384;
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
+    /// Take commands on a local socket: a file that only you can open. A name without a slash lies in $XDG_RUNTIME_DIR/specula
+    #[arg(long, value_name = "NAME|PATH")]
+    socket: Option<PathBuf>,
     #[command(flatten)]
     common: Common,
 }
@@ -43,16 +48,39 @@ impl Args {
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     args.common.take_shader(&mut args.model);
     match supervisor::session() {
-        Some(folder) => {
-            supervisor::end_with_parent();
-            window(args, start, Some(folder))
-        }
-        None => supervisor::run(|| window(args, start, None)),
+        Some(folder) => window(args, start, Some(folder)),
+        None => supervisor::run(reads_commands(&args), || window(args, start, None)),
     }
+}
+
+/// Whether commands come on standard input. A terminal is not read: it would stop the window of a background job.
+fn reads_commands(args: &Args) -> bool {
+    args.common.emits() && !std::io::stdin().is_terminal()
+}
+
+/// Starts to print events and to read commands.
+fn control(args: &Args, is_supervised: bool) -> Result<Control, Failure> {
+    let mut control = Control::new();
+    if args.common.emits() {
+        let stdout = control.print_events();
+        if is_supervised {
+            control.read(std::io::stdin(), stdout, supervisor::end);
+        } else if reads_commands(args) {
+            control.read(std::io::stdin(), stdout, || ());
+        }
+    } else if is_supervised {
+        supervisor::end_with_parent();
+    }
+    if let Some(name) = &args.socket {
+        let socket = socket_path(name).and_then(Socket::bind).map_err(Failure::Input)?;
+        control.listen(socket);
+    }
+    Ok(control)
 }
 
 /// Opens the window. With the `folder` of a session, goes on where the process before was lost.
 fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Failure> {
+    let control = control(&args, folder.is_some())?;
     check_model_path(args.model.as_deref())?;
     let (width, height) = args.common.size;
     if width.max(height) > LARGEST_WINDOW {
@@ -89,7 +117,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         allow_outside: args.common.allow_outside,
         validation: args.common.validate,
         device: args.common.device,
-        events: args.common.events.is_some(),
+        control,
         recorder: Recorder::new(folder, state, good),
         start,
     };

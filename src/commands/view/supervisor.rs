@@ -1,13 +1,15 @@
 //! Runs the window as a child process, and starts another one when the device is lost or the driver crashes. A lost device cannot
 //! always be made again in the same process, and a crash leaves no process to do it in.
 //!
-//! The child has the same arguments, terminal and process group. Its standard input is a pipe that nobody writes to: it closes
-//! when this process ends, however it ends, and then the child ends too.
+//! The child has the same arguments, terminal and process group. Its standard input is a pipe: it closes when this process ends,
+//! however it ends, and then the child ends too. With `--events json`, the commands that come on this process's standard input go
+//! through the pipe, also to the child that takes the place of a lost one.
 
 use std::fs::DirBuilder;
-use std::io::{self, Read as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use specula::message;
 use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, State, VARIABLE, remove_folder};
@@ -22,11 +24,13 @@ pub fn session() -> Option<PathBuf> {
     std::env::var_os(VARIABLE).map(PathBuf::from)
 }
 
-/// Runs the window in child processes until one ends by itself. `in_place` runs it in this process, if there can be no child.
-pub fn run(in_place: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+/// Runs the window in child processes until one ends by itself. `in_place` runs it in this process, if there can be no child. With
+/// `forwards`, the child gets what comes on standard input.
+pub fn run(forwards: bool, in_place: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    let input = Input::default();
     let child = create_folder().and_then(|folder| {
         let program = std::env::current_exe()?;
-        let result = run_child(&program, &folder.0)?;
+        let result = run_child(&program, &folder.0, &input, forwards)?;
         Ok((folder, program, result))
     });
     let (folder, program, mut status) = match child {
@@ -46,25 +50,30 @@ pub fn run(in_place: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure
             return Err(Failure::Device(farewell(&cause, &state)));
         }
         message::tell(format_args!("{cause}; the session goes on in a new window"));
-        let next = state.write(&folder.0).and_then(|()| run_child(&program, &folder.0));
+        let next = state.write(&folder.0).and_then(|()| run_child(&program, &folder.0, &input, forwards));
         status = next.map_err(|error| Failure::Device(format!("{cause}, and the session cannot go on: {error}")))?;
     }
     drop(folder);
     end_like(status)
 }
 
-/// Ends the child when its parent ends.
+/// Ends the child when its parent ends, if nobody else reads the pipe between them.
 pub fn end_with_parent() {
     let wait = || {
         // The pipe holds nothing, so this returns once it is closed.
         let _ = io::stdin().read(&mut [0]);
-        clean_up();
-        #[cfg(unix)]
-        let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTERM);
-        std::process::exit(1);
+        end();
     };
     // Without the thread, only a killed parent would leave the child behind.
     let _ = std::thread::Builder::new().name("specula-parent".to_owned()).spawn(wait);
+}
+
+/// Ends the child, whose parent has ended.
+pub fn end() {
+    clean_up();
+    #[cfg(unix)]
+    let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTERM);
+    std::process::exit(1);
 }
 
 /// Removes the folder of the session, if this process is the child and about to be ended by a signal.
@@ -102,11 +111,84 @@ fn create_folder() -> io::Result<Folder> {
 }
 
 /// Runs the program again with the same arguments, to its end.
-fn run_child(program: &Path, folder: &Path) -> io::Result<ExitStatus> {
+fn run_child(program: &Path, folder: &Path, input: &Input, forwards: bool) -> io::Result<ExitStatus> {
     let mut child =
         Command::new(program).args(std::env::args_os().skip(1)).env(VARIABLE, folder).stdin(Stdio::piped()).spawn()?;
-    let _open_until_then = child.stdin.take();
-    child.wait()
+    input.lead_to(child.stdin.take());
+    if forwards {
+        input.forward();
+    }
+    let status = child.wait();
+    input.lead_to(None);
+    status
+}
+
+/// What comes on standard input, on its way to the child. The pipe to the child stays open when the input ends.
+#[derive(Clone, Default)]
+struct Input(Arc<(Mutex<Lead>, Condvar)>);
+
+/// Where the input goes.
+#[derive(Default)]
+struct Lead {
+    pipe: Option<ChildStdin>,
+    is_read: bool,
+    /// Whether the child before got the beginning of a line. The next one does not get the rest.
+    skips: bool,
+    is_within_line: bool,
+}
+
+impl Input {
+    fn lock(&self) -> MutexGuard<'_, Lead> {
+        self.0.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Leads the input to another child, or lets it wait.
+    fn lead_to(&self, pipe: Option<ChildStdin>) {
+        let mut lead = self.lock();
+        lead.skips |= pipe.is_some() && lead.is_within_line;
+        lead.pipe = pipe;
+        self.0.1.notify_all();
+    }
+
+    /// Reads standard input on a thread until it ends. The thread is started once.
+    fn forward(&self) {
+        if std::mem::replace(&mut self.lock().is_read, true) {
+            return;
+        }
+        let input = self.clone();
+        let read = move || {
+            let mut bytes = [0; 1 << 14];
+            loop {
+                match io::stdin().read(&mut bytes) {
+                    Ok(0) => return,
+                    Ok(count) => input.pass(&bytes[..count]),
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                    Err(_) => return,
+                }
+            }
+        };
+        // Without the thread, the window gets no commands and works as ever.
+        let _ = std::thread::Builder::new().name("specula-input".to_owned()).spawn(read);
+    }
+
+    /// Passes bytes on to the child that there is, or to the next one.
+    fn pass(&self, mut bytes: &[u8]) {
+        let mut lead = self.lock();
+        while lead.pipe.is_none() {
+            lead = self.0.1.wait(lead).unwrap_or_else(PoisonError::into_inner);
+        }
+        if lead.skips {
+            let end = bytes.iter().position(|byte| *byte == b'\n');
+            bytes = end.map_or(&[], |end| &bytes[end + 1..]);
+            lead.skips = end.is_none();
+        }
+        let Some(last) = bytes.last() else { return };
+        lead.is_within_line = *last != b'\n';
+        if let Some(pipe) = &mut lead.pipe {
+            // Fails when the child is ending. A command that it has not carried out is lost with it.
+            let _ = pipe.write_all(bytes);
+        }
+    }
 }
 
 /// Why the device or the program was lost, as the start of a sentence; `None` if the child has ended by itself or was ended by

@@ -224,7 +224,8 @@ impl Window {
             mode,
             // If passes follow the tone map, their result is copied to the swapchain's image.
             usage: vk::ImageUsageFlags::COLOR_ATTACHMENT
-                | (vk::ImageUsageFlags::TRANSFER_DST & capabilities.supported_usage_flags),
+                | ((vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::TRANSFER_SRC)
+                    & capabilities.supported_usage_flags),
         }))
     }
 }

@@ -1,0 +1,243 @@
+//! What a thread draws beside the window: pictures of another size or mode, values of a pixel, sheets and animations.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use serde_json::{Map, Value, json};
+
+use super::files::write_capture;
+use super::requests::path_text;
+use crate::app::viewer::Viewer;
+use crate::capture::{
+    Animation, CaptureError, Renderer as _, SheetPlan, Stills, Turn, Turntable, VersionPicture, check_animation,
+    modes_of,
+};
+use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
+use crate::headless::HeadlessError;
+use crate::picture;
+use crate::shader::PixelValue;
+use crate::threads::Message;
+
+/// Time between two reports of progress.
+const REPORT: Duration = Duration::from_millis(100);
+/// Size of a picture of a sheet, pixels.
+const TILE: [u32; 2] = [320, 180];
+/// Frames of a turn, and frames a second.
+const FRAMES: u32 = 75;
+const FPS: f32 = 25.0;
+/// Versions a second.
+const VERSIONS_PER_S: f32 = 1.5;
+
+/// What a thread draws.
+#[derive(Clone, Debug)]
+pub(in crate::app) enum Work {
+    Picture { file: Option<PathBuf>, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
+    Probe { at: (u32, u32), names: Vec<String> },
+    Sheet { file: PathBuf, names: Vec<String>, size: (u32, u32), columns: Option<u32> },
+    Turntable { file: PathBuf, frames: u32, fps: f32, size: Option<(u32, u32)>, turn: Turn },
+    Timeline { file: PathBuf, fps: f32, size: Option<(u32, u32)> },
+}
+
+impl Work {
+    pub(super) fn sheet(fields: Sheet) -> Result<Self, String> {
+        let names = match fields.modes {
+            None => vec!["modes".to_owned()],
+            Some(Value::String(name)) => vec![name],
+            Some(Value::Array(list)) => {
+                let text = |name: &Value| name.as_str().map(str::to_owned);
+                list.iter().map(text).collect::<Option<_>>().ok_or("`modes` takes names of modes")?
+            }
+            Some(other) => {
+                return Err(format!("`modes` cannot be {other}; it takes \"modes\", \"all\" or names of modes"));
+            }
+        };
+        picture::check_path(&fields.file)?;
+        let size = fields.size.unwrap_or(TILE).into();
+        Ok(Self::Sheet { file: fields.file, names, size, columns: fields.columns })
+    }
+
+    pub(super) fn turntable(fields: TurntableFields) -> Result<Self, String> {
+        let (fps, frames) = (fields.fps.unwrap_or(FPS), fields.frames.unwrap_or(FRAMES));
+        check_animation(&fields.file, fps)?;
+        if !(1..=Turntable::MOST_FRAMES).contains(&frames) {
+            return Err(format!("`frames` is {frames}; it can be 1 to {}", Turntable::MOST_FRAMES));
+        }
+        let turn = fields.turn.as_deref().map_or(Ok(Turn::default()), Turn::named)?;
+        Ok(Self::Turntable { file: fields.file, frames, fps, size: fields.size.map(Into::into), turn })
+    }
+
+    pub(super) fn timeline(fields: Timeline) -> Result<Self, String> {
+        let fps = fields.fps.unwrap_or(VERSIONS_PER_S);
+        check_animation(&fields.file, fps)?;
+        Ok(Self::Timeline { file: fields.file, fps, size: fields.size.map(Into::into) })
+    }
+
+    /// What it is, for the panel.
+    fn title(&self) -> &'static str {
+        match self {
+            Self::Picture { .. } => "Picture",
+            Self::Probe { .. } => "Values of a pixel",
+            Self::Sheet { .. } => "Sheet of modes",
+            Self::Turntable { .. } => "Turntable",
+            Self::Timeline { .. } => "Timeline",
+        }
+    }
+
+    /// Draws it. `size` is that of the picture on screen. Returns the result of the answer.
+    fn draw(
+        self,
+        stills: &mut Stills,
+        size: (u32, u32),
+        versions: &[VersionPicture],
+        tell: &mut dyn FnMut(u64, u64) -> bool,
+    ) -> Result<Value, CaptureError> {
+        let wrong = |message: String| CaptureError::Usage(message);
+        match self {
+            Self::Picture { file, size: own, mode, frames } => {
+                if let Some(mode) = mode {
+                    modes_of(stills.session(), std::slice::from_ref(&mode)).map_err(wrong)?;
+                    stills.settings().mode = mode;
+                }
+                stills.set_count(frames);
+                let capture = stills.capture(own.unwrap_or(size))?;
+                let settings = stills.settings().clone();
+                let file = write_capture(&capture, &settings, file.as_deref()).map_err(CaptureError::Write)?;
+                Ok(json!({ "file": path_text(&file), "width": capture.width, "height": capture.height }))
+            }
+            Self::Probe { at, names } => {
+                let (x, y) = at;
+                if x >= size.0 || y >= size.1 {
+                    let (width, height) = size;
+                    return Err(wrong(format!(
+                        "[{x}, {y}] is outside of the picture, which has {width}x{height} pixels"
+                    )));
+                }
+                let modes = modes_of(stills.session(), &names).map_err(wrong)?;
+                let values = stills.pixel(size, at, &modes, tell)?;
+                let values: Map<String, Value> =
+                    modes.iter().zip(values).map(|(mode, value)| (mode.slug.clone(), value_json(&value))).collect();
+                Ok(json!({ "pixel": [x, y], "size": [size.0, size.1], "modes": values }))
+            }
+            Self::Sheet { file, names, size, columns } => {
+                let modes = modes_of(stills.session(), &names).map_err(wrong)?;
+                let count = modes.len();
+                SheetPlan { modes, size, columns }.write(stills, &file, tell)?;
+                Ok(json!({ "file": path_text(&file), "modes": count }))
+            }
+            Self::Turntable { file, frames, fps, size: own, turn } => {
+                let plan = Turntable { frames, fps, size: own.unwrap_or(size), turn };
+                plan.write(stills, &file, tell)?;
+                Ok(json!({ "file": path_text(&file), "frames": frames }))
+            }
+            Self::Timeline { file, fps, size: own } => {
+                let animation = Animation::new(&file, fps)?;
+                stills.timeline(versions, own.unwrap_or(size), animation, tell)?;
+                Ok(json!({ "file": path_text(&file), "versions": versions.len() }))
+            }
+        }
+    }
+}
+
+/// The value of a mode, as `specula probe --json` prints it.
+fn value_json(pixel: &PixelValue) -> Value {
+    match pixel {
+        PixelValue { not_finite: true, .. } => json!("NaN"),
+        PixelValue { no_data: true, .. } => Value::Null,
+        PixelValue { value, .. } => json!(value),
+    }
+}
+
+/// A capture that is under way.
+pub(in crate::app) struct Running {
+    number: u64,
+    pub(in crate::app) title: &'static str,
+    /// Pictures that are done, and of how many; 0 while that is not known.
+    pub(in crate::app) done: u64,
+    pub(in crate::app) of: u64,
+    canceled: Arc<AtomicBool>,
+}
+
+impl Running {
+    /// Ends it after the picture that is being drawn.
+    pub(in crate::app) fn cancel(&self) {
+        self.canceled.store(true, Ordering::Relaxed);
+    }
+
+    pub(in crate::app) fn is_canceled(&self) -> bool {
+        self.canceled.load(Ordering::Relaxed)
+    }
+}
+
+/// The captures that are under way, in the order in which they were begun.
+#[derive(Default)]
+pub(in crate::app) struct Captures {
+    running: Vec<Running>,
+    last: u64,
+}
+
+impl Captures {
+    pub(in crate::app) fn iter(&self) -> impl Iterator<Item = &Running> {
+        self.running.iter()
+    }
+
+    pub(super) fn cancel(&self) {
+        self.running.iter().for_each(Running::cancel);
+    }
+
+    /// Takes what a thread tells about how far it is.
+    pub(in crate::app) fn progress(&mut self, number: u64, done: u64, of: u64) {
+        if let Some(running) = self.running.iter_mut().find(|running| running.number == number) {
+            (running.done, running.of) = (done, of);
+        }
+    }
+
+    /// Removes a capture that has ended.
+    pub(in crate::app) fn ended(&mut self, number: u64) {
+        self.running.retain(|running| running.number != number);
+    }
+}
+
+impl Viewer {
+    /// Begins to draw on a thread of its own.
+    pub(super) fn begin_capture(&mut self, reply: Reply, work: Work) {
+        let captures = &mut self.controlled.captures;
+        captures.last += 1;
+        let (number, canceled) = (captures.last, Arc::new(AtomicBool::new(false)));
+        let title = work.title();
+        captures.running.push(Running { number, title, done: 0, of: 0, canceled: canceled.clone() });
+        let versions = match work {
+            Work::Timeline { .. } => self.version_pictures(),
+            _ => Vec::new(),
+        };
+        let size = self.shown().map_or((1, 1), |state| state.size);
+        let (gpu, session, resources, clock) =
+            (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
+        self.threads.capture(number, canceled.clone(), move |outbox| {
+            let mut last: Option<Instant> = None;
+            let mut tell = |done: u64, of: u64| {
+                if last.is_none_or(|last| last.elapsed() >= REPORT) {
+                    last = Some(Instant::now());
+                    outbox.send(Message::Captures(number, done, of));
+                    reply.progress(done, of);
+                }
+                !canceled.load(Ordering::Relaxed)
+            };
+            let result = match tell(0, 0) {
+                true => Stills::new(&gpu, session, resources, clock)
+                    .map_err(|error| CaptureError::Render(error.into()))
+                    .and_then(|mut stills| work.draw(&mut stills, size, &versions, &mut tell)),
+                false => Err(CaptureError::Canceled),
+            };
+            outbox.send(Message::Captured(number));
+            match result {
+                Ok(result) => reply.done(result),
+                Err(CaptureError::Render(HeadlessError::Shaders(diagnostics))) if !diagnostics.is_empty() => {
+                    reply.error(diagnostics[0].one_line());
+                }
+                Err(error) => reply.error(error.to_string()),
+            }
+        });
+    }
+}

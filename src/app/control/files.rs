@@ -1,0 +1,59 @@
+//! Writes pictures of the screen, on a thread.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use image::{DynamicImage, RgbaImage};
+use serde_json::json;
+
+use super::requests::path_text;
+use super::{Shot, Viewer};
+use crate::gpu::Buffer;
+use crate::picture;
+use crate::render::Capture;
+use crate::settings::Settings;
+
+impl Viewer {
+    /// Writes the picture of the screen, and answers.
+    pub(in crate::app) fn write_shot(&self, shot: Shot, capture: Capture) {
+        let settings = self.look();
+        self.threads.wait(move || {
+            let Shot { reply, file } = shot;
+            match write_capture(&capture, &settings, file.as_deref()) {
+                Ok(file) => {
+                    let (width, height) = (capture.width, capture.height);
+                    reply.done(json!({ "file": path_text(&file), "width": width, "height": height }));
+                }
+                Err(message) => reply.error(message),
+            }
+            None
+        });
+    }
+
+    /// Writes the picture of the window, whose copy to `pixels` has finished, and answers.
+    pub(in crate::app) fn write_window_shot(&self, shot: Shot, pixels: Arc<Buffer>, (width, height): (u32, u32)) {
+        self.threads.wait(move || {
+            let Shot { reply, file } = shot;
+            let mut bgra = pixels.read();
+            for pixel in bgra.chunks_exact_mut(4) {
+                pixel.swap(0, 2);
+                pixel[3] = 255;
+            }
+            let file = file.unwrap_or_else(picture::numbered);
+            let written =
+                RgbaImage::from_raw(width, height, bgra).ok_or_else(|| "the window was not read whole".to_owned());
+            let written = written.and_then(|image| picture::write_image(&DynamicImage::ImageRgba8(image), &file));
+            match written {
+                Ok(()) => reply.done(json!({ "file": path_text(&file), "width": width, "height": height })),
+                Err(message) => reply.error(message),
+            }
+            None
+        });
+    }
+}
+
+/// Writes a capture to a file, or to the first free `specula-N.png`.
+pub(super) fn write_capture(capture: &Capture, settings: &Settings, file: Option<&Path>) -> Result<PathBuf, String> {
+    let file = file.map_or_else(picture::numbered, Path::to_owned);
+    picture::write(capture, settings, &file).map(|()| file)
+}

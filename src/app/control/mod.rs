@@ -1,0 +1,218 @@
+//! Carries out commands from outside, and of the panel Capture. Each is answered once it is really done: a setting when a frame that
+//! shows it has been drawn, a file when it is written.
+
+mod captures;
+mod files;
+mod requests;
+
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::viewer::Viewer;
+use crate::control::{Asked, Reply, Request};
+use crate::shader::{Diagnostic, Severity};
+pub(super) use captures::{Captures, Work};
+
+/// Commands that are not done yet, and captures that are under way.
+#[derive(Default)]
+pub(super) struct Controlled {
+    waiting: Vec<(Reply, Until)>,
+    pub(super) captures: Captures,
+}
+
+/// What a command waits for.
+pub(super) enum Until {
+    /// A frame that shows the settings.
+    Shown,
+    /// The same; the answer tells the camera.
+    Camera,
+    /// The end of a reload, and then a frame.
+    Reloaded,
+    /// The end of loading this model, and then a frame.
+    Model(PathBuf),
+    /// A look file that is being read.
+    Look,
+    /// A frame that shows the settings, for a picture of it.
+    Screen(Option<PathBuf>),
+    /// The same for a picture of the window.
+    Window(Option<PathBuf>),
+    /// The same for what a thread draws.
+    Picture(Work),
+}
+
+/// What becomes of a command at once.
+pub(super) enum Next {
+    Done(Value),
+    Wait(Until),
+}
+
+/// A picture of the screen that is asked for, and where it goes.
+pub(super) struct Shot {
+    pub(super) reply: Reply,
+    pub(super) file: Option<PathBuf>,
+}
+
+impl Viewer {
+    /// Takes a command from outside.
+    pub(super) fn on_asked(&mut self, asked: Asked) {
+        self.carry_out(asked.request, asked.reply);
+    }
+
+    /// Carries out a command of the window itself, and shows its result as a message.
+    pub(super) fn ask_self(&mut self, request: Request) {
+        let outbox = self.threads.outbox();
+        let reply = Reply::to_window(move |result| {
+            let text = match result {
+                Ok(result) => result["file"].as_str().map(|file| format!("wrote {file}")),
+                Err(message) => Some(message),
+            };
+            text.into_iter().for_each(|text| outbox.send(crate::threads::Message::Say(text)));
+        });
+        self.carry_out(request, reply);
+    }
+
+    fn carry_out(&mut self, request: Request, reply: Reply) {
+        match self.request(request) {
+            Ok(Next::Done(result)) => reply.done(result),
+            Ok(Next::Wait(until)) => self.controlled.waiting.push((reply, until)),
+            Err(message) => reply.error(message),
+        }
+        self.watch_files();
+    }
+
+    /// Answers the commands that the last frame has done.
+    pub(super) fn answer(&mut self) {
+        if self.controlled.waiting.is_empty() {
+            return;
+        }
+        let shows = self.shows_settings();
+        for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
+            match until {
+                Until::Shown if shows => reply.done(Value::Null),
+                Until::Camera if shows => reply.done(self.camera_json()),
+                Until::Picture(work) if shows && self.has_all_modes() => self.begin_capture(reply, work),
+                Until::Reloaded if !self.shader.compiling && (shows || self.has_errors()) => self.reloaded(reply),
+                Until::Model(path) if !self.model.loading => match self.model.is_file(&path) {
+                    true => self.controlled.waiting.push((reply, Until::Shown)),
+                    false => reply.error(format!("{} was not loaded", path.display())),
+                },
+                Until::Shown | Until::Camera | Until::Picture(_) | Until::Screen(_) | Until::Window(_)
+                    if self.never_shows() =>
+                {
+                    self.without_picture(reply);
+                }
+                until => self.controlled.waiting.push((reply, until)),
+            }
+        }
+    }
+
+    /// Whether another frame must follow, because a command waits for nothing else. Messages wake the window for all others.
+    pub(super) fn has_unanswered(&self) -> bool {
+        let waits_for_frame =
+            |until: &Until| matches!(until, Until::Shown | Until::Camera | Until::Screen(_) | Until::Window(_));
+        self.shows_settings() && self.controlled.waiting.iter().any(|(_, until)| waits_for_frame(until))
+    }
+
+    /// Answers the commands that wait for a picture which cannot come.
+    pub(super) fn fail_waiting(&mut self, message: &str) {
+        for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
+            match until {
+                Until::Look | Until::Model(_) | Until::Reloaded => self.controlled.waiting.push((reply, until)),
+                _ => reply.error(message),
+            }
+        }
+    }
+
+    /// Answers those who wait for a model that cannot be loaded.
+    pub(super) fn model_failed(&mut self, message: &str) {
+        self.end_waiting(|until| matches!(until, Until::Model(_)), message);
+    }
+
+    /// Answers those who wait for a look file, or lets them wait for its frame.
+    pub(super) fn look_read(&mut self, result: &Result<(), String>) {
+        match result {
+            Ok(()) => {
+                for (_, until) in &mut self.controlled.waiting {
+                    if matches!(until, Until::Look) {
+                        *until = Until::Shown;
+                    }
+                }
+            }
+            Err(message) => self.end_waiting(|until| matches!(until, Until::Look), message),
+        }
+    }
+
+    /// Cancels everything that takes long.
+    pub(super) fn cancel_captures(&mut self) {
+        self.end_waiting(|until| matches!(until, Until::Picture(_) | Until::Screen(_) | Until::Window(_)), "canceled");
+        self.controlled.captures.cancel();
+    }
+
+    fn end_waiting(&mut self, is: impl Fn(&Until) -> bool, message: &str) {
+        for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
+            if is(&until) { reply.error(message) } else { self.controlled.waiting.push((reply, until)) }
+        }
+    }
+
+    /// The pictures of the screen that can be taken now: its frame shows the settings.
+    pub(super) fn take_shots(&mut self) -> Vec<Shot> {
+        let is_wanted = |until: &Until| matches!(until, Until::Screen(_));
+        std::iter::from_fn(|| self.take_shot(is_wanted)).collect()
+    }
+
+    /// The picture of the window that can be taken now.
+    pub(super) fn take_window_shot(&mut self) -> Option<Shot> {
+        self.take_shot(|until| matches!(until, Until::Window(_)))
+    }
+
+    fn take_shot(&mut self, is: impl Fn(&Until) -> bool) -> Option<Shot> {
+        let waiting = &mut self.controlled.waiting;
+        let at = waiting.iter().position(|(_, until)| is(until))?;
+        if !self.shows_settings() {
+            return None;
+        }
+        match self.controlled.waiting.remove(at) {
+            (reply, Until::Screen(file) | Until::Window(file)) => Some(Shot { reply, file }),
+            _ => None,
+        }
+    }
+
+    /// Whether every mode has been compiled, or none will be before the next edit.
+    fn has_all_modes(&self) -> bool {
+        self.has_errors() || self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty())
+    }
+
+    fn has_errors(&self) -> bool {
+        self.session.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
+    }
+
+    /// Whether there are no shaders, and an edit is needed before there are.
+    fn never_shows(&self) -> bool {
+        self.session.shaders.is_none() && !self.shader.compiling && self.has_errors()
+    }
+
+    /// Answers a reload.
+    fn reloaded(&self, reply: Reply) {
+        if self.has_errors() {
+            return self.without_picture(reply);
+        }
+        reply.done(json!({ "generation": self.shown_generation() }));
+    }
+
+    /// Answers with the errors of the shaders.
+    fn without_picture(&self, reply: Reply) {
+        let errors: Vec<&Diagnostic> =
+            self.session.diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error).collect();
+        let message = errors.first().map_or_else(|| "there is no picture".to_owned(), |first| first.one_line());
+        reply.error_with(message, json!({ "diagnostics": errors }));
+    }
+
+    /// The camera of the picture.
+    fn camera_json(&self) -> Value {
+        self.shown().map_or(Value::Null, |state| {
+            let camera = &state.camera;
+            json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fovy": camera.fovy_rad.to_degrees() })
+        })
+    }
+}

@@ -1,0 +1,331 @@
+//! What each command does.
+
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::{Next, Until, Work};
+use crate::app::command::{Command, CompareWith, Side, open_as};
+use crate::app::palette;
+use crate::app::viewer::Viewer;
+use crate::capture::modes_of;
+use crate::control::{COMMANDS, Camera, Capture, Compare, Open, Playback, Probe, Request, Run};
+use crate::message::did_you_mean;
+use crate::picture;
+use crate::settings::{Settings, catalog};
+use crate::shader::{Source, is_specula_tree};
+
+impl Viewer {
+    /// Carries out a command, or begins to.
+    pub(super) fn request(&mut self, request: Request) -> Result<Next, String> {
+        let shown = Next::Wait(Until::Shown);
+        Ok(match request {
+            Request::Set(assignments) => {
+                let mut settings = self.session.settings.clone();
+                assignments.iter().try_for_each(|assignment| settings.assign(assignment))?;
+                self.adopt(settings)?;
+                shown
+            }
+            Request::Get(path) => Next::Done(get(&self.session.settings, path.as_deref())?),
+            Request::Mode(name) => {
+                self.adopt(Settings { mode: name, ..self.session.settings.clone() })?;
+                shown
+            }
+            Request::Camera(camera) => {
+                self.move_camera(camera)?;
+                Next::Wait(Until::Camera)
+            }
+            Request::Capture(capture) => Next::Wait(capture_of(capture)?),
+            Request::Probe(Probe { at, modes }) => {
+                let names = modes.unwrap_or_else(|| vec!["all".to_owned()]);
+                // The names are looked up again when the picture is there.
+                if self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty()) {
+                    modes_of(&self.session, &names)?;
+                }
+                Next::Wait(Until::Picture(Work::Probe { at: at.into(), names }))
+            }
+            Request::Reload => {
+                self.execute(Command::Reload);
+                Next::Wait(Until::Reloaded)
+            }
+            Request::Open(open) => Next::Wait(self.open(open)?),
+            Request::Compare(compare) => {
+                self.compare_as(compare)?;
+                let (version, wipe) = (self.compare.version(), self.compare.wipe);
+                Next::Done(json!({ "is_on": self.compare.is_on(), "version": version, "wipe": wipe }))
+            }
+            Request::Versions(None) => Next::Done(self.versions_json()),
+            Request::Versions(Some(number)) => {
+                if self.files_of_version(number).is_empty() {
+                    return Err(format!(
+                        "version {number} differs in no file on disk from what is on screen, or is not kept"
+                    ));
+                }
+                self.execute(Command::WriteVersion(number));
+                Next::Done(Value::Null)
+            }
+            Request::Undo if !self.history.undo(&mut self.session.settings) => {
+                return Err("there is nothing to undo".into());
+            }
+            Request::Redo if !self.history.redo(&mut self.session.settings) => {
+                return Err("there is nothing to redo".into());
+            }
+            Request::Undo | Request::Redo => shown,
+            Request::Pass(name, on) => {
+                let mut settings = self.session.settings.clone();
+                let pass = self.session.shaders.as_ref().and_then(|shaders| shaders.graph.pass(&name).cloned());
+                let on = on.unwrap_or_else(|| pass.is_none_or(|pass| !pass.is_wanted(&settings.passes)));
+                settings.passes.insert(name, on);
+                self.adopt(settings)?;
+                shown
+            }
+            Request::Playback(playback) => Next::Done(self.play(&playback)?),
+            Request::Modes => {
+                let shaders = self.session.shaders.as_ref().ok_or("the shaders have not been compiled yet")?;
+                Next::Done(json!(shaders.modes))
+            }
+            Request::Settings => Next::Done(settings_json()),
+            Request::Commands => Next::Done(json!(COMMANDS)),
+            Request::Entries => {
+                let entries = palette::titles(self).into_iter();
+                Next::Done(entries.map(|(group, title)| json!({ "group": group, "entry": title })).collect())
+            }
+            Request::Run(Run { entry, value }) => {
+                palette::run(self, &entry, value)?;
+                shown
+            }
+            Request::Sheet(sheet) => Next::Wait(Until::Picture(Work::sheet(sheet)?)),
+            Request::Turntable(turntable) => Next::Wait(Until::Picture(Work::turntable(turntable)?)),
+            Request::Timeline(timeline) => Next::Wait(Until::Picture(Work::timeline(timeline)?)),
+            Request::Cancel => {
+                self.cancel_captures();
+                Next::Done(Value::Null)
+            }
+            Request::Quit => {
+                self.quit = true;
+                Next::Done(Value::Null)
+            }
+        })
+    }
+
+    /// Takes settings, if nothing is wrong with them that was not wrong before. They are one step of undo.
+    fn adopt(&mut self, settings: Settings) -> Result<(), String> {
+        settings.check()?;
+        let shaders = self.session.shaders.clone();
+        // A stage that is pending may declare a name that is not known yet.
+        let is_complete = shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty());
+        let before = self.session.problems(is_complete);
+        self.history.record(&self.session.settings, false);
+        let old = std::mem::replace(&mut self.session.settings, settings);
+        let mut problems = self.session.problems(is_complete).into_iter().filter(|problem| !before.contains(problem));
+        let problem = problems.next().or_else(|| {
+            let (shaders, mode) = (shaders.filter(|_| is_complete)?, &self.session.settings.mode);
+            let is_unknown = self.session.mode().is_none() && *mode != old.mode;
+            let hint = did_you_mean(mode, shaders.modes.iter().map(|mode| mode.slug.as_str()));
+            is_unknown.then(|| format!("there is no mode `{mode}`.{hint} `modes` lists them all"))
+        });
+        if let Some(problem) = problem {
+            self.session.settings = old;
+            return Err(problem);
+        }
+        self.history.record(&self.session.settings, false);
+        Ok(())
+    }
+
+    fn move_camera(&mut self, asked: Camera) -> Result<(), String> {
+        let mut settings = self.session.settings.clone();
+        let camera = &mut settings.camera;
+        let frames = asked.frame || asked.view.is_some() || asked.azimuth.is_some() || asked.elevation.is_some();
+        if frames {
+            (camera.eye, camera.target) = (None, None);
+        }
+        if let Some(name) = &asked.view {
+            let names = || Side::ALL.into_iter().map(|side| side.words().0);
+            let side = Side::ALL.into_iter().find(|side| side.words().0.eq_ignore_ascii_case(name));
+            let unknown = || {
+                format!(
+                    "no view is named `{name}`.{} It can be {}",
+                    did_you_mean(name, names()),
+                    names().collect::<Vec<_>>().join(", ")
+                )
+            };
+            [camera.azimuth, camera.elevation] = side.ok_or_else(unknown)?.angles();
+        }
+        camera.eye = asked.eye.or(camera.eye);
+        camera.target = asked.target.or(camera.target);
+        camera.fovy = asked.fovy.unwrap_or(camera.fovy);
+        camera.azimuth = asked.azimuth.unwrap_or(camera.azimuth);
+        camera.elevation = asked.elevation.unwrap_or(camera.elevation);
+        self.adopt(settings)
+    }
+
+    /// Opens a file or folder, and tells what its end is.
+    fn open(&mut self, open: Open) -> Result<Until, String> {
+        let command = match open {
+            Open::File(path) => open_as(path)?,
+            Open::Model(path) => Command::OpenModel(path),
+            Open::Environment(path) => Command::OpenEnvironment(path),
+            Open::Tree(path) if is_specula_tree(&path) || (Source::is_file(&path) && path.exists()) => {
+                Command::OpenTree(path)
+            }
+            Open::Tree(path) => {
+                return Err(format!(
+                    "{} is no Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
+                    path.display()
+                ));
+            }
+            Open::Look(path) => Command::OpenLook(path),
+            Open::Measured(path) => Command::OpenMeasured(path),
+        };
+        let until = match &command {
+            Command::OpenModel(path) => Until::Model(path.clone()),
+            Command::OpenTree(_) => Until::Reloaded,
+            Command::OpenLook(_) => Until::Look,
+            _ => Until::Shown,
+        };
+        self.execute(match command {
+            // The tree is watched, and what it is called does not change with the working directory.
+            Command::OpenTree(path) => Command::OpenTree(std::path::absolute(&path).unwrap_or(path)),
+            command => command,
+        });
+        Ok(until)
+    }
+
+    fn compare_as(&mut self, asked: Compare) -> Result<(), String> {
+        let newest = self.shown_generation();
+        let showable =
+            |number: u64| self.versions.get(number).is_some_and(|version| self.versions.can_show(version, newest));
+        let with = match asked.with {
+            None | Some(Value::Null) => None,
+            Some(Value::String(with)) => Some(match with.as_str() {
+                "nothing" => CompareWith::Nothing,
+                "picture" => CompareWith::ThisPicture,
+                "previous" => {
+                    let before = self.versions.iter().rev().find(|version| self.versions.can_show(version, newest));
+                    CompareWith::Version(
+                        before.ok_or("there is no earlier version: no edit has been shown yet")?.number,
+                    )
+                }
+                other => {
+                    let hint = did_you_mean(other, ["nothing", "picture", "previous"]);
+                    return Err(format!(
+                        "cannot compare with `{other}`.{hint} It can be nothing, picture, previous or a number"
+                    ));
+                }
+            }),
+            Some(Value::Number(number)) => {
+                let number = number.as_u64().filter(|number| showable(*number));
+                Some(CompareWith::Version(number.ok_or("this version is not kept; `versions` lists those that are")?))
+            }
+            Some(other) => {
+                return Err(format!("cannot compare with {other}; it can be nothing, picture, previous or a number"));
+            }
+        };
+        if let Some(with) = with {
+            self.execute(Command::Compare(with));
+            if with != CompareWith::Nothing && !self.compare.is_on() {
+                return Err("there is no whole picture to keep".to_owned());
+            }
+        }
+        if let Some(wipe) = asked.wipe {
+            if !(0.0..=1.0).contains(&wipe) {
+                return Err(format!("`wipe` is {wipe}; it can be 0 to 1"));
+            }
+            self.compare.wipe = wipe;
+        }
+        Ok(())
+    }
+
+    fn versions_json(&self) -> Value {
+        let newest = self.shown_generation();
+        let versions = self.versions.iter().map(|version| {
+            let reload = &version.reload;
+            json!({ "number": version.number, "title": version.title(), "since": version.since.to_rfc3339(),
+                "changed": reload.changed, "compile_ms": reload.compile_ms, "pipeline_ms": reload.pipeline_ms,
+                "first_frame_ms": reload.first_frame_ms, "device_ms": version.device_ms,
+                "is_shown": version.number == newest, "can_compare": self.versions.can_show(version, newest) })
+        });
+        versions.collect()
+    }
+
+    fn play(&mut self, asked: &Playback) -> Result<Value, String> {
+        if asked.time.is_some_and(|time| !time.is_finite()) {
+            return Err("`time` is not finite; it takes seconds".to_owned());
+        }
+        if let Some(speed) = asked.speed.filter(|speed| !(0.0..=100.0).contains(speed)) {
+            return Err(format!("`speed` is {speed}; it can be 0 to 100"));
+        }
+        let playback = &mut self.playback;
+        playback.speed = asked.speed.unwrap_or(playback.speed);
+        playback.paused = asked.paused.unwrap_or(playback.paused);
+        if asked.restart {
+            playback.restart();
+        }
+        if let Some(time) = asked.time {
+            playback.seek(time);
+        }
+        if asked.step {
+            playback.step();
+        }
+        let is_animated = self.is_animated();
+        let playback = &self.playback;
+        Ok(
+            json!({ "time": playback.time_s(), "paused": playback.paused, "speed": playback.speed, "is_animated": is_animated }),
+        )
+    }
+}
+
+/// What a capture waits for: the screen, the window, or a thread that draws it.
+fn capture_of(capture: Capture) -> Result<Until, String> {
+    let Capture { file, size, mode, frames, ui } = capture;
+    if let Some(file) = &file {
+        picture::check_path(file)?;
+    }
+    let is_exr = file.as_ref().is_some_and(|file| is_exr(file));
+    if ui {
+        let wrong = size.is_some() || mode.is_some() || frames.is_some() || is_exr;
+        return match wrong {
+            true => Err("a capture with `ui` has the window's size and mode, and is a PNG".to_owned()),
+            false => Ok(Until::Window(file)),
+        };
+    }
+    if size.is_none() && mode.is_none() && frames.is_none() && !is_exr {
+        return Ok(Until::Screen(file));
+    }
+    Ok(Until::Picture(Work::Picture { file, size: size.map(Into::into), mode, frames: frames.unwrap_or(1) }))
+}
+
+fn is_exr(file: &std::path::Path) -> bool {
+    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+}
+
+/// The settings at a path, or all.
+fn get(settings: &Settings, path: Option<&str>) -> Result<Value, String> {
+    let all = serde_json::to_value(settings).map_err(|error| error.to_string())?;
+    let Some(path) = path.filter(|path| !path.is_empty()) else { return Ok(all) };
+    let at = |path: &str| {
+        path.split('.').try_fold(&all, |value, key| match value {
+            Value::Array(list) => key.parse::<usize>().ok().and_then(|index| list.get(index)),
+            value => value.get(key),
+        })
+    };
+    let found = at(path).or_else(|| at(&format!("shader.{path}")));
+    found.cloned().ok_or_else(|| {
+        let catalog = catalog();
+        let hint = did_you_mean(path, catalog.iter().map(|setting| setting.path.as_str()));
+        format!("`{path}` has no value of its own.{hint} `settings` lists all; what is not set has its default")
+    })
+}
+
+fn settings_json() -> Value {
+    let setting = |setting: crate::settings::Setting| {
+        json!({ "path": setting.path, "takes": setting.takes, "default": setting.default, "range": setting.range,
+            "unit": setting.unit, "doc": setting.doc })
+    };
+    catalog().into_iter().map(setting).collect()
+}
+
+/// A path for an answer: absolute.
+pub(super) fn path_text(path: &std::path::Path) -> String {
+    std::path::absolute(path).unwrap_or_else(|_| PathBuf::from(path)).display().to_string()
+}

@@ -1,0 +1,240 @@
+//! The panel Capture: pictures, contact sheets and animations as files in the working directory, and how far those under way are.
+
+use std::path::PathBuf;
+
+use egui::{Button, ComboBox, DragValue, ProgressBar, Response, RichText, Ui};
+
+use super::QUIET;
+use super::rows::{Row, heading};
+use crate::app::command::Command;
+use crate::app::control::Captures;
+use crate::capture::Turn;
+use crate::control::{Capture, Request, Sheet, Timeline, Turntable};
+use crate::picture::numbered_as;
+
+/// Largest width and height that the panel offers, pixels. The device may allow less, and says so then.
+const LARGEST: u32 = 16_384;
+/// Sizes that are offered by name.
+const SIZES: [(&str, [u32; 2]); 5] = [
+    ("1280 × 720", [1280, 720]),
+    ("1920 × 1080", [1920, 1080]),
+    ("2560 × 1440", [2560, 1440]),
+    ("3840 × 2160", [3840, 2160]),
+    ("1080 × 1080", [1080, 1080]),
+];
+
+/// What the panel is set to. It lasts as long as the window.
+pub(super) struct CaptureState {
+    /// `None` for the size on screen.
+    size: Option<[u32; 2]>,
+    is_exr: bool,
+    with_panels: bool,
+    all_modes: bool,
+    frames: u32,
+    fps: f32,
+    turn: Turn,
+    animation: &'static str,
+}
+
+impl Default for CaptureState {
+    fn default() -> Self {
+        Self {
+            size: None,
+            is_exr: false,
+            with_panels: false,
+            all_modes: false,
+            frames: 75,
+            fps: 25.0,
+            turn: Turn::Camera,
+            animation: "webp",
+        }
+    }
+}
+
+/// Shows the panel. `shown` is the size of the picture on screen, and `versions` the number of versions that can be drawn.
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &mut CaptureState,
+    captures: &Captures,
+    (shown, versions): ((u32, u32), usize),
+    commands: &mut Vec<Command>,
+) {
+    let mut ask = |request: Request| commands.push(Command::Ask(Box::new(request)));
+    heading(ui, "Picture");
+    row(
+        ui,
+        "Size",
+        "Pixels of the file. A size of its own is drawn beside the window, whose picture stays as it is",
+        |ui| size(ui, &mut state.size, shown),
+    );
+    row(
+        ui,
+        "Format",
+        "PNG: as displayed, with all settings in its metadata. EXR: the raw floats before exposure and tone map",
+        |ui| {
+            ui.selectable_value(&mut state.is_exr, false, "PNG").union(ui.selectable_value(
+                &mut state.is_exr,
+                true,
+                "EXR",
+            ))
+        },
+    );
+    let is_plain = !state.is_exr && state.size.is_none();
+    row(ui, "With panels", "The whole window, as it is on screen: a PNG of the window's size", |ui| {
+        ui.add_enabled(is_plain, egui::Checkbox::without_text(&mut state.with_panels))
+    });
+    if button(
+        ui,
+        "Capture picture",
+        "Write the picture to specula-N in the working directory (F12 writes it as it is on screen)",
+    ) {
+        let ending = if state.is_exr { "exr" } else { "png" };
+        let file = Some(numbered_as("specula", ending));
+        ask(Request::Capture(Capture {
+            file,
+            size: state.size,
+            ui: state.with_panels && is_plain,
+            ..Capture::default()
+        }));
+    }
+
+    heading(ui, "Sheet of modes");
+    row(ui, "Modes", "A small picture of each mode with its name: of those with data in this model, or of all", |ui| {
+        let some = ui.selectable_value(&mut state.all_modes, false, "With data");
+        some.union(ui.selectable_value(&mut state.all_modes, true, "All"))
+    });
+    if button(ui, "Write sheet", "Write specula-sheet-N.png in the working directory") {
+        let modes = Some(if state.all_modes { "all" } else { "modes" }.into());
+        ask(Request::Sheet(Sheet { file: numbered_as("specula-sheet", "png"), modes, ..Sheet::default() }));
+    }
+
+    heading(ui, "Animation");
+    row(
+        ui,
+        "Format",
+        "WebP: lossless. GIF: 256 colors a frame. PNG: numbered frames, which ffmpeg joins to a video",
+        |ui| {
+            let webp = ui.selectable_value(&mut state.animation, "webp", "WebP");
+            let gif = ui.selectable_value(&mut state.animation, "gif", "GIF");
+            webp.union(gif).union(ui.selectable_value(&mut state.animation, "png", "PNGs"))
+        },
+    );
+    row(ui, "Frames", "Frames of a full turn", |ui| {
+        ui.add(DragValue::new(&mut state.frames).range(2..=1000).speed(1.0))
+    });
+    row(ui, "Speed", "Frames a second", |ui| {
+        ui.add(DragValue::new(&mut state.fps).range(1.0..=60.0).speed(0.2).max_decimals(1).suffix(" fps"))
+    });
+    row(ui, "Turns", "What turns: the camera, the light around the model, or the model in its light", |ui| {
+        let name = |turn: Turn| match turn {
+            Turn::Camera => "Camera",
+            Turn::Light => "Light",
+            Turn::Model => "Model",
+        };
+        let list = ComboBox::from_id_salt("turn").selected_text(name(state.turn));
+        let choices = [Turn::Camera, Turn::Light, Turn::Model];
+        list.show_ui(ui, |ui| {
+            for choice in choices {
+                ui.selectable_value(&mut state.turn, choice, name(choice));
+            }
+        })
+        .response
+    });
+    if button(
+        ui,
+        "Write turntable",
+        "Write a full turn to specula-turntable-N in the working directory, at the size chosen above",
+    ) {
+        let file = animation_file("specula-turntable", state.animation);
+        let turn = Some(format!("{:?}", state.turn).to_lowercase());
+        let (frames, fps, size) = (Some(state.frames), Some(state.fps), state.size);
+        ask(Request::Turntable(Turntable { file, frames, fps, size, turn }));
+    }
+    let about = "Write the versions of the shaders since the start to specula-timeline-N, as they look with the settings of now";
+    if ui
+        .add_enabled(versions > 1, Button::new("Write timeline"))
+        .on_hover_text(about)
+        .on_disabled_hover_text("No edit has been shown yet")
+        .clicked()
+    {
+        let file = animation_file("specula-timeline", state.animation);
+        ask(Request::Timeline(Timeline { file, fps: None, size: state.size }));
+    }
+    progress(ui, captures, commands);
+}
+
+/// Shows what is under way.
+fn progress(ui: &mut Ui, captures: &Captures, commands: &mut Vec<Command>) {
+    let mut is_busy = false;
+    for running in captures.iter() {
+        if !is_busy {
+            heading(ui, "Under way");
+        }
+        is_busy = true;
+        let part = if running.of > 0 { running.done as f32 / running.of as f32 } else { 0.0 };
+        let text = match (running.is_canceled(), running.of) {
+            (true, _) => format!("{}: ends after this picture", running.title),
+            (false, 0) => format!("{}: waits", running.title),
+            (false, of) => format!("{}: {} of {of}", running.title, running.done),
+        };
+        ui.horizontal(|ui| {
+            let width = (ui.available_width() - 60.0).max(40.0);
+            ui.add(ProgressBar::new(part).desired_width(width).text(text)).on_hover_text("Pictures that are drawn");
+            if ui
+                .button("Cancel")
+                .on_hover_text("End it after the picture that is being drawn; no file is written")
+                .clicked()
+            {
+                running.cancel();
+            }
+        });
+    }
+    if is_busy && captures.iter().count() > 1 && button(ui, "Cancel all", "End everything that is under way") {
+        commands.push(Command::CancelCaptures);
+    }
+    if !is_busy {
+        ui.label(RichText::new("Files go to the working directory. Nothing is under way.").small().color(QUIET));
+    }
+}
+
+fn row(ui: &mut Ui, name: &str, doc: &str, control: impl FnOnce(&mut Ui) -> Response) {
+    Row { name, doc, option: String::new(), is_changed: false, is_indented: false }.show(ui, control);
+}
+
+fn button(ui: &mut Ui, title: &str, about: &str) -> bool {
+    ui.button(title).on_hover_text(about).clicked()
+}
+
+/// The choice of a size: as on screen, by name, or in numbers.
+fn size(ui: &mut Ui, size: &mut Option<[u32; 2]>, shown: (u32, u32)) -> Response {
+    let as_shown = format!("{} × {}, as on screen", shown.0, shown.1);
+    let named = |size: &[u32; 2]| SIZES.iter().find(|(_, known)| known == size).map(|(name, _)| (*name).to_owned());
+    let text =
+        size.as_ref().map_or_else(|| "as on screen".to_owned(), |size| named(size).unwrap_or_else(|| "own".to_owned()));
+    ui.vertical(|ui| {
+        let list = ComboBox::from_id_salt("capture size").selected_text(text);
+        list.show_ui(ui, |ui| {
+            ui.selectable_value(size, None, as_shown);
+            for (name, known) in SIZES {
+                ui.selectable_value(size, Some(known), name);
+            }
+        });
+        if let Some([width, height]) = size {
+            ui.horizontal(|ui| {
+                let number = |value| DragValue::new(value).range(1..=LARGEST).speed(8.0).suffix(" px");
+                ui.add(number(width)).on_hover_text("Width in pixels");
+                ui.add(number(height)).on_hover_text("Height in pixels");
+            });
+        }
+    })
+    .response
+}
+
+/// The next free name of an animation. That of numbered frames is free if its first frame is.
+fn animation_file(stem: &str, ending: &str) -> PathBuf {
+    if ending != "png" {
+        return numbered_as(stem, ending);
+    }
+    let first = numbered_as(stem, "0001.png");
+    PathBuf::from(first.to_string_lossy().replace(".0001.png", ".png"))
+}

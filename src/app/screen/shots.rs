@@ -1,0 +1,85 @@
+//! Pictures of the screen that commands have asked for: of the picture alone, and of the whole window.
+
+use std::sync::Arc;
+
+use super::Screen;
+use crate::app::control::Shot;
+use crate::app::viewer::Viewer;
+use crate::gpu::{Buffer, Encoder, GpuError, Image, Memory, Use, vk};
+use crate::render::BoundFrame;
+
+/// A picture of the window on its way from the device.
+pub(super) struct WindowShot {
+    /// The frame that it was copied with.
+    slot: usize,
+    pixels: Arc<Buffer>,
+    size: (u32, u32),
+    shot: Shot,
+}
+
+impl Screen {
+    /// Takes the pictures that are asked for, as they are on screen. A lack of memory costs only them.
+    pub(super) fn take_shots(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
+        for shot in viewer.take_shots() {
+            match self.read_picture(viewer, frame) {
+                Ok(Some(capture)) => viewer.write_shot(shot, capture),
+                Ok(None) => shot.reply.error("there is no picture"),
+                Err(error @ GpuError::OutOfMemory(_)) => {
+                    self.view.forget();
+                    self.reference = None;
+                    shot.reply.error(error.to_string());
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Copies the finished image of the window, if that is asked for, and hands it over to be presented.
+    pub(super) fn record_window_shot(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        viewer: &mut Viewer,
+        image: &Arc<Image>,
+    ) -> Result<(), GpuError> {
+        let shot = if self.window_shot.is_none() { viewer.take_window_shot() } else { None };
+        let Some(shot) = shot else {
+            encoder.transition(image, Use::Color, Use::Present);
+            return Ok(());
+        };
+        let desc = image.desc();
+        if !desc.usage.contains(vk::ImageUsageFlags::TRANSFER_SRC) {
+            shot.reply.error("this display's images cannot be read; capture without `ui`");
+            encoder.transition(image, Use::Color, Use::Present);
+            return Ok(());
+        }
+        let (width, height) = (desc.width, desc.height);
+        let bytes = u64::from(width) * u64::from(height) * 4;
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        match Buffer::new(&viewer.gpu, "window readback", bytes, usage, Memory::Readback) {
+            Ok(pixels) => {
+                encoder.transition(image, Use::Color, Use::CopyFrom);
+                encoder.copy_from_image(image, &pixels);
+                encoder.transition(image, Use::CopyFrom, Use::Present);
+                encoder.copies_done();
+                self.window_shot = Some(WindowShot { slot, pixels, size: (width, height), shot });
+            }
+            Err(error) => {
+                shot.reply.error(error.to_string());
+                encoder.transition(image, Use::Color, Use::Present);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the picture of the window once the frame that copied it has finished.
+    pub(super) fn finish_window_shot(&mut self, viewer: &Viewer) {
+        let frames = &self.frames;
+        if let Some(WindowShot { pixels, size, shot, .. }) =
+            self.window_shot.take_if(|shot| frames.is_finished(shot.slot))
+        {
+            viewer.write_window_shot(shot, pixels, size);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Many pictures in one file: a contact sheet of modes, and animations. The same code serves a command, which has a [`Headless`], and
+//! the window, which draws with [`Stills`] on a thread.
+
+mod animation;
+mod label;
+mod modes;
+mod sheet;
+mod stills;
+mod turntable;
+mod webp;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use image::{DynamicImage, RgbaImage};
+
+use crate::headless::{Headless, HeadlessError};
+use crate::picture;
+use crate::render;
+use crate::session::Session;
+use crate::settings::Settings;
+use crate::shader::ShaderSet;
+
+pub use animation::{Animation, check_animation};
+pub use modes::modes_of;
+pub use sheet::SheetPlan;
+pub use stills::Stills;
+pub(crate) use stills::VersionPicture;
+pub use turntable::{Turn, Turntable};
+
+/// Draws pictures of a session at any size.
+pub trait Renderer {
+    /// The settings of the next picture.
+    fn settings(&mut self) -> &mut Settings;
+
+    /// The settings, the model and the shaders.
+    fn session(&self) -> &Session;
+
+    /// Draws the picture that the settings describe.
+    ///
+    /// # Errors
+    /// Settings that do not fit, a bad file, a device error.
+    fn capture(&mut self, size: (u32, u32)) -> Result<render::Capture, HeadlessError>;
+
+    /// The shaders in use.
+    fn shaders(&self) -> Arc<ShaderSet> {
+        self.session().shaders.clone().unwrap_or_default()
+    }
+}
+
+impl Renderer for Headless {
+    fn settings(&mut self) -> &mut Settings {
+        self.settings_mut()
+    }
+
+    fn session(&self) -> &Session {
+        Headless::session(self)
+    }
+
+    fn capture(&mut self, size: (u32, u32)) -> Result<render::Capture, HeadlessError> {
+        self.set_size(size)?;
+        self.render()
+    }
+}
+
+/// Why there is no file.
+#[derive(Debug, thiserror::Error)]
+pub enum CaptureError {
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] HeadlessError),
+    /// A value that no picture can have.
+    #[error("{0}")]
+    Usage(String),
+    /// The file cannot be written.
+    #[error("{0}")]
+    Write(String),
+    /// The user has canceled it.
+    #[error("canceled")]
+    Canceled,
+}
+
+/// Is told how many pictures are done, and of how many. Returns whether to go on.
+pub type Tell<'a> = &'a mut dyn FnMut(u64, u64) -> bool;
+
+/// Tells, and ends the work if that is canceled.
+fn tell(tell: Tell<'_>, done: usize, of: usize) -> Result<(), CaptureError> {
+    if tell(done as u64, of as u64) { Ok(()) } else { Err(CaptureError::Canceled) }
+}
+
+/// The display of a capture as an image.
+fn image_of(capture: render::Capture) -> Result<RgbaImage, CaptureError> {
+    let render::Capture { width, height, rgba8, .. } = capture;
+    RgbaImage::from_raw(width, height, rgba8)
+        .ok_or_else(|| CaptureError::Write("a picture was not read whole".to_owned()))
+}
+
+/// Writes an image to a PNG file.
+fn write(image: RgbaImage, path: &Path) -> Result<(), CaptureError> {
+    picture::write_image(&DynamicImage::ImageRgba8(image), path).map_err(CaptureError::Write)
+}

@@ -1,0 +1,27 @@
+//! Which modes a contact sheet shows.
+
+use crate::message::did_you_mean;
+use crate::session::Session;
+use crate::shader::Mode;
+
+/// The modes of these names: `modes` for all that have data in the model and take one frame, `all`, or slugs. The order is that of
+/// the shader tree.
+///
+/// # Errors
+/// A name that no mode has, with the nearest.
+pub fn modes_of(session: &Session, names: &[String]) -> Result<Vec<Mode>, String> {
+    let shaders = session.shaders.clone().unwrap_or_default();
+    let features = session.features();
+    let has_data = |mode: &Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
+    let is_plain = |mode: &Mode| !mode.accumulate && !mode.traces && mode.pass.is_none() && has_data(mode);
+    let (wants_plain, wants_all) = (names.iter().any(|name| name == "modes"), names.iter().any(|name| name == "all"));
+    let slugs = || shaders.modes.iter().map(|mode| mode.slug.as_str());
+    for name in names.iter().filter(|name| !["modes", "all"].contains(&name.as_str())) {
+        if !slugs().any(|slug| slug == name) {
+            let hint = did_you_mean(name, slugs().chain(["modes", "all"]));
+            return Err(format!("there is no mode `{name}`.{hint} `specula modes` lists them all"));
+        }
+    }
+    let is_wanted = |mode: &&Mode| wants_all || (wants_plain && is_plain(mode)) || names.contains(&mode.slug);
+    Ok(shaders.modes.iter().filter(is_wanted).cloned().collect())
+}

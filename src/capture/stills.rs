@@ -1,0 +1,197 @@
+//! Draws pictures of a window's session on another thread. It shares the window's resources, and has a view and targets of its own, so
+//! that the window's picture stays as it is.
+
+use std::sync::Arc;
+
+use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
+use crate::frame::{Clock, FrameState};
+use crate::gpu::{Frames, Gpu, GpuError, Image, Use};
+use crate::headless::HeadlessError;
+use crate::pipeline::PipelineSet;
+use crate::render::{BoundFrame, Capture, Output, Redraw, Resources, View};
+use crate::session::Session;
+use crate::settings::Settings;
+use crate::shader::{Mode, PixelValue};
+
+/// Draws pictures of a session.
+pub struct Stills {
+    gpu: Arc<Gpu>,
+    session: Session,
+    resources: Resources,
+    frames: Frames,
+    view: View,
+    output: Option<Arc<Image>>,
+    clock: Clock,
+    /// Frames that are drawn for each picture, for passes that go on from frame to frame.
+    count: u32,
+}
+
+/// A version of the shaders, for a picture of it.
+pub(crate) struct VersionPicture {
+    pub(crate) set: Arc<PipelineSet>,
+    /// A frame with its shaders, if there was one: its light is the version's own.
+    pub(crate) like: Option<BoundFrame>,
+}
+
+impl Stills {
+    /// Copies of what the window draws with. `clock` is the time of all pictures.
+    ///
+    /// # Errors
+    /// No memory left.
+    pub fn new(gpu: &Arc<Gpu>, session: Session, resources: Resources, clock: Clock) -> Result<Self, GpuError> {
+        let view = View::new(gpu, resources.layouts(), 1)?;
+        let frames = Frames::new(gpu, 1)?;
+        Ok(Self { gpu: gpu.clone(), session, resources, frames, view, output: None, clock, count: 1 })
+    }
+
+    /// Sets the number of frames that each picture takes.
+    pub fn set_count(&mut self, count: u32) {
+        self.count = count.max(1);
+    }
+
+    /// The value of a pixel in each of `modes`, with one sample per pixel. `size` is that of the picture.
+    ///
+    /// # Errors
+    /// As [`Renderer::capture`].
+    pub fn pixel(
+        &mut self,
+        size: (u32, u32),
+        at: (u32, u32),
+        modes: &[Mode],
+        progress: Tell<'_>,
+    ) -> Result<Vec<PixelValue>, CaptureError> {
+        let mut values = Vec::new();
+        self.session.settings.view.msaa = 1;
+        self.view.probe = Some(at);
+        for (index, mode) in modes.iter().enumerate() {
+            tell(progress, index, modes.len())?;
+            self.session.settings.mode.clone_from(&mode.slug);
+            let frame = self.bind(size)?;
+            self.view.restart_passes();
+            self.view.restart_mean();
+            let count = if frame.state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
+            for _ in 0..count {
+                self.draw(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
+            }
+            values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
+        }
+        self.view.probe = None;
+        Ok(values)
+    }
+
+    /// Writes a picture of each version as an animation.
+    ///
+    /// # Errors
+    /// No versions, a picture that cannot be drawn, a file that cannot be written.
+    pub(crate) fn timeline(
+        &mut self,
+        versions: &[VersionPicture],
+        size: (u32, u32),
+        mut animation: Animation,
+        progress: Tell<'_>,
+    ) -> Result<(), CaptureError> {
+        self.check_size(size)?;
+        for (index, version) in versions.iter().enumerate() {
+            tell(progress, index, versions.len())?;
+            let target = self.target()?;
+            let state = Arc::new(self.session.frame_state_of(&version.set.shaders, self.clock, size, target));
+            version.set.build_aside(&state.pipelines).map_err(HeadlessError::from)?;
+            let bound = self.resources.bind_older(&version.set, &state, version.like.as_ref());
+            // Its light is gone, if another environment was chosen since.
+            let Some(frame) = bound.map_err(HeadlessError::from)? else { continue };
+            animation.add(image_of(self.picture(&frame)?)?)?;
+        }
+        tell(progress, versions.len(), versions.len())?;
+        animation.finish()
+    }
+
+    fn check_size(&self, (width, height): (u32, u32)) -> Result<(), HeadlessError> {
+        let most = self.gpu.max_image_size();
+        if (1..=most).contains(&width) && (1..=most).contains(&height) {
+            return Ok(());
+        }
+        Err(HeadlessError::Settings(format!(
+            "a picture of {width}x{height}: this device draws 1 to {most} pixels a side"
+        )))
+    }
+
+    /// Full floats, so that what is read back is what the shaders wrote.
+    fn target(&self) -> Result<crate::frame::TargetFormat, HeadlessError> {
+        View::target_format(&self.gpu, self.session.settings.view.msaa, true).map_err(HeadlessError::Settings)
+    }
+
+    fn bind(&mut self, size: (u32, u32)) -> Result<BoundFrame, HeadlessError> {
+        self.check_size(size)?;
+        let target = self.target()?;
+        let state = self.session.frame_state(self.clock, size, target);
+        let state: Arc<FrameState> = Arc::new(state.ok_or_else(|| HeadlessError::Shaders(Vec::new()))?);
+        if state.pipelines.needs_pending(&state.shaders) {
+            let mode = &self.session.settings.mode;
+            return Err(HeadlessError::Settings(format!("the shaders of the mode `{mode}` have errors")));
+        }
+        if let Some(set) = self.resources.pipelines() {
+            // Not as a request of the window's, whose pipelines stay.
+            set.build_aside(&state.pipelines)?;
+        }
+        Ok(self.resources.provide(&state)?)
+    }
+
+    /// Draws a frame as often as the settings ask, and reads the last one back.
+    fn picture(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
+        self.view.restart_passes();
+        self.view.restart_mean();
+        let accumulates = frame.state.pipelines.accumulates;
+        let count = if accumulates { self.session.settings.view.frames } else { self.count };
+        for _ in 1..count {
+            self.draw(frame, Redraw::Always, |_, _, _| Ok(()))?;
+        }
+        let readback = self.draw(frame, Redraw::Always, View::read_back)?;
+        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
+    }
+
+    fn draw<T>(
+        &mut self,
+        frame: &BoundFrame,
+        redraw: Redraw,
+        more: impl FnOnce(&View, &mut crate::gpu::Encoder, &Arc<Image>) -> Result<T, GpuError>,
+    ) -> Result<T, HeadlessError> {
+        self.view.prepare(frame)?;
+        let fits = |image: &Arc<Image>| (image.desc().width, image.desc().height) == frame.state.size;
+        let image = match self.output.take().filter(fits) {
+            Some(image) => image,
+            None => self.view.output_image(frame.state.size)?,
+        };
+        self.output = Some(image.clone());
+        let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
+        let mut encoder = self.frames.begin()?;
+        let slot = self.frames.current();
+        let drawn = self.view.draw(&mut encoder, slot, frame, &output, redraw);
+        let recorded = drawn.and_then(|()| more(&self.view, &mut encoder, &image));
+        let result = recorded.and_then(|result| self.frames.submit(encoder, Default::default()).map(|()| result));
+        if result.is_err() {
+            self.view.forget();
+        }
+        let result = result?;
+        // SYNC: this thread reads the picture, or draws the next over it.
+        self.frames.wait()?;
+        match self.frames.endless_loop(self.frames.current()) {
+            Some(words) => Err(HeadlessError::Gpu(GpuError::EndlessLoop(words))),
+            None => Ok(result),
+        }
+    }
+}
+
+impl Renderer for Stills {
+    fn settings(&mut self) -> &mut Settings {
+        &mut self.session.settings
+    }
+
+    fn session(&self) -> &Session {
+        &self.session
+    }
+
+    fn capture(&mut self, size: (u32, u32)) -> Result<Capture, HeadlessError> {
+        let frame = self.bind(size)?;
+        self.picture(&frame)
+    }
+}

@@ -1,0 +1,97 @@
+//! Commands from outside, as JSON lines on stdin or on a local socket, and the lines that answer them. `crate::app::control` carries
+//! them out; this module knows neither window nor device.
+
+mod client;
+mod reader;
+mod reply;
+mod request;
+mod socket;
+mod values;
+
+use std::io::Read;
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, Sender, unbounded};
+
+pub use client::{Client, Clients};
+pub(crate) use reply::Reply;
+pub(crate) use request::{
+    COMMANDS, Camera, Capture, Compare, Open, Playback, Probe, Request, Run, Sheet, Timeline, Turntable,
+};
+pub use socket::{Socket, socket_path};
+
+/// A command, and who waits for its answer.
+pub(crate) struct Asked {
+    pub(crate) request: Request,
+    pub(crate) reply: Reply,
+}
+
+/// The programs outside: those that read events, and the commands that they send.
+pub struct Control {
+    clients: Clients,
+    sender: Sender<Asked>,
+    asked: Receiver<Asked>,
+    socket: Option<Socket>,
+}
+
+/// How long the end of the program waits for readers of its last lines.
+const FAREWELL: Duration = Duration::from_millis(500);
+
+impl Control {
+    /// Nobody outside.
+    pub fn new() -> Self {
+        let (sender, asked) = unbounded();
+        Self { clients: Clients::default(), sender, asked, socket: None }
+    }
+
+    /// Prints events on stdout, and returns the client that stands for its reader.
+    pub fn print_events(&self) -> Client {
+        let stdout = Client::start(std::io::stdout(), None);
+        self.clients.add(stdout.clone());
+        stdout
+    }
+
+    /// Reads commands on a thread until `input` ends, which ends nothing else. Answers go to `client`. `then` runs at the end.
+    pub fn read(&self, input: impl Read + Send + 'static, client: Client, then: impl FnOnce() + Send + 'static) {
+        let sender = self.sender.clone();
+        let work = move || {
+            reader::read(input, &client, &sender);
+            then();
+        };
+        // Without the thread there are no commands, and the window works as ever.
+        let _ = std::thread::Builder::new().name("specula-stdin".to_owned()).spawn(work);
+    }
+
+    /// Accepts clients on a socket, whose file is removed with this value.
+    pub fn listen(&mut self, socket: Socket) {
+        socket.accept(self.clients.clone(), self.sender.clone());
+        self.socket = Some(socket);
+    }
+
+    /// Everybody who reads events.
+    pub fn clients(&self) -> &Clients {
+        &self.clients
+    }
+
+    /// The commands.
+    pub(crate) fn asked(&self) -> Receiver<Asked> {
+        self.asked.clone()
+    }
+
+    /// The path of the socket.
+    pub fn socket(&self) -> Option<&std::path::Path> {
+        self.socket.as_ref().map(Socket::path)
+    }
+}
+
+impl Default for Control {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Drop for Control {
+    fn drop(&mut self) {
+        self.clients.flush(FAREWELL);
+    }
+}

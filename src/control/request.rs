@@ -1,0 +1,451 @@
+//! The commands, and how a line becomes one. What is wrong with a line is told in words that help: the nearest command or field, and
+//! what a field takes.
+
+use std::path::PathBuf;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+use super::values::assignments;
+use crate::message::did_you_mean;
+
+/// A command.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    Set(Vec<String>),
+    Get(Option<String>),
+    Mode(String),
+    Camera(Camera),
+    Capture(Capture),
+    Probe(Probe),
+    Reload,
+    Open(Open),
+    Compare(Compare),
+    /// The number of the version to write to the files, if any.
+    Versions(Option<u64>),
+    Undo,
+    Redo,
+    Pass(String, Option<bool>),
+    Playback(Playback),
+    Modes,
+    Settings,
+    Commands,
+    Entries,
+    Run(Run),
+    Sheet(Sheet),
+    Turntable(Turntable),
+    Timeline(Timeline),
+    Cancel,
+    Quit,
+}
+
+/// A command in words.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct Described {
+    /// Its name.
+    pub command: &'static str,
+    /// Its fields, as JSON that could be sent. `?` marks those that may be left out.
+    pub takes: &'static str,
+    /// What it does, and its result.
+    pub doc: &'static str,
+}
+
+const fn row(command: &'static str, takes: &'static str, doc: &'static str) -> Described {
+    Described { command, takes, doc }
+}
+
+/// All commands.
+pub const COMMANDS: [Described; 25] = [
+    row(
+        "set",
+        r#""values": "path=value" | ["path=value", ...] | {"path": value}"#,
+        "Changes settings, all or none. Done when a frame that shows them has been drawn",
+    ),
+    row("get", r#""path"?: "view.ev""#, "The settings, or the one at a path"),
+    row("mode", r#""name": "d""#, "Shows a debug mode"),
+    row(
+        "camera",
+        r#""eye"?: [x,y,z], "target"?: [x,y,z], "fovy"?: deg, "azimuth"?: deg, "elevation"?: deg, "frame"?: true, "view"?: "front""#,
+        "Moves the camera; azimuth, elevation, frame and view frame the model. Result: eye, target, fovy",
+    ),
+    row(
+        "capture",
+        r#""file"?: "a.png" | "a.exr", "size"?: [w,h], "mode"?: "d", "frames"?: n, "ui"?: true"#,
+        "Writes the picture as it is on screen, or drawn anew at a size or in a mode; EXR holds raw floats; with ui the whole window. Result: file, width, height",
+    ),
+    row(
+        "probe",
+        r#""at": [x,y], "modes"?: ["d", "f"]"#,
+        "Raw values of a pixel of the picture, in these modes or all. Result: pixel, modes",
+    ),
+    row("reload", "", "Compiles all shaders again. Result: generation; an error lists the diagnostics"),
+    row(
+        "open",
+        r#""file" | "model" | "environment" | "tree" | "look" | "measured": "path or name""#,
+        "Opens a file or folder. Done when it is on screen",
+    ),
+    row(
+        "compare",
+        r#""with"?: "nothing" | "picture" | "previous" | number, "wipe"?: 0..1"#,
+        "Compares the picture with an earlier one. Result: version, wipe",
+    ),
+    row(
+        "versions",
+        r#""write"?: number"#,
+        "Versions of the shaders since the start; write puts one back into the files",
+    ),
+    row("undo", "", "Takes the last change of a setting back"),
+    row("redo", "", "Takes the last undo back"),
+    row("pass", r#""name": "bloom", "on"?: true | false"#, "Switches a pass on or off"),
+    row(
+        "playback",
+        r#""paused"?: bool, "step"?: true, "restart"?: true, "time"?: s, "speed"?: factor"#,
+        "The clock of animated shaders. Result: time, paused, speed",
+    ),
+    row("modes", "", "All debug modes: id, name, slug, group, encode, doc"),
+    row("settings", "", "All settings, with what each takes, its range, unit and meaning"),
+    row("commands", "", "This list"),
+    row("help", "", "This list"),
+    row("entries", "", "What the command palette can do at the moment"),
+    row(
+        "run",
+        r#""entry": "Layout: Look", "value"?: number"#,
+        "Does what an entry of the command palette does; value is for numbers",
+    ),
+    row(
+        "sheet",
+        r#""file": "sheet.png", "modes"?: "modes" | "all" | ["d", ...], "size"?: [w,h], "columns"?: n"#,
+        "Writes a contact sheet of modes with their names; size is that of one picture",
+    ),
+    row(
+        "turntable",
+        r#""file": "spin.gif" | ".webp" | ".png", "frames"?: n, "fps"?: n, "size"?: [w,h], "turn"?: "camera" | "light" | "model""#,
+        "Writes a full turn as an animation, or as numbered PNGs",
+    ),
+    row(
+        "timeline",
+        r#""file": "edits.webp", "fps"?: n, "size"?: [w,h]"#,
+        "Writes the versions of the shaders as an animation",
+    ),
+    row(
+        "cancel",
+        "",
+        "Ends the captures, sheets, animations and probes that are under way; each answers with an error",
+    ),
+    row("quit", "", "Closes the window"),
+];
+
+/// Fields of `camera`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Camera {
+    pub eye: Option<[f32; 3]>,
+    pub target: Option<[f32; 3]>,
+    pub fovy: Option<f32>,
+    pub azimuth: Option<f32>,
+    pub elevation: Option<f32>,
+    pub frame: bool,
+    pub view: Option<String>,
+}
+
+/// Fields of `capture`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Capture {
+    pub file: Option<PathBuf>,
+    pub size: Option<[u32; 2]>,
+    pub mode: Option<String>,
+    pub frames: Option<u32>,
+    pub ui: bool,
+}
+
+/// Fields of `probe`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Probe {
+    pub at: [u32; 2],
+    pub modes: Option<Vec<String>>,
+}
+
+/// What `open` opens.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Open {
+    File(PathBuf),
+    Model(PathBuf),
+    Environment(PathBuf),
+    Tree(PathBuf),
+    Look(PathBuf),
+    Measured(PathBuf),
+}
+
+/// Fields of `compare`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Compare {
+    pub with: Option<Value>,
+    pub wipe: Option<f32>,
+}
+
+/// Fields of `playback`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Playback {
+    pub paused: Option<bool>,
+    pub step: bool,
+    pub restart: bool,
+    pub time: Option<f32>,
+    pub speed: Option<f32>,
+}
+
+/// Fields of `run`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Run {
+    pub entry: String,
+    pub value: Option<f64>,
+}
+
+/// Fields of `sheet`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sheet {
+    pub file: PathBuf,
+    pub modes: Option<Value>,
+    pub size: Option<[u32; 2]>,
+    pub columns: Option<u32>,
+}
+
+/// Fields of `turntable`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Turntable {
+    pub file: PathBuf,
+    pub frames: Option<u32>,
+    pub fps: Option<f32>,
+    pub size: Option<[u32; 2]>,
+    pub turn: Option<String>,
+}
+
+/// Fields of `timeline`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Timeline {
+    pub file: PathBuf,
+    pub fps: Option<f32>,
+    pub size: Option<[u32; 2]>,
+}
+
+/// A line as a command.
+pub(super) struct Parsed {
+    /// The line's own `id`; null without one.
+    pub(super) id: Value,
+    /// The name as it stands there.
+    pub(super) command: String,
+    /// The command, or what is wrong.
+    pub(super) request: Result<Request, String>,
+}
+
+/// Parses a line.
+pub(super) fn parse(line: &[u8]) -> Parsed {
+    let failed = |message: String| Parsed { id: Value::Null, command: String::new(), request: Err(message) };
+    let mut fields = match serde_json::from_slice(line) {
+        Ok(Value::Object(fields)) => fields,
+        Ok(other) => return failed(format!("expected a JSON object, as {EXAMPLE}, found {}", kind(&other))),
+        Err(error) => return failed(format!("no JSON: {error}. Expected an object in one line, as {EXAMPLE}")),
+    };
+    let id = fields.remove("id").unwrap_or_default();
+    match fields.remove("command") {
+        Some(Value::String(command)) => {
+            let request = request(&command, fields);
+            Parsed { id, command, request }
+        }
+        other => {
+            let found = other.map_or_else(|| "none".to_owned(), |other| kind(&other).to_owned());
+            let request = Err(format!("`command` is missing: expected its name, as {EXAMPLE}, found {found}"));
+            Parsed { id, command: String::new(), request }
+        }
+    }
+}
+
+const EXAMPLE: &str = r#"{"id": 1, "command": "set", "values": {"view.ev": 1}}"#;
+
+fn request(command: &str, mut fields: Map<String, Value>) -> Result<Request, String> {
+    let nothing = |request: Request, fields: Map<String, Value>| match fields.keys().next() {
+        None => Ok(request),
+        Some(field) => Err(format!("`{command}` has no field `{field}`; it takes none")),
+    };
+    Ok(match command {
+        "set" => {
+            let values = fields.remove("values").unwrap_or_default();
+            nothing(Request::Set(assignments(&values)?), fields)?
+        }
+        "get" => {
+            let path = text(&mut fields, "path")?;
+            nothing(Request::Get(path), fields)?
+        }
+        "mode" => {
+            let name = text(&mut fields, "name")?.ok_or_else(|| needs(command))?;
+            nothing(Request::Mode(name), fields)?
+        }
+        "camera" => Request::Camera(of(command, fields, &[])?),
+        "capture" => Request::Capture(of(command, fields, &[])?),
+        "probe" => Request::Probe(of(command, fields, &["at"])?),
+        "reload" => nothing(Request::Reload, fields)?,
+        "open" => Request::Open(open(&fields)?),
+        "compare" => Request::Compare(of(command, fields, &[])?),
+        "versions" => {
+            let write = fields.remove("write").filter(|write| !write.is_null());
+            let number = write.map(|write| write.as_u64().ok_or(format!("`write` is no number of a version: {write}")));
+            nothing(Request::Versions(number.transpose()?), fields)?
+        }
+        "undo" => nothing(Request::Undo, fields)?,
+        "redo" => nothing(Request::Redo, fields)?,
+        "pass" => {
+            let name = text(&mut fields, "name")?.ok_or_else(|| needs(command))?;
+            let on = fields.remove("on").filter(|on| !on.is_null());
+            let on = on.map(|on| on.as_bool().ok_or(format!("`on` cannot be {on}; it takes true or false")));
+            nothing(Request::Pass(name, on.transpose()?), fields)?
+        }
+        "playback" => Request::Playback(of(command, fields, &[])?),
+        "modes" => nothing(Request::Modes, fields)?,
+        "settings" => nothing(Request::Settings, fields)?,
+        "commands" | "help" => nothing(Request::Commands, fields)?,
+        "entries" => nothing(Request::Entries, fields)?,
+        "run" => Request::Run(of(command, fields, &["entry"])?),
+        "sheet" => Request::Sheet(of(command, fields, &["file"])?),
+        "turntable" => Request::Turntable(of(command, fields, &["file"])?),
+        "timeline" => Request::Timeline(of(command, fields, &["file"])?),
+        "cancel" => nothing(Request::Cancel, fields)?,
+        "quit" => nothing(Request::Quit, fields)?,
+        unknown => {
+            let hint = did_you_mean(unknown, COMMANDS.iter().map(|known| known.command));
+            return Err(format!("there is no command `{unknown}`.{hint} `commands` lists them all"));
+        }
+    })
+}
+
+/// The fields of a command. All but `required` may be left out; null leaves a field out, too.
+fn of<T: DeserializeOwned>(command: &str, mut fields: Map<String, Value>, required: &[&str]) -> Result<T, String> {
+    fields.retain(|_, value| !value.is_null());
+    if required.iter().any(|field| !fields.contains_key(*field)) {
+        return Err(needs(command));
+    }
+    // serde does not tell in which field a value is wrong, so each is tried alone.
+    for (field, value) in &fields {
+        let alone = Map::from_iter([(field.clone(), value.clone())]);
+        if let Err(error) = serde_json::from_value::<T>(Value::Object(alone)) {
+            let what = error.to_string();
+            let what = if what.starts_with("unknown field") { what } else { format!("`{field}`: {what}") };
+            return Err(format!("{what}. `{command}` takes {}", takes(command)));
+        }
+    }
+    serde_json::from_value(Value::Object(fields))
+        .map_err(|error| format!("{error}. `{command}` takes {}", takes(command)))
+}
+
+fn takes(command: &str) -> &'static str {
+    COMMANDS.iter().find(|known| known.command == command).map_or("", |known| known.takes)
+}
+
+fn needs(command: &str) -> String {
+    format!("`{command}` needs {}", takes(command))
+}
+
+/// Takes a field that holds text.
+fn text(fields: &mut Map<String, Value>, field: &str) -> Result<Option<String>, String> {
+    match fields.remove(field) {
+        None | Some(Value::Null) => Ok(None),
+        Some(Value::String(text)) => Ok(Some(text)),
+        Some(other) => Err(format!("`{field}` takes text, found {}", kind(&other))),
+    }
+}
+
+fn open(fields: &Map<String, Value>) -> Result<Open, String> {
+    let mut given = fields.iter();
+    let (Some((field, Value::String(path))), None) = (given.next(), given.next()) else { return Err(needs("open")) };
+    let path = PathBuf::from(path);
+    Ok(match field.as_str() {
+        "file" => Open::File(path),
+        "model" => Open::Model(path),
+        "environment" => Open::Environment(path),
+        "tree" => Open::Tree(path),
+        "look" => Open::Look(path),
+        "measured" => Open::Measured(path),
+        unknown => {
+            let hint = did_you_mean(unknown, ["file", "model", "environment", "tree", "look", "measured"]);
+            return Err(format!("`open` has no field `{unknown}`.{hint} It takes {}", takes("open")));
+        }
+    })
+}
+
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "null",
+        Value::Bool(_) => "true or false",
+        Value::Number(_) => "a number",
+        Value::String(_) => "text",
+        Value::Array(_) => "a list",
+        Value::Object(_) => "an object",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn parsed(line: &Value) -> Result<Request, String> {
+        parse(line.to_string().as_bytes()).request
+    }
+
+    #[test]
+    fn commands_are_parsed() {
+        let set = json!({"id": "a", "command": "set", "values": {"view.ev": 1}});
+        let Parsed { id, command, request } = parse(set.to_string().as_bytes());
+        assert_eq!((id, command.as_str()), (json!("a"), "set"));
+        assert_eq!(request, Ok(Request::Set(vec!["view.ev=1".into()])));
+        let capture = json!({"command": "capture", "file": "a.exr", "size": [64, 32], "mode": null});
+        let expected = Capture { file: Some("a.exr".into()), size: Some([64, 32]), ..Capture::default() };
+        assert_eq!(parsed(&capture), Ok(Request::Capture(expected)));
+        assert_eq!(
+            parsed(&json!({"command": "open", "model": "a.glb"})),
+            Ok(Request::Open(Open::Model("a.glb".into())))
+        );
+        assert_eq!(parsed(&json!({"command": "pass", "name": "bloom"})), Ok(Request::Pass("bloom".into(), None)));
+    }
+
+    #[test]
+    fn every_command_of_the_list_exists() {
+        for known in COMMANDS {
+            let error = parsed(&json!({"command": known.command})).err().unwrap_or_default();
+            assert!(!error.contains("there is no command"), "{error}");
+            let error = parsed(&json!({"command": known.command, "nonsense": 1})).unwrap_err();
+            assert!(!error.is_empty());
+        }
+    }
+
+    #[test]
+    fn mistakes_are_told() {
+        for (line, part) in [
+            (json!({"command": "sett"}), "there is no command `sett`. Did you mean `set`?"),
+            (json!({"comand": "set"}), "`command` is missing"),
+            (json!([1]), "expected a JSON object"),
+            (json!({"command": "probe"}), "`probe` needs \"at\": [x,y]"),
+            (json!({"command": "probe", "at": [1, "x"]}), "`at`: invalid type"),
+            (json!({"command": "probe", "at": [1, -2]}), "`at`: invalid value"),
+            (json!({"command": "capture", "sise": 1}), "unknown field `sise`, expected one of"),
+            (json!({"command": "undo", "twice": true}), "`undo` has no field `twice`; it takes none"),
+            (json!({"command": "open"}), "`open` needs"),
+            (json!({"command": "open", "modell": "a"}), "Did you mean `model`?"),
+            (json!({"command": "mode", "name": 1}), "`name` takes text, found a number"),
+            (json!({"command": "pass", "name": "a", "on": 1}), "`on` cannot be 1; it takes true or false"),
+        ] {
+            let error = parsed(&line).unwrap_err();
+            assert!(error.contains(part), "{line}: {error}");
+        }
+        assert!(parse(b"{\"a\"").request.unwrap_err().starts_with("no JSON: "));
+        assert!(parse(b"\xff\xfe").request.unwrap_err().starts_with("no JSON: "));
+    }
+}

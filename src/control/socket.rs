@@ -1,0 +1,182 @@
+//! The local socket: a file that only the user can reach. There is no network port.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crossbeam_channel::Sender;
+
+use super::{Asked, Clients};
+
+/// A socket that accepts clients. Its file is removed with it.
+pub struct Socket {
+    path: PathBuf,
+    #[cfg(unix)]
+    listener: std::os::unix::net::UnixListener,
+}
+
+/// The path of the socket that the user calls `name`: a path, or a name without a slash, which lies in the user's folder for such
+/// files.
+///
+/// # Errors
+/// There is no such folder.
+pub fn socket_path(name: &Path) -> Result<PathBuf, String> {
+    let is_name = name.components().count() == 1 && !name.as_os_str().as_encoded_bytes().contains(&b'/');
+    if !is_name {
+        return std::path::absolute(name).map_err(|error| format!("{}: {error}", name.display()));
+    }
+    let folder = std::env::var_os("XDG_RUNTIME_DIR").filter(|folder| !folder.is_empty()).ok_or_else(|| {
+        format!("--socket {0}: XDG_RUNTIME_DIR is not set; give a path, as --socket ~/.specula/{0}", name.display())
+    })?;
+    let mut file = name.as_os_str().to_owned();
+    if name.extension().is_none() {
+        file.push(".sock");
+    }
+    Ok(PathBuf::from(folder).join("specula").join(file))
+}
+
+#[cfg(unix)]
+impl Socket {
+    /// Creates the file of the socket, with mode 0600. The folder must be the user's alone. A file that an earlier process has left is
+    /// replaced.
+    ///
+    /// # Errors
+    /// The folder is not there or open to others, another process listens, or another file has the name.
+    pub fn bind(path: PathBuf) -> Result<Self, String> {
+        use std::os::unix::fs::{DirBuilderExt as _, FileTypeExt as _, PermissionsExt as _};
+        use std::os::unix::net::{UnixListener, UnixStream};
+        let cannot = |why: String| format!("cannot listen on {}: {why}", path.display());
+        let folder = path.parent().unwrap_or(Path::new("/"));
+        let is_ours =
+            std::env::var_os("XDG_RUNTIME_DIR").is_some_and(|runtime| folder == Path::new(&runtime).join("specula"));
+        if is_ours && !folder.exists() {
+            let made = std::fs::DirBuilder::new().mode(0o700).create(folder);
+            made.or_else(|error| if folder.is_dir() { Ok(()) } else { Err(error) })
+                .map_err(|e| cannot(e.to_string()))?;
+        }
+        let mode = std::fs::metadata(folder).map_err(|e| cannot(format!("{}: {e}", folder.display())))?;
+        let mode = mode.permissions().mode() & 0o777;
+        if mode & 0o077 != 0 {
+            let folder = folder.display();
+            return Err(cannot(format!(
+                "others can enter the folder {folder} (mode {mode:03o}). `chmod 700 {folder}`, or give a name without a slash, which \
+                 lies in $XDG_RUNTIME_DIR/specula"
+            )));
+        }
+        if let Ok(there) = std::fs::symlink_metadata(&path) {
+            if !there.file_type().is_socket() {
+                return Err(cannot("there is another file of this name".to_owned()));
+            }
+            if UnixStream::connect(&path).is_ok() {
+                return Err(cannot("another window listens there; give this one another name".to_owned()));
+            }
+            std::fs::remove_file(&path).map_err(|e| cannot(e.to_string()))?;
+        }
+        // Nobody else can enter the folder, so nobody connects before the mode is set.
+        let listener = UnixListener::bind(&path).map_err(|e| cannot(e.to_string()))?;
+        let set = std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600));
+        set.map_err(|e| cannot(e.to_string()))?;
+        Ok(Self { path, listener })
+    }
+
+    /// Accepts clients on a thread. Each gets the events, and has a thread that reads its commands.
+    pub(super) fn accept(&self, clients: Clients, sender: Sender<Asked>) {
+        let Ok(listener) = self.listener.try_clone() else { return };
+        let work = move || {
+            for stream in listener.incoming() {
+                match stream.and_then(|stream| connect(&stream, &clients, &sender)) {
+                    Ok(()) => {}
+                    Err(error) => {
+                        tracing::debug!("a client of the socket was not accepted: {error}");
+                        // For example too many open files, which takes a while to change.
+                        std::thread::sleep(std::time::Duration::from_millis(100));
+                    }
+                }
+            }
+        };
+        // Without the thread nobody is answered, and the window works as ever.
+        let _ = std::thread::Builder::new().name("specula-socket".to_owned()).spawn(work);
+    }
+}
+
+#[cfg(unix)]
+fn connect(stream: &std::os::unix::net::UnixStream, clients: &Clients, sender: &Sender<Asked>) -> io::Result<()> {
+    use super::{Client, reader};
+    let (input, output, line) = (stream.try_clone()?, stream.try_clone()?, stream.try_clone()?);
+    let hang_up = move || drop(line.shutdown(std::net::Shutdown::Both));
+    let client = Client::start(output, Some(Box::new(hang_up)));
+    clients.add(client.clone());
+    let sender = sender.clone();
+    // A client may end its commands and go on reading events, so the end of its input does not close it.
+    let work = move || reader::read(input, &client, &sender);
+    std::thread::Builder::new().name("specula-commands".to_owned()).spawn(work).map(|_| ())
+}
+
+#[cfg(not(unix))]
+impl Socket {
+    /// Unix sockets only.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn bind(path: PathBuf) -> Result<Self, String> {
+        Err(format!("cannot listen on {}: this system has no Unix sockets; use --events json", path.display()))
+    }
+
+    pub(super) fn accept(&self, _: Clients, _: Sender<Asked>) {}
+}
+
+impl Socket {
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Socket {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    use super::*;
+
+    fn private() -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::set_permissions(folder.path(), std::fs::Permissions::from_mode(0o700)).unwrap();
+        folder
+    }
+
+    #[test]
+    fn the_file_is_the_users_alone_and_goes_with_the_socket() {
+        let folder = private();
+        let path = folder.path().join("s.sock");
+        let socket = Socket::bind(path.clone()).unwrap();
+        assert_eq!(path.metadata().unwrap().permissions().mode() & 0o777, 0o600);
+        let second = Socket::bind(path.clone()).err().unwrap();
+        assert!(second.contains("another window listens there"), "{second}");
+        drop(socket);
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_folder_that_others_can_enter_is_refused() {
+        let folder = private();
+        std::fs::set_permissions(folder.path(), std::fs::Permissions::from_mode(0o755)).unwrap();
+        let error = Socket::bind(folder.path().join("s.sock")).err().unwrap();
+        assert!(error.contains("mode 755") && error.contains("chmod 700"), "{error}");
+    }
+
+    #[test]
+    fn a_file_of_an_ended_process_is_replaced_and_another_file_is_not() {
+        let folder = private();
+        let path = folder.path().join("s.sock");
+        drop(std::os::unix::net::UnixListener::bind(&path).unwrap());
+        drop(Socket::bind(path.clone()).unwrap());
+        std::fs::write(&path, "text").unwrap();
+        let error = Socket::bind(path).err().unwrap();
+        assert!(error.contains("another file"), "{error}");
+    }
+}

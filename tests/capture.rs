@@ -1,0 +1,98 @@
+//! `specula render --sheet` and `--turntable`: many pictures in one file.
+
+mod support;
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use image::codecs::gif::GifDecoder;
+use image::codecs::webp::WebPDecoder;
+use image::{AnimationDecoder as _, GenericImageView as _, RgbaImage};
+use support::open_image;
+use support::process::{Finished, run};
+
+/// Arguments of a `render` that is fast.
+const QUICK: [&str; 8] = ["render", "sphere-grid", "--env", "none", "--lights", "orbit", "--set", "view.msaa=1"];
+
+fn render(directory: &Path, args: &[&str]) -> Finished {
+    run(directory, &[&QUICK[..], args].concat())
+}
+
+fn reader(path: &Path) -> BufReader<File> {
+    BufReader::new(File::open(path).unwrap())
+}
+
+/// The mean difference of a channel.
+fn distance(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let sum: u64 = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / a.as_raw().len() as f64
+}
+
+#[test]
+fn a_sheet_shows_each_mode_as_render_does() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    render(path, &["--sheet", "metallic,roughness,d", "--tile", "64x48", "--out", "sheet.png"]).expect(0, &[]);
+    let sheet = open_image(&path.join("sheet.png"));
+    // Pictures stand in one row, 8 pixels apart, in the order of the tree.
+    let modes = run(path, &["modes", "--json"]).json();
+    let slugs =
+        modes["modes"].as_array().or(modes.as_array()).unwrap().iter().map(|mode| mode["slug"].as_str().unwrap());
+    let order: Vec<&str> = slugs.filter(|slug| ["metallic", "roughness", "d"].contains(slug)).collect();
+    assert_eq!(order.len(), 3);
+    for (index, slug) in order.iter().enumerate() {
+        let file = format!("{slug}.png");
+        render(path, &["--mode", slug, "--size", "64x48", "--out", &file]).expect(0, &[]);
+        let alone = open_image(&path.join(&file)).into_rgba8();
+        let columns = (sheet.width() - 8) / 72;
+        let (column, row) = (index as u32 % columns, index as u32 / columns);
+        let tile = sheet.view(8 + column * 72, 8 + row * (48 + 22 + 8), 64, 48).to_image();
+        assert!(tile == alone, "{slug} differs in the sheet");
+    }
+}
+
+#[test]
+fn a_turntable_is_a_full_turn() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let camera = ["--eye", "0,1,4", "--target", "0,0,0", "--size", "64x48"];
+    let turn =
+        |out: &str| render(path, &[&camera[..], &["--turntable", "4", "--out", out]].concat()).expect(0, &[]).code;
+    turn("spin.webp");
+    let frames = WebPDecoder::new(reader(&path.join("spin.webp"))).unwrap().into_frames().collect_frames().unwrap();
+    assert_eq!(frames.len(), 4);
+    assert_eq!(frames[0].delay().numer_denom_ms(), (40, 1), "25 frames a second");
+    render(path, &[&camera[..], &["--out", "first.png"]].concat()).expect(0, &[]);
+    let first = open_image(&path.join("first.png")).into_rgba8();
+    assert!(*frames[0].buffer() == first, "the first frame is the picture");
+    // The third is seen from behind.
+    render(path, &["--eye", "0,1,-4", "--target", "0,0,0", "--size", "64x48", "--out", "third.png"]).expect(0, &[]);
+    let third = open_image(&path.join("third.png")).into_rgba8();
+    assert!(distance(frames[2].buffer(), &third) < 0.5 && distance(&first, &third) > 0.5);
+
+    turn("spin.gif");
+    let decoder = GifDecoder::new(reader(&path.join("spin.gif"))).unwrap();
+    let gif = decoder.into_frames().collect_frames().unwrap();
+    assert_eq!(gif.len(), 4);
+    assert!(distance(gif[0].buffer(), &first) < 8.0, "{}", distance(gif[0].buffer(), &first));
+
+    turn("spin.png");
+    for number in 1..=4 {
+        let frame = open_image(&path.join(format!("spin.{number:04}.png"))).into_rgba8();
+        assert!(frame == *frames[number - 1].buffer(), "frame {number}");
+    }
+}
+
+#[test]
+fn what_cannot_be_written_is_told_before_any_work() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    render(path, &["--turntable", "4", "--out", "a.mp4"])
+        .expect(2, &["no encoder for video", "ffmpeg -i a.%04d.png a.mp4"]);
+    render(path, &["--turntable", "0", "--out", "a.gif"]).expect(2, &["0"]);
+    render(path, &["--sheet", "all", "--out", "a.exr"]).expect(2, &["must end in .png"]);
+    render(path, &["--sheet", "metalic", "--out", "a.png"]).expect(2, &["Did you mean `metallic`?"]);
+    assert_eq!(std::fs::read_dir(path).unwrap().count(), 0);
+}

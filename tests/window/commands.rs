@@ -1,0 +1,208 @@
+//! A program at the wheel: commands on standard input and on a local socket.
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::os::unix::fs::PermissionsExt as _;
+use std::os::unix::net::UnixStream;
+use std::path::Path;
+
+use image::RgbaImage;
+use serde_json::{Value, json};
+
+use crate::NDF;
+use crate::support::window::Viewer;
+use crate::support::{Tree, open_image};
+
+/// A client of the socket.
+struct Client {
+    line: UnixStream,
+    lines: BufReader<UnixStream>,
+}
+
+impl Client {
+    fn connect(path: &Path) -> Self {
+        let line = UnixStream::connect(path).unwrap();
+        line.set_read_timeout(Some(crate::support::process::PATIENCE)).unwrap();
+        let lines = BufReader::new(line.try_clone().unwrap());
+        Self { line, lines }
+    }
+
+    fn say(&mut self, line: &str) {
+        writeln!(self.line, "{line}").unwrap();
+    }
+
+    /// The next event that `is` accepts.
+    fn until(&mut self, is: impl Fn(&Value) -> bool) -> Value {
+        loop {
+            let mut line = String::new();
+            assert!(self.lines.read_line(&mut line).unwrap() > 0, "the window hung up");
+            let event: Value = serde_json::from_str(&line).unwrap();
+            if is(&event) {
+                return event;
+            }
+        }
+    }
+
+    fn ask(&mut self, id: &str, mut command: Value) -> Value {
+        command["id"] = json!(id);
+        self.say(&command.to_string());
+        self.until(|event| event["id"] == id && event["event"] != "progress")
+    }
+}
+
+/// Captures the picture on screen.
+fn capture(viewer: &mut Viewer, file: &str) -> RgbaImage {
+    let result = viewer.running.done(json!({"command": "capture", "file": file}));
+    let path = viewer.tree.beside(file);
+    assert_eq!(result["file"].as_str(), path.to_str());
+    open_image(&path).into_rgba8()
+}
+
+#[test]
+fn a_program_drives_the_window_by_standard_input() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
+    let first = capture(&mut viewer, "first.png");
+    assert!(first.pixels().any(|pixel| pixel != first.get_pixel(0, 0)), "an empty picture");
+    let running = &mut viewer.running;
+
+    // A setting is done when a frame shows it.
+    running.done(json!({"command": "set", "values": {"view.ev": 2, "lights.orbit.0.strength": 1.0}}));
+    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(2.0));
+    let dark = capture(&mut viewer, "dark.png");
+    assert!(dark != first && dark.dimensions() == first.dimensions());
+    let running = &mut viewer.running;
+    running.done(json!({"command": "undo"}));
+    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(0.0));
+    assert!(capture(&mut viewer, "undone.png") == first, "undo brings the picture back");
+
+    // Another mode, size and format, drawn beside the window.
+    let running = &mut viewer.running;
+    let file = json!({"command": "capture", "file": "n.exr", "mode": "shading-normal", "size": [96, 64]});
+    let result = running.done(file);
+    assert_eq!((&result["width"], &result["height"]), (&json!(96), &json!(64)));
+    let normals = open_image(&viewer.tree.beside("n.exr")).into_rgba32f();
+    let length = |pixel: &image::Rgba<f32>| pixel.0[..3].iter().map(|c| c * c).sum::<f32>();
+    assert!(normals.pixels().any(|pixel| (length(pixel) - 1.0).abs() < 1e-3), "no unit normals");
+    assert!(capture(&mut viewer, "same.png") == first, "the window's picture is as it was");
+
+    // The window with its panels.
+    let result = viewer.running.done(json!({"command": "capture", "file": "window.png", "ui": true}));
+    assert_eq!((&result["width"], &result["height"]), (&json!(640), &json!(480)));
+    let window = open_image(&viewer.tree.beside("window.png")).into_rgba8();
+    assert!(window.pixels().all(|pixel| pixel[3] == 255) && window.get_pixel(320, 240) != window.get_pixel(2, 2));
+
+    // Values of a pixel.
+    let running = &mut viewer.running;
+    let camera = running.done(json!({"command": "camera", "view": "front", "fovy": 30}));
+    assert!((camera["fovy"].as_f64().unwrap() - 30.0).abs() < 1e-4, "{camera}");
+    let (x, y) = (first.width() / 2, first.height() / 2);
+    let probe = json!({"command": "probe", "at": [x, y], "modes": ["roughness", "base-color"]});
+    let probed = running.done(probe);
+    assert_eq!(probed["pixel"], json!([x, y]));
+    assert_eq!(probed["modes"].as_object().unwrap().len(), 2, "{probed}");
+
+    // What is wrong is told, and changes nothing.
+    for (command, part) in [
+        (json!({"command": "sett"}), "Did you mean `set`?"),
+        (json!({"command": "set", "values": "view.exposure=1"}), "Did you mean `view.ev`?"),
+        (json!({"command": "set", "values": ["view.ev=1", "view.ev=99"]}), "view.ev is 99"),
+        (json!({"command": "set", "values": {"no_such_name": 1}}), "no_such_name"),
+        (json!({"command": "mode", "name": "ruffness"}), "Did you mean `roughness`?"),
+        (json!({"command": "probe", "at": [9999, 0]}), "is outside of the picture"),
+        (json!({"command": "capture", "file": "a.jpg"}), "a.jpg"),
+        (json!({"command": "capture", "size": [1, 1000000]}), "pixels a side"),
+        (json!({"command": "open", "model": "no-such-file.glb"}), "no-such-file.glb"),
+        (json!({"command": "open", "environment": "no-such-file.hdr"}), "no-such-file.hdr"),
+        (json!({"command": "pass", "name": "blom", "on": true}), "no pass is named `blom`"),
+        (json!({"command": "run", "entry": "Reload all shader"}), "Did you mean `Reload all shaders`?"),
+        (json!({"command": "turntable", "file": "a.mp4"}), "ffmpeg"),
+    ] {
+        let message = running.refused(command.clone());
+        assert!(message.contains(part), "{command}: {message}");
+    }
+    running.say("{\"command\"");
+    running.until("the answer to no JSON", |event| event["event"] == "error" && event["id"].is_null());
+    running.say(&"x".repeat(3 << 20));
+    running.until("the answer to a long line", |event| event["event"] == "error" && event["id"].is_null());
+    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(0.0));
+    running.done(json!({"command": "set", "values": "environment.name=none"}));
+
+    // Lists, from which a client learns what there is.
+    for list in ["modes", "settings", "commands", "entries", "versions"] {
+        let result = running.done(json!({"command": list}));
+        assert!(!result.as_array().unwrap().is_empty(), "{list}");
+    }
+    running.done(json!({"command": "run", "entry": "Exposure", "value": 1.5}));
+    assert_eq!(running.done(json!({"command": "get", "path": "view.ev"})), json!(-1.5), "brighter");
+
+    // A broken shader, and its repair.
+    let original = viewer.tree.read(NDF);
+    viewer.tree.write(NDF, &original.replace("alpha * alpha;", "alpha * alfa;"));
+    viewer.running.reload(false);
+    let answer = viewer.running.ask(json!({"command": "reload"}));
+    assert_eq!(answer["event"], "error");
+    assert!(answer["diagnostics"][0]["file"].as_str().unwrap().ends_with("ndf.glsl"), "{answer}");
+    viewer.tree.write(NDF, &original);
+    viewer.running.reload(true);
+    viewer.running.done(json!({"command": "reload"}));
+
+    // The end of the input ends nothing else.
+    viewer.running.end_input();
+    viewer.quit();
+}
+
+#[test]
+fn clients_of_a_socket_drive_the_window() {
+    let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--socket", "test"]);
+    let path = viewer.tree.beside("runtime/specula/test.sock");
+    let mode = |path: &Path| path.metadata().unwrap().permissions().mode() & 0o777;
+    assert_eq!((mode(&path), mode(path.parent().unwrap())), (0o600, 0o700));
+    let (mut first, mut second) = (Client::connect(&path), Client::connect(&path));
+    viewer.running.event("ready");
+
+    // Each gets its own answers, and both get the events.
+    let set = first.ask("a", json!({"command": "set", "values": {"view.ev": 3}}));
+    assert_eq!(set["event"], "done", "{set}");
+    assert_eq!(second.ask("b", json!({"command": "get", "path": "view.ev"}))["result"], json!(3.0));
+    viewer.tree.write(NDF, &viewer.tree.edited(NDF, "alpha * alpha;", "alpha * alfa;"));
+    for client in [&mut first, &mut second] {
+        let diagnostic = client.until(|event| event["event"] == "diagnostic");
+        assert!(diagnostic["file"].as_str().unwrap().ends_with("ndf.glsl"), "{diagnostic}");
+    }
+    viewer.running.event("diagnostic");
+
+    // A client that goes away in the middle of a line harms nobody.
+    first.line.write_all(b"{\"command\":").unwrap();
+    drop(first);
+    let sheet = json!({"command": "sheet", "file": "sheet.png", "modes": ["metallic", "roughness"], "size": [64, 48]});
+    let sheet = second.ask("c", sheet);
+    assert_eq!(sheet["event"], "done", "{sheet}");
+    assert!(open_image(&viewer.tree.beside("sheet.png")).width() > 64);
+    let turn = json!({"command": "turntable", "file": "spin.gif", "frames": 3, "size": [64, 48]});
+    assert_eq!(second.ask("d", turn)["event"], "done");
+    assert!(viewer.tree.beside("spin.gif").exists());
+
+    // Long work is canceled by who likes.
+    second.say(&json!({"id": "long", "command": "turntable", "file": "long.gif", "frames": 5000}).to_string());
+    second.until(|event| event["event"] == "progress" && event["id"] == "long" && event["done"].as_u64() > Some(0));
+    second.say(&json!({"id": "cancel", "command": "cancel"}).to_string());
+    let answer = second.until(|event| event["id"] == "long" && event["event"] == "error");
+    assert_eq!(answer["message"], "canceled", "{answer}");
+    assert!(!viewer.tree.beside("long.gif").exists());
+
+    assert_eq!(second.ask("e", json!({"command": "quit"}))["event"], "done");
+    let status = viewer.running.end();
+    assert!(status.success(), "it ended with {status}. {}", viewer.running.story());
+    assert!(!path.exists(), "the file of the socket is left");
+}
+
+#[test]
+fn a_socket_that_others_could_reach_is_refused() {
+    let tree = Tree::new();
+    let folder = tree.beside("open");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let display = crate::support::window::Display::new();
+    let mut command = display.view(&tree);
+    command.args(["--socket", "./open/s.sock"]);
+    crate::support::process::finish(&mut command).expect(1, &["others can enter the folder", "chmod 700"]);
+}
