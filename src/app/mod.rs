@@ -18,8 +18,11 @@ mod panels;
 mod playback;
 mod recent;
 mod screen;
+mod shader_log;
+mod stages;
 mod state;
 mod status;
+mod timing;
 mod viewer;
 
 use std::path::PathBuf;
@@ -34,6 +37,7 @@ use winit::raw_window_handle::HasDisplayHandle as _;
 use winit::window::{Window, WindowId};
 
 use crate::disk_cache;
+use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts};
 use crate::recovery::Recorder;
 use crate::scene::LoadOptions;
@@ -181,6 +185,8 @@ impl App {
                 return event_loop.exit();
             }
             let Open { viewer, screen, gpu, window } = open;
+            let (frames, ui_ms) = viewer.timing.summary();
+            emit(viewer.events, &Event::Closed { frames, ui_ms });
             drop(screen);
             drop(viewer);
             drop(window);

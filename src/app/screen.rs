@@ -6,6 +6,7 @@ mod loops;
 mod probe;
 mod reference;
 mod thumbnail;
+mod timing;
 mod ui;
 
 use std::sync::Arc;
@@ -17,6 +18,7 @@ use winit::window::Window;
 
 use super::input::Mouse;
 use super::panels;
+use super::timing::CpuTimes;
 use super::viewer::Viewer;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
@@ -90,6 +92,8 @@ pub(super) struct Screen {
     /// The part of the picture that no handle between it and a panel covers, in points.
     free: egui::Rect,
     last_frame: Instant,
+    /// The CPU's times of the frame that is being made.
+    cpu: CpuTimes,
 }
 
 impl Screen {
@@ -139,6 +143,7 @@ impl Screen {
             rect: PictureRect::default(),
             free: egui::Rect::NOTHING,
             last_frame: Instant::now(),
+            cpu: CpuTimes::default(),
         })
     }
 
@@ -231,8 +236,10 @@ impl Screen {
             return Ok(Some(Duration::ZERO));
         };
         let output = Output { image: &acquired.image, before: Use::Acquired, at: self.rect.at };
+        let record = Instant::now();
+        let redraw = Self::redraw(viewer, frame.as_ref());
         match &frame {
-            Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?,
+            Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, redraw)?,
             None => View::clear(&mut encoder, &output),
         }
         self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
@@ -248,7 +255,9 @@ impl Screen {
         encoder.transition(&acquired.image, Use::Color, Use::Present);
         self.has_others[slot] |= self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some();
         self.attempts[slot] = viewer.record(window);
+        self.cpu.record_ms = record.elapsed().as_secs_f64() * 1e3;
         self.frames.submit(encoder, acquired.submission)?;
+        self.note_frame(viewer, frame.as_ref());
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {
             self.stale |= !swapchain.present(&acquired)?;
@@ -266,6 +275,7 @@ impl Screen {
             || self.awaits_pixel()
             || self.thumbnail.is_some()
             || measures
+            || redraw == Redraw::Always
             || self.error_map.awaits_copies()
             || viewer.moves()
             || gets_better

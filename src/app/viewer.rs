@@ -4,6 +4,7 @@ mod compare;
 mod messages;
 mod picture;
 mod recording;
+mod stages;
 mod versions;
 
 use std::path::{Path, PathBuf};
@@ -14,7 +15,9 @@ use super::command::{Command, open_as};
 use super::history::History;
 use super::panels::PanelState;
 use super::playback::Playback;
+use super::stages::StageTable;
 use super::status::{Notices, ShaderStatus};
+use super::timing::Timing;
 use super::{AppOptions, Early};
 use super::{dialog, editor};
 use crate::events::{Event, ReloadEvent, emit};
@@ -103,6 +106,10 @@ pub(super) struct Viewer {
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
     pub(super) compare: Compare,
+    /// The times of the last frames.
+    pub(super) timing: Timing,
+    /// The stages of the shaders on screen.
+    pub(super) stages: StageTable,
     /// The time in the last frame.
     clock: Clock,
     /// Whether nothing was missing for the last frame.
@@ -161,6 +168,8 @@ impl Viewer {
             shown: None,
             versions: Versions::default(),
             compare: Compare::default(),
+            timing: Timing::default(),
+            stages: StageTable::default(),
             clock: Clock::default(),
             is_complete: false,
             first_frame: None,
@@ -359,6 +368,11 @@ impl Viewer {
         self.model.requested = path;
         self.model.loading = true;
         self.threads.loader.upload(reading);
+    }
+
+    /// The shader tree.
+    pub(super) fn source(&self) -> &Source {
+        &self.source
     }
 
     fn watch_tree(&mut self, source: &Source) {

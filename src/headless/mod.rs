@@ -5,6 +5,7 @@ mod error;
 mod hints;
 mod pixel;
 mod sequence;
+mod stages;
 mod thumbnails;
 
 use std::collections::BTreeSet;

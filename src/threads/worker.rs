@@ -56,6 +56,8 @@ pub(crate) enum WorkerMessage {
     Built(Result<(), String>),
     /// The pipelines of some thumbnails are there, or cannot be built.
     ThumbnailsBuilt,
+    /// The driver has told of a pipeline, after [`Worker::ask_driver`].
+    DriverTold,
 }
 
 /// Changed files, and the times of the first event and of the settled set.
@@ -79,6 +81,8 @@ enum Job {
     Build(Build),
     /// Pipelines of thumbnails: what is built when there is nothing else to do. Replaces an earlier job of this kind.
     Thumbnails(Arc<PipelineSet>, VecDeque<PipelineRequest>),
+    /// Questions to the driver about the pipelines of a picture, when there is nothing else to do. Replaces an earlier job of this kind.
+    AskDriver(Build),
     /// The first frame of the last reload is on screen.
     Shown,
 }
@@ -138,6 +142,7 @@ impl Worker {
             has_compiled: false,
             panics: 0,
             thumbnails: None,
+            questions: None,
             unfinished: false,
             is_shown: false,
             recorder: recorder.clone(),
@@ -175,6 +180,12 @@ impl Worker {
     /// Builds pipelines of thumbnails, one request after the other, as long as no other work waits. Replaces the requests before.
     pub(crate) fn build_thumbnails(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
         self.send(Job::Thumbnails(set.clone(), requests));
+    }
+
+    /// Asks the driver about the pipelines of a picture, one after the other, as long as no other work waits. Each is built once more for
+    /// it.
+    pub(crate) fn ask_driver(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
+        self.send(Job::AskDriver((set.clone(), request.clone())));
     }
 
     /// Marks the newest build as successful, or lets a failed one be tried again.

@@ -53,7 +53,7 @@ impl Panel {
             Self::Model => "Model",
             Self::Shaders => "Shaders",
             Self::Timeline => "Timeline",
-            Self::Timing => "GPU time",
+            Self::Timing => "Timing",
             Self::Parameters => "Parameters",
             Self::Passes => "Passes",
             Self::Environment => "Environment",

@@ -29,7 +29,6 @@ use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
 use super::viewer::Viewer;
-use crate::gpu::PassTime;
 use theme::{ACCENT, EDGE, ERROR, QUIET, WARNING};
 
 /// A window smaller than this, in points, shows only the picture.
@@ -53,12 +52,18 @@ pub(super) struct PanelState {
     /// Slug of the mode that the list was last scrolled to.
     scrolled_to: String,
     pub(super) gallery: GalleryState,
-    timing: timing::Timing,
+    timing: timing::TimingState,
+    shaders: shaders::ShadersState,
     pub(super) timeline: timeline::TimelineState,
     files: overlay::diagnostics::Files,
 }
 
 impl PanelState {
+    /// Whether the times of frames are in sight.
+    pub(super) fn measures(&self) -> bool {
+        self.visible && self.timing.is_visible
+    }
+
     /// The panels as they were arranged in the last run.
     pub(super) fn restored() -> Self {
         Self {
@@ -72,19 +77,16 @@ impl PanelState {
             show_model_warnings: true,
             scrolled_to: String::new(),
             gallery: GalleryState::default(),
-            timing: timing::Timing::default(),
+            timing: timing::TimingState::default(),
+            shaders: shaders::ShadersState::default(),
             timeline: timeline::TimelineState::default(),
             files: overlay::diagnostics::Files::default(),
         }
     }
 }
 
-/// Measurements of the last frames.
+/// What is known of the picture under the mouse.
 pub(super) struct Readings {
-    /// Device time of the newest finished frame, milliseconds.
-    pub(super) device_ms: Option<f64>,
-    /// Device time of each of its passes.
-    pub(super) passes: Vec<PassTime>,
     /// Text of the value under the mouse.
     pub(super) value: Option<String>,
     /// Title over the picture.
@@ -103,8 +105,9 @@ pub(super) struct PictureArea {
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> PictureArea {
     let whole = ui.max_rect();
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
-    viewer.panels.timing.record(readings);
+    viewer.update_stages();
     viewer.panels.timeline.is_visible = false;
+    viewer.panels.timing.is_visible = false;
     viewer.panels.gallery.begin_frame();
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
@@ -131,8 +134,9 @@ fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
     let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
     let (shader, device) = (&viewer.shader, device(viewer));
     let diagnostics = &viewer.session.diagnostics;
-    let frame_ms = viewer.panels.timing.frame_ms;
-    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, frame_ms, device: &device });
+    let frame_ms = viewer.timing.frame_ms();
+    let stage = viewer.stages.main();
+    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, frame_ms, stage, device: &device });
 }
 
 /// The name of the device and its version of Vulkan.
@@ -149,24 +153,32 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.timeline = state;
         return;
     }
+    if panel == Panel::Shaders {
+        let mut state = std::mem::take(&mut viewer.panels.shaders);
+        shaders::show(ui, viewer, &mut state, commands);
+        viewer.panels.shaders = state;
+        return;
+    }
+    if panel == Panel::Timing {
+        let mut state = std::mem::take(&mut viewer.panels.timing);
+        timing::show(ui, viewer, &mut state, &device(viewer));
+        viewer.panels.timing = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
-    let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
+    let is_animated = viewer.is_animated();
     let features = viewer.session.features();
     let session = &mut viewer.session;
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline => {}
+        Panel::Viewport | Panel::Timeline | Panel::Shaders | Panel::Timing => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
             model::show(ui, settings, &model, &viewer.model, recent, commands);
         }
-        Panel::Shaders => {
-            shaders::show(ui, &viewer.shader, declared.generation, &session.diagnostics, cut_short, commands);
-        }
-        Panel::Timing => timing::show(ui, &viewer.panels.timing, &device),
         Panel::Parameters => parameters::show(ui, &declared, &mut settings.shader),
         Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
         Panel::Environment => {

@@ -23,7 +23,11 @@ use crate::threads::{Message, Role};
 impl Viewer {
     pub(in crate::app) fn on_message(&mut self, message: Message) {
         match message {
-            Message::Worker(WorkerMessage::Built(Ok(()))) => self.threads.worker.built(),
+            Message::Worker(WorkerMessage::Built(Ok(()))) => {
+                self.threads.worker.built();
+                self.stages_changed();
+            }
+            Message::Worker(WorkerMessage::DriverTold) => self.stages_changed(),
             Message::Worker(WorkerMessage::Built(Err(message))) => self.say(message),
             // The message wakes the window, which draws the thumbnails.
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => {}
@@ -70,6 +74,8 @@ impl Viewer {
     /// Accepts the stages of a reload that the picture did not need.
     fn on_completed(&mut self, reload: &Reload) {
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        self.shader.log.compiled(&reload.report, matches!(reload.outcome, Outcome::Ready(_)));
+        self.stages_changed();
         match &reload.outcome {
             Outcome::Unchanged { .. } => return,
             Outcome::Failed(diagnostics) => self.show_errors(diagnostics),
@@ -83,7 +89,9 @@ impl Viewer {
                 }
             }
         }
-        emit(self.events, &Event::Completed(CompletedEvent::new(reload, generation)));
+        let event = CompletedEvent::new(reload, generation);
+        self.shader.log.completed(&event);
+        emit(self.events, &Event::Completed(event));
     }
 
     fn show_errors(&mut self, diagnostics: &[Diagnostic]) {
@@ -96,6 +104,10 @@ impl Viewer {
 
     fn on_reload(&mut self, reload: &Reload, detect_ms: f64) {
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        let is_good = !matches!(reload.outcome, Outcome::Failed(_) | Outcome::Unchanged { cleared: false });
+        self.shader.log.compiled(&reload.report, is_good);
+        self.shader.told = None;
+        self.stages_changed();
         match &reload.outcome {
             Outcome::Unchanged { cleared: false } => {}
             Outcome::Unchanged { cleared: true } => {
@@ -140,6 +152,8 @@ impl Viewer {
 
     pub(super) fn report(&mut self, event: ReloadEvent) {
         emit(self.events, &Event::Reload(event.clone()));
+        self.shader.log.finished(&event);
+        self.stages_changed();
         self.shader.last = Some(event);
     }
 

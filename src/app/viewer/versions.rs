@@ -145,6 +145,11 @@ impl Versions {
         version.number < newest && !version.is_cut_short
     }
 
+    /// The pipelines of the version before `newest`.
+    pub(super) fn set_before(&self, newest: u64) -> Option<&Arc<PipelineSet>> {
+        self.list.iter().rev().find(|version| version.number < newest).map(|version| &version.set)
+    }
+
     /// The newest version before `newest` that can be shown.
     pub(super) fn before(&self, newest: u64) -> Option<&Version> {
         self.list.iter().rev().find(|version| self.can_show(version, newest))
