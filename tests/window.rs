@@ -11,6 +11,7 @@ mod window {
     mod keys;
     mod layout;
     mod losses;
+    mod open;
     mod panels;
     mod passes;
     mod pictures;

@@ -11,6 +11,7 @@ mod gallery;
 mod history;
 mod input;
 mod keys;
+mod last_session;
 mod layout;
 mod numbers;
 mod palette;
@@ -39,7 +40,7 @@ use winit::window::{Window, WindowId};
 use crate::disk_cache;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts};
-use crate::recovery::Recorder;
+use crate::recovery::{Recorder, Work};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
@@ -48,6 +49,8 @@ use crate::threads::loader::{self, Reading};
 use crate::threads::{Message, Outbox, watch_files};
 use screen::Screen;
 use viewer::Viewer;
+
+pub use last_session::session_to_restore;
 
 /// How to open the window.
 pub struct AppOptions {
@@ -59,6 +62,8 @@ pub struct AppOptions {
     pub model: Option<PathBuf>,
     /// Settings to start with.
     pub settings: Settings,
+    /// The work of a window that opens without a model and options. If the window opens with it, it offers to go on with the last session.
+    pub plain: Option<Work>,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
@@ -185,6 +190,7 @@ impl App {
                 return event_loop.exit();
             }
             let Open { viewer, screen, gpu, window } = open;
+            viewer.remember_session();
             let (frames, ui_ms) = viewer.timing.summary();
             emit(viewer.events, &Event::Closed { frames, ui_ms });
             drop(screen);

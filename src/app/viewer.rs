@@ -4,6 +4,7 @@ mod compare;
 mod messages;
 mod picture;
 mod recording;
+mod session;
 mod stages;
 mod versions;
 
@@ -26,7 +27,7 @@ use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::picture::read_settings;
 use crate::pipeline::endless_loop;
-use crate::recovery::Recorder;
+use crate::recovery::{Recorder, Work};
 use crate::render::{BoundFrame, Resources};
 use crate::scene::LoadOptions;
 use crate::session::Session;
@@ -74,6 +75,8 @@ pub(super) struct ModelStatus {
     files: Vec<PathBuf>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
+    /// Whether the camera stays where it is when the model that loads is another.
+    keeps_camera: bool,
 }
 
 impl ModelStatus {
@@ -127,6 +130,10 @@ pub(super) struct Viewer {
     ready: bool,
     /// The message about a lack of memory.
     shortage: Option<String>,
+    /// The work of a plain start, if this was one.
+    plain: Option<Work>,
+    /// Whether the last session is offered over the picture.
+    pub(super) offers_session: bool,
     /// Whether the file dialog is open.
     is_choosing: bool,
     pub(super) screenshot: bool,
@@ -180,6 +187,8 @@ impl Viewer {
             source: source.clone(),
             ready: false,
             shortage: None,
+            offers_session: options.plain.is_some(),
+            plain: options.plain,
             is_choosing: false,
             screenshot: false,
             quit: false,
@@ -326,6 +335,9 @@ impl Viewer {
                 self.is_choosing = true;
                 self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
+            Command::ShowGallery => self.panels.open_gallery.is_open = true,
+            Command::RestoreSession => self.restore_session(),
+            Command::RestoreAlways(always) => self.panels.last_sessions.set_always(always),
             Command::Say(text) => self.say(text),
             Command::Compare(with) => self.compare_with(with),
             Command::WriteVersion(number) => self.write_version(number),

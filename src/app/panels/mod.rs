@@ -9,6 +9,7 @@ mod lights;
 mod mode_tile;
 mod model;
 mod modes;
+pub(super) mod open_gallery;
 mod output;
 mod overlay;
 pub(super) mod parameters;
@@ -25,6 +26,7 @@ use egui::{Ui, Vec2};
 
 use super::command::Command;
 use super::gallery::GalleryState;
+use super::last_session::LastSessions;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
@@ -45,6 +47,8 @@ pub(super) struct PanelState {
     key_list: keys::KeyList,
     /// Files that were open, in this run and before.
     pub(super) recent: Recent,
+    pub(super) last_sessions: LastSessions,
+    pub(super) open_gallery: open_gallery::OpenGallery,
     /// The search in the list of modes.
     search: String,
     /// Whether the warnings of the model are shown over the picture.
@@ -73,6 +77,8 @@ impl PanelState {
             show_keys: false,
             key_list: keys::KeyList::default(),
             recent: Recent::restored(),
+            last_sessions: LastSessions::restored(),
+            open_gallery: open_gallery::OpenGallery::default(),
             search: String::new(),
             show_model_warnings: true,
             scrolled_to: String::new(),
@@ -123,6 +129,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
+    open_gallery::show(ui.ctx(), viewer, commands);
     palette::show(ui.ctx(), viewer, whole, commands);
     viewer.panels.gallery.end_frame(ui.ctx());
     picture

@@ -45,6 +45,7 @@ impl Viewer {
             Message::Bake(message) => self.on_bake(message),
             Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
+            Message::Pictures(pictures) => self.panels.open_gallery.take(pictures),
             Message::Say(text) => self.say(text),
             Message::Look(Ok(settings)) => {
                 self.session.settings = *settings;
@@ -194,7 +195,7 @@ impl Viewer {
                 if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
                     self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
                 }
-                if loaded.path != self.model.path {
+                if !std::mem::take(&mut self.model.keeps_camera) && loaded.path != self.model.path {
                     self.execute(Command::FrameModel);
                 }
                 self.panels.show_model_warnings = true;
@@ -208,6 +209,7 @@ impl Viewer {
                 self.resources.set_model(&uploaded);
             }
             Err((message, tried)) => {
+                self.model.keeps_camera = false;
                 // Watch the model on screen as well as the files that must be repaired.
                 let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
                 self.model.files = on_screen.into_iter().chain(tried).collect();

@@ -1,6 +1,7 @@
 //! The overlay: diagnostics, messages, loading state, the mode and the value under the mouse.
 
 pub(super) mod diagnostics;
+mod restore;
 
 use std::sync::Arc;
 
@@ -39,6 +40,7 @@ pub(super) fn show(
             viewer.session.diagnostics.clear();
         }
     }
+    restore::show(egui, viewer, picture, commands);
     warnings(egui, viewer, picture);
     notice(egui, viewer, picture, free);
     if viewer.panels.visible {
