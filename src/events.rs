@@ -106,6 +106,13 @@ pub enum Event<'a> {
         /// Its path.
         file: &'a str,
     },
+    /// The window has closed.
+    Closed {
+        /// Frames that it has drawn.
+        frames: u64,
+        /// CPU time of the panels in a frame, milliseconds, in the last 4096 of them.
+        ui_ms: Summary,
+    },
     /// Memory or a thread of the window failed. The last picture stays.
     Failure {
         /// The message that the window shows.
@@ -124,6 +131,28 @@ pub enum Event<'a> {
     },
     /// A diagnostic of the compiler or of a check.
     Diagnostic(&'a Diagnostic),
+}
+
+/// Median, 95th percentile and maximum of a time, milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Summary {
+    /// Half of the values are at most this.
+    pub median: f64,
+    /// 95 % of the values are at most this.
+    pub p95: f64,
+    /// The largest value.
+    pub max: f64,
+}
+
+impl Summary {
+    /// The summary of some values; zeros if there are none.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut sorted: Vec<f64> = values.into_iter().collect();
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len().saturating_sub(1) as f64;
+        let at = |part: f64| sorted.get((part * last).round() as usize).copied().map_or(0.0, to_microseconds);
+        Self { median: at(0.5), p95: at(0.95), max: at(1.0) }
+    }
 }
 
 /// A finished reload.

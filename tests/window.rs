@@ -15,6 +15,7 @@ mod window {
     mod layout;
     mod learn;
     mod losses;
+    mod open;
     mod panels;
     mod passes;
     mod pictures;

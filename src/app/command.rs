@@ -104,6 +104,12 @@ pub(super) enum Command {
     OpenEnvironment(PathBuf),
     /// Take the settings of a look file, or of a PNG that Specula has written.
     OpenLook(PathBuf),
+    /// Show what can be opened, with pictures.
+    ShowGallery,
+    /// Go on with the last session of the working directory.
+    RestoreSession,
+    /// Whether later windows go on with the last session by themselves.
+    RestoreAlways(bool),
     /// Open a measured BRDF and show it.
     OpenMeasured(PathBuf),
     /// Do what a command from outside would do.

@@ -14,6 +14,7 @@ mod history;
 mod input;
 mod inspector;
 mod keys;
+mod last_session;
 mod layout;
 mod learn;
 mod numbers;
@@ -22,7 +23,10 @@ mod panels;
 mod playback;
 mod recent;
 mod screen;
+mod shader_log;
+mod stages;
 mod status;
+mod timing;
 mod viewer;
 
 use std::path::PathBuf;
@@ -41,7 +45,7 @@ use crate::control::{Asked, Clients, Control};
 use crate::disk_cache;
 use crate::events::{Event, emit};
 use crate::gpu::{Gpu, GpuError, GpuOptions, PipelineStore, SetLayouts};
-use crate::recovery::Recorder;
+use crate::recovery::{Recorder, Work};
 use crate::scene::LoadOptions;
 use crate::settings::Settings;
 use crate::shader::{Compiler, Source, Watcher};
@@ -51,6 +55,8 @@ use crate::threads::loader::{self, Reading};
 use crate::threads::{Message, Outbox, watch_files};
 use screen::Screen;
 use viewer::Viewer;
+
+pub use last_session::session_to_restore;
 
 /// How to open the window.
 pub struct AppOptions {
@@ -62,6 +68,8 @@ pub struct AppOptions {
     pub model: Option<PathBuf>,
     /// Settings to start with.
     pub settings: Settings,
+    /// The work of a window that opens without a model and options. If the window opens with it, it offers to go on with the last session.
+    pub plain: Option<Work>,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.
@@ -197,6 +205,9 @@ impl App {
                 return event_loop.exit();
             }
             let Open { viewer, screen, gpu, window } = open;
+            viewer.remember_session();
+            let (frames, ui_ms) = viewer.timing.summary();
+            emit(&viewer.events, &Event::Closed { frames, ui_ms });
             drop(screen);
             drop(viewer);
             drop(window);

@@ -8,6 +8,7 @@ mod probe;
 mod reference;
 mod shots;
 mod thumbnail;
+mod timing;
 mod ui;
 
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use winit::window::Window;
 
 use super::input::Mouse;
 use super::panels;
+use super::timing::CpuTimes;
 use super::viewer::Viewer;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
@@ -97,6 +99,8 @@ pub(super) struct Screen {
     /// The part of the picture that no handle between it and a panel covers, in points.
     free: egui::Rect,
     last_frame: Instant,
+    /// The CPU's times of the frame that is being made.
+    cpu: CpuTimes,
 }
 
 impl Screen {
@@ -148,6 +152,7 @@ impl Screen {
             rect: PictureRect::default(),
             free: egui::Rect::NOTHING,
             last_frame: Instant::now(),
+            cpu: CpuTimes::default(),
         })
     }
 
@@ -245,8 +250,10 @@ impl Screen {
             return Ok(Some(Duration::ZERO));
         };
         let output = Output { image: &acquired.image, before: Use::Acquired, at: self.rect.at };
+        let record = Instant::now();
+        let redraw = Self::redraw(viewer, frame.as_ref());
         match &frame {
-            Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?,
+            Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, redraw)?,
             None => View::clear(&mut encoder, &output),
         }
         self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
@@ -266,7 +273,9 @@ impl Screen {
         self.has_others[slot] |=
             self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some() || next_values.is_some();
         self.attempts[slot] = viewer.record(window);
+        self.cpu.record_ms = record.elapsed().as_secs_f64() * 1e3;
         self.frames.submit(encoder, acquired.submission)?;
+        self.note_frame(viewer, frame.as_ref());
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
         if let Some(swapchain) = &mut self.swapchain {
             self.stale |= !swapchain.present(&acquired)?;
@@ -287,6 +296,7 @@ impl Screen {
             || self.window_shot.is_some()
             || viewer.has_unanswered()
             || measures
+            || redraw == Redraw::Always
             || self.error_map.awaits_copies()
             || viewer.moves()
             || gets_better

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use super::shader_log::ShaderLog;
 use crate::events::ReloadEvent;
+use crate::frame::PipelineRequest;
 use crate::shader::Mode;
 
 /// Duration of a passing message.
@@ -20,6 +22,12 @@ pub(super) struct ShaderStatus {
     pub(super) compiling: bool,
     /// The last finished reload.
     pub(super) last: Option<ReloadEvent>,
+    /// What the last edits did.
+    pub(super) log: ShaderLog,
+    /// Whether to ask the driver about the machine code of each picture.
+    pub(super) asks_driver: bool,
+    /// The picture that the driver was last asked about.
+    pub(super) told: Option<PipelineRequest>,
 }
 
 /// Messages over the picture.

@@ -7,6 +7,8 @@ mod learning;
 mod messages;
 mod picture;
 mod recording;
+mod session;
+mod stages;
 mod versions;
 
 use std::path::{Path, PathBuf};
@@ -20,7 +22,9 @@ use super::history::History;
 use super::learn::Learning;
 use super::panels::PanelState;
 use super::playback::Playback;
+use super::stages::StageTable;
 use super::status::{Notices, ShaderStatus};
+use super::timing::Timing;
 use super::{AppOptions, Early};
 use super::{dialog, editor};
 use crate::control::Clients;
@@ -30,7 +34,7 @@ use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
 use crate::picture::read_settings;
 use crate::pipeline::endless_loop;
-use crate::recovery::Recorder;
+use crate::recovery::{Recorder, Work};
 use crate::render::{BoundFrame, Resources};
 use crate::scene::LoadOptions;
 use crate::session::Session;
@@ -80,6 +84,8 @@ pub(super) struct ModelStatus {
     files: Vec<PathBuf>,
     pub(super) loading: bool,
     pub(super) load_ms: f64,
+    /// Whether the camera stays where it is when the model that loads is another.
+    keeps_camera: bool,
 }
 
 impl ModelStatus {
@@ -122,6 +128,10 @@ pub(super) struct Viewer {
     pub(super) versions: Versions,
     pub(super) compare: Compare,
     pub(super) edits: Edits,
+    /// The times of the last frames.
+    pub(super) timing: Timing,
+    /// The stages of the shaders on screen.
+    pub(super) stages: StageTable,
     /// The time in the last frame.
     clock: Clock,
     /// Whether nothing was missing for the last frame.
@@ -141,6 +151,10 @@ pub(super) struct Viewer {
     ready: bool,
     /// The message about a lack of memory.
     shortage: Option<String>,
+    /// The work of a plain start, if this was one.
+    plain: Option<Work>,
+    /// Whether the last session is offered over the picture.
+    pub(super) offers_session: bool,
     /// Whether the file dialog is open.
     is_choosing: bool,
     pub(super) screenshot: bool,
@@ -186,6 +200,8 @@ impl Viewer {
             versions: Versions::default(),
             compare: Compare::default(),
             edits,
+            timing: Timing::default(),
+            stages: StageTable::default(),
             clock: Clock::default(),
             is_complete: false,
             shows_settings: false,
@@ -197,6 +213,8 @@ impl Viewer {
             source: source.clone(),
             ready: false,
             shortage: None,
+            offers_session: options.plain.is_some(),
+            plain: options.plain,
             is_choosing: false,
             screenshot: false,
             quit: false,
@@ -346,6 +364,9 @@ impl Viewer {
                 self.is_choosing = true;
                 self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
+            Command::ShowGallery => self.panels.open_gallery.is_open = true,
+            Command::RestoreSession => self.restore_session(),
+            Command::RestoreAlways(always) => self.panels.last_sessions.set_always(always),
             Command::Say(text) => self.say(text),
             Command::Ask(request) => self.ask_self(*request),
             Command::CancelCaptures => self.cancel_captures(),
@@ -400,6 +421,11 @@ impl Viewer {
         self.model.requested = path;
         self.model.loading = true;
         self.threads.loader.upload(reading);
+    }
+
+    /// The shader tree.
+    pub(super) fn source(&self) -> &Source {
+        &self.source
     }
 
     fn watch_tree(&mut self, source: &Source) {

@@ -1,5 +1,7 @@
 //! `specula info`: the devices, the shader tree, and what is in a model.
 
+mod stages;
+
 use std::path::PathBuf;
 
 use serde_json::json;
@@ -9,12 +11,16 @@ use specula::scene::{Model, Primitive, Topology};
 
 use super::common::Common;
 use super::{Failure, print_json};
+use stages::Stages;
 
 /// Options of `info`.
 #[derive(clap::Args)]
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
+    /// Also tell of each stage of the picture: words of SPIR-V, times, and the driver's registers, instructions and spills
+    #[arg(long)]
+    stages: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -30,8 +36,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let tree = source.location().map_or_else(|| "built in".to_owned(), |root| root.display().to_string());
     if args.json {
         let (devices, why_none) = devices.map_or_else(|e| (Vec::new(), Some(e.to_string())), |d| (d, None));
-        let value = json!({ "version": env!("CARGO_PKG_VERSION"), "devices": devices, "why_no_device": why_none, "shaders": tree,
+        let mut value = json!({ "version": env!("CARGO_PKG_VERSION"), "devices": devices, "why_no_device": why_none, "shaders": tree,
             "model": summary(&model) });
+        if args.stages {
+            value["picture"] = Stages::new(&args.common, model)?.json();
+        }
         print_json(&value);
         return Ok(());
     }
@@ -39,6 +48,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     out!("shaders     {}", escape(&tree));
     print_devices(devices);
     print_model(&model);
+    if args.stages {
+        Stages::new(&args.common, model)?.print();
+    }
     Ok(())
 }
 

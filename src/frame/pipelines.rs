@@ -366,7 +366,7 @@ impl PipelineRequest {
     }
 
     /// The stages of the pipelines.
-    pub(crate) fn stages(&self) -> BTreeSet<String> {
+    pub fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading. Its stage may be still to be compiled.
         let model = self.draws_model.then(|| self.stage.clone());
         let passes = self.passes.iter().flat_map(|pass| pass.stages()).map(str::to_owned);

@@ -13,6 +13,7 @@ mod resources;
 pub mod watchdog;
 mod window;
 
+pub use commands::counts::DrawCounts;
 pub use commands::encoder::{Attachments, Encoder, Rect, Use};
 pub use commands::frames::{Frames, one_shot};
 pub use commands::pass::PassTime;
@@ -20,17 +21,18 @@ pub use commands::slot::Submission;
 pub use commands::upload::upload_images;
 pub use device::adapter::{AdapterInfo, adapters};
 pub use device::gpu::{Gpu, GpuOptions, OptionalStages};
+pub use device::memory_use::{Heap, MemoryUse};
 pub use device::pipeline_cache::PipelineStore;
 pub use error::GpuError;
 pub use heap::{return_freed_memory, return_large_blocks};
 pub use resources::buffer::{Buffer, Memory};
+pub use resources::compute_pipeline::ComputePipeline;
 pub use resources::descriptor::{DescriptorSet, SetLayouts, SetWriter};
 pub use resources::image::{Image, ImageDesc};
 pub use resources::pass_layout::{PassBinding, PassBindings, PassLayout, PassResource};
-pub use resources::pipeline::{
-    ComputePipeline, Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization,
-};
+pub use resources::pipeline::{Pipeline, PipelineDesc, PrimitiveClass, Raster, ShaderModule, Specialization};
 pub use resources::sampler::{Sampler, SamplerDesc};
+pub use resources::statistics::{Executable, Facts, PipelineStage, Statistic};
 pub use resources::uses::Uses;
 pub use window::surface::Surface;
 pub use window::swapchain::{Acquired, Swapchain};

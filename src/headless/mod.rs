@@ -6,6 +6,7 @@ mod hints;
 mod inspect;
 mod pixel;
 mod sequence;
+mod stages;
 mod thumbnails;
 
 use std::collections::BTreeSet;

@@ -102,7 +102,7 @@ fn bounded_module(
         frame_bytes: used_bytes(&words, interface::SET_FRAME, interface::BINDING_FRAME),
         pass_bindings: used_bindings(&words, interface::SET_PASS),
     };
-    ShaderModule::new(gpu, path, &words, is_bounded && stores, uses)
+    ShaderModule::optimized(gpu, path, (&words, specialized), is_bounded && stores, uses)
 }
 
 /// The diagnostic of a loop that did not end: `words` name it, in one of the stages of `shaders`. Compiles the stage again, for

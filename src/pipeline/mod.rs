@@ -1,14 +1,16 @@
 //! Pipelines: one set per shader generation, and the reload that creates the next set.
 
 mod bounds;
+mod change;
 mod limits;
 mod reload;
 mod set;
 mod textures;
 
 pub use bounds::endless_loop;
+pub use change::{Figure, all_statistics, figures, grouped};
 pub use limits::beyond_limits;
 pub use reload::{Outcome, Reload, Reloader};
 pub(crate) use set::BoundPipelines;
-pub use set::PipelineSet;
+pub use set::{InPipeline, PipelineSet, StageReport};
 pub use textures::PassTextures;

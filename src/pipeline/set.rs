@@ -1,5 +1,7 @@
 //! The pipelines of one shader generation. Each frame uses exactly one set, so no frame mixes two generations.
 
+mod report;
+
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,6 +18,7 @@ use crate::pipeline::bounds::{module_of_modes, shader_module};
 use crate::pipeline::textures::PassTextures;
 use crate::shader::graph::{Input, Inputs, Part};
 use crate::shader::{GraphPass, ShaderSet, Stage};
+pub use report::{InPipeline, StageReport};
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -220,7 +223,7 @@ impl PipelineSet {
         let missing: Vec<PipelineKey> =
             keys.into_iter().filter(|key| !lock(&self.graphics).touch(key, number)).collect();
         missing.par_iter().try_for_each(|key| {
-            let pipeline = self.make(key)?;
+            let pipeline = self.make(key, |desc| Pipeline::new(&self.gpu, &self.layouts, desc))?;
             lock(&self.graphics).insert(key.clone(), pipeline, number);
             Ok::<_, GpuError>(())
         })?;
@@ -316,7 +319,12 @@ impl PipelineSet {
         Ok(pipeline)
     }
 
-    fn make(&self, key: &PipelineKey) -> Result<Arc<Pipeline>, GpuError> {
+    /// Hands what the pipeline of `key` is made of to `then`.
+    fn make<T>(
+        &self,
+        key: &PipelineKey,
+        then: impl FnOnce(&PipelineDesc<'_>) -> Result<T, GpuError>,
+    ) -> Result<T, GpuError> {
         let pass = &key.pass.0;
         let is_on_display = matches!(pass.part, Part::Tonemap | Part::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
@@ -358,7 +366,7 @@ impl PipelineSet {
             class: key.class,
             layout,
         };
-        Pipeline::new(&self.gpu, &self.layouts, &desc)
+        then(&desc)
     }
 }
 

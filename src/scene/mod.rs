@@ -18,6 +18,7 @@ mod model;
 mod outline;
 mod pack;
 mod pick;
+mod pictures;
 mod texture_source;
 
 use std::path::{Path, PathBuf};
@@ -34,6 +35,7 @@ pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pack::pack_material;
 pub use pick::{hit_at, near_pixel, point_at};
+pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
 pub use texture_source::{TextureSource, texture_sources};
 
 /// Options of a load.

@@ -25,6 +25,7 @@ use crate::gpu::{Gpu, SetLayouts};
 use crate::learn::Exercise;
 use crate::message::panic_text;
 use crate::render::{Readback, TraceKey};
+use crate::scene::BuiltInPictures;
 use crate::settings::Settings;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
@@ -50,6 +51,8 @@ pub(crate) enum Message {
     Curves(Box<measurer::Measured>),
     /// The settings of a look file, or why it cannot be used.
     Look(Result<Box<Settings>, String>),
+    /// The pictures of the built-in models and environments.
+    Pictures(Box<BuiltInPictures>),
     /// A message for the user.
     Say(String),
     /// The file dialog has closed: the chosen path, none if the user cancels it, or a message if there is no dialog.

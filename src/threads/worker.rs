@@ -56,6 +56,8 @@ pub(crate) enum WorkerMessage {
     Built(Result<(), String>),
     /// The pipelines of some thumbnails are there, or cannot be built.
     ThumbnailsBuilt,
+    /// The driver has told of a pipeline, after [`Worker::ask_driver`].
+    DriverTold,
 }
 
 /// Changed files, and the times of the first event and of the settled set.
@@ -83,6 +85,8 @@ enum Job {
     Thumbnails(Arc<PipelineSet>, VecDeque<PipelineRequest>),
     /// The same of the modes that the inspector reads, which come before thumbnails.
     Inspected(Arc<PipelineSet>, VecDeque<PipelineRequest>),
+    /// Questions to the driver about the pipelines of a picture, when there is nothing else to do. Replaces an earlier job of this kind.
+    AskDriver(Build),
     /// The first frame of the last reload is on screen.
     Shown,
 }
@@ -143,6 +147,7 @@ impl Worker {
             panics: 0,
             thumbnails: None,
             inspected: None,
+            questions: None,
             unfinished: false,
             is_shown: false,
             recorder: recorder.clone(),
@@ -185,6 +190,12 @@ impl Worker {
     /// [`Worker::build_thumbnails`] for the modes that the inspector reads.
     pub(crate) fn build_inspected(&self, set: &Arc<PipelineSet>, requests: VecDeque<PipelineRequest>) {
         self.send(Job::Inspected(set.clone(), requests));
+    }
+
+    /// Asks the driver about the pipelines of a picture, one after the other, as long as no other work waits. Each is built once more for
+    /// it.
+    pub(crate) fn ask_driver(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
+        self.send(Job::AskDriver((set.clone(), request.clone())));
     }
 
     /// Marks the newest build as successful, or lets a failed one be tried again.

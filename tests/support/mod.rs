@@ -7,6 +7,7 @@ pub mod glb;
 pub mod hdr;
 pub mod process;
 pub mod window;
+pub mod xdnd;
 
 use std::collections::BTreeSet;
 use std::fs;

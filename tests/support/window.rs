@@ -42,6 +42,11 @@ impl Display {
         display
     }
 
+    /// Its name, as in `DISPLAY`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Moves the mouse to the screen's corner, where it hovers over no control. It starts in the middle.
     #[track_caller]
     pub fn park_mouse(&self) {
@@ -140,6 +145,20 @@ impl Viewer {
         viewer
     }
 
+    /// A window whose picture no option chooses: what `specula` without a model shows, in the folder of the tree.
+    pub fn plain(tree: Tree, more: &[&str]) -> Self {
+        dismiss_hint(&tree);
+        let display = Display::new();
+        let mut command = display.view(&tree);
+        std::fs::create_dir_all(tree.beside("runtime")).unwrap();
+        command.env("XDG_RUNTIME_DIR", tree.beside("runtime")).env("XDG_STATE_HOME", tree.beside("state"));
+        command.args(["--size", "640x480"]);
+        let mut viewer = Self { running: Running::start(command.args(more)), tree, window: String::new(), display };
+        viewer.running.event("window");
+        viewer.find_window();
+        viewer
+    }
+
     /// [`Self::with_fault`] without waiting for a window.
     pub fn launch(tree: Tree, more: &[&str], fault: &str) -> Self {
         Self::start(tree, more, &[("SPECULA_FAULT", fault)])
@@ -191,6 +210,11 @@ impl Viewer {
         found.stdout.lines().next().unwrap().clone_into(&mut self.window);
         // Without a window manager, nothing else gives the window the keyboard focus.
         self.give_focus();
+    }
+
+    /// The number of the window on its X server.
+    pub fn window(&self) -> u32 {
+        self.window.parse().unwrap()
     }
 
     /// Gives the window the keyboard focus.

@@ -44,8 +44,8 @@ impl Behavior<Panel> for Dock<'_> {
         }
         ui.painter().rect_filled(area, 0.0, PANEL);
         egui::Frame::new().inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
-            // Modes have a search above their list, and the timeline may run from left to right: these scroll by themselves.
-            if matches!(*panel, Panel::Modes | Panel::Timeline | Panel::Inspector) {
+            // These have rows above their lists, or may run from left to right: they scroll by themselves.
+            if matches!(*panel, Panel::Modes | Panel::Shaders | Panel::Timeline | Panel::Inspector) {
                 return (self.panels)(ui, *panel);
             }
             let scroll = egui::ScrollArea::vertical().id_salt(panel.title()).auto_shrink(false);

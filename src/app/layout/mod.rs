@@ -57,7 +57,7 @@ impl Panel {
             Self::Model => "Model",
             Self::Shaders => "Shaders",
             Self::Timeline => "Timeline",
-            Self::Timing => "GPU time",
+            Self::Timing => "Timing",
             Self::Expression => "Expression",
             Self::Parameters => "Parameters",
             Self::Passes => "Passes",

@@ -219,6 +219,8 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
 /// Commands, panels and arrangements.
 pub(super) fn commands() -> Vec<Entry> {
     let commands = [
+        ("Open the gallery", "built-in models environments pictures browse", "", Action::Do(Command::ShowGallery)),
+        ("Restore the last session", "continue", "", Action::Do(Command::RestoreSession)),
         ("Open a file", "model environment shader measured BRDF", "Ctrl+O", Action::Do(Command::Choose(Dialog::File))),
         ("Open a shader tree", "folder", "", Action::Do(Command::Choose(Dialog::Tree))),
         ("Frame the model", "camera", "R", Action::Do(Command::FrameModel)),

@@ -14,6 +14,7 @@ mod lights;
 mod mode_tile;
 mod model;
 mod modes;
+pub(super) mod open_gallery;
 mod output;
 mod overlay;
 pub(super) mod parameters;
@@ -32,11 +33,11 @@ use super::command::Command;
 use super::gallery::GalleryState;
 use super::hint::Hint;
 use super::inspector::Inspector;
+use super::last_session::LastSessions;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
 use super::viewer::Viewer;
-use crate::gpu::PassTime;
 use theme::{ACCENT, EDGE, ERROR, QUIET, WARNING};
 
 /// A window smaller than this, in points, shows only the picture.
@@ -53,6 +54,8 @@ pub(super) struct PanelState {
     key_list: keys::KeyList,
     /// Files that were open, in this run and before.
     pub(super) recent: Recent,
+    pub(super) last_sessions: LastSessions,
+    pub(super) open_gallery: open_gallery::OpenGallery,
     /// The search in the list of modes.
     search: String,
     /// Whether the warnings of the model are shown over the picture.
@@ -61,7 +64,8 @@ pub(super) struct PanelState {
     scrolled_to: String,
     pub(super) gallery: GalleryState,
     pub(super) inspector: Inspector,
-    timing: timing::Timing,
+    timing: timing::TimingState,
+    shaders: shaders::ShadersState,
     pub(super) timeline: timeline::TimelineState,
     pub(super) expression: expression::ExpressionState,
     pub(super) defaults: defaults::Asked,
@@ -71,6 +75,11 @@ pub(super) struct PanelState {
 }
 
 impl PanelState {
+    /// Whether the times of frames are in sight.
+    pub(super) fn measures(&self) -> bool {
+        self.visible && self.timing.is_visible
+    }
+
     /// The panels as they were arranged in the last run.
     pub(super) fn restored() -> Self {
         Self {
@@ -80,12 +89,15 @@ impl PanelState {
             show_keys: false,
             key_list: keys::KeyList::default(),
             recent: Recent::restored(),
+            last_sessions: LastSessions::restored(),
+            open_gallery: open_gallery::OpenGallery::default(),
             search: String::new(),
             show_model_warnings: true,
             scrolled_to: String::new(),
             gallery: GalleryState::default(),
             inspector: Inspector::default(),
-            timing: timing::Timing::default(),
+            timing: timing::TimingState::default(),
+            shaders: shaders::ShadersState::default(),
             timeline: timeline::TimelineState::default(),
             expression: expression::ExpressionState::default(),
             defaults: defaults::Asked::default(),
@@ -96,12 +108,8 @@ impl PanelState {
     }
 }
 
-/// Measurements of the last frames.
+/// What is known of the picture under the mouse.
 pub(super) struct Readings {
-    /// Device time of the newest finished frame, milliseconds.
-    pub(super) device_ms: Option<f64>,
-    /// Device time of each of its passes.
-    pub(super) passes: Vec<PassTime>,
     /// Text of the value under the mouse.
     pub(super) value: Option<String>,
     /// Title over the picture.
@@ -120,9 +128,10 @@ pub(super) struct PictureArea {
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> PictureArea {
     let whole = ui.max_rect();
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
-    viewer.panels.timing.record(readings);
+    viewer.update_stages();
     viewer.panels.timeline.is_visible = false;
     viewer.panels.inspector.is_visible = false;
+    viewer.panels.timing.is_visible = false;
     viewer.panels.gallery.begin_frame();
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
@@ -139,6 +148,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
+    open_gallery::show(ui.ctx(), viewer, commands);
     palette::show(ui.ctx(), viewer, whole, commands);
     defaults::show(ui.ctx(), viewer, commands);
     viewer.panels.gallery.end_frame(ui.ctx());
@@ -151,8 +161,9 @@ fn bars(ui: &mut Ui, viewer: &mut Viewer, commands: &mut Vec<Command>) {
     let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
     let (shader, device) = (&viewer.shader, device(viewer));
     let diagnostics = &viewer.session.diagnostics;
-    let frame_ms = viewer.panels.timing.frame_ms;
-    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, frame_ms, device: &device });
+    let frame_ms = viewer.timing.frame_ms();
+    let stage = viewer.stages.main();
+    status_bar::show(ui, &status_bar::Status { shader, generation, diagnostics, frame_ms, stage, device: &device });
 }
 
 /// The name of the device and its version of Vulkan.
@@ -190,25 +201,33 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         capture::show(ui, &mut viewer.panels.capture, &viewer.controlled.captures, (size, versions), commands);
         return;
     }
+    if panel == Panel::Shaders {
+        let mut state = std::mem::take(&mut viewer.panels.shaders);
+        shaders::show(ui, viewer, &mut state, commands);
+        viewer.panels.shaders = state;
+        return;
+    }
+    if panel == Panel::Timing {
+        let mut state = std::mem::take(&mut viewer.panels.timing);
+        timing::show(ui, viewer, &mut state, &device(viewer));
+        viewer.panels.timing = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
     let model = viewer.session.model().cloned().unwrap_or_default();
-    let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
+    let is_animated = viewer.is_animated();
     let features = viewer.session.features();
     let session = &mut viewer.session;
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline | Panel::Learn => {}
+        Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Shaders | Panel::Timing => {}
         Panel::Expression | Panel::Inspector | Panel::Capture => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
             model::show(ui, settings, &model, &viewer.model, recent, commands);
         }
-        Panel::Shaders => {
-            shaders::show(ui, &viewer.shader, declared.generation, &session.diagnostics, cut_short, commands);
-        }
-        Panel::Timing => timing::show(ui, &viewer.panels.timing, &device),
         Panel::Parameters => parameters::show(ui, &declared, &mut settings.shader),
         Panel::Passes => passes::show(ui, &declared, settings, &mut viewer.playback, is_animated),
         Panel::Environment => {

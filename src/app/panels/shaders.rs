@@ -1,17 +1,75 @@
-//! The panel Shaders: the last reload and the time of each step. Its height is constant, so that an error does not move the
-//! panels below.
+//! The panel Shaders: the state of the tree above, below it the files, the stages, the problems or the last edits. An error changes
+//! neither the height of the upper part nor what lies below.
+
+mod edits;
+mod files;
+mod problems;
+mod stages;
 
 use egui::{Align, Label, Layout, RichText, Ui};
 
 use super::{ACCENT, ERROR, QUIET, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
+use crate::app::shader_log::reached;
 use crate::app::status::ShaderStatus;
-use crate::events::{ReloadEvent, in_short};
+use crate::app::viewer::Viewer;
+use crate::events::ReloadEvent;
 use crate::shader::{Diagnostic, Severity};
+pub(super) use stages::short_figures;
 
-/// Shows the panel. `generation` is 0 before the first shaders. `cut_short`: a loop of the picture did not end.
-pub(super) fn show(
+/// What the lower part shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Tab {
+    #[default]
+    Stages,
+    Files,
+    Problems,
+    Edits,
+}
+
+/// State of the panel between frames.
+#[derive(Default)]
+pub(in crate::app) struct ShadersState {
+    tab: Tab,
+    files: files::FilesState,
+    stages: stages::StagesState,
+}
+
+/// Shows the panel.
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut ShadersState, commands: &mut Vec<Command>) {
+    let generation = viewer.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+    let diagnostics = &viewer.session.diagnostics;
+    head(ui, &viewer.shader, generation, diagnostics, viewer.is_cut_short(), commands);
+    tree(ui, &viewer.shader, commands);
+    ui.horizontal(|ui| {
+        let problems = match diagnostics.len() {
+            0 => "Problems".to_owned(),
+            count => format!("Problems {count}"),
+        };
+        let tabs = [
+            (Tab::Stages, "Stages", "What each stage costs, and how the last edit has changed that"),
+            (Tab::Files, "Files", "The files of the tree, and which includes which"),
+            (Tab::Problems, &problems, "Errors and warnings, by file"),
+            (Tab::Edits, "Edits", "The last edits: what they reached, and how long each step took"),
+        ];
+        for (tab, title, hint) in tabs {
+            let is_wrong = tab == Tab::Problems && diagnostics.iter().any(|d| d.severity == Severity::Error);
+            let title = RichText::new(title).small();
+            let title = if is_wrong { title.color(ERROR) } else { title };
+            ui.selectable_value(&mut state.tab, tab, title).on_hover_text(hint);
+        }
+    });
+    match state.tab {
+        Tab::Stages => stages::show(ui, viewer, &mut state.stages),
+        Tab::Files => files::show(ui, viewer, &mut state.files, commands),
+        Tab::Problems => problems::show(ui, viewer, commands),
+        Tab::Edits => edits::show(ui, &viewer.shader.log),
+    }
+}
+
+/// The state of the shaders, and the button that compiles them again.
+fn head(
     ui: &mut Ui,
     status: &ShaderStatus,
     generation: u64,
@@ -26,26 +84,16 @@ pub(super) fn show(
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
-            let (text, hover) = state(status, generation, errors, cut_short);
+            let (text, hover) = words(status, generation, errors, cut_short);
             let text = if errors > 0 && !status.compiling { text.color(ERROR) } else { text };
             ui.add(Label::new(text).truncate()).on_hover_text(hover);
         });
     };
     ui.horizontal(|ui| ui.with_layout(Layout::right_to_left(Align::Center), bar));
-    tree(ui, status, commands);
-    let (edit, times, hover) = status.last.as_ref().map(lines).unwrap_or_default();
-    for line in [edit, times] {
-        // A space keeps the height of an empty line.
-        let text = if line.is_empty() { " ".to_owned() } else { line };
-        let response = ui.add(Label::new(RichText::new(text).monospace().small()).truncate());
-        if !hover.is_empty() {
-            response.on_hover_text(&hover);
-        }
-    }
 }
 
 /// The state of the shaders in a few words, and in a sentence.
-fn state(status: &ShaderStatus, generation: u64, errors: usize, cut_short: bool) -> (RichText, &'static str) {
+fn words(status: &ShaderStatus, generation: u64, errors: usize, cut_short: bool) -> (RichText, &'static str) {
     // No spinner: on a software device its frames would slow the compilation down.
     match (status.compiling, errors) {
         (true, _) => ("Compiling…".into(), "The picture stays until the new shaders are ready"),
@@ -75,15 +123,7 @@ fn tree(ui: &mut Ui, status: &ShaderStatus, commands: &mut Vec<Command>) {
 
 /// Three texts: the changed files with the compiled stages, the time of each step, and a hover text with the details.
 pub(super) fn lines(last: &ReloadEvent) -> (String, String, String) {
-    let name = |path: &String| path.rsplit('/').next().unwrap_or(path).to_owned();
-    let changed =
-        if last.changed.is_empty() { vec!["start".to_owned()] } else { last.changed.iter().map(name).collect() };
     let stages = if last.stages.is_empty() { "nothing to do".to_owned() } else { last.stages.join(" ") };
-    // A save that repairs a failed one compiles nothing if the text is the last good one again.
-    let edit = match last.changed.is_empty() && last.stages.is_empty() {
-        true => "repaired: the last good text again".to_owned(),
-        false => format!("{} -> {}", changed.join(" "), in_short(&last.stages)),
-    };
     let times = match last.ok {
         true => format!(
             "{:.0} ms compile + {:.0} ms pipeline + {:.0} ms frame",
@@ -96,5 +136,5 @@ pub(super) fn lines(last: &ReloadEvent) -> (String, String, String) {
         if last.changed.is_empty() { "start".to_owned() } else { last.changed.join("\n") },
         last.detect_ms
     );
-    (edit, times, hover)
+    (reached(last), times, hover)
 }

@@ -7,7 +7,7 @@ use super::{PanelState, theme};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Layout, Panel, Preset};
-use crate::app::recent::{Kind, Recent};
+use crate::app::recent::Kind;
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 30.0;
@@ -19,7 +19,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
         ui.horizontal_centered(|ui| {
             ui.label(RichText::new("Specula").strong().color(theme::ACCENT));
             ui.add_space(6.0);
-            open(ui, &state.recent, commands);
+            open(ui, state, commands);
             panels(ui, &mut state.layout);
             for preset in Preset::ALL {
                 if ui.button(preset.title()).on_hover_text(preset.doc()).clicked() {
@@ -49,14 +49,30 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
 }
 
 /// The menu that opens files: by a dialog, or those that were open.
-fn open(ui: &mut Ui, recent: &Recent, commands: &mut Vec<Command>) {
+fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
+    let PanelState { recent, last_sessions, .. } = state;
     let menu = ui.menu_button("Open", |ui| {
         ui.set_min_width(180.0);
+        let hint = "Built-in models and environments, with pictures";
+        if ui.button("Gallery…").on_hover_text(hint).clicked() {
+            commands.push(Command::ShowGallery);
+        }
         if ui.add(Button::new("File…").right_text(RichText::new("Ctrl+O").small().color(QUIET))).clicked() {
             commands.push(Command::Choose(Dialog::File));
         }
         if ui.button("Shader tree…").clicked() {
             commands.push(Command::Choose(Dialog::Tree));
+        }
+        ui.separator();
+        if let Some(session) = &last_sessions.here
+            && ui.button("Last session").on_hover_text(session.words()).clicked()
+        {
+            commands.push(Command::RestoreSession);
+        }
+        let mut always = last_sessions.is_always();
+        let hint = "At a start without a model and options, go on with the last session of the folder";
+        if ui.checkbox(&mut always, "Restore at start").on_hover_text(hint).changed() {
+            commands.push(Command::RestoreAlways(always));
         }
         for (kind, title) in
             [(Kind::Model, "Models"), (Kind::Environment, "Environments"), (Kind::Tree, "Shader trees")]

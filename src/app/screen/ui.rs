@@ -1,7 +1,7 @@
 //! The user interface on the screen: runs the panels and draws them over the picture.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use winit::window::Window;
 
@@ -27,15 +27,13 @@ impl Screen {
             self.frames.wait_all()?;
             self.gallery.drop_texture(&mut self.ui, &mut viewer.panels.gallery);
         }
-        let readings = Readings {
-            device_ms: self.frames.last_device_ms(),
-            passes: self.frames.pass_times().to_vec(),
-            value: self.value_text(viewer),
-            title: viewer.title(self.view.accumulated()),
-        };
+        let readings = Readings { value: self.value_text(viewer), title: viewer.title(self.view.accumulated()) };
+        self.take_times(viewer);
         let input = self.input.take_egui_input(window);
+        let begin = Instant::now();
         let (mut shown, mut commands) = (None, Vec::new());
         let output = self.egui.run_ui(input, |ui| shown = Some(panels::show(ui, viewer, &readings, &mut commands)));
+        let panels_ms = begin.elapsed().as_secs_f64() * 1e3;
         commands.into_iter().for_each(|command| viewer.execute(command));
         // A drag, or a number that is being typed, is one step.
         let is_held = self.egui.input(|input| input.pointer.any_down()) || self.egui.egui_wants_keyboard_input();
@@ -46,7 +44,9 @@ impl Screen {
             self.free = area.free;
         }
         self.take_textures(output.textures_delta)?;
+        let begin = Instant::now();
         let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);
+        self.cpu.ui_ms = panels_ms + begin.elapsed().as_secs_f64() * 1e3;
         let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
         Ok((primitives, output.pixels_per_point, delay))
     }

@@ -72,7 +72,7 @@ impl Viewer {
             let values = reading.values.iter();
             let modes = values.map(|(slug, (value, _))| (slug.clone(), text::json_value(value))).collect();
             let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
-            emit(self.events, &Event::Inspected { pixel: reading.at, generation, hit, node, material, modes });
+            emit(&self.events, &Event::Inspected { pixel: reading.at, generation, hit, node, material, modes });
         }
         self.request_curves();
         is_new
@@ -114,7 +114,7 @@ impl Viewer {
         let Measured { now, before, ms, .. } = measured;
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
         let albedo = now.as_ref().ok().and_then(|curves| curves.albedo.first().copied());
-        emit(self.events, &Event::Curves { generation, before: before.is_some(), albedo, ms });
+        emit(&self.events, &Event::Curves { generation, before: before.is_some(), albedo, ms });
         inspector.curves = Some(Shown { of: asked.material, now, before });
     }
 }

@@ -128,7 +128,7 @@ impl Viewer {
         };
         let passed = self.learning.is_solved();
         if let Measured::Findings(goals) = &self.learning.measured {
-            emit(self.events, &Event::Exercise { name: &exercise.name, passed, goals });
+            emit(&self.events, &Event::Exercise { name: &exercise.name, passed, goals });
         }
         if passed {
             self.learning.progress.update(exercise, |record| record.solved = true);

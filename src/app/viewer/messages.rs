@@ -23,11 +23,15 @@ use crate::threads::{Message, Role};
 impl Viewer {
     pub(in crate::app) fn on_message(&mut self, message: Message) {
         match message {
-            Message::Worker(WorkerMessage::Built(Ok(()))) => self.threads.worker.built(),
             Message::Worker(WorkerMessage::Built(Err(message))) => {
                 self.fail_waiting(&message);
                 self.say(message);
             }
+            Message::Worker(WorkerMessage::Built(Ok(()))) => {
+                self.threads.worker.built();
+                self.stages_changed();
+            }
+            Message::Worker(WorkerMessage::DriverTold) => self.stages_changed(),
             // The message wakes the window, which draws the thumbnails.
             Message::Worker(WorkerMessage::ThumbnailsBuilt) => {}
             Message::Worker(WorkerMessage::Reloaded { reload, detect_ms, source }) => {
@@ -45,6 +49,7 @@ impl Viewer {
             Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
             Message::Curves(measured) => self.on_curves(*measured),
+            Message::Pictures(pictures) => self.panels.open_gallery.take(pictures),
             Message::Say(text) => self.say(text),
             Message::Look(Ok(settings)) => {
                 self.session.settings = *settings;
@@ -92,6 +97,8 @@ impl Viewer {
     /// Accepts the stages of a reload that the picture did not need.
     fn on_completed(&mut self, reload: &Reload) {
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        self.shader.log.compiled(&reload.report, matches!(reload.outcome, Outcome::Ready(_)));
+        self.stages_changed();
         match &reload.outcome {
             Outcome::Unchanged { .. } => return,
             Outcome::Failed(diagnostics) => self.show_errors(diagnostics),
@@ -106,7 +113,9 @@ impl Viewer {
                 }
             }
         }
-        emit(&self.events, &Event::Completed(CompletedEvent::new(reload, generation)));
+        let event = CompletedEvent::new(reload, generation);
+        self.shader.log.completed(&event);
+        emit(&self.events, &Event::Completed(event));
     }
 
     fn show_errors(&mut self, diagnostics: &[Diagnostic]) {
@@ -119,6 +128,10 @@ impl Viewer {
 
     fn on_reload(&mut self, reload: &Reload, detect_ms: f64) {
         let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        let is_good = !matches!(reload.outcome, Outcome::Failed(_) | Outcome::Unchanged { cleared: false });
+        self.shader.log.compiled(&reload.report, is_good);
+        self.shader.told = None;
+        self.stages_changed();
         match &reload.outcome {
             Outcome::Unchanged { cleared: false } => self.check_again(),
             Outcome::Unchanged { cleared: true } => {
@@ -166,6 +179,8 @@ impl Viewer {
 
     pub(super) fn report(&mut self, event: ReloadEvent) {
         emit(&self.events, &Event::Reload(event.clone()));
+        self.shader.log.finished(&event);
+        self.stages_changed();
         self.shader.last = Some(event);
     }
 
@@ -206,7 +221,7 @@ impl Viewer {
                 if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
                     self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
                 }
-                if loaded.path != self.model.path {
+                if !std::mem::take(&mut self.model.keeps_camera) && loaded.path != self.model.path {
                     self.execute(Command::FrameModel);
                 }
                 self.panels.show_model_warnings = true;
@@ -220,6 +235,7 @@ impl Viewer {
                 self.resources.set_model(&uploaded);
             }
             Err((message, tried)) => {
+                self.model.keeps_camera = false;
                 // Watch the model on screen as well as the files that must be repaired.
                 let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
                 self.model.files = on_screen.into_iter().chain(tried).collect();

@@ -1,21 +1,17 @@
 //! Records the session for the process that replaces this one after a loss of the device.
 
-use std::path::Path;
-
 use winit::window::Window;
 
 use super::Viewer;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
-use crate::recovery::{Geometry, Work};
+use crate::recovery::Geometry;
 
 impl Viewer {
     /// Records what the next frame shows, for the process that replaces this one if the frame loses the device. Returns
     /// the attempt's number, unless the frame shows the last complete picture.
     pub(in crate::app) fn record(&self, window: &Window) -> Option<u64> {
-        let model = if self.model.loading { &self.model.requested } else { &self.model.path };
-        let tree = self.source.location().map(Path::to_owned);
-        let work = Work { settings: self.session.settings.clone(), model: model.clone(), tree };
+        let work = self.work();
         let geometry =
             || Geometry { size: window.inner_size().into(), at: window.outer_position().ok().map(Into::into) };
         let attempt = self.recorder.begin(&work, geometry);

@@ -172,6 +172,11 @@ impl Versions {
         self.list.iter().rev().find(|version| version.number < newest).map(|version| version.set.shaders.clone())
     }
 
+    /// The pipelines of the version before `newest`.
+    pub(super) fn set_before(&self, newest: u64) -> Option<&Arc<PipelineSet>> {
+        self.list.iter().rev().find(|version| version.number < newest).map(|version| &version.set)
+    }
+
     /// The newest version before `newest` that can be shown.
     pub(super) fn before(&self, newest: u64) -> Option<&Version> {
         self.list.iter().rev().find(|version| self.can_show(version, newest))

@@ -179,6 +179,27 @@ impl Common {
         self.set.splice(0..0, assignments.iter().cloned());
     }
 
+    /// Whether no option chooses what is shown. Size, device and the like do not.
+    pub fn chooses_nothing(&self) -> bool {
+        let options = [
+            self.shaders.is_some(),
+            self.env.is_some(),
+            self.measured.is_some(),
+            self.lights.is_some(),
+            self.eye.is_some(),
+            self.target.is_some(),
+            self.fovy.is_some(),
+            self.tonemap.is_some(),
+            self.ev.is_some(),
+            self.background.is_some(),
+            self.memory.is_some(),
+            !self.mode.is_empty(),
+            !self.set.is_empty(),
+            self.look.is_some(),
+        ];
+        !options.contains(&true)
+    }
+
     /// Takes a shader file that stands where the model may stand for the shader tree.
     pub fn take_shader(&mut self, model: &mut Option<PathBuf>) {
         if self.shaders.is_none() && model.as_deref().is_some_and(|path| Source::is_file(path) && path.exists()) {

@@ -95,7 +95,11 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         tree: source.location().map(Path::to_owned),
     };
     let state = folder.as_deref().map(State::read).unwrap_or_default();
-    let work = state.work.clone().unwrap_or(given);
+    // A model and options say what is wanted, and after a loss the record does.
+    let is_plain = given.model.is_none() && args.common.chooses_nothing() && state.work.is_none();
+    let restored = is_plain.then(app::session_to_restore).flatten();
+    let plain = (is_plain && restored.is_none()).then(|| given.clone());
+    let work = state.work.clone().or(restored).unwrap_or(given);
     let good = folder.as_deref().map(|folder| GoodTexts::read(folder, work.tree.as_deref())).unwrap_or_default();
     let is_supervised = folder.is_some();
     if is_supervised {
@@ -112,6 +116,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         compiler: compiler()?,
         model: work.model,
         settings: work.settings,
+        plain,
         size: state.window.map_or(args.common.size, |window| window.size),
         at: state.window.and_then(|window| window.at),
         allow_outside: args.common.allow_outside,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::counts::Counter;
 use super::pass::PassTimer;
 use crate::gpu::{Buffer, DescriptorSet, Gpu, Image, PassLayout, Pipeline, SetLayouts};
 
@@ -131,13 +132,22 @@ pub struct Encoder {
     pub(in crate::gpu) kept: Vec<Arc<dyn Any + Send + Sync>>,
     pub(in crate::gpu) timer: Option<PassTimer>,
     pub(in crate::gpu) is_rendering: bool,
+    pub(in crate::gpu) counter: Counter,
     /// The buffer that stages write when a loop does not end, if a pipeline has such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
 }
 
 impl Encoder {
     pub(in crate::gpu) fn new(gpu: &Arc<Gpu>, raw: vk::CommandBuffer, timer: Option<PassTimer>) -> Self {
-        Self { gpu: gpu.clone(), raw, kept: Vec::new(), timer, is_rendering: false, loops: None }
+        Self {
+            gpu: gpu.clone(),
+            raw,
+            kept: Vec::new(),
+            timer,
+            is_rendering: false,
+            counter: Counter::default(),
+            loops: None,
+        }
     }
 
     /// Keeps `object` alive until the device has run the commands.
@@ -296,6 +306,7 @@ impl Encoder {
 
     /// Sets the dynamic state of a pipeline with a depth target.
     pub fn set_raster(&mut self, topology: vk::PrimitiveTopology, cull: vk::CullModeFlags, front: vk::FrontFace) {
+        self.counter.set_topology(topology);
         // SAFETY: this encoder records the command buffer.
         unsafe {
             self.gpu.device.cmd_set_primitive_topology(self.raw, topology);
@@ -343,12 +354,14 @@ impl Encoder {
 
     /// Draws `vertices` vertices without an index buffer.
     pub fn draw(&mut self, vertices: u32) {
+        self.counter.draw(vertices);
         // SAFETY: this encoder records the command buffer.
         unsafe { self.gpu.device.cmd_draw(self.raw, vertices, 1, 0, 0) };
     }
 
     /// Draws `count` indices, beginning with index number `first`.
     pub fn draw_indexed(&mut self, count: u32, first: u32, instances: u32) {
+        self.counter.draw_indexed(count, instances);
         // SAFETY: this encoder records the command buffer; the loader has checked that the indices are in range.
         unsafe { self.gpu.device.cmd_draw_indexed(self.raw, count, instances, first, 0, 0) };
     }

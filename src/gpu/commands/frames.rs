@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::counts::DrawCounts;
 use super::encoder::Encoder;
 use super::pass::PassTime;
 use super::slot::{Slot, Submission, Times};
@@ -68,6 +69,21 @@ impl Frames {
     /// nested pass is part of the time of the pass around it.
     pub fn pass_times(&self) -> &[PassTime] {
         self.times.as_ref().map_or(&[], |times| &times.passes)
+    }
+
+    /// What the frame of [`Frames::last_device_ms`] drew, without the user interface.
+    pub fn draw_counts(&self) -> DrawCounts {
+        self.times.as_ref().map(|times| times.counts).unwrap_or_default()
+    }
+
+    /// Serial number of the frame of [`Frames::last_device_ms`]; 0 before the first.
+    pub fn timed(&self) -> u64 {
+        self.timed
+    }
+
+    /// Serial number of the last submitted frame: the frames count from 1.
+    pub fn submitted(&self) -> u64 {
+        self.submitted
     }
 
     /// SYNC: waits for the frame that last used the oldest slot, then begins recording into that slot.

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use ash::vk;
 
+use super::counts::DrawCounts;
 use super::encoder::Encoder;
 use super::pass::{MAX_TIMESTAMPS, PassTime, PassTimer, TimedPass};
 use crate::gpu::error::Context;
@@ -29,6 +30,8 @@ pub(in crate::gpu) struct Times {
     pub(in crate::gpu) ms: f64,
     /// Times of its passes, in the order in which they began.
     pub(in crate::gpu) passes: Vec<PassTime>,
+    /// What they drew.
+    pub(in crate::gpu) counts: DrawCounts,
 }
 
 /// One command buffer with its fence and timestamps.
@@ -42,6 +45,7 @@ pub(in crate::gpu) struct Slot {
     pending: bool,
     /// The timed passes of the last submission; `None` before the first.
     passes: Option<Vec<TimedPass>>,
+    counts: DrawCounts,
     kept: Vec<Arc<dyn Any + Send + Sync>>,
     /// The words that the stages of the last submission wrote about loops that did not end, and whether they have such loops.
     loops: (Option<Arc<Buffer>>, bool),
@@ -59,6 +63,7 @@ impl Slot {
             queries: vk::QueryPool::null(),
             pending: false,
             passes: None,
+            counts: DrawCounts::default(),
             kept: Vec::new(),
             loops: (None, false),
         };
@@ -165,6 +170,7 @@ impl Slot {
         if passes.is_some() {
             encoder.write_timestamp(self.queries, 1);
         }
+        self.counts = encoder.counter.counts;
         self.kept = encoder.kept;
         // SAFETY: the buffer is recording.
         unsafe { device.end_command_buffer(self.buffer) }.context("ending commands")?;
@@ -210,7 +216,7 @@ impl Slot {
             kept: pass.kept,
         };
         let passes = passes.iter().zip(ms).map(time).collect();
-        Some(Times { ms: whole, passes })
+        Some(Times { ms: whole, passes, counts: self.counts })
     }
 }
 

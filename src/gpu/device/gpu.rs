@@ -9,6 +9,7 @@ use raw_window_handle::RawDisplayHandle;
 
 use super::adapter::{AdapterInfo, choose, graphics_family};
 use super::instance::Instance;
+use super::optional::Optional;
 use super::pipeline_cache::{PipelineCache, PipelineStore};
 use crate::gpu::GpuError;
 use crate::gpu::error::Context;
@@ -47,6 +48,8 @@ pub struct Gpu {
     pub(in crate::gpu) surface: Option<khr::surface::Instance>,
     pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
     pub(in crate::gpu) debug_utils: Option<ext::debug_utils::Device>,
+    /// Asks the driver about pipelines, where it tells anything.
+    pub(in crate::gpu) executables: Option<khr::pipeline_executable_properties::Device>,
     pub(in crate::gpu) pipeline_cache: PipelineCache,
     pub(in crate::gpu) properties: vk::PhysicalDeviceProperties,
     timestamp_bits: u32,
@@ -55,6 +58,7 @@ pub struct Gpu {
     optional_stages: OptionalStages,
     vertex_stores: bool,
     fragment_stores: bool,
+    pub(in crate::gpu) has_memory_budget: bool,
     info: AdapterInfo,
 }
 
@@ -78,7 +82,8 @@ impl Gpu {
         };
         let queue_family = graphics_family(&instance.raw, physical)
             .ok_or_else(|| GpuError::NoDevice(format!("{} has no graphics queue", info.name)))?;
-        let device = Device(create_device(&instance.raw, physical, queue_family, with_window, &supported)?);
+        let optional = Optional::of(&instance.raw, physical);
+        let device = Device(create_device(&instance.raw, physical, queue_family, (with_window, optional), &supported)?);
         // SAFETY: the family was requested at device creation with one queue.
         let queue = unsafe { device.get_device_queue(queue_family, 0) };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -94,6 +99,10 @@ impl Gpu {
         let gpu = Self {
             surface: with_window.then(|| khr::surface::Instance::new(&instance.entry, &instance.raw)),
             swapchain: with_window.then(|| khr::swapchain::Device::new(&instance.raw, &device)),
+            executables: optional
+                .executables
+                .then(|| khr::pipeline_executable_properties::Device::new(&instance.raw, &device)),
+            has_memory_budget: optional.memory_budget,
             debug_utils: instance.has_debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device)),
             allocator: Arc::new(Mutex::new(allocator)),
             device,
@@ -147,6 +156,11 @@ impl Gpu {
     /// What the device has of tessellation and geometry stages.
     pub fn optional_stages(&self) -> OptionalStages {
         self.optional_stages
+    }
+
+    /// Whether the driver tells numbers of compiled pipelines: [`crate::gpu::Facts::statistics`].
+    pub fn tells_statistics(&self) -> bool {
+        self.executables.is_some()
     }
 
     /// Whether vertex and fragment stages can write buffers. Compute stages always can.
@@ -249,12 +263,13 @@ fn create_device(
     instance: &ash::Instance,
     physical: vk::PhysicalDevice,
     queue_family: u32,
-    window: bool,
+    (window, optional): (bool, Optional),
     supported: &vk::PhysicalDeviceFeatures,
 ) -> Result<ash::Device, GpuError> {
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
-    let extensions: &[_] = if window { &[khr::swapchain::NAME.as_ptr()] } else { &[] };
+    let swapchain = window.then_some(khr::swapchain::NAME.as_ptr());
+    let extensions: Vec<_> = swapchain.into_iter().chain(optional.names()).collect();
     let core = vk::PhysicalDeviceFeatures {
         sampler_anisotropy: supported.sampler_anisotropy,
         large_points: supported.large_points,
@@ -271,12 +286,17 @@ fn create_device(
         .dynamic_rendering(true)
         .synchronization2(true)
         .shader_terminate_invocation(true);
-    let info = vk::DeviceCreateInfo::default()
+    let mut executables =
+        vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default().pipeline_executable_info(true);
+    let mut info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
-        .enabled_extension_names(extensions)
+        .enabled_extension_names(&extensions)
         .enabled_features(&core)
         .push_next(&mut v12)
         .push_next(&mut v13);
-    // SAFETY: `adapter::choose` has checked every feature and extension that is enabled here.
+    if optional.executables {
+        info = info.push_next(&mut executables);
+    }
+    // SAFETY: `adapter::choose` and `Optional::of` have checked every feature and extension that is enabled here.
     unsafe { instance.create_device(physical, &info, None) }.context("opening the device")
 }

@@ -2,25 +2,30 @@
 
 use std::ffi::CStr;
 use std::sync::Arc;
+use std::time::Instant;
 
 use ash::vk;
 
 use super::buffer::Buffer;
 use super::descriptor::SetLayouts;
 use super::pass_layout::PassLayout;
+use super::statistics::{self, Executable, Facts, PipelineStage, feedback_ms};
 use super::uses::Uses;
 use crate::gpu::error::Context;
 use crate::gpu::watchdog::Watched;
 use crate::gpu::{Gpu, GpuError, fault};
 
-const MAIN: &CStr = c"main";
+pub(super) const MAIN: &CStr = c"main";
 
 /// A compiled shader stage.
 pub struct ShaderModule {
     gpu: Arc<Gpu>,
-    raw: vk::ShaderModule,
-    name: String,
-    names_loops: bool,
+    pub(super) raw: vk::ShaderModule,
+    pub(super) name: String,
+    pub(super) names_loops: bool,
+    /// Its size, and that of the module before Specula's optimizer, in words.
+    words: usize,
+    words_before: usize,
     /// The descriptors that its functions use.
     pub uses: Uses,
 }
@@ -38,12 +43,32 @@ impl ShaderModule {
         names_loops: bool,
         uses: Uses,
     ) -> Result<Arc<Self>, GpuError> {
+        Self::optimized(gpu, name, (spirv, spirv.len()), names_loops, uses)
+    }
+
+    /// The same of a module that had `words_before` words before it was optimized.
+    ///
+    /// # Errors
+    /// As [`ShaderModule::new`].
+    pub fn optimized(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        (spirv, words_before): (&[u32], usize),
+        names_loops: bool,
+        uses: Uses,
+    ) -> Result<Arc<Self>, GpuError> {
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the words come from shaderc and `shader::spirv`, whose output is valid SPIR-V.
         let raw = unsafe { gpu.device.create_shader_module(&info, None) };
         let raw = raw.context_of("creating the shader module", &format!("`{name}`"))?;
         gpu.name(raw, name);
-        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name: name.to_owned(), names_loops, uses }))
+        let (name, words) = (name.to_owned(), spirv.len());
+        Ok(Arc::new(Self { gpu: gpu.clone(), raw, name, names_loops, words, words_before, uses }))
+    }
+
+    /// What is known of it in a pipeline.
+    pub(super) fn facts(&self, driver_ms: Option<f64>) -> PipelineStage {
+        PipelineStage { stage: self.name.clone(), words_before: self.words_before, words: self.words, driver_ms }
     }
 }
 
@@ -53,6 +78,9 @@ impl Drop for ShaderModule {
         unsafe { self.gpu.device.destroy_shader_module(self.raw, None) };
     }
 }
+
+/// Keeps what [`statistics::read`] asks for. A driver may compile the pipeline anew for it.
+pub(super) const CAPTURE: vk::PipelineCreateFlags = vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
 
 /// Control points of a patch: a triangle of the model.
 const PATCH_VERTICES: u32 = 3;
@@ -143,6 +171,8 @@ pub struct Pipeline {
     pub layout: Arc<PassLayout>,
     /// The descriptors that its stages use.
     pub uses: Uses,
+    /// What is known of its code.
+    pub facts: Facts,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,
     pub(in crate::gpu) raw: vk::Pipeline,
@@ -159,6 +189,31 @@ impl Pipeline {
     /// # Errors
     /// The driver rejects the pipeline or is out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, desc: &PipelineDesc<'_>) -> Result<Arc<Self>, GpuError> {
+        let (raw, facts) = Self::create(gpu, desc, vk::PipelineCreateFlags::empty())?;
+        gpu.name(raw, &desc.name());
+        let names_loops = desc.modules().any(|(_, module)| module.names_loops);
+        let loops = names_loops.then(|| layouts.blank.loops.clone());
+        let uses = desc.modules().fold(Uses::default(), |uses, (_, module)| uses.union(&module.uses));
+        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, facts, loops, raw }))
+    }
+
+    /// Builds a pipeline once more to ask the driver about it, since drivers keep such numbers only where they are told to.
+    ///
+    /// # Errors
+    /// As [`Pipeline::new`].
+    pub fn statistics(gpu: &Arc<Gpu>, desc: &PipelineDesc<'_>) -> Result<Vec<Executable>, GpuError> {
+        let (raw, _) = Self::create(gpu, desc, CAPTURE)?;
+        let statistics = statistics::read(gpu, raw);
+        // SAFETY: nothing has used the pipeline.
+        unsafe { gpu.device.destroy_pipeline(raw, None) };
+        statistics
+    }
+
+    fn create(
+        gpu: &Gpu,
+        desc: &PipelineDesc<'_>,
+        flags: vk::PipelineCreateFlags,
+    ) -> Result<(vk::Pipeline, Facts), GpuError> {
         let stage = |stage, module: &ShaderModule| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module.raw).name(MAIN)
         };
@@ -210,6 +265,7 @@ impl Pipeline {
             rendering = rendering.depth_attachment_format(vk::Format::D32_SFLOAT);
         }
         let info = vk::GraphicsPipelineCreateInfo::default()
+            .flags(flags)
             .stages(&stages)
             .vertex_input_state(&vertex_input)
             .input_assembly_state(&assembly)
@@ -231,81 +287,17 @@ impl Pipeline {
         let name = desc.name();
         let _watched = Watched::begin(|| format!("compiling the pipeline `{name}`"));
         fault::delay("pipeline-hang-ms");
+        let start = Instant::now();
         // SAFETY: every pointer in `info` lives until the call returns; modules and layout are live. The cache is internally
         // synchronized.
         let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache.raw, &[info], None) };
         let raw = made.map_err(|(_, result)| result).context_of("creating the pipeline", &format!("`{name}`"))?[0];
-        gpu.name(raw, &name);
-        trace_feedback(&name, whole, &parts);
-        let names_loops = desc.modules().any(|(_, module)| module.names_loops);
-        let loops = names_loops.then(|| layouts.blank.loops.clone());
-        let uses = desc.modules().fold(Uses::default(), |uses, (_, module)| uses.union(&module.uses));
-        Ok(Arc::new(Self { gpu: gpu.clone(), layout: desc.layout.clone(), uses, loops, raw }))
-    }
-}
-
-/// Traces how long the driver took for a pipeline as a whole and for each of its stages, where it says so.
-fn trace_feedback(name: &str, whole: vk::PipelineCreationFeedback, stages: &[vk::PipelineCreationFeedback]) {
-    let ms = |feedback: &vk::PipelineCreationFeedback| {
-        let is_valid = feedback.flags.contains(vk::PipelineCreationFeedbackFlags::VALID);
-        is_valid.then_some(feedback.duration as f64 * 1e-6)
-    };
-    let is_cached = whole.flags.contains(vk::PipelineCreationFeedbackFlags::APPLICATION_PIPELINE_CACHE_HIT);
-    let stages: Vec<_> = stages.iter().map(ms).collect();
-    tracing::debug!("`{name}`: {:?} ms, stages {stages:?} ms, cached: {is_cached}", ms(&whole));
-}
-
-/// A compute pipeline.
-pub struct ComputePipeline {
-    gpu: Arc<Gpu>,
-    layouts: Arc<SetLayouts>,
-    /// The layout of a declared pass.
-    pub layout: Option<Arc<PassLayout>>,
-    /// The descriptors that its stage uses.
-    pub uses: Uses,
-    /// The buffer that its stages write when a loop does not end, if they have such loops.
-    pub(in crate::gpu) loops: Option<Arc<Buffer>>,
-    pub(in crate::gpu) raw: vk::Pipeline,
-}
-
-impl ComputePipeline {
-    /// The layout that its sets are bound with.
-    pub(in crate::gpu) fn raw_layout(&self) -> vk::PipelineLayout {
-        self.layout.as_ref().map_or(self.layouts.pipeline, |layout| layout.pipeline)
-    }
-
-    /// Creates a pipeline of one stage, named after its module. `layout`: that of a declared pass.
-    ///
-    /// # Errors
-    /// The driver rejects the pipeline or is out of memory.
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        layouts: &Arc<SetLayouts>,
-        module: &ShaderModule,
-        layout: Option<Arc<PassLayout>>,
-    ) -> Result<Arc<Self>, GpuError> {
-        let stage = vk::PipelineShaderStageCreateInfo::default()
-            .stage(vk::ShaderStageFlags::COMPUTE)
-            .module(module.raw)
-            .name(MAIN);
-        let raw_layout = layout.as_ref().map_or(layouts.pipeline, |layout| layout.pipeline);
-        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(raw_layout);
-        // SAFETY: every pointer in `info` lives until the call returns; module and layout are live. The cache is internally
-        // synchronized.
-        let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipeline_cache.raw, &[info], None) };
-        let name = format!("`{}`", module.name);
-        let raw = made.map_err(|(_, result)| result).context_of("creating the compute pipeline", &name)?[0];
-        gpu.name(raw, &module.name);
-        let loops = module.names_loops.then(|| layouts.blank.loops.clone());
-        let uses = module.uses.clone();
-        Ok(Arc::new(Self { gpu: gpu.clone(), layouts: layouts.clone(), layout, uses, loops, raw }))
-    }
-}
-
-impl Drop for ComputePipeline {
-    fn drop(&mut self) {
-        // SAFETY: the last `Arc` is gone, and a submission in flight would hold one.
-        unsafe { self.gpu.device.destroy_pipeline(self.raw, None) };
+        let is_cached = whole.flags.contains(vk::PipelineCreationFeedbackFlags::APPLICATION_PIPELINE_CACHE_HIT);
+        let stages: Vec<PipelineStage> =
+            desc.modules().zip(&parts).map(|((_, module), part)| module.facts(feedback_ms(part))).collect();
+        let times: Vec<Option<f64>> = stages.iter().map(|stage| stage.driver_ms).collect();
+        tracing::debug!("`{name}`: {:?} ms, stages {times:?} ms, cached: {is_cached}", feedback_ms(&whole));
+        Ok((raw, Facts::new(stages, start.elapsed().as_secs_f64() * 1e3, is_cached)))
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::unbound::unbound;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::lines;
+use crate::shader::source::text::{Line, lines};
 use crate::shader::source::{SourceError, TreePath};
 
 /// Maximum depth of includes. glslang itself has no limit.
@@ -82,8 +82,7 @@ pub fn files_of(snapshot: &Snapshot<'_>, path: &TreePath) -> BTreeSet<TreePath> 
     while let Some(path) = open.pop() {
         let Ok(text) = snapshot.read(&path) else { continue };
         if files.insert(path.clone()) {
-            let included = lines(&text).into_iter().filter_map(|line| included_name(line.raw).map(str::to_owned));
-            let found = included.filter_map(|name| {
+            let found = included_names(&text).into_iter().filter_map(|name| {
                 let mut candidates = path.sibling(&name).into_iter().chain(TreePath::parse(&name));
                 candidates.find(|candidate| snapshot.read(candidate).is_ok())
             });
@@ -91,6 +90,13 @@ pub fn files_of(snapshot: &Snapshot<'_>, path: &TreePath) -> BTreeSet<TreePath> 
         }
     }
     files
+}
+
+/// The names that a text includes, in its order. Includes in comments do not count.
+pub fn included_names(text: &str) -> Vec<String> {
+    let is_code = |line: &Line<'_>| line.code.trim_start().starts_with('#');
+    let found = lines(text).into_iter().filter(is_code);
+    found.filter_map(|line| included_name(line.raw).map(str::to_owned)).collect()
 }
 
 /// The name in `#include "name"`.

@@ -98,6 +98,10 @@ pub struct Report {
     pub changed: Vec<String>,
     /// Compiled stages and the time that each took, in milliseconds. An edit of comments compiles none.
     pub stages: Vec<(String, f64)>,
+    /// Stages among these that do not compile, or contradict the contract.
+    pub failed: Vec<String>,
+    /// After a failed update: edited files, as displayed, that no diagnostic is about. They wait for the repair of the others.
+    pub waiting: Vec<String>,
     /// Wall time of the whole update, in milliseconds. Stages compile in parallel.
     pub compile_ms: f64,
 }
@@ -298,6 +302,7 @@ impl Library {
         for (index, Done { outcome, ms }) in compiled {
             let slot = &mut self.slots[index];
             report.stages.extend(ms.map(|ms| (slot.path.to_string(), ms)));
+            report.failed.extend(outcome.is_err().then(|| slot.path.to_string()));
             slot.accept(outcome, is_whole);
         }
     }
@@ -341,7 +346,7 @@ impl Library {
         linked: Result<Linked, Vec<Diagnostic>>,
         generation: u64,
         snapshot: &Snapshot<'_>,
-        report: Report,
+        mut report: Report,
     ) -> Update {
         match linked {
             Ok(linked) => self.commit(linked, generation, snapshot, report),
@@ -353,6 +358,7 @@ impl Library {
                 if let Some(first) = diagnostics.first_mut().filter(|_| !waiting.is_empty()) {
                     first.notes.push(format!("other edits wait until this is repaired: {}", waiting.join(", ")));
                 }
+                report.waiting = waiting;
                 Update::Failed(diagnostics, report)
             }
         }

@@ -49,6 +49,8 @@ pub(super) struct Thread {
     pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
     /// The same for the inspector.
     pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
+    /// The picture about whose pipelines the driver is asked.
+    pub(super) questions: Option<Build>,
     /// Whether the last reload has left stages to [`Thread::finish`].
     pub(super) unfinished: bool,
     /// Whether the first frame of the last reload is on screen. Until then, the driver needs the CPU.
@@ -81,7 +83,7 @@ impl Thread {
             let mut waiting = Vec::new();
             // There is nothing to do, or a newer edit has been counted and is about to arrive, or the window is
             // closing.
-            let has_more = build.is_some() || (self.unfinished && self.is_shown) || self.has_thumbnails();
+            let has_more = build.is_some() || (self.unfinished && self.is_shown) || self.has_idle_work();
             if edit.is_none() && (self.is_stale() || !has_more) {
                 match self.next_job() {
                     Ok(job) => waiting.push(job),
@@ -106,12 +108,13 @@ impl Thread {
                     Job::Build(newest) => build = Some(newest),
                     Job::Thumbnails(set, requests) => self.thumbnails = Some((set, requests)),
                     Job::Inspected(set, requests) => self.inspected = Some((set, requests)),
+                    Job::AskDriver(question) => self.questions = Some(question),
                 }
             }
             if let Some(set) = edit.take().and_then(|edit| self.reload(edit)) {
                 // Drop requests for an older set. The window sends one for the new set.
                 build = build.filter(|(of, _)| Arc::ptr_eq(of, &set));
-                (self.thumbnails, self.inspected) = (None, None);
+                (self.thumbnails, self.inspected, self.questions) = (None, None, None);
             } else if self.is_stale() {
                 // The edit goes first.
             } else if self.unfinished && (self.is_shown || build.is_some()) {
@@ -130,7 +133,7 @@ impl Thread {
                 if self.reloader.library().set().is_some_and(|newest| Arc::ptr_eq(newest, &set.shaders)) {
                     self.build_ahead(&set);
                 }
-            } else {
+            } else if !self.ask_driver() {
                 self.build_thumbnail();
             }
         }
@@ -254,6 +257,23 @@ impl Thread {
             true => self.inbox.recv_timeout(LONGEST_FRAME),
             false => self.inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
         }
+    }
+
+    /// Whether there is work that waits until nothing else does.
+    fn has_idle_work(&self) -> bool {
+        self.has_thumbnails() || (!self.unfinished && self.questions.is_some())
+    }
+
+    /// Asks the driver about the next pipeline. Returns whether there was a question.
+    fn ask_driver(&mut self) -> bool {
+        let Some((set, request)) = self.questions.as_ref().filter(|_| !self.unfinished) else { return false };
+        match set.ask_driver(request) {
+            Ok(Some(ms)) => tracing::debug!("asked the driver about a pipeline, which took {ms:.1} ms"),
+            Ok(None) => self.questions = None,
+            Err(error) => tracing::debug!("the driver tells nothing of a pipeline: {error}"),
+        }
+        self.outbox.send(Message::Worker(WorkerMessage::DriverTold));
+        true
     }
 
     /// Whether pipelines of thumbnails can be built. Until all stages are compiled, an edit is not finished.

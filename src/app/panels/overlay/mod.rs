@@ -2,6 +2,7 @@
 
 pub(super) mod diagnostics;
 mod hint;
+mod restore;
 
 use std::sync::Arc;
 
@@ -43,6 +44,7 @@ pub(super) fn show(
     if viewer.panels.visible && viewer.session.diagnostics.is_empty() {
         hint::show(egui, viewer, picture, commands);
     }
+    restore::show(egui, viewer, picture, commands);
     warnings(egui, viewer, picture);
     notice(egui, viewer, picture, free);
     if viewer.panels.visible {

@@ -1,0 +1,187 @@
+//! The last session of each working directory, kept between runs in `sessions.json`: settings with the camera, model and shader tree.
+//! A window without a model and options offers to go on with it, or does so by itself if the user has chosen that.
+
+use std::path::{Path, PathBuf};
+
+use chrono::{DateTime, Local};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::state;
+use crate::recovery::Work;
+use crate::scene::BUILT_IN;
+
+const FILE: &str = "sessions.json";
+/// Most directories that are remembered.
+const MOST: usize = 16;
+
+/// The content of the file.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Stored {
+    /// Whether a window goes on with the last session by itself.
+    always: bool,
+    /// The newest first. One that another version has written may not be readable.
+    sessions: Vec<Value>,
+}
+
+/// A session that has ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct LastSession {
+    /// The working directory.
+    directory: PathBuf,
+    /// When its window closed, in seconds since 1970.
+    at: i64,
+    pub(super) work: Work,
+}
+
+impl LastSession {
+    /// What it shows, for people.
+    pub(super) fn words(&self) -> String {
+        let name = |path: &PathBuf| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let model = self.work.model.as_ref().map_or_else(|| BUILT_IN[0].to_owned(), name);
+        let settings = &self.work.settings;
+        let mode = (settings.mode != "final").then(|| format!("mode {}", settings.mode));
+        let environment = format!("environment {}", name(&PathBuf::from(&settings.environment.name)));
+        let at = DateTime::from_timestamp(self.at, 0).map(|at| at.with_timezone(&Local));
+        let at = at.map(|at| at.format("%Y-%m-%d %H:%M").to_string());
+        [Some(model), mode, Some(environment), at].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// Whether its model and its shader tree are still there.
+    fn is_there(&self) -> bool {
+        let is_model = |path: &PathBuf| path.exists() || BUILT_IN.iter().any(|name| Path::new(name) == path);
+        self.work.model.as_ref().is_none_or(is_model) && self.work.tree.as_ref().is_none_or(|tree| tree.exists())
+    }
+}
+
+/// What is known of earlier sessions.
+#[derive(Default)]
+pub(super) struct LastSessions {
+    /// Whether a window goes on with the last session by itself.
+    always: bool,
+    /// That of the working directory.
+    pub(super) here: Option<LastSession>,
+}
+
+impl LastSessions {
+    pub(super) fn restored() -> Self {
+        let stored = load();
+        let directory = std::env::current_dir().ok();
+        let here = directory.and_then(|directory| find(&stored, &directory)).filter(LastSession::is_there);
+        Self { always: stored.always, here }
+    }
+
+    pub(super) fn is_always(&self) -> bool {
+        self.always
+    }
+
+    /// Stores whether a window goes on with the last session by itself.
+    pub(super) fn set_always(&mut self, always: bool) {
+        self.always = always;
+        save(&Stored { always, ..load() });
+    }
+}
+
+/// The work of the last session of this directory, if the user wants windows to go on with it by themselves.
+pub fn session_to_restore() -> Option<Work> {
+    let sessions = LastSessions::restored();
+    sessions.here.filter(|_| sessions.always).map(|session| session.work)
+}
+
+/// Remembers the work of a session that ends.
+pub(super) fn remember(work: &Work) {
+    let Ok(directory) = std::env::current_dir() else { return };
+    // Another window may have written the file meanwhile.
+    let mut stored = load();
+    let session = LastSession { at: Local::now().timestamp(), work: absolute(work.clone()), directory };
+    insert(&mut stored, session);
+    save(&stored);
+}
+
+/// The work with absolute paths of files. Names of built-in models and environments stay.
+fn absolute(mut work: Work) -> Work {
+    let of = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    work.model = work.model.map(|model| if model.exists() { of(&model) } else { model });
+    work.tree = work.tree.map(|tree| of(&tree));
+    let environment = Path::new(&work.settings.environment.name);
+    if environment.is_file() {
+        work.settings.environment.name = of(environment).display().to_string();
+    }
+    work
+}
+
+fn insert(stored: &mut Stored, session: LastSession) {
+    let of_directory = |value: &Value| value["directory"].as_str().map(PathBuf::from);
+    stored.sessions.retain(|old| of_directory(old).is_some_and(|directory| directory != session.directory));
+    // A path that is no text is not stored.
+    stored.sessions.splice(0..0, serde_json::to_value(session));
+    stored.sessions.truncate(MOST);
+}
+
+fn find(stored: &Stored, directory: &Path) -> Option<LastSession> {
+    let sessions = stored.sessions.iter().filter_map(|value| serde_json::from_value(value.clone()).ok());
+    sessions.into_iter().find(|session: &LastSession| session.directory == directory)
+}
+
+fn load() -> Stored {
+    state::load(FILE).map(|text| parse(&text)).unwrap_or_default()
+}
+
+/// A text that cannot be read counts as none.
+fn parse(text: &str) -> Stored {
+    serde_json::from_str(text).unwrap_or_default()
+}
+
+fn save(stored: &Stored) {
+    match serde_json::to_string(stored) {
+        Ok(text) => state::save(FILE, &text),
+        Err(error) => tracing::debug!("the session was not stored: {error}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+
+    fn session(directory: &str, mode: &str) -> LastSession {
+        let settings = Settings { mode: mode.to_owned(), ..Settings::of_window() };
+        let work = Work { settings, model: Some("sphere-grid".into()), tree: None };
+        LastSession { directory: directory.into(), at: 1_790_000_000, work }
+    }
+
+    #[test]
+    fn each_directory_has_its_last_session() {
+        let mut stored = Stored { always: true, ..Stored::default() };
+        for (directory, mode) in [("/a", "d"), ("/b", "g"), ("/a", "f")] {
+            insert(&mut stored, session(directory, mode));
+        }
+        let read = parse(&serde_json::to_string(&stored).unwrap());
+        assert!(read.always && read.sessions.len() == 2);
+        assert_eq!(find(&read, Path::new("/a")), Some(session("/a", "f")));
+        assert_eq!(find(&read, Path::new("/b")), Some(session("/b", "g")));
+        assert_eq!(find(&read, Path::new("/c")), None);
+        (0..30).for_each(|index| insert(&mut stored, session(&format!("/{index}"), "d")));
+        assert_eq!(stored.sessions.len(), MOST);
+    }
+
+    #[test]
+    fn what_another_version_has_written_costs_only_itself() {
+        let mut stored = Stored::default();
+        insert(&mut stored, session("/a", "d"));
+        stored.sessions.push(serde_json::json!({ "directory": "/b", "work": 7 }));
+        let read = parse(&serde_json::to_string(&stored).unwrap());
+        assert!(find(&read, Path::new("/a")).is_some() && find(&read, Path::new("/b")).is_none());
+        assert!(["", "7", "{\"sessions\": 1}"].iter().all(|text| parse(text).sessions.is_empty()));
+    }
+
+    #[test]
+    fn a_session_without_its_files_is_not_offered() {
+        assert!(session("/a", "d").is_there());
+        let mut gone = session("/a", "d");
+        gone.work.model = Some("/no/such/model.glb".into());
+        assert!(!gone.is_there());
+        assert!(session("/a", "d").words().starts_with("sphere-grid, mode d, environment studio, 2026-"));
+    }
+}

@@ -1,0 +1,197 @@
+//! The gallery of what can be opened: built-in models and environments with pictures, and files that were open.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Align2, FontId, Key, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, TextureHandle, Ui, Window};
+use egui::{TextureOptions, pos2, vec2};
+
+use super::theme::{ACCENT, EDGE, QUIET};
+use crate::app::command::Command;
+use crate::app::dialog::Dialog;
+use crate::app::recent::Kind;
+use crate::app::viewer::Viewer;
+use crate::scene::{BUILT_IN, BuiltInPictures, built_in_pictures, environment};
+use crate::threads::Message;
+
+/// Size of a picture, in points, and of the name below.
+const PICTURE: egui::Vec2 = vec2(128.0, 96.0);
+const NAME: f32 = 18.0;
+/// Size of the window, in points.
+const WINDOW: egui::Vec2 = vec2(570.0, 520.0);
+
+/// State of the gallery between frames.
+#[derive(Default)]
+pub(in crate::app) struct OpenGallery {
+    pub(in crate::app) is_open: bool,
+    pictures: Pictures,
+}
+
+/// The pictures, which are decoded once the gallery is open.
+#[derive(Default)]
+enum Pictures {
+    #[default]
+    None,
+    Asked,
+    Decoded(Box<BuiltInPictures>),
+    Uploaded(TextureHandle, Vec<String>),
+}
+
+impl OpenGallery {
+    /// Takes the decoded pictures.
+    pub(in crate::app) fn take(&mut self, pictures: Box<BuiltInPictures>) {
+        self.pictures = Pictures::Decoded(pictures);
+    }
+
+    /// The texture with the picture of this name, and its place in it.
+    fn picture(&self, name: &str) -> Option<(&TextureHandle, Rect)> {
+        let Pictures::Uploaded(texture, names) = &self.pictures else { return None };
+        let at = names.iter().position(|known| known == name)? as f32;
+        let width = 1.0 / names.len() as f32;
+        Some((texture, Rect::from_min_max(pos2(at * width, 0.0), pos2((at + 1.0) * width, 1.0))))
+    }
+}
+
+/// Shows the gallery while it is open.
+pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec<Command>) {
+    let mut state = std::mem::take(&mut viewer.panels.open_gallery);
+    if state.is_open && egui.input(|input| input.key_pressed(Key::Escape)) {
+        state.is_open = false;
+    }
+    if state.is_open {
+        provide(egui, viewer, &mut state);
+        let mut stays = true;
+        let room = egui.content_rect();
+        let size = WINDOW.min(room.size() - vec2(24.0, 70.0));
+        let window = Window::new(RichText::new("Open").strong()).open(&mut stays).collapsible(false).resizable(false);
+        let window = window.order(egui::Order::Foreground).pivot(Align2::CENTER_CENTER).default_pos(room.center());
+        let before = commands.len();
+        window.show(egui, |ui| {
+            ui.set_width(size.x);
+            contents(ui, viewer, &state, size.y, commands);
+        });
+        state.is_open = stays && commands.len() == before;
+    }
+    viewer.panels.open_gallery = state;
+}
+
+/// Lets a thread decode the pictures, and uploads them.
+fn provide(egui: &egui::Context, viewer: &Viewer, state: &mut OpenGallery) {
+    state.pictures = match std::mem::take(&mut state.pictures) {
+        Pictures::None => {
+            viewer.threads.wait(|| Some(Message::Pictures(Box::new(built_in_pictures()))));
+            Pictures::Asked
+        }
+        Pictures::Decoded(pictures) => {
+            let BuiltInPictures { image, names } = *pictures;
+            let size = [image.width() as usize, image.height() as usize];
+            let image = egui::ColorImage::from_rgba_premultiplied(size, image.as_raw());
+            Pictures::Uploaded(egui.load_texture("built-in pictures", image, TextureOptions::LINEAR), names)
+        }
+        other => other,
+    };
+}
+
+fn contents(ui: &mut Ui, viewer: &mut Viewer, state: &OpenGallery, height: f32, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        if ui.button("File…").on_hover_text("A model, environment, measured BRDF, look or shader (Ctrl+O)").clicked()
+        {
+            commands.push(Command::Choose(Dialog::File));
+        }
+        if ui.button("Shader tree…").on_hover_text("A folder that `specula new` has written").clicked() {
+            commands.push(Command::Choose(Dialog::Tree));
+        }
+        ui.label(RichText::new("or drop a file on the window").small().color(QUIET));
+    });
+    ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        heading(ui, "Models");
+        let model = viewer.session.model().map(|model| model.name.clone()).unwrap_or_default();
+        let models = BUILT_IN.map(|name| (name, name.to_owned(), name == model, format!("specula {name}")));
+        if let Some(name) = grid(ui, state, &models) {
+            commands.push(Command::OpenModel(name.into()));
+        }
+        recent(ui, viewer, Kind::Model, commands);
+        heading(ui, "Environments");
+        let now = viewer.session.settings.environment.name.clone();
+        let environments = environment::BUILT_IN
+            .map(|name| (name, format!("environment-{name}"), name == now, format!("specula --env {name}")));
+        if let Some(name) = grid(ui, state, &environments) {
+            commands.push(Command::OpenEnvironment(PathBuf::from(name)));
+        }
+        recent(ui, viewer, Kind::Environment, commands);
+    });
+}
+
+fn heading(ui: &mut Ui, title: &str) {
+    ui.add_space(6.0);
+    ui.label(RichText::new(title).small().color(QUIET));
+}
+
+/// A picture with its name: the name, the name of the picture, whether it is on screen, and how the command line opens it.
+type Tile<'a> = (&'a str, String, bool, String);
+
+/// Shows pictures with their names. Returns the name of the clicked one.
+fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a str> {
+    let mut clicked = None;
+    ui.spacing_mut().item_spacing = vec2(8.0, 6.0);
+    let columns = ((ui.available_width() + 8.0) / (PICTURE.x + 8.0)).floor().max(1.0) as usize;
+    for row in tiles.chunks(columns) {
+        ui.horizontal(|ui| {
+            for (name, picture, is_shown, option) in row {
+                let (rect, response) = ui.allocate_exact_size(PICTURE + vec2(0.0, NAME), Sense::click());
+                let area = Rect::from_min_size(rect.min, PICTURE);
+                ui.painter().rect_filled(area, 4.0, EDGE);
+                if let Some((texture, place)) = state.picture(picture) {
+                    egui::Image::new((texture.id(), PICTURE)).uv(place).corner_radius(4.0).paint_at(ui, area);
+                }
+                let is_marked = *is_shown || response.hovered();
+                if is_marked {
+                    let stroke = Stroke::new(1.5, if *is_shown { ACCENT } else { QUIET });
+                    ui.painter().rect_stroke(area, 4.0, stroke, StrokeKind::Inside);
+                }
+                let color = if *is_shown { ACCENT } else { ui.visuals().text_color() };
+                let at = pos2(area.left() + 2.0, area.bottom() + NAME / 2.0);
+                ui.painter().text(at, Align2::LEFT_CENTER, name, FontId::proportional(12.0), color);
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, *name));
+                if response.on_hover_text(option).clicked() {
+                    clicked = Some(*name);
+                }
+            }
+        });
+    }
+    clicked
+}
+
+/// The files of a kind that were open.
+fn recent(ui: &mut Ui, viewer: &Viewer, kind: Kind, commands: &mut Vec<Command>) {
+    let files = viewer.panels.recent.of(kind);
+    let is_built_in = |path: &Path| path.components().count() == 1 && !path.exists();
+    ui.horizontal_wrapped(|ui| {
+        for path in files.iter().filter(|path| !is_built_in(path)) {
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            if ui.button(RichText::new(name).small()).on_hover_text(path.display().to_string()).clicked() {
+                commands.push(match kind {
+                    Kind::Model => Command::OpenModel(path.clone()),
+                    Kind::Environment => Command::OpenEnvironment(path.clone()),
+                    Kind::Tree => Command::OpenTree(path.clone()),
+                });
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::PICTURE_SIZE;
+
+    #[test]
+    fn each_picture_has_its_place_in_the_texture() {
+        let egui = egui::Context::default();
+        let image = egui::ColorImage::filled([PICTURE_SIZE.0 as usize * 4, 1], egui::Color32::RED);
+        let texture = egui.load_texture("test", image, TextureOptions::LINEAR);
+        let names = ["a", "b", "c", "d"].map(str::to_owned).to_vec();
+        let gallery = OpenGallery { is_open: true, pictures: Pictures::Uploaded(texture, names) };
+        let place = |name: &str| gallery.picture(name).map(|(_, place)| (place.left(), place.right()));
+        assert_eq!((place("a"), place("c"), place("e")), (Some((0.0, 0.25)), Some((0.5, 0.75)), None));
+    }
+}

@@ -1,0 +1,37 @@
+//! The offer to go on with the last session.
+
+use egui::{Align2, Id, Rect, RichText};
+
+use super::{area, card};
+use crate::app::command::Command;
+use crate::app::panels::theme::{ACCENT, QUIET};
+use crate::app::viewer::Viewer;
+
+/// Shows the offer over the picture, until the user answers or begins something else.
+pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, commands: &mut Vec<Command>) {
+    if !viewer.offers_session() {
+        return;
+    }
+    let Some(words) = viewer.panels.last_sessions.here.as_ref().map(|session| session.words()) else { return };
+    area(Id::new("restore"), Align2::LEFT_TOP, picture).fade_in(false).show(egui, |ui| {
+        card(ACCENT).show(ui, |ui| {
+            ui.set_max_width((picture.width() - 60.0).clamp(180.0, 420.0));
+            ui.label(RichText::new("Your last session in this folder").strong());
+            ui.label(RichText::new(words).small().color(QUIET));
+            ui.horizontal_wrapped(|ui| {
+                let hint = "Model, shader tree, settings, camera, environment and mode as you left them";
+                if ui.button("Restore").on_hover_text(hint).clicked() {
+                    commands.push(Command::RestoreSession);
+                }
+                let hint =
+                    "Restore it, and from now on at each start without a model and options. The menu Open changes that";
+                if ui.button("Always").on_hover_text(hint).clicked() {
+                    commands.extend([Command::RestoreAlways(true), Command::RestoreSession]);
+                }
+                if ui.button("Not now").on_hover_text("The menu Open still has it").clicked() {
+                    viewer.offers_session = false;
+                }
+            });
+        });
+    });
+}

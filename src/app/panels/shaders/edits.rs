@@ -1,0 +1,30 @@
+//! The last edits: which file reached which stages, and how long each step took.
+
+use egui::{Label, RichText, ScrollArea, Ui};
+
+use super::super::{ERROR, QUIET};
+use super::lines;
+use crate::app::shader_log::{ShaderLog, reached};
+use crate::events::in_short;
+
+/// Height of a line, in points.
+const HEIGHT: f32 = 15.0;
+
+pub(super) fn show(ui: &mut Ui, log: &ShaderLog) {
+    let hint = "Compile + pipelines + first frame, after detecting the save";
+    ui.label(RichText::new(hint).small().color(QUIET));
+    let edits: Vec<_> = log.edits().collect();
+    ScrollArea::vertical().auto_shrink(false).show_rows(ui, HEIGHT, edits.len(), |ui, range| {
+        for edit in &edits[range] {
+            let at = edit.at.format("%H:%M:%S");
+            let text = RichText::new(format!("{at}  {}  {}", reached(&edit.reload), edit.times())).monospace().small();
+            let text = if edit.reload.ok { text } else { text.color(ERROR) };
+            let (_, _, mut hover) = lines(&edit.reload);
+            if let Some(rest) = &edit.rest {
+                hover +=
+                    &format!("\nThen, behind the picture: {} in {:.0} ms", in_short(&rest.stages), rest.compile_ms);
+            }
+            ui.add(Label::new(text).truncate()).on_hover_text(hover);
+        }
+    });
+}

@@ -1,0 +1,101 @@
+//! Errors and warnings by file. A click opens the place in the editor.
+
+use std::path::PathBuf;
+
+use egui::{CursorIcon, Label, RichText, ScrollArea, Sense, Ui};
+
+use super::super::{ACCENT, ERROR, QUIET, WARNING, plural};
+use crate::app::command::Command;
+use crate::app::editor::Place;
+use crate::app::viewer::Viewer;
+use crate::shader::{Diagnostic, Severity};
+
+/// Height of a line, in points.
+const HEIGHT: f32 = 16.0;
+
+/// A line of the list.
+enum Line<'a> {
+    /// A file, with the number of its diagnostics.
+    File(&'a str, usize),
+    Diagnostic(&'a Diagnostic),
+}
+
+/// The diagnostics by file, in the order in which the files come first.
+fn grouped(diagnostics: &[Diagnostic]) -> Vec<Line<'_>> {
+    let mut files: Vec<&str> = Vec::new();
+    for diagnostic in diagnostics {
+        if !files.contains(&diagnostic.file.as_str()) {
+            files.push(&diagnostic.file);
+        }
+    }
+    let lines = files.into_iter().flat_map(|file| {
+        let own: Vec<&Diagnostic> = diagnostics.iter().filter(|diagnostic| diagnostic.file == file).collect();
+        std::iter::once(Line::File(file, own.len())).chain(own.into_iter().map(Line::Diagnostic))
+    });
+    lines.collect()
+}
+
+pub(super) fn show(ui: &mut Ui, viewer: &Viewer, commands: &mut Vec<Command>) {
+    let lines = grouped(&viewer.session.diagnostics);
+    if lines.is_empty() {
+        ui.label(RichText::new("No errors and no warnings").small().color(QUIET));
+        return;
+    }
+    let has_files = viewer.shader.location.is_some();
+    ScrollArea::vertical().auto_shrink(false).show_rows(ui, HEIGHT, lines.len(), |ui, range| {
+        for line in &lines[range] {
+            match line {
+                Line::File(file, count) => {
+                    let text = RichText::new(format!("{file}   {}", plural(*count, "problem"))).small().strong();
+                    ui.add(Label::new(text).truncate()).on_hover_text(*file);
+                }
+                Line::Diagnostic(diagnostic) => one(ui, diagnostic, has_files, commands),
+            }
+        }
+    });
+}
+
+fn one(ui: &mut Ui, diagnostic: &Diagnostic, has_files: bool, commands: &mut Vec<Command>) {
+    let color = if diagnostic.severity == Severity::Error { ERROR } else { WARNING };
+    let place = match (diagnostic.line, diagnostic.column) {
+        (Some(line), Some(column)) => format!("{line}:{column}"),
+        (Some(line), None) => line.to_string(),
+        _ => String::new(),
+    };
+    ui.horizontal(|ui| {
+        ui.add_space(10.0);
+        ui.label(RichText::new(place).monospace().small().color(if has_files { ACCENT } else { QUIET }));
+        let text = RichText::new(&diagnostic.message).small().color(color);
+        let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
+        if label.clicked() {
+            let Diagnostic { file, line, column, .. } = diagnostic;
+            match has_files {
+                true => commands.push(Command::Edit(Place { file: PathBuf::from(file), line: *line, column: *column })),
+                false => ui.ctx().copy_text(diagnostic.one_line()),
+            }
+        }
+        let hint = if has_files { "Click to open it in the editor" } else { "Click to copy it" };
+        let hover = format!("{}\n{hint}", diagnostic.full().trim_end());
+        label.on_hover_cursor(CursorIcon::PointingHand).on_hover_ui(|ui| {
+            ui.set_max_width(700.0);
+            ui.label(RichText::new(hover).monospace());
+        });
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn diagnostics_of_a_file_stand_together() {
+        let of = |file: &str, message: &str| Diagnostic::error(file, message);
+        let diagnostics = [of("b.glsl", "1"), of("a.glsl", "2"), of("b.glsl", "3")];
+        let words = |line: &Line<'_>| match line {
+            Line::File(file, count) => format!("{file} {count}"),
+            Line::Diagnostic(diagnostic) => diagnostic.message.clone(),
+        };
+        let lines: Vec<String> = grouped(&diagnostics).iter().map(words).collect();
+        assert_eq!(lines, ["b.glsl 2", "1", "3", "a.glsl 1", "2"]);
+    }
+}

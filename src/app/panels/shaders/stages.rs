@@ -1,0 +1,197 @@
+//! The stages with their state, their times, and their numbers with the change since the version before.
+
+use std::collections::BTreeSet;
+
+use egui::{Color32, CursorIcon, Grid, Label, RichText, ScrollArea, Sense, Ui};
+
+use super::super::theme::{ERROR, GOOD, QUIET, WARNING};
+use crate::app::stages::{StageRow, StageState};
+use crate::app::viewer::Viewer;
+use crate::pipeline::{Figure, all_statistics, grouped};
+
+/// A list narrower than this has two lines for each stage, in points.
+const ONE_LINE: f32 = 520.0;
+/// Heights of a line, in points.
+const LINE: f32 = 16.0;
+
+/// State of the list between frames.
+#[derive(Default)]
+pub(super) struct StagesState {
+    /// Stages whose details are shown.
+    open: BTreeSet<String>,
+    /// Whether stages that draw nothing are listed.
+    shows_all: bool,
+}
+
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut StagesState) {
+    ui.horizontal(|ui| {
+        let count = viewer.stages.rows().len();
+        ui.checkbox(&mut state.shows_all, RichText::new(format!("All {count}")).small())
+            .on_hover_text("Also list stages that draw nothing now: bakes, other modes, passes that are off");
+        ask(ui, viewer);
+    });
+    let is_shown = |row: &&StageRow| state.shows_all || row.state <= StageState::Pending;
+    let rows: Vec<&StageRow> = viewer.stages.rows().iter().filter(is_shown).collect();
+    if rows.is_empty() {
+        ui.label(RichText::new("No picture yet").small().color(QUIET));
+    }
+    let is_wide = ui.available_width() >= ONE_LINE;
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        for row in rows {
+            let clicked = match is_wide {
+                true => ui.horizontal(|ui| title(ui, row, 170.0) | numbers(ui, row)).inner,
+                false => {
+                    let clicked = ui.horizontal(|ui| title(ui, row, ui.available_width() - 70.0)).inner;
+                    let more = ui.horizontal(|ui| {
+                        ui.add_space(16.0);
+                        numbers(ui, row)
+                    });
+                    clicked | more.inner
+                }
+            };
+            if clicked && !state.open.remove(&row.path) {
+                state.open.insert(row.path.clone());
+            }
+            if state.open.contains(&row.path) {
+                ui.indent(&row.path, |ui| details(ui, row));
+            }
+        }
+    });
+}
+
+/// The switch that lets the driver be asked.
+fn ask(ui: &mut Ui, viewer: &mut Viewer) {
+    let tells = viewer.gpu.tells_statistics();
+    let hint = match tells {
+        true => {
+            "Ask the driver for the registers, instructions, spills and size of the machine code of each picture \
+             (VK_KHR_pipeline_executable_properties). It builds each pipeline once more for that, in the background, when \
+             nothing else is to be done"
+        }
+        false => {
+            "This driver tells nothing of its machine code: it lacks VK_KHR_pipeline_executable_properties. The words of \
+             SPIR-V are those that it gets"
+        }
+    };
+    let asks = egui::Checkbox::new(&mut viewer.shader.asks_driver, RichText::new("Ask the driver").small());
+    let response = ui.add_enabled(tells, asks);
+    if response.changed() {
+        viewer.shader.told = None;
+    }
+    response.on_hover_text(hint).on_disabled_hover_text(hint);
+}
+
+/// The mark, path and state of a stage. Returns whether it is clicked.
+fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
+    let (name, meaning) = row.state.words();
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, LINE), Sense::hover());
+    ui.painter().circle_filled(rect.center(), 3.5, color(row.state));
+    let label = Label::new(RichText::new(&row.path).small()).truncate().selectable(false).sense(Sense::click());
+    let left = egui::Layout::left_to_right(egui::Align::Center);
+    let response = ui.allocate_ui_with_layout(egui::vec2(width.max(60.0), LINE), left, |ui| {
+        ui.set_min_width(width.max(60.0));
+        ui.add(label)
+    });
+    let hover = format!("{}: {meaning}\nClick for all that is known of it", row.path);
+    let clicked = response.inner.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(hover).clicked();
+    ui.label(RichText::new(name).small().color(color(row.state))).on_hover_text(meaning);
+    clicked
+}
+
+fn color(state: StageState) -> Color32 {
+    match state {
+        StageState::Failed => ERROR,
+        StageState::OnScreen => GOOD,
+        StageState::Pending => WARNING,
+        StageState::Bakes | StageState::Off => QUIET,
+    }
+}
+
+/// The numbers and times of a stage in a line. Returns whether it is clicked.
+fn numbers(ui: &mut Ui, row: &StageRow) -> bool {
+    ui.spacing_mut().item_spacing.x = 3.0;
+    short_figures(ui, &row.figures);
+    let largest = row.now.largest.as_ref();
+    let driver = largest.map(|largest| match (largest.driver_ms, largest.is_cached) {
+        (_, true) => "cached".to_owned(),
+        (Some(ms), _) => format!("{ms:.0} ms"),
+        (None, _) => format!("{:.0} ms", largest.pipeline_ms),
+    });
+    let compile = row.compile_ms.map(|ms| format!("{ms:.0} ms"));
+    let times: Vec<String> = compile.into_iter().chain(driver).collect();
+    if times.is_empty() {
+        return false;
+    }
+    let text = RichText::new(format!("· {}", times.join(" + "))).monospace().small().color(QUIET);
+    let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
+    let hover = "Time to compile the stage to SPIR-V, the last time that it was, and the driver's time for it";
+    label.on_hover_text(hover).clicked()
+}
+
+/// Numbers with their changes: `4,469 words -212 · 96 registers -8`.
+pub(in crate::app::panels) fn short_figures(ui: &mut Ui, figures: &[Figure]) {
+    for (index, figure) in figures.iter().enumerate() {
+        if index > 0 {
+            ui.label(RichText::new("·").small().color(QUIET));
+        }
+        ui.label(RichText::new(figure.text()).monospace().small()).on_hover_text(&figure.meaning);
+        change(ui, figure);
+    }
+}
+
+/// The change of a number since the version before, if it has changed.
+fn change(ui: &mut Ui, figure: &Figure) {
+    let (Some(text), Some(change)) = (figure.change_text(), figure.change()) else { return };
+    // More work is not wrong, but worth a look.
+    let color = if change > 0.0 { WARNING } else { GOOD };
+    let before = grouped(figure.before.unwrap_or_default());
+    ui.label(RichText::new(text).monospace().small().color(color))
+        .on_hover_text(format!("Before the last edit: {before} {}", figure.name));
+}
+
+/// All that is known of a stage.
+fn details(ui: &mut Ui, row: &StageRow) {
+    let mut lines = vec![("Words as compiled", grouped(row.now.compiled as f64), "With all that constants switch off")];
+    if let Some(largest) = &row.now.largest {
+        lines.push((
+            "Words with its constants",
+            grouped(largest.words_before as f64),
+            "What this picture needs, before Specula's optimizer",
+        ));
+        lines.push(("Words that the driver gets", grouped(largest.words as f64), "After the optimizer"));
+        lines.push((
+            "Pipelines in the picture",
+            row.now.pipelines.to_string(),
+            "One for each kind of material, for example. The numbers are those of the largest",
+        ));
+        let cached = if largest.is_cached { ", from a cache" } else { "" };
+        lines.push((
+            "Pipeline",
+            format!("{:.1} ms{cached}", largest.pipeline_ms),
+            "Time that the driver took for the pipeline with all of its stages",
+        ));
+        if let Some(ms) = largest.driver_ms {
+            lines.push(("This stage in it", format!("{ms:.1} ms"), "As the driver tells it"));
+        }
+    }
+    lines.extend(row.compile_ms.map(|ms| ("Compiled in", format!("{ms:.1} ms"), "GLSL to SPIR-V, the last time")));
+    Grid::new((&row.path, "lines")).num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
+        for (name, value, meaning) in lines {
+            ui.label(RichText::new(name).small().color(QUIET)).on_hover_text(meaning);
+            ui.label(RichText::new(value).monospace().small());
+            ui.end_row();
+        }
+        for (name, figures) in all_statistics(&row.now, row.before.as_ref()) {
+            ui.label(RichText::new(name).small().strong()).on_hover_text("The driver's name for its machine code");
+            ui.end_row();
+            for figure in figures {
+                ui.label(RichText::new(&figure.name).small().color(QUIET)).on_hover_text(&figure.meaning);
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(grouped(figure.value)).monospace().small());
+                    change(ui, &figure);
+                });
+                ui.end_row();
+            }
+        }
+    });
+}

@@ -1,0 +1,122 @@
+//! The stages of the shaders on screen, with their state and what is known of their code.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::shader_log::ShaderLog;
+use crate::frame::PipelineRequest;
+use crate::pipeline::{Figure, PipelineSet, StageReport, figures};
+use crate::shader::{ShaderSet, StageKind, TreePath};
+
+/// What a stage does at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum StageState {
+    /// Its newest text does not compile.
+    Failed,
+    /// It draws the picture.
+    OnScreen,
+    /// It is still to be compiled.
+    Pending,
+    /// It bakes light or tables when they are needed.
+    Bakes,
+    /// The picture does not use it.
+    Off,
+}
+
+impl StageState {
+    pub(super) fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Failed => ("failed", "Its newest text does not compile. The last good version stays"),
+            Self::OnScreen => ("on screen", "It draws the picture"),
+            Self::Pending => ("pending", "It compiles once the picture with the edit is on screen"),
+            Self::Bakes => ("bakes", "It computes light or tables, once for each environment and edit"),
+            Self::Off => ("off", "The picture does not use it: another mode or a pass that is off does"),
+        }
+    }
+}
+
+/// A row of the table.
+#[derive(Clone, Debug)]
+pub(super) struct StageRow {
+    pub(super) path: String,
+    pub(super) state: StageState,
+    /// Time to compile it, the last time that it was, in milliseconds.
+    pub(super) compile_ms: Option<f64>,
+    pub(super) now: StageReport,
+    /// The same in the version before.
+    pub(super) before: Option<StageReport>,
+    /// Its numbers in a line.
+    pub(super) figures: Vec<Figure>,
+}
+
+/// The table. It is made anew only when the shaders, the picture, or what is known of them changes.
+#[derive(Default)]
+pub(super) struct StageTable {
+    rows: Vec<StageRow>,
+    /// Path of the stage that draws the model.
+    main: String,
+    made_of: Option<(Arc<PipelineSet>, PipelineRequest)>,
+}
+
+impl StageTable {
+    /// All stages: those that failed first, then those on screen.
+    pub(super) fn rows(&self) -> &[StageRow] {
+        &self.rows
+    }
+
+    /// The stage that draws the model.
+    pub(super) fn main(&self) -> Option<&StageRow> {
+        self.rows.iter().find(|row| row.path == self.main)
+    }
+
+    /// Whether the table is of other shaders or another picture.
+    pub(super) fn is_outdated(&self, set: &Arc<PipelineSet>, request: &PipelineRequest) -> bool {
+        !self.made_of.as_ref().is_some_and(|(of, known)| Arc::ptr_eq(of, set) && known == request)
+    }
+
+    /// Marks what is known of the stages as changed.
+    pub(super) fn invalidate(&mut self) {
+        self.made_of = None;
+    }
+
+    /// Makes the table of a set. `before` is the version before.
+    pub(super) fn update(
+        &mut self,
+        set: &Arc<PipelineSet>,
+        request: &PipelineRequest,
+        before: Option<&Arc<PipelineSet>>,
+        log: &ShaderLog,
+    ) {
+        let on_screen = request.stages();
+        let mut earlier = before.map(|before| before.report(request)).unwrap_or_default();
+        let row = |(path, now): (String, StageReport)| {
+            let before = earlier.remove(&path);
+            let figures = figures(&now, before.as_ref());
+            let state = state(&path, &set.shaders, &on_screen, log);
+            StageRow { state, compile_ms: log.compile_ms(&path), path, now, before, figures }
+        };
+        self.rows = set.report(request).into_iter().map(row).collect();
+        let is_main = |row: &StageRow| row.path == request.stage;
+        self.rows.sort_by_key(|row| (row.state, !is_main(row)));
+        self.main.clone_from(&request.stage);
+        self.made_of = Some((set.clone(), request.clone()));
+    }
+}
+
+fn state(path: &str, shaders: &ShaderSet, on_screen: &BTreeSet<String>, log: &ShaderLog) -> StageState {
+    if log.has_failed(path) {
+        StageState::Failed
+    } else if shaders.pending.contains(path) {
+        StageState::Pending
+    } else if on_screen.contains(path) {
+        StageState::OnScreen
+    } else if StageKind::of(&TreePath::from(path)) == Some(StageKind::Compute) && !is_pass(path, shaders) {
+        StageState::Bakes
+    } else {
+        StageState::Off
+    }
+}
+
+fn is_pass(path: &str, shaders: &ShaderSet) -> bool {
+    shaders.graph.passes.iter().any(|pass| pass.note.stage == path)
+}

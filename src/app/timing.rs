@@ -1,0 +1,230 @@
+//! The times of the last drawn frames, and what the last edit has changed about them. A window that rests draws no frames, so this is a
+//! history of frames and not of time.
+
+mod cost;
+mod memory;
+
+use std::collections::VecDeque;
+
+use crate::events::Summary;
+use crate::gpu::{DrawCounts, PassTime};
+pub(super) use cost::Cost;
+pub(super) use memory::MemoryClock;
+
+/// Number of frames in the history.
+pub(super) const FRAMES: usize = 240;
+/// Number of frames whose time for panels is kept for [`Timing::summary`].
+const SUMMARIZED: usize = 4096;
+/// Frames that are drawn only to measure a picture.
+const EXTRA: usize = 4;
+/// Passes that a frame has even if the picture stays.
+const NOT_OF_PICTURE: [&str; 4] = ["tone map", "ui", "thumbnails", "thumbnail"];
+
+/// What a frame shows. Times of frames that show the same can be compared.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shown {
+    /// Generation of the shaders.
+    pub(super) generation: u64,
+    /// Slug of the mode.
+    pub(super) mode: String,
+    /// Size of the picture in pixels.
+    pub(super) size: (u32, u32),
+    /// Name of the model.
+    pub(super) model: String,
+}
+
+impl Shown {
+    /// Whether only the shaders differ.
+    fn is_like(&self, other: &Self) -> bool {
+        (&self.mode, self.size, &self.model) == (&other.mode, other.size, &other.model)
+    }
+}
+
+/// What the CPU did for a frame, in milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct CpuTimes {
+    /// Running the panels and making triangles of them.
+    pub(super) ui_ms: f64,
+    /// Recording the commands of picture and panels.
+    pub(super) record_ms: f64,
+}
+
+/// A frame that the device has finished.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sample {
+    pub(super) shown: Shown,
+    pub(super) cpu: CpuTimes,
+    /// Device time of the whole frame.
+    pub(super) device_ms: f64,
+    pub(super) passes: Vec<PassTime>,
+    pub(super) counts: DrawCounts,
+}
+
+impl Sample {
+    /// The time of a pass; `None` if the frame has none of this name. A pass that was kept took none.
+    pub(super) fn pass_ms(&self, name: &str) -> Option<f64> {
+        let mut of_name = self.passes.iter().filter(|pass| pass.name == name).map(|pass| pass.ms).peekable();
+        of_name.peek()?;
+        Some(of_name.sum())
+    }
+
+    /// Whether the frame has drawn the picture, and no other picture beside it.
+    fn is_of_picture(&self) -> bool {
+        let draws = |pass: &PassTime| !pass.kept && !NOT_OF_PICTURE.contains(&pass.name.as_str());
+        self.passes.iter().any(draws) && self.passes.iter().all(|pass| pass.name != "compare")
+    }
+}
+
+/// Device times of a finished frame.
+pub(super) struct DeviceTimes<'a> {
+    /// Serial number of the frame.
+    pub(super) serial: u64,
+    pub(super) ms: f64,
+    pub(super) passes: &'a [PassTime],
+    pub(super) counts: DrawCounts,
+}
+
+/// The history.
+#[derive(Default)]
+pub(super) struct Timing {
+    /// Frames that the device has not finished: serial number, what they show, and the CPU's times.
+    submitted: VecDeque<(u64, Shown, CpuTimes)>,
+    /// Frames that have drawn the picture.
+    pictures: VecDeque<Sample>,
+    /// The CPU's times of all frames.
+    frames: VecDeque<CpuTimes>,
+    ui_ms: VecDeque<f64>,
+    drawn: u64,
+    cost: cost::Tracker,
+    /// The shaders whose picture is being measured, and how many frames have been drawn for that.
+    extra: Option<(Shown, usize)>,
+}
+
+impl Timing {
+    /// Notes a frame that goes to the device.
+    pub(super) fn submitted(&mut self, serial: u64, shown: Shown, cpu: CpuTimes) {
+        self.submitted.push_back((serial, shown, cpu));
+        if self.submitted.len() > 8 {
+            self.submitted.pop_front();
+        }
+        push(&mut self.frames, cpu, FRAMES);
+        push(&mut self.ui_ms, cpu.ui_ms, SUMMARIZED);
+        self.drawn += 1;
+    }
+
+    /// Takes the times of a finished frame, once.
+    pub(super) fn finished(&mut self, times: &DeviceTimes<'_>) {
+        let Some(at) = self.submitted.iter().position(|(serial, ..)| *serial == times.serial) else { return };
+        let Some((_, shown, cpu)) = self.submitted.drain(..=at).next_back() else { return };
+        let DeviceTimes { ms, passes, counts, .. } = *times;
+        let sample = Sample { shown, cpu, device_ms: ms, passes: passes.to_vec(), counts };
+        if sample.is_of_picture() {
+            self.cost.take(&sample, &self.pictures);
+            push(&mut self.pictures, sample, FRAMES);
+        }
+    }
+
+    /// Frames that have drawn the picture, the oldest first.
+    pub(super) fn pictures(&self) -> &VecDeque<Sample> {
+        &self.pictures
+    }
+
+    /// The CPU's times of the last frames, the oldest first.
+    pub(super) fn frames(&self) -> &VecDeque<CpuTimes> {
+        &self.frames
+    }
+
+    /// Device time of the last frame that drew the picture, milliseconds.
+    pub(super) fn frame_ms(&self) -> Option<f64> {
+        self.pictures.back().map(|sample| sample.device_ms)
+    }
+
+    /// What the last edit cost; `None` before the first.
+    pub(super) fn cost(&self) -> Option<Cost> {
+        self.cost.cost()
+    }
+
+    /// Number of frames so far, and the time that the panels took in the last of them.
+    pub(super) fn summary(&self) -> (u64, Summary) {
+        (self.drawn, Summary::of(self.ui_ms.iter().copied()))
+    }
+
+    /// Whether to draw the picture once more although it is the same, because too few frames tell what new shaders take. Each call
+    /// counts as a frame.
+    pub(super) fn wants_frame(&mut self, shown: &Shown) -> bool {
+        if self.extra.as_ref().is_none_or(|(of, _)| of != shown) {
+            self.extra = Some((shown.clone(), 0));
+        }
+        let Some((_, drawn)) = &mut self.extra else { return false };
+        *drawn += 1;
+        *drawn <= EXTRA
+    }
+}
+
+fn push<T>(list: &mut VecDeque<T>, item: T, most: usize) {
+    if list.len() >= most {
+        list.pop_front();
+    }
+    list.push_back(item);
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    pub(in crate::app) fn shown(generation: u64) -> Shown {
+        Shown { generation, mode: "final".into(), size: (640, 480), model: "ball".into() }
+    }
+
+    pub(in crate::app) fn passes(times: &[(&str, f64)]) -> Vec<PassTime> {
+        times.iter().map(|(name, ms)| PassTime { name: (*name).to_owned(), ms: *ms, kept: false }).collect()
+    }
+
+    /// A frame that goes to the device and is finished.
+    pub(in crate::app) fn draw(timing: &mut Timing, shown: &Shown, times: &[(&str, f64)]) {
+        let serial = timing.drawn + 1;
+        let cpu = CpuTimes { ui_ms: serial as f64, record_ms: 1.0 };
+        timing.submitted(serial, shown.clone(), cpu);
+        let ms = times.iter().map(|(_, ms)| ms).sum();
+        let passes = passes(times);
+        let times = DeviceTimes { serial, ms, passes: &passes, counts: DrawCounts::default() };
+        timing.finished(&times);
+        // The next frame asks again before a newer one has finished.
+        timing.finished(&times);
+    }
+
+    #[test]
+    fn a_frame_of_the_panels_alone_is_no_time_of_the_picture() {
+        let mut timing = Timing::default();
+        draw(&mut timing, &shown(1), &[("tone map", 0.5), ("ui", 0.5)]);
+        assert_eq!(timing.frame_ms(), None);
+        draw(&mut timing, &shown(1), &[("model", 6.0), ("tone map", 1.0), ("ui", 1.0)]);
+        draw(&mut timing, &shown(1), &[("tone map", 0.5), ("ui", 0.5)]);
+        assert_eq!((timing.frame_ms(), timing.pictures().len(), timing.frames().len()), (Some(8.0), 1, 3));
+        // A pass that is off is gone, and one that covers the model is a picture as well.
+        draw(&mut timing, &shown(1), &[("image", 4.0), ("ui", 1.0)]);
+        let last = timing.pictures().back().unwrap();
+        assert_eq!((last.device_ms, last.pass_ms("image"), last.pass_ms("model")), (5.0, Some(4.0), None));
+        // A frame with an older picture beside the newest tells nothing about either.
+        draw(&mut timing, &shown(1), &[("model", 4.0), ("compare", 4.0), ("ui", 1.0)]);
+        assert_eq!(timing.frame_ms(), Some(5.0));
+    }
+
+    #[test]
+    fn the_history_is_bounded_and_summarized() {
+        let mut timing = Timing::default();
+        (0..500).for_each(|_| draw(&mut timing, &shown(1), &[("model", 1.0)]));
+        assert_eq!((timing.pictures().len(), timing.frames().len()), (FRAMES, FRAMES));
+        let (frames, summary) = timing.summary();
+        assert_eq!((frames, summary.max), (500, 500.0));
+        assert!((summary.median - 250.0).abs() <= 1.0 && (summary.p95 - 475.0).abs() <= 1.0, "{summary:?}");
+    }
+
+    #[test]
+    fn new_shaders_get_a_few_frames_more_and_no_endless_row() {
+        let mut timing = Timing::default();
+        let asked =
+            |timing: &mut Timing, generation| (0..20).filter(|_| timing.wants_frame(&shown(generation))).count();
+        assert_eq!((asked(&mut timing, 1), asked(&mut timing, 1), asked(&mut timing, 2)), (EXTRA, 0, EXTRA));
+    }
+}

@@ -1,0 +1,160 @@
+//! What the last edit cost: device time of the frame and of each pass before and after it.
+
+use std::collections::VecDeque;
+
+use super::{Sample, Shown};
+
+/// Frames of each side that count, the newest.
+const FRAMES: usize = 16;
+/// Changes smaller than this part of the time before, and than these milliseconds, are noise.
+const NOISE: f64 = 0.05;
+const NOISE_MS: f64 = 0.02;
+
+/// A pass before and after the edit, in milliseconds; `None` where there is no such pass.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct CostRow {
+    pub(in crate::app) name: String,
+    pub(in crate::app) before: Option<f64>,
+    pub(in crate::app) after: Option<f64>,
+}
+
+impl CostRow {
+    /// By how many milliseconds it became slower; negative if it became faster. `None` if the change is no more than noise.
+    pub(in crate::app) fn change(&self) -> Option<f64> {
+        let (before, after) = (self.before.unwrap_or_default(), self.after.unwrap_or_default());
+        let change = after - before;
+        (change.abs() > NOISE_MS && change.abs() > before * NOISE).then_some(change)
+    }
+}
+
+/// What an edit cost.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct Cost {
+    /// Generations of the shaders before and after.
+    pub(in crate::app) generations: [u64; 2],
+    /// The frame, then each pass.
+    pub(in crate::app) rows: Vec<CostRow>,
+    /// How many frames the medians are of.
+    pub(in crate::app) frames: [usize; 2],
+}
+
+impl Cost {
+    /// The pass that became slower by the most milliseconds.
+    pub(in crate::app) fn slower(&self) -> Option<(&CostRow, f64)> {
+        let passes = self.rows.iter().skip(1);
+        let slower = passes.filter_map(|row| Some((row, row.change().filter(|change| *change > 0.0)?)));
+        slower.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Collects the frames before and after an edit.
+#[derive(Default)]
+pub(super) struct Tracker {
+    before: Vec<Sample>,
+    after: VecDeque<Sample>,
+}
+
+impl Tracker {
+    /// Takes a frame that drew the picture. `earlier`: those before it.
+    pub(super) fn take(&mut self, sample: &Sample, earlier: &VecDeque<Sample>) {
+        let newest = earlier.back().map(|last| &last.shown);
+        if newest.is_some_and(|last| last.generation < sample.shown.generation) {
+            // The frames before the edit that show the same.
+            let is_before = |old: &&Sample| {
+                Some(old.shown.generation) == newest.map(|last| last.generation) && old.shown.is_like(&sample.shown)
+            };
+            self.before = of_value(earlier.iter().rev().filter(is_before).take(FRAMES).cloned().collect());
+            self.after.clear();
+        } else if newest.is_some_and(|last| last.generation > sample.shown.generation) {
+            // Another tree, or the worker has started again.
+            *self = Self::default();
+        }
+        let is_like = |shown: &Shown| shown.is_like(&sample.shown) && shown.generation < sample.shown.generation;
+        if self.before.first().is_some_and(|before| is_like(&before.shown)) {
+            self.after.push_back(sample.clone());
+            // The oldest are the nearest to the edit, and the first may be the slow one that a driver compiles in.
+            self.after.truncate(FRAMES + 1);
+        }
+    }
+
+    pub(super) fn cost(&self) -> Option<Cost> {
+        let after = of_value(self.after.iter().rev().cloned().collect());
+        let (before, first) = (self.before.first()?, after.first()?);
+        let sides = [&self.before, &after];
+        let of = |name: &str| {
+            let median_of = |samples: &[Sample]| median(samples.iter().filter_map(|sample| sample.pass_ms(name)));
+            let [before, after] = sides.map(|samples| median_of(samples));
+            CostRow { name: name.to_owned(), before, after }
+        };
+        let [before_ms, after_ms] = sides.map(|samples| median(samples.iter().map(|sample| sample.device_ms)));
+        let frame = CostRow { name: "Whole frame".to_owned(), before: before_ms, after: after_ms };
+        let mut names: Vec<&str> = Vec::new();
+        for pass in first.passes.iter().chain(&before.passes) {
+            if !names.contains(&pass.name.as_str()) {
+                names.push(&pass.name);
+            }
+        }
+        Some(Cost {
+            generations: [before.shown.generation, first.shown.generation],
+            rows: std::iter::once(frame).chain(names.into_iter().map(of)).collect(),
+            frames: [self.before.len(), after.len()],
+        })
+    }
+}
+
+/// The frames, the newest first, without the first frame of their shaders if there are others: a software device compiles in it.
+fn of_value(mut samples: Vec<Sample>) -> Vec<Sample> {
+    if samples.len() > 1 {
+        samples.pop();
+    }
+    samples
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Timing;
+    use super::super::tests::{draw, shown};
+    use super::*;
+
+    #[test]
+    fn the_pass_that_an_edit_slows_down_is_named() {
+        let mut timing = Timing::default();
+        // The first frame compiles.
+        draw(&mut timing, &shown(1), &[("model", 200.0), ("bloom", 1.0)]);
+        (0..3).for_each(|_| draw(&mut timing, &shown(1), &[("model", 2.0), ("bloom", 1.0)]));
+        assert_eq!(timing.cost(), None, "no edit yet");
+        draw(&mut timing, &shown(2), &[("model", 300.0), ("bloom", 1.0), ("film", 0.5)]);
+        (0..3).for_each(|_| draw(&mut timing, &shown(2), &[("model", 3.0), ("bloom", 1.001), ("film", 0.5)]));
+        let cost = timing.cost().unwrap();
+        assert_eq!((cost.generations, cost.frames), ([1, 2], [3, 3]));
+        let row = |name: &str| cost.rows.iter().find(|row| row.name == name).unwrap();
+        assert_eq!((row("model").before, row("model").after, row("model").change()), (Some(2.0), Some(3.0), Some(1.0)));
+        assert_eq!(row("bloom").change(), None, "noise");
+        assert_eq!((row("film").before, row("film").change()), (None, Some(0.5)));
+        assert_eq!(cost.slower().map(|(row, ms)| (row.name.as_str(), ms)), Some(("model", 1.0)));
+        assert_eq!(cost.rows[0].before, Some(3.0));
+    }
+
+    #[test]
+    fn only_frames_that_show_the_same_are_compared() {
+        let mut timing = Timing::default();
+        draw(&mut timing, &shown(1), &[("model", 2.0)]);
+        let roughness = |generation| Shown { mode: "roughness".into(), ..shown(generation) };
+        draw(&mut timing, &roughness(2), &[("model", 9.0)]);
+        assert_eq!(timing.cost(), None);
+        // A look at another mode later leaves the cost of the edit as it was.
+        draw(&mut timing, &roughness(3), &[("model", 7.0)]);
+        draw(&mut timing, &shown(3), &[("model", 1.0)]);
+        let cost = timing.cost().unwrap();
+        assert_eq!((cost.rows[0].before, cost.rows[0].after), (Some(9.0), Some(7.0)));
+        // Another tree counts from 1 again.
+        draw(&mut timing, &shown(1), &[("model", 1.0)]);
+        assert_eq!(timing.cost(), None);
+    }
+}

@@ -1,0 +1,137 @@
+//! What is known of a compiled pipeline: the words of its modules, the driver's time, and the numbers that the driver tells of its
+//! machine code (VK_KHR_pipeline_executable_properties). Drivers tell different numbers, under names of their own.
+
+use std::ffi::{CStr, c_char};
+use std::sync::OnceLock;
+
+use ash::vk;
+use serde::Serialize;
+
+use crate::gpu::error::Context;
+use crate::gpu::{Gpu, GpuError};
+
+/// A number that a driver tells of machine code.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Statistic {
+    /// The driver's name for it, as `Register Count`.
+    pub name: String,
+    /// What the driver says that it means.
+    pub meaning: String,
+    /// Its value. A driver's true is 1.
+    pub value: f64,
+}
+
+/// Machine code that a driver has made of one stage or of several.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Executable {
+    /// The driver's name for it.
+    pub name: String,
+    /// Kinds of the stages in it, as `fragment`.
+    pub stages: Vec<&'static str>,
+    /// Invocations that run together; 0 if the driver does not tell.
+    pub subgroup_size: u32,
+    /// The driver's numbers, in its order.
+    pub statistics: Vec<Statistic>,
+}
+
+/// A stage of a pipeline.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PipelineStage {
+    /// Path of the stage.
+    pub stage: String,
+    /// Words of its specialized module.
+    pub words_before: usize,
+    /// Words that the driver got: the specialized module after Specula's optimizer.
+    pub words: usize,
+    /// The driver's time for this stage, milliseconds, if it tells.
+    pub driver_ms: Option<f64>,
+}
+
+/// What is known of a pipeline.
+#[derive(Debug, Default)]
+pub struct Facts {
+    /// Its stages, in the order in which they run.
+    pub stages: Vec<PipelineStage>,
+    /// Time of the call that created it, milliseconds.
+    pub ms: f64,
+    /// Whether the driver took it from a cache.
+    pub is_cached: bool,
+    statistics: OnceLock<Vec<Executable>>,
+}
+
+impl Facts {
+    pub(super) fn new(stages: Vec<PipelineStage>, ms: f64, is_cached: bool) -> Self {
+        Self { stages, ms, is_cached, statistics: OnceLock::new() }
+    }
+
+    /// The numbers that the driver has told; `None` until it is asked ([`Facts::set_statistics`]).
+    pub fn statistics(&self) -> Option<&[Executable]> {
+        self.statistics.get().map(Vec::as_slice)
+    }
+
+    /// Keeps the numbers that the driver tells of the same pipeline, built once more to be asked.
+    pub fn set_statistics(&self, statistics: Vec<Executable>) {
+        let _ = self.statistics.set(statistics);
+    }
+}
+
+/// Milliseconds of a creation feedback, where the driver fills it.
+pub(super) fn feedback_ms(feedback: &vk::PipelineCreationFeedback) -> Option<f64> {
+    let is_valid = feedback.flags.contains(vk::PipelineCreationFeedbackFlags::VALID);
+    is_valid.then_some(feedback.duration as f64 * 1e-6)
+}
+
+/// The numbers that the driver tells of a pipeline, which must have been created with the flag `CAPTURE_STATISTICS`.
+pub(super) fn read(gpu: &Gpu, pipeline: vk::Pipeline) -> Result<Vec<Executable>, GpuError> {
+    let Some(extension) = &gpu.executables else { return Ok(Vec::new()) };
+    let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
+    // SAFETY: the pipeline is live, in this and the next call.
+    let all = unsafe { extension.get_pipeline_executable_properties(&info) }.context("asking what a pipeline is of")?;
+    let of = |(index, properties): (u32, &vk::PipelineExecutablePropertiesKHR<'_>)| {
+        let info = vk::PipelineExecutableInfoKHR::default().pipeline(pipeline).executable_index(index);
+        // SAFETY: the index is one of those that the driver has listed, and statistics were captured.
+        let found = unsafe { extension.get_pipeline_executable_statistics(&info) };
+        let found = found.context("asking for the statistics of a pipeline")?;
+        Ok(Executable {
+            name: text(&properties.name),
+            stages: kinds(properties.stages),
+            subgroup_size: properties.subgroup_size,
+            statistics: found.iter().map(statistic).collect(),
+        })
+    };
+    (0..).zip(&all).map(of).collect()
+}
+
+fn statistic(found: &vk::PipelineExecutableStatisticKHR<'_>) -> Statistic {
+    use vk::PipelineExecutableStatisticFormatKHR as Format;
+    // SAFETY: the driver has set the field of the union that the format names.
+    let value = unsafe {
+        match found.format {
+            Format::BOOL32 => f64::from(u8::from(found.value.b32 != vk::FALSE)),
+            Format::INT64 => found.value.i64 as f64,
+            Format::UINT64 => found.value.u64 as f64,
+            _ => found.value.f64,
+        }
+    };
+    Statistic { name: text(&found.name), meaning: text(&found.description), value }
+}
+
+/// The text before the first NUL.
+fn text(characters: &[c_char]) -> String {
+    CStr::from_bytes_until_nul(bytemuck::cast_slice(characters))
+        .map(|text| text.to_string_lossy().into_owned())
+        .unwrap_or_default()
+}
+
+fn kinds(stages: vk::ShaderStageFlags) -> Vec<&'static str> {
+    use vk::ShaderStageFlags as S;
+    let all = [
+        (S::VERTEX, "vertex"),
+        (S::TESSELLATION_CONTROL, "tessellation control"),
+        (S::TESSELLATION_EVALUATION, "tessellation evaluation"),
+        (S::GEOMETRY, "geometry"),
+        (S::FRAGMENT, "fragment"),
+        (S::COMPUTE, "compute"),
+    ];
+    all.iter().filter(|(flag, _)| stages.contains(*flag)).map(|(_, name)| *name).collect()
+}

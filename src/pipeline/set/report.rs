@@ -1,0 +1,167 @@
+//! What is known of the stages of a picture: their words, the driver's time, and what the driver tells of their machine code.
+
+use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::{PipelineSet, lock};
+use crate::frame::{PipelineKey, PipelineRequest};
+use crate::gpu::{ComputePipeline, Executable, Facts, GpuError, Pipeline, Specialization};
+use crate::pipeline::bounds::shader_module;
+use crate::shader::{GraphPass, StageKind};
+
+/// A stage in the largest of its pipelines.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct InPipeline {
+    /// Words with the pipeline's constants, before Specula's optimizer.
+    pub words_before: usize,
+    /// Words that the driver got.
+    pub words: usize,
+    /// The driver's time for the stage, milliseconds, if it tells.
+    pub driver_ms: Option<f64>,
+    /// Time of the call that created the whole pipeline, milliseconds.
+    pub pipeline_ms: f64,
+    /// Whether the driver took the pipeline from a cache.
+    pub is_cached: bool,
+    /// What the driver tells of the stage's machine code; `None` until it is asked.
+    pub executables: Option<Vec<Executable>>,
+}
+
+/// A stage of a shader set.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StageReport {
+    /// Words of its module as compiled, with all that constants may switch off.
+    pub compiled: usize,
+    /// Number of its pipelines in the picture: one for each kind of material, for example.
+    pub pipelines: usize,
+    /// It in the largest of these pipelines; `None` if the picture has none of the stage, or it is being built.
+    pub largest: Option<InPipeline>,
+}
+
+/// A pipeline of a picture.
+enum Found {
+    Graphics(PipelineKey, Arc<Pipeline>),
+    Compute(Arc<GraphPass>, Arc<ComputePipeline>),
+}
+
+impl Found {
+    fn facts(&self) -> &Facts {
+        match self {
+            Self::Graphics(_, pipeline) => &pipeline.facts,
+            Self::Compute(_, pipeline) => &pipeline.facts,
+        }
+    }
+
+    fn words(&self) -> usize {
+        self.facts().stages.iter().map(|stage| stage.words).sum()
+    }
+}
+
+impl PipelineSet {
+    /// Number of pipelines in the set: those of the newest requests, of bakes and of thumbnails.
+    pub fn count(&self) -> usize {
+        lock(&self.graphics).entries.len() + lock(&self.computes).entries.len()
+    }
+
+    /// All stages by path, with what is known of them in the pipelines of `request`.
+    pub fn report(&self, request: &PipelineRequest) -> BTreeMap<String, StageReport> {
+        let new = |words: usize| StageReport { compiled: words, ..StageReport::default() };
+        let mut all: BTreeMap<String, StageReport> =
+            self.shaders.stages.iter().map(|(path, stage)| (path.clone(), new(stage.spirv.len()))).collect();
+        for found in self.found(request) {
+            let facts = found.facts();
+            for stage in &facts.stages {
+                let Some(report) = all.get_mut(&stage.stage) else { continue };
+                report.pipelines += 1;
+                // The first of several equal ones, so that the same picture always tells the same.
+                if report.largest.as_ref().is_some_and(|known| known.words >= stage.words) {
+                    continue;
+                }
+                let kind = self.shaders.stages.get(&stage.stage).map(|stage| name_of(stage.kind)).unwrap_or_default();
+                let is_of_stage = |executable: &&Executable| executable.stages.contains(&kind);
+                let of_stage = |all: &[Executable]| all.iter().filter(is_of_stage).cloned().collect();
+                report.largest = Some(InPipeline {
+                    words_before: stage.words_before,
+                    words: stage.words,
+                    driver_ms: stage.driver_ms,
+                    pipeline_ms: facts.ms,
+                    is_cached: facts.is_cached,
+                    executables: facts.statistics().map(of_stage),
+                });
+            }
+        }
+        all
+    }
+
+    /// Asks the driver about the next pipeline of `request` that it has not told of, which builds that pipeline once more. Returns
+    /// how long that took in milliseconds, or `None` if no question is left.
+    ///
+    /// # Errors
+    /// The driver rejects the pipeline, or does not answer.
+    pub fn ask_driver(&self, request: &PipelineRequest) -> Result<Option<f64>, GpuError> {
+        if !self.gpu.tells_statistics() {
+            return Ok(None);
+        }
+        // The report shows the largest pipeline of each stage; the others need not be asked about.
+        let mut found = self.found(request);
+        found.sort_by_key(|found| std::cmp::Reverse(found.words()));
+        let mut stages: Vec<&str> = Vec::new();
+        let mut next = None;
+        for found in &found {
+            let of = || found.facts().stages.iter().map(|stage| stage.stage.as_str());
+            let is_shown = of().any(|stage| !stages.contains(&stage));
+            stages.extend(of());
+            if is_shown && found.facts().statistics().is_none() && next.is_none() {
+                next = Some(found);
+            }
+        }
+        let Some(next) = next else { return Ok(None) };
+        let start = std::time::Instant::now();
+        let told = match next {
+            Found::Graphics(key, _) => self.make(key, |desc| Pipeline::statistics(&self.gpu, desc)),
+            Found::Compute(pass, _) => self.ask_about(pass, &request.pass_constants()),
+        };
+        // A driver that refuses is not asked again.
+        next.facts().set_statistics(told.as_ref().ok().cloned().unwrap_or_default());
+        told.map(|_| Some(start.elapsed().as_secs_f64() * 1e3))
+    }
+
+    fn ask_about(&self, pass: &GraphPass, constants: &Specialization) -> Result<Vec<Executable>, GpuError> {
+        let module = shader_module(&self.gpu, self.stage(&pass.note.stage)?, constants, false)?;
+        let layout = self.layout(&pass.inputs, &[&module], false)?;
+        ComputePipeline::statistics(&self.gpu, &self.layouts, &module, Some(&layout))
+    }
+
+    /// The pipelines of `request` that are there, in its order.
+    fn found(&self, request: &PipelineRequest) -> Vec<Found> {
+        let graphics = lock(&self.graphics);
+        // A material may be drawn twice with one pipeline.
+        let mut known = HashSet::new();
+        let keys = request.keys().filter(|key| known.insert(key.clone()));
+        let pipelines = keys.filter_map(|key| {
+            let pipeline = graphics.get(&key)?.clone();
+            Some(Found::Graphics(key, pipeline))
+        });
+        let mut found: Vec<Found> = pipelines.collect();
+        let computes = lock(&self.computes);
+        let constants = request.pass_constants();
+        found.extend(request.passes.iter().filter(|pass| pass.is_compute).filter_map(|pass| {
+            let pipeline = computes.get(&(pass.note.stage.clone(), constants.clone()))?.clone();
+            Some(Found::Compute(pass.clone(), pipeline))
+        }));
+        found
+    }
+}
+
+/// The name of a kind of stage in [`Executable::stages`].
+fn name_of(kind: StageKind) -> &'static str {
+    match kind {
+        StageKind::Vertex => "vertex",
+        StageKind::TessellationControl => "tessellation control",
+        StageKind::TessellationEvaluation => "tessellation evaluation",
+        StageKind::Geometry => "geometry",
+        StageKind::Fragment => "fragment",
+        StageKind::Compute => "compute",
+    }
+}

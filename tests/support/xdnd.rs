@@ -1,0 +1,121 @@
+//! A source of drag and drop by the XDND protocol, version 5: what a file manager does when the user drops a file on a window.
+
+use std::path::Path;
+use std::sync::mpsc::channel;
+
+use x11rb::connection::Connection as _;
+use x11rb::protocol::Event;
+use x11rb::protocol::xproto::{
+    AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, PropMode, SelectionNotifyEvent,
+    SelectionRequestEvent, WindowClass,
+};
+use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as _;
+use x11rb::{COPY_DEPTH_FROM_PARENT, CURRENT_TIME, NONE};
+
+use super::process::PATIENCE;
+
+/// Version of the protocol.
+const VERSION: u32 = 5;
+
+x11rb::atom_manager! {
+    Atoms: AtomsCookie {
+        XdndAware,
+        XdndSelection,
+        XdndEnter,
+        XdndPosition,
+        XdndStatus,
+        XdndDrop,
+        XdndFinished,
+        XdndActionCopy,
+        URI_LIST: b"text/uri-list",
+    }
+}
+
+/// Drags a file over the pixel `at` of the screen and drops it on the window. Returns once the window has said that it is finished.
+#[track_caller]
+pub fn drop_file(display: &str, window: u32, at: (u32, u32), file: &Path) {
+    let (display, uri) = (display.to_owned(), format!("file://{}\r\n", file.display()));
+    let (sender, done) = channel();
+    std::thread::spawn(move || sender.send(Source::new(&display, window, uri).drop_at(at)));
+    done.recv_timeout(PATIENCE).expect("the window finishes the drop");
+}
+
+/// A program that something is dragged from.
+struct Source {
+    server: RustConnection,
+    atoms: Atoms,
+    window: u32,
+    target: u32,
+    uri: String,
+}
+
+impl Source {
+    fn new(display: &str, target: u32, uri: String) -> Self {
+        let (server, screen) = x11rb::connect(Some(display)).unwrap();
+        let atoms = Atoms::new(&server).unwrap().reply().unwrap();
+        let root = server.setup().roots[screen].root;
+        let window = server.generate_id().unwrap();
+        let aux = CreateWindowAux::new();
+        let (class, visual) = (WindowClass::INPUT_OUTPUT, NONE);
+        server.create_window(COPY_DEPTH_FROM_PARENT, window, root, 0, 0, 1, 1, 0, class, visual, &aux).unwrap();
+        server.set_selection_owner(window, atoms.XdndSelection, CURRENT_TIME).unwrap();
+        let aware = server.get_property(false, target, atoms.XdndAware, AtomEnum::ANY, 0, 1).unwrap().reply().unwrap();
+        let version = aware.value32().and_then(|mut words| words.next()).expect("the window takes drops (XdndAware)");
+        assert!(version >= VERSION, "the window takes drops of version {version}");
+        Self { server, atoms, window, target, uri }
+    }
+
+    fn drop_at(&self, (x, y): (u32, u32)) {
+        let atoms = &self.atoms;
+        self.tell(atoms.XdndEnter, [VERSION << 24, atoms.URI_LIST, 0, 0]);
+        self.tell(atoms.XdndPosition, [0, (x << 16) | y, CURRENT_TIME, atoms.XdndActionCopy]);
+        let (mut accepted, mut asked) = (false, false);
+        // A window may ask what is dragged before the drop, as it does when it shows whether it takes it.
+        while !(accepted && asked) {
+            match self.server.wait_for_event().unwrap() {
+                Event::SelectionRequest(request) => {
+                    self.answer(&request);
+                    asked = true;
+                }
+                Event::ClientMessage(message) if message.type_ == atoms.XdndStatus => {
+                    accepted = message.data.as_data32()[1] & 1 == 1;
+                    assert!(accepted, "the window refuses the drop");
+                }
+                _ => {}
+            }
+        }
+        self.tell(atoms.XdndDrop, [0, CURRENT_TIME, 0, 0]);
+        loop {
+            match self.server.wait_for_event().unwrap() {
+                Event::SelectionRequest(request) => self.answer(&request),
+                Event::ClientMessage(message) if message.type_ == atoms.XdndFinished => return,
+                _ => {}
+            }
+        }
+    }
+
+    /// Sends a message of the protocol to the window.
+    fn tell(&self, kind: u32, [a, b, c, d]: [u32; 4]) {
+        let message = ClientMessageEvent::new(32, self.target, kind, [self.window, a, b, c, d]);
+        self.server.send_event(false, self.target, EventMask::NO_EVENT, message).unwrap();
+        self.server.flush().unwrap();
+    }
+
+    /// Hands over the URI of the file.
+    fn answer(&self, request: &SelectionRequestEvent) {
+        let SelectionRequestEvent { requestor, property, target, selection, time, .. } = *request;
+        self.server.change_property8(PropMode::REPLACE, requestor, property, target, self.uri.as_bytes()).unwrap();
+        let notify = SelectionNotifyEvent {
+            response_type: x11rb::protocol::xproto::SELECTION_NOTIFY_EVENT,
+            sequence: 0,
+            time,
+            requestor,
+            selection,
+            target,
+            property,
+        };
+        self.server.send_event(false, requestor, EventMask::NO_EVENT, notify).unwrap();
+        self.server.flush().unwrap();
+    }
+}

@@ -1,0 +1,80 @@
+//! What opens: files that are dropped, and the last session.
+
+use serde_json::Value;
+
+use super::controls::choose;
+use crate::support::window::Viewer;
+use crate::support::xdnd::drop_file;
+use crate::support::{Tree, glb};
+
+const RECENT: &str = "state/specula/recent.json";
+const SESSIONS: &str = "state/specula/sessions.json";
+
+/// Dropped as a file manager does it, by the XDND protocol.
+#[test]
+fn a_dropped_model_opens_and_any_other_file_changes_nothing() {
+    let tree = Tree::new();
+    let (model, note) = (tree.beside("dropped.glb"), tree.beside("note.txt"));
+    std::fs::write(&model, glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    std::fs::write(&note, "no model").unwrap();
+    let mut viewer = Viewer::open(tree, &["sphere-grid"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    let (display, window) = (viewer.display.name().to_owned(), viewer.window());
+    drop_file(&display, window, (300, 200), &note);
+    viewer.running.until_stderr("note.txt: expected a .gltf or .glb model");
+    assert!(viewer.screenshot() == first, "a text changed the picture");
+    drop_file(&display, window, (300, 200), &model);
+    viewer.until("the dropped model", |shot| *shot != first);
+    let recent: Value = serde_json::from_str(&std::fs::read_to_string(viewer.tree.beside(RECENT)).unwrap()).unwrap();
+    assert_eq!(recent["models"][0].as_str(), model.to_str());
+    viewer.quit();
+}
+
+/// Ends a window, and returns its folder.
+fn end(mut viewer: Viewer) -> Tree {
+    viewer.key("ctrl+q");
+    assert!(viewer.running.end().success());
+    viewer.tree
+}
+
+#[test]
+fn a_session_is_restored_where_the_user_wants_it() {
+    let plain = |tree| {
+        let mut viewer = Viewer::plain(tree, &[]);
+        viewer.ready_and_baked();
+        viewer
+    };
+    let mut viewer = plain(Tree::new());
+    let first = viewer.screenshot();
+    viewer.key("u");
+    viewer.until("roughness", |shot| *shot != first);
+    let roughness = viewer.screenshot();
+    choose(&viewer, "model: sphere-grid");
+    viewer.until("another model", |shot| *shot != roughness);
+    let last = viewer.screenshot();
+    let path = viewer.tree.beside(SESSIONS);
+    let tree = end(viewer);
+    let stored: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let work = stored["sessions"][0]["work"].clone();
+    assert_eq!((work["model"].as_str(), work["settings"]["mode"].as_str()), (Some("sphere-grid"), Some("roughness")));
+
+    // The next window offers it.
+    let mut viewer = plain(tree);
+    assert!(viewer.screenshot() != last, "a session was restored that nobody asked for");
+    choose(&viewer, "restore the last session");
+    viewer.until("the last session", |shot| *shot == last);
+    let tree = end(viewer);
+
+    // By itself, once the user has chosen that. An option says that something else is wanted.
+    let mut stored: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    stored["always"] = true.into();
+    std::fs::write(&path, stored.to_string()).unwrap();
+    let mut viewer = plain(tree);
+    viewer.until("the last session by itself", |shot| *shot == last);
+    let tree = end(viewer);
+    let mut viewer = Viewer::plain(tree, &["--mode", "metallic"]);
+    viewer.running.event("ready");
+    assert!(viewer.screenshot() != last, "an option did not keep the last session away");
+    viewer.quit();
+}
