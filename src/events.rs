@@ -54,6 +54,8 @@ pub enum Event<'a> {
         /// Largest difference of a channel of the display, 0..1.
         largest: f64,
     },
+    /// Another part of the scene is selected.
+    Selected(SelectedEvent),
     /// A screenshot was written.
     Screenshot {
         /// Its path.
@@ -77,6 +79,19 @@ pub enum Event<'a> {
     },
     /// A diagnostic of the compiler or of a check.
     Diagnostic(&'a Diagnostic),
+}
+
+/// The selected part of the scene; all null if nothing is selected, or no part of the model.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct SelectedEvent {
+    /// Index of the instance: a primitive of a node.
+    pub instance: Option<usize>,
+    /// Name of the node, or `#` and its index in the file.
+    pub node: Option<String>,
+    /// Name of the primitive.
+    pub primitive: Option<String>,
+    /// Name of the material, or `#` and its index in the file.
+    pub material: Option<String>,
 }
 
 /// A finished reload.

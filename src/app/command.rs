@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use super::dialog::Dialog;
 use super::editor::Place;
+use super::layout::Panel;
+use super::selection::Selected;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
 
@@ -71,6 +73,22 @@ pub(super) enum Command {
     ViewFrom(Side),
     /// Write the picture to `specula-N.png`.
     Screenshot,
+    /// Select what this pixel of the picture shows, by its distance from the left and the upper edge.
+    Pick([u32; 2]),
+    /// Select a part of the scene.
+    Select(Selected),
+    /// Hide what is selected.
+    HideSelected,
+    /// Draw nothing but what is selected; again: everything.
+    IsolateSelected,
+    /// Draw everything that is hidden or not isolated.
+    ShowAll,
+    /// Open a panel, or show its tab.
+    OpenPanel(Panel),
+    /// Look through a camera of the model.
+    LookThrough(usize),
+    /// Switch the rectangular light on and select it.
+    PlaceRectangle,
     /// Close the window.
     Quit,
     /// Show a message for a few seconds.

@@ -18,6 +18,7 @@ mod panels;
 mod playback;
 mod recent;
 mod screen;
+mod selection;
 mod state;
 mod status;
 mod viewer;
@@ -55,6 +56,8 @@ pub struct AppOptions {
     pub model: Option<PathBuf>,
     /// Settings to start with.
     pub settings: Settings,
+    /// Whether a model that has lights shines by them: the user has not said which lights shine.
+    pub follows_lights: bool,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.

@@ -5,6 +5,8 @@ mod gallery;
 mod loops;
 mod probe;
 mod reference;
+mod selection;
+mod texture;
 mod thumbnail;
 mod ui;
 
@@ -22,6 +24,7 @@ use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::picture;
+use crate::render::tools::Outline;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use error_map::ErrorMap;
@@ -79,6 +82,9 @@ pub(super) struct Screen {
     /// The picture that the user compares with, while there is one.
     reference: Option<ReferenceView>,
     error_map: ErrorMap,
+    /// The targets of the selection's outline, while there is a selection.
+    outline: Option<Outline>,
+    texture: texture::ShownTexture,
     /// Draws thumbnails of versions while some are missing.
     thumbnails: Option<View>,
     thumbnail: Option<thumbnail::Pending>,
@@ -131,6 +137,8 @@ impl Screen {
             checks: 0,
             reference: None,
             error_map: ErrorMap::default(),
+            outline: None,
+            texture: texture::ShownTexture::default(),
             thumbnails: None,
             thumbnail: None,
             pixel: None,
@@ -177,7 +185,8 @@ impl Screen {
         let drawn = self.survive(drawn)?;
         if drawn.is_none() {
             self.view.forget();
-            (self.reference, self.thumbnails, self.thumbnail) = (None, None, None);
+            (self.reference, self.thumbnails, self.thumbnail, self.outline) = (None, None, None, None);
+            self.texture.forget();
             self.gallery.forget();
         }
         let shortage = self.shortage.take();
@@ -236,6 +245,10 @@ impl Screen {
             None => View::clear(&mut encoder, &output),
         }
         self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
+        let outlined = self.draw_outline(&mut encoder, viewer, frame.as_ref(), &acquired.image);
+        self.survive(outlined)?;
+        let shown = self.draw_texture(&mut encoder, viewer, frame.as_ref());
+        self.survive(shown)?;
         let recorded = self.record_thumbnail(&mut encoder, slot, viewer);
         if self.survive(recorded)?.is_none() {
             // The newest picture matters more.
@@ -292,7 +305,7 @@ impl Screen {
         self.last_frame = Instant::now();
         // Limit the step, so that lights do not jump after a pause.
         viewer.turn_lights(seconds.min(0.5));
-        let Some((view, model)) = self.camera_view().zip(viewer.session.model().cloned()) else { return false };
+        let Some((view, model)) = self.camera_view().zip(viewer.session.placed_model()) else { return false };
         self.camera.step(&mut viewer.session.settings.camera, &view, &model.bounds, seconds)
     }
 

@@ -4,6 +4,8 @@ mod compare;
 mod messages;
 mod picture;
 mod recording;
+mod select;
+mod tools;
 mod versions;
 
 use std::path::{Path, PathBuf};
@@ -14,6 +16,7 @@ use super::command::{Command, open_as};
 use super::history::History;
 use super::panels::PanelState;
 use super::playback::Playback;
+use super::selection::Selected;
 use super::status::{Notices, ShaderStatus};
 use super::{AppOptions, Early};
 use super::{dialog, editor};
@@ -27,7 +30,7 @@ use crate::recovery::Recorder;
 use crate::render::{BoundFrame, Resources};
 use crate::scene::LoadOptions;
 use crate::session::Session;
-use crate::settings::Settings;
+use crate::settings::{LightSource, Settings};
 use crate::shader::{Change, Compiler, Diagnostic, Source};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
@@ -93,6 +96,14 @@ pub(super) struct Viewer {
     /// The time of animated shaders.
     pub(super) playback: Playback,
     pub(super) history: History,
+    /// What is selected in the scene.
+    pub(super) selected: Selected,
+    /// The pipelines of outlines and pictures of textures, once something has asked for them.
+    tools: tools::ToolsState,
+    /// Whether the user has not said which lights shine, so that a model with lights shines by its own.
+    follows_lights: bool,
+    /// The lights that the last model was shown with because of that.
+    followed_source: LightSource,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
@@ -153,6 +164,10 @@ impl Viewer {
             start: options.start,
             playback: Playback::default(),
             history: History::default(),
+            selected: Selected::Nothing,
+            tools: tools::ToolsState::default(),
+            follows_lights: options.follows_lights,
+            followed_source: LightSource::default(),
             gpu: gpu.clone(),
             resources,
             threads,
@@ -307,6 +322,14 @@ impl Viewer {
                 [camera.azimuth, camera.elevation] = side.angles();
             }
             Command::Screenshot => self.screenshot = true,
+            Command::Pick(at) => self.select_at(at),
+            Command::Select(selected) => self.select(selected),
+            Command::HideSelected => self.hide_selected(),
+            Command::IsolateSelected => self.isolate_selected(),
+            Command::ShowAll => self.show_all(),
+            Command::OpenPanel(panel) => self.panels.layout.open(panel),
+            Command::LookThrough(camera) => self.look_through(camera),
+            Command::PlaceRectangle => self.place_rectangle(),
             Command::Quit => self.quit = true,
             Command::Edit(place) => match editor::open(&place) {
                 Ok(editor) => self.threads.wait(|| editor.failure().map(Message::Say)),

@@ -18,6 +18,7 @@ use crate::comparison::{Comparison, Picture};
 use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::message::panic_text;
+use crate::render::tools::Tools;
 use crate::render::{Readback, TraceKey};
 use crate::settings::Settings;
 use crate::shader::{Batch, Change, Diagnostic, Source, Watcher};
@@ -42,6 +43,8 @@ pub(crate) enum Message {
     Say(String),
     /// The file dialog has closed: the chosen path, none if the user cancels it, or a message if there is no dialog.
     Chosen(Result<Option<PathBuf>, String>),
+    /// The pipelines of outlines and pictures of textures, or why there are none.
+    Tools(Result<Arc<Tools>, String>),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
 }
@@ -55,6 +58,8 @@ pub(crate) enum Role {
     Tracer(TraceKey),
     Reader(MeasuredKey),
     Explainer([u32; 2]),
+    /// Makes the pipelines of outlines and pictures of textures.
+    Toolmaker,
     /// Waits for what is outside of Specula, or compares pictures.
     Waiter,
 }
@@ -109,7 +114,7 @@ pub(crate) struct Threads {
     pub(crate) worker: Worker,
     pub(crate) loader: Loader,
     pub(crate) baker: Baker,
-    /// Threads that look for the line of a loop.
+    /// Threads that look for the line of a loop, or make the pipelines of tools.
     explainers: Vec<JoinHandle<()>>,
     outbox: Outbox,
 }
@@ -154,6 +159,11 @@ impl Threads {
         self.explainers.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
             outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
         }));
+    }
+
+    /// Sends the pipelines that `make` returns.
+    pub(crate) fn make_tools(&mut self, make: impl FnOnce() -> Result<Arc<Tools>, String> + Send + 'static) {
+        self.explainers.push(self.outbox.spawn(Role::Toolmaker, |outbox| outbox.send(Message::Tools(make()))));
     }
 
     /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the

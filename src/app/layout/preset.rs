@@ -71,7 +71,8 @@ impl Preset {
 /// Groups of tabs, one above the other, with their shares of the height.
 fn column(tiles: &mut Tiles<Panel>, groups: &[(&[Panel], f32)]) -> TileId {
     let rows = groups.iter().map(|(panels, share)| {
-        let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+        let shown = panels.iter().filter(|panel| panel.is_in_presets());
+        let panes = shown.map(|panel| tiles.insert_pane(*panel)).collect();
         (tiles.insert_tab_tile(panes), *share)
     });
     let rows = rows.collect();

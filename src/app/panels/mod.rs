@@ -4,6 +4,7 @@
 mod camera;
 mod compare;
 mod environment;
+mod gizmo;
 mod keys;
 mod lights;
 mod mode_tile;
@@ -14,8 +15,10 @@ mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
 pub(super) mod rows;
+pub(super) mod scene;
 mod shaders;
 mod status_bar;
+pub(super) mod texture;
 pub(super) mod theme;
 pub(super) mod timeline;
 mod timing;
@@ -54,6 +57,9 @@ pub(super) struct PanelState {
     scrolled_to: String,
     pub(super) gallery: GalleryState,
     timing: timing::Timing,
+    pub(super) scene: scene::SceneState,
+    pub(super) texture: texture::TextureState,
+    gizmo: gizmo::Gizmo,
     pub(super) timeline: timeline::TimelineState,
     files: overlay::diagnostics::Files,
 }
@@ -73,6 +79,9 @@ impl PanelState {
             scrolled_to: String::new(),
             gallery: GalleryState::default(),
             timing: timing::Timing::default(),
+            scene: scene::SceneState::default(),
+            texture: texture::TextureState::default(),
+            gizmo: gizmo::Gizmo::default(),
             timeline: timeline::TimelineState::default(),
             files: overlay::diagnostics::Files::default(),
         }
@@ -105,6 +114,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
     viewer.panels.timeline.is_visible = false;
+    viewer.panels.texture.request = None;
     viewer.panels.gallery.begin_frame();
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
@@ -117,6 +127,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
         PictureArea { rect: whole, free: whole }
     };
     compare::show(ui.ctx(), viewer, picture.rect);
+    gizmo::show(ui.ctx(), viewer, picture.rect);
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
@@ -149,15 +160,27 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.timeline = state;
         return;
     }
+    if panel == Panel::Scene {
+        let mut state = std::mem::take(&mut viewer.panels.scene);
+        scene::show(ui, viewer, &mut state, commands);
+        viewer.panels.scene = state;
+        return;
+    }
+    if panel == Panel::Texture {
+        let mut state = std::mem::take(&mut viewer.panels.texture);
+        texture::show(ui, viewer, &mut state);
+        viewer.panels.texture = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
-    let model = viewer.session.model().cloned().unwrap_or_default();
+    let model = viewer.session.placed_model().unwrap_or_default();
     let (cut_short, is_animated, device) = (viewer.is_cut_short(), viewer.is_animated(), device(viewer));
     let features = viewer.session.features();
     let session = &mut viewer.session;
     let settings = &mut session.settings;
     let declared = shaders.clone().unwrap_or_default();
     match panel {
-        Panel::Viewport | Panel::Timeline => {}
+        Panel::Viewport | Panel::Timeline | Panel::Scene | Panel::Texture => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
@@ -173,7 +196,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
             let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);
             environment::show(ui, settings, viewer.panels.recent.of(Kind::Environment), progress, report);
         }
-        Panel::Lights => lights::show(ui, settings, model.lights.len()),
+        Panel::Lights => lights::show(ui, settings, model.lights.len(), commands),
         Panel::Output => output::show(ui, settings, commands),
         Panel::Camera => camera::show(ui, settings, &model, commands),
     }

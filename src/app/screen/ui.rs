@@ -25,6 +25,8 @@ impl Screen {
             self.frames.wait_all()?;
             self.gallery.drop_texture(&mut self.ui, &mut viewer.panels.gallery);
         }
+        let prepared = self.prepare_texture(viewer);
+        self.survive(prepared)?;
         let readings = Readings {
             device_ms: self.frames.last_device_ms(),
             passes: self.frames.pass_times().to_vec(),

@@ -7,13 +7,14 @@ use std::sync::Arc;
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
 use crate::app::recent::Kind;
+use crate::app::selection::Selected;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
 use crate::message;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
 use crate::scene::{BUILT_IN, environment};
-use crate::settings::{GROUND, LightSource};
+use crate::settings::{GROUND, LightSource, SceneSettings};
 use crate::shader::{Diagnostic, Severity, ShaderSet};
 use crate::threads::baker::BakeMessage;
 use crate::threads::loader::Loaded;
@@ -42,6 +43,7 @@ impl Viewer {
             Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
             Message::Say(text) => self.say(text),
+            Message::Tools(tools) => self.on_tools(tools),
             Message::Look(Ok(settings)) => {
                 self.session.settings = *settings;
                 self.check_names();
@@ -173,15 +175,24 @@ impl Viewer {
             Ok(uploaded) => {
                 // The pictures of older versions would keep the old model on the device.
                 self.versions.drop_pictures();
-                let model = uploaded.model();
+                let (model, is_other) = (uploaded.model(), loaded.path != self.model.path);
                 for warning in &model.warnings {
                     message::warn(format_args!("{}: {warning}", model.name));
                 }
                 if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
                     self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
                 }
-                if loaded.path != self.model.path {
+                if is_other {
                     self.execute(Command::FrameModel);
+                    // They name parts of the model before.
+                    self.session.settings.scene = SceneSettings::default();
+                    self.session.settings.materials.clear();
+                }
+                if is_other || !self.selected.is_in(model) {
+                    self.select(Selected::Nothing);
+                }
+                if is_other || self.session.model().is_none() {
+                    self.follow_lights(model);
                 }
                 self.panels.show_model_warnings = true;
                 if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {
@@ -192,6 +203,10 @@ impl Viewer {
                 self.model.files.clone_from(&model.files);
                 self.session.set_model(model);
                 self.resources.set_model(&uploaded);
+                let settings = &self.session.settings;
+                let unknown = model.unknown_part(&settings.scene);
+                let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
+                unknown.into_iter().for_each(|problem| self.say(problem));
             }
             Err((message, tried)) => {
                 // Watch the model on screen as well as the files that must be repaired.
@@ -315,6 +330,7 @@ impl Viewer {
                 }
                 "explainer"
             }
+            Role::Toolmaker => "toolmaker",
             Role::Waiter => {
                 (self.is_choosing, self.compare.measuring) = (false, None);
                 "waiting"

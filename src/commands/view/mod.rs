@@ -61,6 +61,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         model: args.model,
         tree: source.location().map(Path::to_owned),
     };
+    let follows_lights = args.common.leaves_lights_open();
     let state = folder.as_deref().map(State::read).unwrap_or_default();
     let work = state.work.clone().unwrap_or(given);
     let good = folder.as_deref().map(|folder| GoodTexts::read(folder, work.tree.as_deref())).unwrap_or_default();
@@ -78,6 +79,8 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         source,
         compiler: compiler()?,
         model: work.model,
+        // After a loss the settings are those of the session.
+        follows_lights: follows_lights && state.work.is_none(),
         settings: work.settings,
         size: state.window.map_or(args.common.size, |window| window.size),
         at: state.window.and_then(|window| window.at),
