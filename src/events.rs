@@ -101,6 +101,8 @@ pub enum Event<'a> {
         /// The message.
         message: &'a str,
     },
+    /// Another part of the scene is selected.
+    Selected(SelectedEvent),
     /// A screenshot was written.
     Screenshot {
         /// Its path.
@@ -153,6 +155,19 @@ impl Summary {
         let at = |part: f64| sorted.get((part * last).round() as usize).copied().map_or(0.0, to_microseconds);
         Self { median: at(0.5), p95: at(0.95), max: at(1.0) }
     }
+}
+
+/// The selected part of the scene; all null if nothing is selected, or no part of the model.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct SelectedEvent {
+    /// Index of the instance: a primitive of a node.
+    pub instance: Option<usize>,
+    /// Name of the node, or `#` and its index in the file.
+    pub node: Option<String>,
+    /// Name of the primitive.
+    pub primitive: Option<String>,
+    /// Name of the material, or `#` and its index in the file.
+    pub material: Option<String>,
 }
 
 /// A finished reload.

@@ -39,6 +39,11 @@ impl Session {
         self.model.as_ref()
     }
 
+    /// The model where the settings place it.
+    pub fn placed_model(&self) -> Option<Arc<Model>> {
+        self.scene().map(|scene| scene.model().clone())
+    }
+
     /// Replaces the model.
     pub fn set_model(&mut self, model: &Arc<Model>) {
         self.model = Some(model.clone());
@@ -49,7 +54,7 @@ impl Session {
         self.shaders.as_ref()?.modes.iter().find(|mode| mode.slug == self.settings.mode)
     }
 
-    /// The model with the selected variant and material override.
+    /// The model as the settings show it.
     pub fn scene(&self) -> Option<Scene> {
         let model = self.model.as_ref()?;
         let mut last = self.scene.borrow_mut();
@@ -118,6 +123,10 @@ impl Session {
         }
         let variant = self.model.as_ref().and_then(|model| model.variant(&self.settings.variant).err());
         problems.extend(variant);
+        if let Some(model) = self.model.as_ref().filter(|model| !model.instances.is_empty()) {
+            problems.extend(model.unknown_part(&self.settings.scene));
+            problems.extend(model.unknown_material(self.settings.materials.keys()));
+        }
         problems
     }
 }

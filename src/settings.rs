@@ -4,10 +4,13 @@ mod assign;
 mod catalog;
 mod environment;
 mod expression;
+mod factors;
 mod lights;
+mod list;
 mod look;
 mod material;
 mod range;
+mod scene;
 
 use std::collections::BTreeMap;
 
@@ -19,10 +22,12 @@ pub use assign::unknown_setting;
 pub use catalog::{Setting, catalog, limits, told};
 pub use environment::EnvironmentSettings;
 pub use expression::ExpressionSettings;
+pub use factors::{Factor, FactorInfo, FactorValue, MaterialValues, path as factor_path};
 pub use lights::{LightSettings, LightSource, OrbitLight, RectLight};
 pub use look::LookError;
-pub use material::MaterialOverride;
+pub use material::{MaterialChannel, MaterialChannels, MaterialOverride};
 use range::Range;
+pub use scene::{ModelSettings, SceneSettings};
 
 /// All settings. A look file is this struct as TOML. `--set` takes dotted paths into it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,8 +41,14 @@ pub struct Settings {
     pub lights: LightSettings,
     /// Name of a variant of the model (KHR_materials_variants); empty for the model's default materials.
     pub variant: String,
-    /// Material override: one material replaces all of the model's.
+    /// Material override: one material replaces all of the model's, or some channels of them.
     pub material: MaterialOverride,
+    /// Factors of single materials of the model, by name of the material.
+    pub materials: BTreeMap<String, MaterialValues>,
+    /// What is drawn of the model.
+    pub scene: SceneSettings,
+    /// Where the model stands.
+    pub model: ModelSettings,
     /// Environment.
     pub environment: EnvironmentSettings,
     /// File of a measured BRDF, which the modes of the group Measured show; empty for none.
@@ -74,6 +85,9 @@ impl Default for Settings {
             lights: LightSettings::default(),
             variant: String::new(),
             material: MaterialOverride::default(),
+            materials: BTreeMap::new(),
+            scene: SceneSettings::default(),
+            model: ModelSettings::default(),
             environment: EnvironmentSettings::default(),
             measured: String::new(),
             expression: ExpressionSettings::default(),
@@ -215,6 +229,7 @@ impl Settings {
         ];
         ranges.extend(self.lights.ranges());
         ranges.extend(self.material.ranges());
+        ranges.extend(self.model.ranges());
         let environment = self.environment.numbers();
         ranges.extend(environment.map(|(name, value, low, high)| Range::new(name, value, low..=high)));
         ranges
@@ -226,6 +241,7 @@ impl Settings {
     /// A message with the setting, its value and the valid values.
     pub fn check(&self) -> Result<(), String> {
         self.ranges().iter().try_for_each(Range::check)?;
+        factors::check(&self.materials)?;
         let vectors = [("camera.eye", self.camera.eye), ("camera.target", self.camera.target)];
         for (name, vector) in vectors {
             if vector.is_some_and(|v| !v.iter().all(|c| c.is_finite())) {

@@ -37,7 +37,8 @@ fn a_model_larger_than_the_staging_buffer_arrives_whole_and_its_pixels_leave_the
     // 34 MB of vertices and as many of indices, which nothing draws, lie before those of the square.
     let square = model.primitives[0].clone();
     let vertices = vec![Vertex::default(); (34 << 20) / size_of::<Vertex>()];
-    model.primitives.insert(0, Primitive { vertices, indices: vec![0; (34 << 20) / 4], ..square });
+    std::sync::Arc::make_mut(&mut model.primitives)
+        .insert(0, Primitive { vertices, indices: vec![0; (34 << 20) / 4], ..square });
     model.instances[0].primitive = 1;
 
     let unlit = ["environment.name=none", "view.msaa=1"];

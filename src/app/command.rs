@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use super::dialog::Dialog;
 use super::editor::Place;
+use super::layout::Panel;
 use super::learn::LearnCommand;
+use super::selection::Selected;
 use crate::control::Request;
 use crate::file_kind::FileKind;
 use crate::shader::Source;
@@ -72,10 +74,24 @@ pub(super) enum Command {
     FrameModel,
     /// Frame the model, seen from this side.
     ViewFrom(Side),
-    /// Inspect this pixel of the picture, counted from its upper left corner: the user has clicked it.
-    Pick([u32; 2]),
     /// Write the picture to `specula-N.png`.
     Screenshot,
+    /// Inspect this pixel of the picture, counted from its upper left corner, and select what it shows: the user has clicked it.
+    Pick([u32; 2]),
+    /// Select a part of the scene.
+    Select(Selected),
+    /// Hide what is selected.
+    HideSelected,
+    /// Draw nothing but what is selected; again: everything.
+    IsolateSelected,
+    /// Draw everything that is hidden or not isolated.
+    ShowAll,
+    /// Open a panel, or show its tab.
+    OpenPanel(Panel),
+    /// Look through a camera of the model.
+    LookThrough(usize),
+    /// Switch the rectangular light on and select it.
+    PlaceRectangle,
     /// Close the window.
     Quit,
     /// Show a message for a few seconds.

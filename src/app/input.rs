@@ -11,8 +11,9 @@ use super::command::{Command, CompareWith, Side};
 use super::dialog::Dialog;
 use super::keys;
 use super::screen::Screen;
+use super::selection::Selected;
 use super::viewer::Viewer;
-use crate::scene::{CameraController, point_at};
+use crate::scene::CameraController;
 use crate::session::Session;
 use crate::settings::LightSettings;
 
@@ -29,7 +30,7 @@ pub(super) struct Mouse {
     modifiers: ModifiersState,
     /// Time and place of the last press of the left button, for double clicks.
     last_press: Option<(Instant, Vec2)>,
-    /// Where the left button went down, unless the mouse has been dragged since or the press was the second of a double click.
+    /// Where the left button went down, while it may still become a click: the mouse has not been dragged.
     click: Option<Vec2>,
 }
 
@@ -87,8 +88,9 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 MouseButton::Left => {
                     let was = std::mem::replace(&mut screen.mouse.left, pressed);
                     let is_double = pressed && is_double_click(&mut screen.mouse);
-                    let click = screen.mouse.click.take();
-                    screen.mouse.click = (pressed && !is_double).then_some(screen.mouse.at);
+                    let place = screen.mouse.at;
+                    let clicked = screen.mouse.click.take().filter(|start| start.distance(place) <= SAME_PLACE);
+                    screen.mouse.click = (pressed && !is_double && !has_modifier(&screen.mouse)).then_some(place);
                     match pressed {
                         true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
                         false if was => viewer.playback.release(),
@@ -97,7 +99,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                     if is_double {
                         return focus(viewer, screen);
                     }
-                    if let Some((x, y)) = click.filter(|_| !pressed).and_then(|_| screen.mouse_pixel()) {
+                    if let Some((x, y)) = clicked.and_then(|_| screen.mouse_pixel()).filter(|_| was && !pressed) {
                         viewer.execute(Command::Pick([x, y]));
                         return true;
                     }
@@ -117,7 +119,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             let is_over = inside(screen, at);
             let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
             screen.mouse.at = at;
-            screen.mouse.click.take_if(|from| from.distance(at) > SAME_PLACE);
+            screen.mouse.click = screen.mouse.click.filter(|start| start.distance(at) <= SAME_PLACE);
             if screen.mouse.left {
                 viewer.playback.drag(in_picture(screen, at));
             }
@@ -150,10 +152,12 @@ fn is_double_click(mouse: &mut Mouse) -> bool {
 /// Moves the camera so that it looks at the surface under the mouse, and orbits around it. Returns whether there is one.
 fn focus(viewer: &mut Viewer, screen: &Screen) -> bool {
     let place = screen.mouse_pixel().zip(screen.camera_view());
-    let Some(((at, view), model)) = place.zip(viewer.session.model().cloned()) else { return false };
-    let Some(point) = point_at(&model, &view, screen.rect.size, at) else { return false };
-    CameraController::focus(&mut viewer.session.settings.camera, &view, point);
-    true
+    place.is_some_and(|(at, view)| viewer.focus(screen.rect.size, at, &view))
+}
+
+/// Whether a key is held that makes a press something else than a click.
+fn has_modifier(mouse: &Mouse) -> bool {
+    mouse.modifiers.alt_key() || mouse.modifiers.shift_key() || mouse.modifiers.control_key()
 }
 
 /// A place of the window in pixels of the picture.
@@ -261,6 +265,9 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
         Key::Named(NamedKey::Escape) if viewer.panels.open_gallery.is_open => {
             viewer.panels.open_gallery.is_open = false
         }
+        Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing => {
+            viewer.execute(Command::Select(Selected::Nothing));
+        }
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {
@@ -283,11 +290,14 @@ fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bo
             let with = if viewer.compare.is_on() { CompareWith::Nothing } else { CompareWith::ThisPicture };
             viewer.execute(Command::Compare(with));
         }
+        'h' if control => viewer.execute(Command::HideSelected),
+        'h' if modifiers.alt_key() => viewer.execute(Command::ShowAll),
         'o' if control => viewer.execute(Command::Choose(Dialog::File)),
         'q' if control => viewer.execute(Command::Quit),
         'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
         'y' if control => viewer.execute(Command::Redo),
         _ if is_ignored => return false,
+        '/' => viewer.execute(Command::IsolateSelected),
         '?' => viewer.panels.show_keys ^= true,
         '[' => step_mode(session, -1),
         ']' => step_mode(session, 1),

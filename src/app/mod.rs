@@ -23,6 +23,7 @@ mod panels;
 mod playback;
 mod recent;
 mod screen;
+mod selection;
 mod shader_log;
 mod stages;
 mod status;
@@ -70,6 +71,8 @@ pub struct AppOptions {
     pub settings: Settings,
     /// The work of a window that opens without a model and options. If the window opens with it, it offers to go on with the last session.
     pub plain: Option<Work>,
+    /// Whether a model that has lights shines by them: the user has not said which lights shine.
+    pub follows_lights: bool,
     /// Size of the window in pixels.
     pub size: (u32, u32),
     /// Upper left corner of the window on the desktop in pixels; `None` leaves it to the window system.

@@ -6,7 +6,9 @@ mod inspector;
 mod loops;
 mod probe;
 mod reference;
+mod selection;
 mod shots;
+mod texture;
 mod thumbnail;
 mod timing;
 mod ui;
@@ -26,6 +28,7 @@ use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::picture;
+use crate::render::tools::Outline;
 use crate::render::{BoundFrame, Capture, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use error_map::ErrorMap;
@@ -88,6 +91,9 @@ pub(super) struct Screen {
     error_map: ErrorMap,
     /// The picture of the window that is on its way from the device.
     window_shot: Option<WindowShot>,
+    /// The targets of the selection's outline, while there is a selection.
+    outline: Option<Outline>,
+    texture: texture::ShownTexture,
     /// Draws thumbnails of versions while some are missing.
     thumbnails: Option<View>,
     thumbnail: Option<thumbnail::Pending>,
@@ -144,6 +150,8 @@ impl Screen {
             reference: None,
             error_map: ErrorMap::default(),
             window_shot: None,
+            outline: None,
+            texture: texture::ShownTexture::default(),
             thumbnails: None,
             thumbnail: None,
             pixel: None,
@@ -191,7 +199,8 @@ impl Screen {
         let drawn = self.survive(drawn)?;
         if drawn.is_none() {
             self.view.forget();
-            (self.reference, self.thumbnails, self.thumbnail) = (None, None, None);
+            (self.reference, self.thumbnails, self.thumbnail, self.outline) = (None, None, None, None);
+            self.texture.forget();
             self.gallery.forget();
             self.inspector.forget();
         }
@@ -257,6 +266,10 @@ impl Screen {
             None => View::clear(&mut encoder, &output),
         }
         self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
+        let outlined = self.draw_outline(&mut encoder, viewer, frame.as_ref(), &acquired.image);
+        self.survive(outlined)?;
+        let shown = self.draw_texture(&mut encoder, viewer, frame.as_ref());
+        self.survive(shown)?;
         let recorded = self.record_thumbnail(&mut encoder, slot, viewer);
         if self.survive(recorded)?.is_none() {
             // The newest picture matters more.
@@ -323,7 +336,7 @@ impl Screen {
         self.last_frame = Instant::now();
         // Limit the step, so that lights do not jump after a pause.
         viewer.turn_lights(seconds.min(0.5));
-        let Some((view, model)) = self.camera_view().zip(viewer.session.model().cloned()) else { return false };
+        let Some((view, model)) = self.camera_view().zip(viewer.session.placed_model()) else { return false };
         self.camera.step(&mut viewer.session.settings.camera, &view, &model.bounds, seconds)
     }
 

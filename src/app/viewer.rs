@@ -7,8 +7,10 @@ mod learning;
 mod messages;
 mod picture;
 mod recording;
+mod select;
 mod session;
 mod stages;
+mod tools;
 mod versions;
 
 use std::path::{Path, PathBuf};
@@ -22,6 +24,7 @@ use super::history::History;
 use super::learn::Learning;
 use super::panels::PanelState;
 use super::playback::Playback;
+use super::selection::Selected;
 use super::stages::StageTable;
 use super::status::{Notices, ShaderStatus};
 use super::timing::Timing;
@@ -38,7 +41,7 @@ use crate::recovery::{Recorder, Work};
 use crate::render::{BoundFrame, Resources};
 use crate::scene::LoadOptions;
 use crate::session::Session;
-use crate::settings::Settings;
+use crate::settings::{LightSource, Settings};
 use crate::shader::{Change, Compiler, Diagnostic, Source};
 use crate::threads::loader::{self, Reading};
 use crate::threads::worker::{Snapshot, Worker};
@@ -117,6 +120,14 @@ pub(super) struct Viewer {
     pub(super) history: History,
     /// The exercise that is open.
     pub(super) learning: Learning,
+    /// What is selected in the scene.
+    pub(super) selected: Selected,
+    /// The pipelines of outlines and pictures of textures, once something has asked for them.
+    tools: tools::ToolsState,
+    /// Whether the user has not said which lights shine, so that a model with lights shines by its own.
+    follows_lights: bool,
+    /// The lights that the last model was shown with because of that.
+    followed_source: LightSource,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
     /// Dropping the threads waits for those that use the device.
@@ -191,6 +202,10 @@ impl Viewer {
             playback: Playback::default(),
             history: History::default(),
             learning: Learning::restored(),
+            selected: Selected::Nothing,
+            tools: tools::ToolsState::default(),
+            follows_lights: options.follows_lights,
+            followed_source: LightSource::default(),
             gpu: gpu.clone(),
             resources,
             threads,
@@ -352,8 +367,18 @@ impl Viewer {
                 (camera.eye, camera.target) = (None, None);
                 [camera.azimuth, camera.elevation] = side.angles();
             }
-            Command::Pick(at) => self.inspect(at),
             Command::Screenshot => self.screenshot = true,
+            Command::Pick(at) => {
+                self.inspect(at);
+                self.select_at(at);
+            }
+            Command::Select(selected) => self.select(selected),
+            Command::HideSelected => self.hide_selected(),
+            Command::IsolateSelected => self.isolate_selected(),
+            Command::ShowAll => self.show_all(),
+            Command::OpenPanel(panel) => self.panels.layout.open(panel),
+            Command::LookThrough(camera) => self.look_through(camera),
+            Command::PlaceRectangle => self.place_rectangle(),
             Command::Quit => self.quit = true,
             Command::Edit(place) => match editor::open(&place) {
                 Ok(editor) => self.threads.wait(|| editor.failure().map(Message::Say)),

@@ -1,30 +1,68 @@
-//! The model with the selected variant (KHR_materials_variants) and material override.
+//! The model as the settings show it: variant (KHR_materials_variants), materials, place, and what is drawn of it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::MaterialVariant;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{self, ATTRIBUTE_COLOR, FEATURE_TRANSMISSION};
-use crate::scene::{self, AlphaMode, Instance, Material, Model, Topology, override_material};
-use crate::settings::{MaterialOverride, Settings};
+use crate::scene::{
+    self, AlphaMode, Instance, Material, Model, Sides, Topology, override_material, replace_channels, replace_factors,
+};
+use crate::settings::{MaterialChannel, MaterialOverride, MaterialValues, ModelSettings, SceneSettings, Settings};
 
-/// A model with the variant and material override of the settings. Cheap to clone.
+/// The settings that make a scene of a model.
+#[derive(Clone, Debug, PartialEq)]
+struct Look {
+    variant: Option<usize>,
+    /// The material override, if it replaces anything.
+    material: Option<MaterialOverride>,
+    materials: BTreeMap<String, MaterialValues>,
+    parts: SceneSettings,
+    place: ModelSettings,
+}
+
+impl Look {
+    /// A variant that the model lacks is ignored: see [`Model::variant`].
+    fn new(model: &Model, settings: &Settings) -> Self {
+        let material = settings.material;
+        Self {
+            variant: model.variant(&settings.variant).unwrap_or(None),
+            material: (material.enabled || !material.channels.is_empty()).then_some(material),
+            materials: settings.materials.clone(),
+            parts: settings.scene.clone(),
+            place: settings.model,
+        }
+    }
+
+    fn is_of(&self, model: &Model, settings: &Settings) -> bool {
+        let Settings { material, materials, scene, model: place, variant, .. } = settings;
+        let replaces = material.enabled || !material.channels.is_empty();
+        (&self.materials, &self.parts, &self.place) == (materials, scene, place)
+            && self.material == replaces.then_some(*material)
+            && self.variant == model.variant(variant).unwrap_or(None)
+    }
+}
+
+/// A model as the settings show it. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Scene {
+    /// The model that was loaded.
+    loaded: Arc<Model>,
+    /// The model where the settings place it.
     model: Arc<Model>,
-    variant: Option<usize>,
-    material_override: Option<MaterialOverride>,
+    look: Arc<Look>,
     /// Whether each instance is drawn. `None` draws all.
     visible: Option<Arc<[bool]>>,
+    /// The materials that differ from those of the model, by index; empty if none does.
+    changed: Arc<[Option<Material>]>,
     materials: Arc<BTreeSet<MaterialVariant>>,
 }
 
 impl PartialEq for Scene {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.model, &other.model)
-            && self.variant == other.variant
-            && self.material_override == other.material_override
+        Arc::ptr_eq(&self.loaded, &other.loaded)
+            && (Arc::ptr_eq(&self.look, &other.look) || self.look == other.look)
             && self.visible == other.visible
     }
 }
@@ -42,41 +80,60 @@ pub(crate) struct Appearance {
 impl Scene {
     /// The scene that `settings` select. A variant that the model lacks is ignored: see [`Model::variant`].
     pub fn new(model: &Arc<Model>, settings: &Settings) -> Self {
-        Self::with(model, model.variant(&settings.variant).unwrap_or(None), override_of(settings), None)
+        Self::with(None, model, settings)
     }
 
     /// [`Scene::new`], or a clone of `previous` if that is the same scene. Collecting the materials of a large model takes
     /// time.
     pub fn update(previous: Option<&Self>, model: &Arc<Model>, settings: &Settings) -> Self {
-        let variant = model.variant(&settings.variant).unwrap_or(None);
-        let is_same = |scene: &&Self| {
-            Arc::ptr_eq(&scene.model, model)
-                && (scene.variant, scene.material_override) == (variant, override_of(settings))
+        let previous = previous.filter(|scene| Arc::ptr_eq(&scene.loaded, model));
+        let is_same = |scene: &&Self| scene.look.is_of(model, settings);
+        previous.filter(is_same).cloned().unwrap_or_else(|| Self::with(previous, model, settings))
+    }
+
+    /// The same scene with only the instances whose entry is `true`, as far as it draws them.
+    pub fn only(&self, mut visible: Vec<bool>) -> Self {
+        if let Some(before) = &self.visible {
+            visible.iter_mut().zip(before.iter()).for_each(|(now, before)| *now &= before);
+        }
+        Self { visible: Some(visible.into()), ..self.clone() }.collected()
+    }
+
+    fn with(previous: Option<&Self>, loaded: &Arc<Model>, settings: &Settings) -> Self {
+        let look = Look::new(loaded, settings);
+        let model = match (look.place.transform(), previous.filter(|scene| scene.look.place == look.place)) {
+            (None, _) => loaded.clone(),
+            (Some(_), Some(previous)) => previous.model.clone(),
+            (Some(transform), None) => Arc::new(loaded.placed(transform)),
         };
-        previous.filter(is_same).cloned().unwrap_or_else(|| Self::new(model, settings))
+        let scene = Self {
+            visible: model.visible(&look.parts).map(Into::into),
+            changed: changed(&model, &look),
+            loaded: loaded.clone(),
+            model,
+            look: Arc::new(look),
+            materials: Arc::default(),
+        };
+        scene.collected()
     }
 
-    /// The same scene with only the instances whose entry is `true`.
-    pub fn only(&self, visible: Vec<bool>) -> Self {
-        Self::with(&self.model, self.variant, self.material_override, Some(visible.into()))
+    /// The scene with the kinds of its materials.
+    fn collected(mut self) -> Self {
+        let replacement = self.replacement();
+        let drawn = self.instances().map(|instance| self.appearance(instance, replacement.as_ref()).variant);
+        let materials = drawn.collect();
+        self.materials = Arc::new(materials);
+        self
     }
 
-    fn with(
-        model: &Arc<Model>,
-        variant: Option<usize>,
-        material_override: Option<MaterialOverride>,
-        visible: Option<Arc<[bool]>>,
-    ) -> Self {
-        let mut scene = Self { model: model.clone(), variant, material_override, visible, materials: Arc::default() };
-        let replacement = scene.replacement();
-        let drawn = scene.instances().map(|instance| scene.appearance(instance, replacement.as_ref()).variant);
-        scene.materials = Arc::new(drawn.collect());
-        scene
-    }
-
-    /// The model.
+    /// The model where the settings place it.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
+    }
+
+    /// The model that was loaded.
+    pub fn loaded(&self) -> &Arc<Model> {
+        &self.loaded
     }
 
     /// The kinds of material in use.
@@ -89,31 +146,59 @@ impl Scene {
         self.materials.iter().any(|material| material.features & FEATURE_TRANSMISSION != 0)
     }
 
+    /// Whether an instance is drawn.
+    pub fn is_visible(&self, instance: usize) -> bool {
+        self.visible.as_ref().is_none_or(|visible| visible.get(instance) == Some(&true))
+    }
+
+    /// Which sides of an instance are drawn.
+    pub fn sides(&self, instance: usize) -> Sides {
+        let Some(placed) = self.model.instances.get(instance).filter(|_| self.is_visible(instance)) else {
+            return Sides::None;
+        };
+        let is_replaced = self.look.material.is_some_and(|material| material.enabled);
+        let both = !is_replaced && self.material(self.material_of(placed)).double_sided;
+        if both { Sides::Both } else { Sides::Front }
+    }
+
+    /// Index into `Model::materials` of the material that an instance has in the selected variant.
+    pub fn material_of(&self, instance: &Instance) -> usize {
+        self.model.primitives[instance.primitive].material_in(self.look.variant)
+    }
+
+    /// A material of the model with the values of the settings.
+    pub fn material(&self, index: usize) -> &Material {
+        self.changed_material(index).unwrap_or(&self.model.materials[index])
+    }
+
+    /// The material with this index, if the settings change it.
+    pub(crate) fn changed_material(&self, index: usize) -> Option<&Material> {
+        self.changed.get(index).and_then(Option::as_ref)
+    }
+
     /// The instances that are drawn.
     pub(crate) fn instances(&self) -> impl Iterator<Item = &Instance> {
-        let is_visible = |index: usize| self.visible.as_ref().is_none_or(|visible| visible.get(index) == Some(&true));
-        self.model.instances.iter().enumerate().filter(move |(index, _)| is_visible(*index)).map(|(_, i)| i)
+        self.numbered_instances().map(|(_, instance)| instance)
     }
 
-    /// Index of the material of an instance in `Model::materials`; `None` is the material override.
-    pub(crate) fn material_of(&self, instance: &Instance) -> Option<usize> {
-        let own = self.model.primitives.get(instance.primitive).map(|primitive| primitive.material_in(self.variant));
-        own.filter(|_| self.material_override.is_none())
+    /// The instances that are drawn, with their indices.
+    pub(crate) fn numbered_instances(&self) -> impl Iterator<Item = (usize, &Instance)> {
+        self.model.instances.iter().enumerate().filter(|(index, _)| self.is_visible(*index))
     }
 
-    /// The material override, if it is enabled.
+    /// The material that replaces all of the model's, if there is one.
     pub(crate) fn replacement(&self) -> Option<Material> {
-        self.material_override.as_ref().map(override_material)
+        self.look.material.as_ref().filter(|material| material.enabled).map(override_material)
     }
 
     /// How an instance is drawn, given [`Scene::replacement`].
     pub(crate) fn appearance(&self, instance: &Instance, replacement: Option<&Material>) -> Appearance {
         let primitive = &self.model.primitives[instance.primitive];
-        let own = primitive.material_in(self.variant);
-        let material = replacement.unwrap_or(&self.model.materials[own]);
-        // Vertex colors belong to the replaced material.
-        let attributes =
-            if replacement.is_some() { primitive.attributes & !ATTRIBUTE_COLOR } else { primitive.attributes };
+        let own = self.material_of(instance);
+        let material = replacement.unwrap_or_else(|| self.material(own));
+        // Vertex colors belong to the replaced base color.
+        let has_own_color = replacement.is_none() && !material.constant.has(MaterialChannel::BaseColor);
+        let attributes = if has_own_color { primitive.attributes } else { primitive.attributes & !ATTRIBUTE_COLOR };
         Appearance {
             material: replacement.is_none().then_some(own),
             double_sided: material.double_sided,
@@ -135,6 +220,21 @@ impl Scene {
     }
 }
 
-fn override_of(settings: &Settings) -> Option<MaterialOverride> {
-    settings.material.enabled.then_some(settings.material)
+/// The materials that the look changes, by their indices; empty if it changes none.
+fn changed(model: &Model, look: &Look) -> Arc<[Option<Material>]> {
+    let channels = look.material.as_ref().filter(|material| !material.enabled);
+    if channels.is_none() && look.materials.is_empty() {
+        return Arc::default();
+    }
+    let change = |(index, material): (usize, &Material)| {
+        let values = look.materials.get(&model.material_key(index));
+        if channels.is_none() && values.is_none() {
+            return None;
+        }
+        let mut material = material.clone();
+        values.into_iter().for_each(|values| replace_factors(&mut material, values));
+        channels.into_iter().for_each(|channels| replace_channels(&mut material, channels));
+        Some(material)
+    };
+    model.materials.iter().enumerate().map(change).collect()
 }

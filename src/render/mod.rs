@@ -10,6 +10,7 @@ mod environment;
 mod paths;
 mod resources;
 mod scene;
+pub(crate) mod tools;
 mod view;
 
 pub use bound_frame::BoundFrame;

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Buffer, Gpu, GpuError, SetLayouts};
-use crate::scene::{Measured, MeasuredError};
+use crate::gpu::{Buffer, Gpu, GpuError, Image, SetLayouts};
+use crate::scene::{Measured, MeasuredError, TextureSource};
 
 use super::bound_frame::BoundFrame;
 use super::brdf::measured::measured_buffer;
@@ -138,6 +138,11 @@ impl Resources {
     pub fn set_model(&mut self, model: &Arc<GpuModel>) {
         self.model = Some(model.clone());
         self.scene = None;
+    }
+
+    /// A texture of the model, as its materials read it.
+    pub fn texture(&self, source: &TextureSource) -> Option<&Arc<Image>> {
+        self.model.as_ref()?.texture(source)
     }
 
     /// Takes baked tables of the BRDF; `None` if the bake failed.
@@ -335,7 +340,7 @@ impl Resources {
         if let Some((_, drawn)) = self.scene.as_ref().filter(|(of, _)| of == scene) {
             return Ok(Some(drawn.clone()));
         }
-        let Some(model) = self.model.as_ref().filter(|model| Arc::ptr_eq(model.model(), scene.model())) else {
+        let Some(model) = self.model.as_ref().filter(|model| Arc::ptr_eq(model.model(), scene.loaded())) else {
             return Ok(None);
         };
         let drawn = model.scene(&self.gpu, &self.layouts, scene)?;

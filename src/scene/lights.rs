@@ -100,6 +100,20 @@ fn rectangle(light: &RectLight, model: &Model) -> Light {
     }
 }
 
+/// The unit vector from the model's center to a light, by its azimuth and polar angle in degrees.
+pub fn light_direction(azimuth: f32, polar: f32) -> Vec3 {
+    direction(azimuth.to_radians(), (90.0 - polar).to_radians())
+}
+
+/// The corners of the rectangular light around a model with these bounds, world space.
+pub fn rectangle_corners(light: &RectLight, bounds: &Bounds) -> [Vec3; 4] {
+    let model = Model { bounds: *bounds, ..Model::default() };
+    let light = rectangle(light, &model);
+    let [x, y] = [light.half_x_ws, light.half_y_ws].map(Vec3::from);
+    let center = Vec4::from(light.position_ws).truncate();
+    [center - x - y, center + x - y, center + x + y, center - x + y]
+}
+
 fn punctual(light: &super::model::Light) -> Light {
     let (kind, position_ws) = match light.kind {
         LightKind::Directional => (interface::LIGHT_DIRECTIONAL, (-light.direction).extend(0.0)),

@@ -3,7 +3,7 @@
 use glam::{Affine2, Vec3, Vec4};
 
 use crate::interface::TEXTURE_COUNT;
-use crate::settings::MaterialOverride;
+use crate::settings::MaterialChannels;
 
 /// glTF's `alphaMode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
@@ -80,6 +80,8 @@ pub struct Material {
     pub diffuse_transmission: DiffuseTransmission,
     /// The complex index of refraction of a metal, if the file has it.
     pub conductor: Option<Conductor>,
+    /// Channels for which the textures read as 1, so that the factor alone counts: those of the material override.
+    pub constant: MaterialChannels,
     /// The textures, indexed by `interface::TEXTURE_*`.
     pub textures: [Option<TextureUse>; TEXTURE_COUNT],
 }
@@ -192,20 +194,9 @@ impl Default for Material {
             dispersion: 0.0,
             diffuse_transmission: DiffuseTransmission { factor: 0.0, color: Vec3::ONE },
             conductor: None,
+            constant: MaterialChannels::default(),
             textures: [None; TEXTURE_COUNT],
         }
-    }
-}
-
-/// The material of the override: opaque, single-sided, without textures.
-pub fn override_material(settings: &MaterialOverride) -> Material {
-    Material {
-        name: "override".into(),
-        base_color_factor: Vec3::from(settings.base_color).extend(1.0),
-        metallic_factor: settings.metallic,
-        roughness_factor: settings.roughness,
-        anisotropy: Anisotropy { strength: settings.anisotropy, rotation: settings.anisotropy_rotation.to_radians() },
-        ..Material::default()
     }
 }
 

@@ -19,7 +19,10 @@ mod outline;
 mod pack;
 mod pick;
 mod pictures;
+mod placed;
+mod replace;
 mod texture_source;
+mod visibility;
 
 use std::path::{Path, PathBuf};
 
@@ -30,12 +33,13 @@ pub use environment::{Environment, EnvironmentError, EnvironmentFile, has_exact_
 pub use error::{LoadError, Problem};
 pub use features::{features, packs_occlusion};
 pub use gltf::triangles;
-pub use lights::{light_count, lights, view_of_light};
+pub use lights::{light_count, light_direction, lights, rectangle_corners, view_of_light};
 pub use measured::{Measured, MeasuredError, MeasuredKind, MeasuredProblem};
 pub use model::*;
 pub use pack::pack_material;
-pub use pick::{hit_at, near_pixel, point_at};
+pub use pick::{Hit, Sides, near_pixel, pick, point_at, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
+pub use replace::{factor, override_material, replace_channels, replace_factors};
 pub use texture_source::{TextureSource, texture_sources};
 
 /// Options of a load.

@@ -1,6 +1,7 @@
 //! The model as plain data, which a loader fills and `render` uploads. No Vulkan, no file handles.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 
@@ -13,8 +14,8 @@ use crate::message::did_you_mean;
 pub struct Model {
     /// File stem, or the built-in name.
     pub name: String,
-    /// Geometry, each primitive once.
-    pub primitives: Vec<Primitive>,
+    /// Geometry, each primitive once. Models that only stand elsewhere share it.
+    pub primitives: Arc<Vec<Primitive>>,
     /// Materials; index 0 is glTF's default material.
     pub materials: Vec<Material>,
     /// Images paired with samplers.
@@ -23,6 +24,8 @@ pub struct Model {
     pub images: Vec<Image>,
     /// Names of the variants (KHR_materials_variants).
     pub variants: Vec<String>,
+    /// The nodes of the scene. A parent comes before its children, and all below a node follow it.
+    pub nodes: Vec<Node>,
     /// Primitives placed in the world: the draws.
     pub instances: Vec<Instance>,
     /// KHR_lights_punctual, placed in the world.
@@ -190,11 +193,28 @@ impl Model {
     /// As [`Model::variant`]. The model is unchanged then.
     pub fn select_variant(&mut self, name: &str) -> Result<(), String> {
         let variant = self.variant(name)?;
-        for primitive in &mut self.primitives {
+        for primitive in Arc::make_mut(&mut self.primitives) {
             primitive.material = primitive.material_in(variant);
         }
         Ok(())
     }
+}
+
+/// A node of the scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Node {
+    /// Index in the file.
+    pub index: usize,
+    /// Name, or empty.
+    pub name: String,
+    /// Index of its parent in `Model::nodes`.
+    pub parent: Option<usize>,
+    /// Name of its mesh, which may be empty; `None` without a mesh.
+    pub mesh: Option<String>,
+    /// Index of its light in `Model::lights`.
+    pub light: Option<usize>,
+    /// Index of its camera in `Model::cameras`.
+    pub camera: Option<usize>,
 }
 
 /// A primitive placed in the world.

@@ -140,7 +140,7 @@ mod tests {
     fn row(primitive: Primitive, count: usize) -> Model {
         let at = |x: usize| Mat4::from_translation(Vec3::X * x as f32);
         let place = |x| Instance { primitive: 0, world_from_object: at(x), node: x, node_name: String::new() };
-        Model { primitives: vec![primitive], instances: (0..count).map(place).collect(), ..Model::default() }
+        Model { primitives: vec![primitive].into(), instances: (0..count).map(place).collect(), ..Model::default() }
     }
 
     fn extent(points: &[Vec3]) -> (Vec3, Vec3) {

@@ -1,10 +1,11 @@
-//! What a pixel shows: the instances of a model that may cover it, and the nearest point of a surface.
+//! What a pixel shows: the instances of a model that may cover it, and the nearest surface.
 
 use glam::{Mat4, Vec2, Vec3, Vec4Swizzles as _};
+use rayon::prelude::*;
 
 use super::CameraView;
 use super::gltf::triangles;
-use super::model::{Model, Primitive, Topology};
+use super::model::{Bounds, Instance, Model, Primitive, Topology};
 
 /// Margin in pixels around a primitive: for the width of points and lines, and for the neighbors that derivatives use.
 const REACH: f32 = 4.0;
@@ -14,7 +15,7 @@ const REACH: f32 = 4.0;
 pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u32, u32)) -> Vec<bool> {
     let half = Vec2::new(size.0 as f32, size.1 as f32) * 0.5;
     let pixel = Vec2::new(at.0 as f32, at.1 as f32) + 0.5;
-    let is_near = |instance: &super::Instance| {
+    let is_near = |instance: &Instance| {
         let primitive = &model.primitives[instance.primitive];
         let clip_from_object = clip_from_world * instance.world_from_object;
         // Position in pixels, relative to `at`. `None` behind the eye.
@@ -28,29 +29,102 @@ pub fn near_pixel(model: &Model, clip_from_world: Mat4, size: (u32, u32), at: (u
     model.instances.iter().map(is_near).collect()
 }
 
-/// The nearest point of the model's triangles, world space, that the middle of the pixel `at` sees in a picture of this size. Hidden
-/// back faces and transparent surfaces count too. `None` beside the model.
-pub fn point_at(model: &Model, view: &CameraView, size: (u32, u32), at: (u32, u32)) -> Option<Vec3> {
-    hit_at(model, view, size, at).map(|(_, point)| point)
+/// A surface under a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Index into `Model::instances`.
+    pub instance: usize,
+    /// World space.
+    pub point: Vec3,
 }
 
-/// [`point_at`], with the index of the instance that the point is on.
-pub fn hit_at(model: &Model, view: &CameraView, (width, height): (u32, u32), at: (u32, u32)) -> Option<(usize, Vec3)> {
+/// Which sides of an instance are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// It is not drawn at all.
+    None,
+    /// Triangles that face the eye.
+    Front,
+    /// All triangles.
+    Both,
+}
+
+/// The nearest triangle of the model that the middle of the pixel `at` sees in a picture of this size, of the instances and sides that
+/// are drawn. Transparent surfaces count too. `None` beside the model.
+pub fn pick(
+    model: &Model,
+    view: &CameraView,
+    size: (u32, u32),
+    at: (u32, u32),
+    sides: impl Fn(usize) -> Sides + Sync,
+) -> Option<Hit> {
+    let ray = ray(view, size, at);
+    let near = |(instance, placed): (usize, &Instance)| {
+        let sides = sides(instance);
+        let primitive = &model.primitives[placed.primitive];
+        if sides == Sides::None || !enters(ray, view.eye, placed, primitive) {
+            return None;
+        }
+        let place = |index: u32| {
+            placed.world_from_object.transform_point3(primitive.vertices[index as usize].position.into()) - view.eye
+        };
+        // The renderer reverses the winding of mirrored meshes.
+        let mirror = if placed.world_from_object.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let hit = |triangle: &[u32; 3]| {
+            let corners = triangle.map(place);
+            let [a, b, c] = corners;
+            let faces_away = (b - a).cross(c - a).dot(ray) * mirror > 0.0;
+            distance(ray, corners).filter(|_| sides == Sides::Both || !faces_away)
+        };
+        let triangles = triangles(primitive.topology, &primitive.indices);
+        let nearest = triangles.par_iter().with_min_len(TRIANGLES_A_TASK).filter_map(hit).min_by(f32::total_cmp)?;
+        Some((nearest, instance))
+    };
+    let all = model.instances.iter().enumerate().filter_map(near);
+    let (nearest, instance) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Hit { instance, point: view.eye + ray * nearest })
+}
+
+/// Triangles that one task tests.
+const TRIANGLES_A_TASK: usize = 1 << 14;
+
+/// The direction in which a pixel sees, world space; not normalized.
+pub fn ray(view: &CameraView, (width, height): (u32, u32), at: (u32, u32)) -> Vec3 {
     let across = 2.0 * (at.0 as f32 + 0.5) / width.max(1) as f32 - 1.0;
     let up = 1.0 - 2.0 * (at.1 as f32 + 0.5) / height.max(1) as f32;
     let (half, forward) = ((0.5 * view.fovy_rad).tan(), view.forward());
     let right = forward.cross(view.up);
-    let ray = forward + right * (across * half * view.aspect) + view.up * (up * half);
-    let distances = model.instances.iter().enumerate().flat_map(|(index, instance)| {
-        let primitive = &model.primitives[instance.primitive];
-        let place = |index: u32| {
-            instance.world_from_object.transform_point3(primitive.vertices[index as usize].position.into()) - view.eye
-        };
-        let triangles = triangles(primitive.topology, &primitive.indices);
-        triangles.into_iter().filter_map(move |triangle| Some((index, distance(ray, triangle.map(place))?)))
-    });
-    let (instance, nearest) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-    Some((instance, view.eye + ray * nearest))
+    forward + right * (across * half * view.aspect) + view.up * (up * half)
+}
+
+/// Whether a ray from `eye` enters the box around an instance. Conservative.
+fn enters(ray: Vec3, eye: Vec3, placed: &Instance, primitive: &Primitive) -> bool {
+    let mut bounds = Bounds::default();
+    for corner in primitive.bounds.corners() {
+        bounds.include(placed.world_from_object.transform_point3(corner) - eye);
+    }
+    // Flat boxes and rounding.
+    let margin =
+        1e-4 * (bounds.max - bounds.min).max_element() + 1e-6 * bounds.max.abs().max(bounds.min.abs()).max_element();
+    let (low, high) = (bounds.min - margin, bounds.max + margin);
+    let (mut first, mut last) = (0.0_f32, f32::INFINITY);
+    for axis in 0..3 {
+        if ray[axis] == 0.0 {
+            if low[axis] > 0.0 || high[axis] < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (low[axis] / ray[axis], high[axis] / ray[axis]);
+        first = first.max(a.min(b));
+        last = last.min(a.max(b));
+    }
+    first <= last
+}
+
+/// The nearest point of the model's triangles that a pixel sees: as [`pick`], with both sides of all instances.
+pub fn point_at(model: &Model, view: &CameraView, size: (u32, u32), at: (u32, u32)) -> Option<Vec3> {
+    pick(model, view, size, at, |_| Sides::Both).map(|hit| hit.point)
 }
 
 /// Where a ray from the origin meets a triangle, in lengths of `ray` (Moller & Trumbore 1997).
@@ -129,5 +203,27 @@ mod tests {
             assert!(point.z > center.z, "{point} is behind the middle of the spheres");
         }
         assert_eq!(point_at(&model, &view, size, (0, 0)), None);
+    }
+
+    #[test]
+    fn a_pixel_picks_the_nearest_instance_that_is_drawn() {
+        let model = built_in("sphere-grid").unwrap().unwrap();
+        let center = model.bounds.center();
+        let eye = center + Vec3::Z * model.bounds.radius() * 4.0;
+        let view = CameraView::new(eye, center, 0.6, 1.0, &model.bounds);
+        let size = (200, 200);
+        for (index, instance) in model.instances.iter().enumerate() {
+            let middle = model.primitives[instance.primitive].bounds.center();
+            let middle = instance.world_from_object.transform_point3(middle);
+            let clip = view.clip_from_world() * middle.extend(1.0);
+            let at = (((clip.x / clip.w + 1.0) * 100.0) as u32, ((clip.y / clip.w + 1.0) * 100.0) as u32);
+            let hit = |sides: &(dyn Fn(usize) -> Sides + Sync)| pick(&model, &view, size, at, sides);
+            let front = hit(&|_| Sides::Front).unwrap();
+            let toward = (front.point - middle).dot(eye - middle);
+            assert!(front.instance == index && toward > 0.0, "{index}: {front:?}");
+            assert_eq!(hit(&|_| Sides::Both), Some(front));
+            let others = |other| if other == index { Sides::None } else { Sides::Front };
+            assert_ne!(hit(&others).map(|hit| hit.instance), Some(index));
+        }
     }
 }

@@ -1,8 +1,10 @@
 //! `path=value`, as `--set` takes it.
 
-use super::{Settings, catalog, limits, told};
+use super::{Settings, catalog, factors, limits, told};
 use crate::message::{did_you_mean, either};
 
+/// Before the name of a material.
+const MATERIALS: &str = "materials.";
 /// Where the list of all settings is.
 const SEE: &str = "(see `specula help set`)";
 
@@ -19,6 +21,9 @@ impl Settings {
             .split_once('=')
             .ok_or_else(|| format!("'{assignment}' has no value: expected path=value, as in view.ev=1 {SEE}"))?;
         let (path, text) = (path.trim(), text.trim());
+        if let Some(of_material) = path.strip_prefix(MATERIALS) {
+            return self.assign_factor(of_material, text);
+        }
         let known = self.known()?;
         let is_own = !path.contains('.') && known.get(path).is_none();
         let full = if is_own { format!("shader.{path}") } else { path.to_owned() };
@@ -38,6 +43,23 @@ impl Settings {
                 format!("{path} cannot be '{text}'; {takes}")
             }
         })?;
+        Ok(())
+    }
+
+    /// Sets a factor of one material. `path`: the material's name, which may have dots and be in quotes, and the factor's.
+    fn assign_factor(&mut self, path: &str, text: &str) -> Result<(), String> {
+        let (material, name) = path.rsplit_once('.').filter(|(material, _)| !material.is_empty()).ok_or_else(|| {
+            format!("'{MATERIALS}{path}' names no factor: expected {MATERIALS}NAME.FACTOR, as {MATERIALS}Shell.roughness=0.3")
+        })?;
+        let unquoted = material.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        let material = unquoted.unwrap_or(material);
+        let factor = factors::named(name)?;
+        let value = parse(text).try_into().map_err(|_| {
+            let info = factor.info();
+            let takes = if info.is_color { "3 numbers, as 0.9,0.1,0.1" } else { "a number" };
+            format!("{MATERIALS}{path} cannot be '{text}'; it takes {takes}, {}", told(&info.limits))
+        })?;
+        self.materials.entry(material.to_owned()).or_default().insert(factor, value);
         Ok(())
     }
 
@@ -136,6 +158,10 @@ fn takes(path: &str, text: &str, old: Option<&toml::Value>, cause: &str) -> Stri
         Some(toml::Value::Float(_)) => format!("it takes a number{within}"),
         Some(toml::Value::Integer(_)) => "it takes a whole number, 0 or more".into(),
         Some(toml::Value::Boolean(_)) => "it takes true or false".into(),
+        Some(toml::Value::Array(list)) if list.is_empty() || list.iter().any(toml::Value::is_str) => {
+            let known = if path == "material.override" { "base_color, metallic, roughness, anisotropy" } else { "any" };
+            format!("it takes a list of names ({known}), as a,b")
+        }
         Some(toml::Value::Array(list)) if list.iter().all(toml::Value::is_float) => {
             format!("it takes {} numbers, as 0.9{}", list.len(), ",0.1".repeat(list.len().saturating_sub(1)))
         }
@@ -175,7 +201,7 @@ fn set_at(root: &mut toml::Value, path: &str, value: toml::Value) -> Result<(), 
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ShaderValue, Tonemap};
+    use super::super::{Factor, FactorValue, ShaderValue, Tonemap};
     use super::*;
 
     #[test]
@@ -195,6 +221,11 @@ mod tests {
             "lights.rect.enabled=true",
             "shader.rim=0.5",
             "NDF_MODEL=Beckmann",
+            "material.override=roughness, metallic",
+            "scene.hidden=Shell,Base #0",
+            "scene.isolated=[\"a, b\"]",
+            "materials.Shell.roughness=0.25",
+            "materials.\"v1.2 steel\".base_color=1,0.5,0",
         ] {
             settings.assign(assignment).unwrap();
         }
@@ -207,6 +238,15 @@ mod tests {
         assert_eq!((settings.environment.name.as_str(), settings.measured.as_str()), ("7", "1,2"));
         assert_eq!(settings.shader["rim_color"], ShaderValue::Vector(vec![1.0, 0.5, 0.0]));
         assert!(settings.lights.rect.enabled);
+        let channels: Vec<&str> = settings.material.channels.names().collect();
+        assert_eq!(channels, ["metallic", "roughness"]);
+        assert_eq!(
+            (&*settings.scene.hidden, &*settings.scene.isolated),
+            (&["Shell".into(), "Base #0".into()][..], &["a, b".into()][..])
+        );
+        assert_eq!(settings.materials["Shell"][&Factor::Roughness], FactorValue::Number(0.25));
+        assert_eq!(settings.materials["v1.2 steel"][&Factor::BaseColor], FactorValue::Color([1.0, 0.5, 0.0]));
+        assert_eq!(Settings::from_toml(&settings.to_toml()).unwrap(), settings);
         assert_eq!(settings.shader["rim"], ShaderValue::Float(0.5));
         assert_eq!(settings.shader["NDF_MODEL"], ShaderValue::Name("Beckmann".into()));
     }
@@ -235,6 +275,10 @@ mod tests {
             ("camera.eye=[1, 2, 3, 4]", "camera.eye cannot be '[1, 2, 3, 4]'; it takes 3 numbers"),
             ("rim={ x = 1 }", "rim cannot be '{ x = 1 }'; it takes a number, numbers as"),
             ("lights.orbit.3.strength=1", "After `lights.orbit` comes a number from 0 to 2"),
+            ("materials.Shell.rough=1", "a material has no factor `rough`. Did you mean `roughness`?"),
+            ("materials.Shell.roughness=red", "cannot be 'red'; it takes a number, 0 to 1"),
+            ("materials.roughness=1", "names no factor: expected materials.NAME.FACTOR"),
+            ("material.override=rough", "it takes a list of names (base_color, metallic, roughness, anisotropy)"),
             ("view.ev.x=1", "`view.ev` is a value and has no part 'x'"),
             ("view.ev", "expected path=value"),
             ("view.tonemap=filmic", "view.tonemap cannot be 'filmic'; it can be none, reinhard, reinhard-luminance, "),

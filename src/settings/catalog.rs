@@ -25,7 +25,7 @@ pub struct Setting {
 }
 
 /// Path, unit and meaning of every setting. A `*` in a path stands for the number of an orbiting light.
-const DESCRIBED: [(&str, &str, &str); 39] = [
+const DESCRIBED: [(&str, &str, &str); 45] = [
     ("mode", "", "Debug mode; `specula modes` lists them"),
     ("variant", "", "Variant of the model; without one its own materials"),
     ("measured", "", "File of a measured BRDF, for the modes `measured...`"),
@@ -54,11 +54,17 @@ const DESCRIBED: [(&str, &str, &str); 39] = [
     ("lights.rect.azimuth", "degrees", "Angle around +Y, from +Z towards +X"),
     ("lights.rect.polar", "degrees", "Angle from +Y"),
     ("material.enabled", "", "Whether this material replaces all of the model's"),
+    ("material.override", "", "Channels that it replaces alone: base_color, metallic, roughness, anisotropy"),
     ("material.base_color", "linear RGB", "Base color"),
     ("material.metallic", "", "0 dielectric, 1 metal"),
     ("material.roughness", "", "Perceptual roughness"),
     ("material.anisotropy", "", "Strength of the anisotropy"),
     ("material.anisotropy_rotation", "degrees", "Angle from the tangent towards the bitangent"),
+    ("scene.hidden", "", "Nodes and primitives that are not drawn: names, or #3 for the node with this index"),
+    ("scene.isolated", "", "Nodes and primitives that alone are drawn; none: all"),
+    ("model.rotation", "degrees", "Rotation of the model about its X, Y and Z axis, about Z first and Y last"),
+    ("model.scale", "", "Factor on the model's lengths"),
+    ("model.translation", "meters", "Where the origin of the model's file is"),
     ("environment.name", "", "studio, furnace, sky, none, or a .hdr or .exr file"),
     ("environment.rotation", "degrees", "Angle around +Y"),
     ("environment.intensity", "", "Factor on the map, whose values are cd/m^2"),
@@ -171,6 +177,7 @@ fn kind(value: &toml::Value) -> &'static str {
         toml::Value::Float(_) => "number",
         toml::Value::Integer(_) => "whole number",
         toml::Value::Boolean(_) => "true or false",
+        toml::Value::Array(list) if list.is_empty() => "names",
         toml::Value::Array(_) => "3 numbers",
         _ => "text",
     }

@@ -24,6 +24,7 @@ use crate::frame::{MeasuredKey, TablesKey};
 use crate::gpu::{Gpu, SetLayouts};
 use crate::learn::Exercise;
 use crate::message::panic_text;
+use crate::render::tools::Tools;
 use crate::render::{Readback, TraceKey};
 use crate::scene::BuiltInPictures;
 use crate::settings::Settings;
@@ -71,6 +72,8 @@ pub(crate) enum Message {
     Captures(u64, u64, u64),
     /// The capture with this number has ended.
     Captured(u64),
+    /// The pipelines of outlines and pictures of textures, or why there are none.
+    Tools(Result<Arc<Tools>, String>),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
 }
@@ -88,6 +91,8 @@ pub(crate) enum Role {
     /// Measures the BRDF.
     Measurer,
     Capturer(u64),
+    /// Makes the pipelines of outlines and pictures of textures.
+    Toolmaker,
     /// Waits for what is outside of Specula, or compares pictures.
     Waiter,
 }
@@ -152,7 +157,7 @@ pub(crate) struct Threads {
     pub(crate) baker: Baker,
     pub(crate) checker: Checker,
     pub(crate) measurer: Measurer,
-    /// Threads that look for the line of a loop.
+    /// Threads that look for the line of a loop, or make the pipelines of tools.
     explainers: Vec<JoinHandle<()>>,
     /// Threads that draw captures, and what cancels each.
     capturers: Vec<(Arc<AtomicBool>, JoinHandle<()>)>,
@@ -227,6 +232,11 @@ impl Threads {
     /// The end of the messages to the window, for work that answers later.
     pub(crate) fn outbox(&self) -> Outbox {
         self.outbox.clone()
+    }
+
+    /// Sends the pipelines that `make` returns.
+    pub(crate) fn make_tools(&mut self, make: impl FnOnce() -> Result<Arc<Tools>, String> + Send + 'static) {
+        self.explainers.push(self.outbox.spawn(Role::Toolmaker, |outbox| outbox.send(Message::Tools(make()))));
     }
 
     /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the

@@ -25,6 +25,8 @@ const COLUMN: f32 = 318.0;
 pub(super) enum Panel {
     Viewport,
     Modes,
+    Scene,
+    Texture,
     Model,
     Shaders,
     Timeline,
@@ -44,16 +46,23 @@ pub(super) enum Panel {
 impl Panel {
     /// All panels that can be closed, in groups that share a tile at first.
     pub(super) const GROUPS: [&[Self]; 4] = [
-        &[Self::Modes, Self::Model, Self::Learn],
+        &[Self::Modes, Self::Scene, Self::Model, Self::Texture, Self::Learn],
         &[Self::Shaders, Self::Timeline, Self::Timing, Self::Expression],
         &[Self::Parameters, Self::Passes, Self::Inspector],
         &[Self::Environment, Self::Lights, Self::Output, Self::Camera, Self::Capture],
     ];
 
+    /// Whether a preset opens the panel. The others open when they are asked for.
+    pub(super) fn is_in_presets(self) -> bool {
+        self != Self::Texture
+    }
+
     pub(super) fn title(self) -> &'static str {
         match self {
             Self::Viewport => "Viewport",
             Self::Modes => "Modes",
+            Self::Scene => "Scene",
+            Self::Texture => "Texture",
             Self::Model => "Model",
             Self::Shaders => "Shaders",
             Self::Timeline => "Timeline",

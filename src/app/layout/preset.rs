@@ -84,7 +84,8 @@ fn column(tiles: &mut Tiles<Panel>, groups: &[(&[Panel], f32)]) -> TileId {
     let rows = groups.iter().map(|(panels, share)| {
         // An exercise wants a column of its own.
         let is_shown = |panel: &&Panel| **panel != Panel::Learn || panels.len() == 1;
-        let panes = panels.iter().filter(is_shown).map(|panel| tiles.insert_pane(*panel)).collect();
+        let shown = panels.iter().filter(is_shown).filter(|panel| panel.is_in_presets());
+        let panes = shown.map(|panel| tiles.insert_pane(*panel)).collect();
         (tiles.insert_tab_tile(panes), *share)
     });
     let rows = rows.collect();

@@ -1,7 +1,7 @@
 //! The numbers of the settings, panel by panel.
 
 use super::Number;
-use crate::settings::{LightSource, Settings};
+use crate::settings::{LightSource, MaterialChannel, Settings};
 
 const TURN: (f64, f64) = (-180.0, 180.0);
 const WHOLE: (f64, f64) = (0.0, 1.0);
@@ -137,18 +137,18 @@ pub(in crate::app) static MATERIAL: [Number; 3] = [
     Number::new(("material.metallic", "Metallic"), (WHOLE, 2, ""), "0 is a dielectric, 1 a metal", |settings, _| {
         &mut settings.material.metallic
     })
-    .when(has_material),
+    .when(|settings| settings.material.replaces(MaterialChannel::Metallic)),
     Number::new(("material.roughness", "Roughness"), (WHOLE, 2, ""), "Perceptual roughness", |settings, _| {
         &mut settings.material.roughness
     })
-    .when(has_material),
+    .when(|settings| settings.material.replaces(MaterialChannel::Roughness)),
     Number::new(
         ("material.anisotropy", "Anisotropy"),
         (WHOLE, 2, ""),
         "Strength of the anisotropy: 0 is isotropic",
         |settings, _| &mut settings.material.anisotropy,
     )
-    .when(has_material),
+    .when(|settings| settings.material.replaces(MaterialChannel::Anisotropy)),
 ];
 pub(in crate::app) static DIRECTION: Number = Number::new(
     ("material.anisotropy_rotation", "Direction"),
@@ -156,7 +156,53 @@ pub(in crate::app) static DIRECTION: Number = Number::new(
     "Direction of the anisotropy: angle from the tangent towards the bitangent",
     |settings, _| &mut settings.material.anisotropy_rotation,
 )
-.when(|settings| has_material(settings) && settings.material.anisotropy > 0.0);
+.when(|settings| settings.material.replaces(MaterialChannel::Anisotropy) && settings.material.anisotropy > 0.0);
+
+pub(in crate::app) static TRANSFORM: [Number; 7] = [
+    Number::new(
+        ("model.rotation.0", "Rotation X"),
+        (TURN, 0, "°"),
+        "Rotation about the model's X axis, after that about Z",
+        |settings, _| &mut settings.model.rotation[0],
+    ),
+    Number::new(
+        ("model.rotation.1", "Rotation Y"),
+        (TURN, 0, "°"),
+        "Rotation about the vertical axis, after those about Z and X",
+        |settings, _| &mut settings.model.rotation[1],
+    ),
+    Number::new(
+        ("model.rotation.2", "Rotation Z"),
+        (TURN, 0, "°"),
+        "Rotation about the model's Z axis, before the others",
+        |settings, _| &mut settings.model.rotation[2],
+    ),
+    Number::new(
+        ("model.scale", "Scale"),
+        ((0.01, 100.0), 2, "×"),
+        "Factor on all lengths. The camera frames the model again unless it was moved; lights follow its size",
+        |settings, _| &mut settings.model.scale,
+    )
+    .logarithmic(),
+    Number::new(
+        ("model.translation.0", "Move X"),
+        ((-10.0, 10.0), 2, " m"),
+        "Translation along X. The camera follows unless it was moved",
+        |settings, _| &mut settings.model.translation[0],
+    ),
+    Number::new(
+        ("model.translation.1", "Move Y"),
+        ((-10.0, 10.0), 2, " m"),
+        "Translation along Y, up. The camera follows unless it was moved",
+        |settings, _| &mut settings.model.translation[1],
+    ),
+    Number::new(
+        ("model.translation.2", "Move Z"),
+        ((-10.0, 10.0), 2, " m"),
+        "Translation along Z. The camera follows unless it was moved",
+        |settings, _| &mut settings.model.translation[2],
+    ),
+];
 
 fn has_orbit(settings: &Settings) -> bool {
     settings.lights.source == LightSource::Orbit
@@ -166,15 +212,11 @@ fn has_rectangle(settings: &Settings) -> bool {
     settings.lights.rect.enabled && settings.lights.source != LightSource::None
 }
 
-fn has_material(settings: &Settings) -> bool {
-    settings.material.enabled
-}
-
 /// All numbers of the settings, in the order of the panels.
 pub(in crate::app) fn all(settings: &Settings) -> impl Iterator<Item = Number> {
     let lights = 0..settings.lights.orbit.len();
     let orbit = lights.flat_map(|light| ORBIT.iter().map(move |number| number.of_light(light)));
     let first = [&EXPOSURE, &FIELD_OF_VIEW, &ROTATION, &INTENSITY, &BLUR, &SPIN].into_iter().cloned();
-    let last = RECTANGLE.iter().chain([&AMBIENT]).chain(&MATERIAL).chain([&DIRECTION]).cloned();
+    let last = RECTANGLE.iter().chain([&AMBIENT]).chain(&MATERIAL).chain([&DIRECTION]).chain(&TRANSFORM).cloned();
     first.chain(orbit).chain(last)
 }

@@ -9,7 +9,8 @@ use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::{Constant, Parameter};
 pub(super) use list::{
-    AMBIENT, BLUR, DIRECTION, EXPOSURE, FIELD_OF_VIEW, INTENSITY, MATERIAL, ORBIT, RECTANGLE, ROTATION, SPIN, all,
+    AMBIENT, BLUR, DIRECTION, EXPOSURE, FIELD_OF_VIEW, INTENSITY, MATERIAL, ORBIT, RECTANGLE, ROTATION, SPIN,
+    TRANSFORM, all,
 };
 
 /// How a number is shown and what it can be.
@@ -189,6 +190,7 @@ impl Number {
             _ if self.path.starts_with("lights.ambient") => "Ambient light".to_owned(),
             Some(("environment", _)) => "Environment".to_owned(),
             Some(("material", _)) => "Material override".to_owned(),
+            Some(("model", _)) => "Model".to_owned(),
             _ => return self.name.to_owned(),
         };
         format!("{group}: {}", self.name.to_lowercase())
@@ -199,7 +201,7 @@ impl Number {
         match self.path.split_once('.') {
             Some(("environment", _)) => "Environment",
             Some(("lights", _)) => "Lights",
-            Some(("material", _)) => "Model",
+            Some(("material" | "model", _)) => "Model",
             Some(("view", _)) => "Output",
             _ => "Camera",
         }

@@ -6,7 +6,7 @@ use super::QUIET;
 use super::rows::{number, option_text};
 use crate::app::command::Command;
 use crate::app::numbers::FIELD_OF_VIEW;
-use crate::scene::{CameraView, Model};
+use crate::scene::Model;
 use crate::settings::Settings;
 
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands: &mut Vec<Command>) {
@@ -15,13 +15,10 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands
     if ui.button("Frame the model").on_hover_text("Show the whole model (R or Home)").clicked() {
         commands.push(Command::FrameModel);
     }
-    for camera in &model.cameras {
+    for (index, camera) in model.cameras.iter().enumerate() {
         let name = if camera.name.is_empty() { "Camera of the model" } else { &camera.name };
         if ui.add(egui::Button::new(name).truncate()).on_hover_text("Look through this camera of the model").clicked() {
-            let view = CameraView::of_camera(camera, 1.0, &model.bounds);
-            settings.eye = Some(view.eye.to_array());
-            settings.target = Some(view.target.to_array());
-            settings.fovy = view.fovy_rad.to_degrees();
+            commands.push(Command::LookThrough(index));
         }
     }
     if let (Some(eye), Some(target)) = (settings.eye, settings.target) {

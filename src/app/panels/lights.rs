@@ -1,29 +1,33 @@
 //! The panel Lights: which lights are on, the orbiting lights, the rectangle and the ambient light.
 
-use egui::Ui;
+use egui::{RichText, Ui};
 
+use super::QUIET;
 use super::rows::{check, choose, color, heading, number, setting};
+use crate::app::command::Command;
 use crate::app::numbers::{AMBIENT, ORBIT, RECTANGLE, SPIN};
+use crate::app::selection::{LightId, Selected};
 use crate::settings::{LightSettings, LightSource, RectLight, Settings};
 
 /// Shows the panel. `in_model` is the number of lights in the model.
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings, in_model: usize) {
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings, in_model: usize, commands: &mut Vec<Command>) {
     let default = LightSettings::default();
     source(ui, &mut settings.lights, in_model);
     terms(ui, &mut settings.lights, in_model);
     if settings.lights.source == LightSource::Orbit {
         number(ui, settings, &SPIN);
-        for (i, default) in default.orbit.iter().enumerate() {
+        for i in 0..settings.lights.orbit.len() {
             ui.push_id(i, |ui| {
-                heading(ui, &format!("Light {}", i + 1));
-                let light = &mut settings.lights.orbit[i].color;
-                setting(ui, ("Color", "", &format!("lights.orbit.{i}.color")), light, default.color, color);
-                ORBIT.iter().for_each(|row| number(ui, settings, &row.of_light(i)));
+                titled(ui, &format!("Light {}", i + 1), LightId::Orbit(i), commands);
+                orbit(ui, settings, i);
             });
         }
     }
     if settings.lights.source != LightSource::None {
-        ui.push_id("rectangle", |ui| rectangle(ui, settings, &default.rect));
+        ui.push_id("rectangle", |ui| {
+            titled(ui, "Rectangle", LightId::Rectangle, commands);
+            rectangle(ui, settings);
+        });
     }
     ui.push_id("ambient", |ui| {
         heading(ui, "Ambient light");
@@ -68,9 +72,34 @@ fn terms(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
     });
 }
 
-/// The rectangular light.
-fn rectangle(ui: &mut Ui, settings: &mut Settings, default: &RectLight) {
-    heading(ui, "Rectangle");
+/// A heading with a button that shows the handle of a light in the picture.
+fn titled(ui: &mut Ui, title: &str, light: LightId, commands: &mut Vec<Command>) {
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        ui.add(egui::Label::new(RichText::new(title).small().color(QUIET)).selectable(false));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let hint = "Show its handle in the picture, and drag it there";
+            if ui.small_button("Move in view").on_hover_text(hint).clicked() {
+                commands.push(match light {
+                    LightId::Rectangle => Command::PlaceRectangle,
+                    _ => Command::Select(Selected::Light(light)),
+                });
+            }
+        });
+    });
+}
+
+/// The rows of an orbiting light.
+pub(super) fn orbit(ui: &mut Ui, settings: &mut Settings, index: usize) {
+    let default = LightSettings::default();
+    let Some((light, default)) = settings.lights.orbit.get_mut(index).zip(default.orbit.get(index)) else { return };
+    setting(ui, ("Color", "", &format!("lights.orbit.{index}.color")), &mut light.color, default.color, color);
+    ORBIT.iter().for_each(|row| number(ui, settings, &row.of_light(index)));
+}
+
+/// The rows of the rectangular light.
+pub(super) fn rectangle(ui: &mut Ui, settings: &mut Settings) {
+    let default = RectLight::default();
     let light = &mut settings.lights.rect;
     let doc = "One-sided area light that faces the model's center";
     setting(ui, ("On", doc, "lights.rect.enabled"), &mut light.enabled, default.enabled, check);

@@ -7,6 +7,7 @@ mod compare;
 pub(super) mod defaults;
 mod environment;
 pub(super) mod expression;
+mod gizmo;
 mod inspector;
 mod keys;
 mod learn;
@@ -20,8 +21,10 @@ mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
 pub(super) mod rows;
+pub(super) mod scene;
 mod shaders;
 mod status_bar;
+pub(super) mod texture;
 pub(super) mod theme;
 pub(super) mod timeline;
 mod timing;
@@ -66,6 +69,9 @@ pub(super) struct PanelState {
     pub(super) inspector: Inspector,
     timing: timing::TimingState,
     shaders: shaders::ShadersState,
+    pub(super) scene: scene::SceneState,
+    pub(super) texture: texture::TextureState,
+    gizmo: gizmo::Gizmo,
     pub(super) timeline: timeline::TimelineState,
     pub(super) expression: expression::ExpressionState,
     pub(super) defaults: defaults::Asked,
@@ -98,6 +104,9 @@ impl PanelState {
             inspector: Inspector::default(),
             timing: timing::TimingState::default(),
             shaders: shaders::ShadersState::default(),
+            scene: scene::SceneState::default(),
+            texture: texture::TextureState::default(),
+            gizmo: gizmo::Gizmo::default(),
             timeline: timeline::TimelineState::default(),
             expression: expression::ExpressionState::default(),
             defaults: defaults::Asked::default(),
@@ -132,6 +141,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     viewer.panels.timeline.is_visible = false;
     viewer.panels.inspector.is_visible = false;
     viewer.panels.timing.is_visible = false;
+    viewer.panels.texture.request = None;
     viewer.panels.gallery.begin_frame();
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
@@ -145,6 +155,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     };
     compare::show(ui.ctx(), viewer, picture.rect);
     inspector::marker(ui.ctx(), &viewer.panels.inspector, picture.rect);
+    gizmo::show(ui.ctx(), viewer, picture.rect);
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
@@ -213,8 +224,20 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         viewer.panels.timing = state;
         return;
     }
+    if panel == Panel::Scene {
+        let mut state = std::mem::take(&mut viewer.panels.scene);
+        scene::show(ui, viewer, &mut state, commands);
+        viewer.panels.scene = state;
+        return;
+    }
+    if panel == Panel::Texture {
+        let mut state = std::mem::take(&mut viewer.panels.texture);
+        texture::show(ui, viewer, &mut state);
+        viewer.panels.texture = state;
+        return;
+    }
     let shaders = viewer.session.shaders.clone();
-    let model = viewer.session.model().cloned().unwrap_or_default();
+    let model = viewer.session.placed_model().unwrap_or_default();
     let is_animated = viewer.is_animated();
     let features = viewer.session.features();
     let session = &mut viewer.session;
@@ -222,7 +245,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let declared = shaders.clone().unwrap_or_default();
     match panel {
         Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Shaders | Panel::Timing => {}
-        Panel::Expression | Panel::Inspector | Panel::Capture => {}
+        Panel::Expression | Panel::Inspector | Panel::Capture | Panel::Scene | Panel::Texture => {}
         Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
@@ -234,7 +257,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
             let (progress, report) = (viewer.threads.baker.progress(), &viewer.resources.environment().report);
             environment::show(ui, settings, viewer.panels.recent.of(Kind::Environment), progress, report);
         }
-        Panel::Lights => lights::show(ui, settings, model.lights.len()),
+        Panel::Lights => lights::show(ui, settings, model.lights.len(), commands),
         Panel::Output => output::show(ui, settings, commands),
         Panel::Camera => camera::show(ui, settings, &model, commands),
     }

@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use egui::{RichText, Ui};
+use egui::{Checkbox, RichText, Ui};
 
 use super::rows::{Row, check, choose, color, heading, number, setting};
 use super::{QUIET, WARNING, plural};
 use crate::app::command::Command;
-use crate::app::numbers::{DIRECTION, MATERIAL};
+use crate::app::numbers::{DIRECTION, MATERIAL, TRANSFORM};
 use crate::app::viewer::ModelStatus;
 use crate::scene::{BUILT_IN, Model};
-use crate::settings::{MaterialOverride, Settings};
+use crate::settings::{MaterialChannel, MaterialOverride, ModelSettings, Settings};
 
 pub(super) fn show(
     ui: &mut Ui,
@@ -32,6 +32,7 @@ pub(super) fn show(
             })
         });
     }
+    place(ui, settings);
     override_material(ui, settings);
     statistics(ui, model, status);
     for warning in &model.warnings {
@@ -68,16 +69,45 @@ fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], co
 fn override_material(ui: &mut Ui, settings: &mut Settings) {
     heading(ui, "Material override");
     let (material, default) = (&mut settings.material, MaterialOverride::default());
-    let doc = "Replace all materials of the model with one that has no textures";
-    setting(ui, ("On", doc, "material.enabled"), &mut material.enabled, default.enabled, check);
-    if !material.enabled {
-        return;
-    }
+    let doc = "Replace all materials of the model with one that has no textures and no extensions";
+    setting(ui, ("Whole", doc, "material.enabled"), &mut material.enabled, default.enabled, check);
     let doc = "Reflectance of the diffuse lobe, or of a metal";
-    setting(ui, ("Base color", doc, "material.base_color"), &mut material.base_color, default.base_color, color);
-    MATERIAL.iter().for_each(|row| number(ui, settings, row));
-    if settings.material.anisotropy > 0.0 {
+    channel(ui, settings, MaterialChannel::BaseColor, |ui, settings| {
+        let value = &mut settings.material.base_color;
+        setting(ui, ("Base color", doc, "material.base_color"), value, default.base_color, color);
+    });
+    let channels = [MaterialChannel::Metallic, MaterialChannel::Roughness, MaterialChannel::Anisotropy];
+    for (of, row) in channels.into_iter().zip(&MATERIAL) {
+        channel(ui, settings, of, |ui, settings| number(ui, settings, row));
+    }
+    if settings.material.replaces(MaterialChannel::Anisotropy) && settings.material.anisotropy > 0.0 {
         number(ui, settings, &DIRECTION);
+    }
+}
+
+/// The row of a channel, with a switch in front that replaces the channel of all materials.
+fn channel(ui: &mut Ui, settings: &mut Settings, of: MaterialChannel, row: impl FnOnce(&mut Ui, &mut Settings)) {
+    ui.horizontal(|ui| {
+        let mut is_on = settings.material.replaces(of);
+        let switch = ui.add_enabled(!settings.material.enabled, Checkbox::without_text(&mut is_on));
+        let hint = format!(
+            "Replace this channel of all materials, without its texture. All else stays\n--set material.override={}",
+            of.name()
+        );
+        if switch.on_hover_text(hint).changed() {
+            settings.material.channels.set(of, is_on);
+        }
+        ui.add_enabled_ui(is_on, |ui| row(ui, settings));
+    });
+}
+
+/// Where the model stands.
+fn place(ui: &mut Ui, settings: &mut Settings) {
+    let is_moved = settings.model != ModelSettings::default();
+    heading(ui, "Transform");
+    TRANSFORM.iter().for_each(|row| number(ui, settings, row));
+    if is_moved && ui.small_button("Reset").on_hover_text("Stand where the file places it").clicked() {
+        settings.model = ModelSettings::default();
     }
 }
 

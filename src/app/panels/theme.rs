@@ -10,6 +10,8 @@ pub(in crate::app) const EDGE: Color32 = Color32::from_rgb(15, 16, 18);
 pub(in crate::app) const ACCENT: Color32 = Color32::from_rgb(94, 182, 255);
 /// Behind what is chosen.
 const SELECTED: Color32 = Color32::from_rgb(35, 86, 134);
+/// Around what is selected in the picture. Orange stands out from skies, metals and the accent.
+pub(in crate::app) const SELECTION: Color32 = Color32::from_rgb(255, 160, 48);
 /// Errors.
 pub(in crate::app) const ERROR: Color32 = Color32::from_rgb(255, 110, 100);
 /// Warnings.

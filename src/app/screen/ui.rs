@@ -29,6 +29,8 @@ impl Screen {
         }
         let readings = Readings { value: self.value_text(viewer), title: viewer.title(self.view.accumulated()) };
         self.take_times(viewer);
+        let prepared = self.prepare_texture(viewer);
+        self.survive(prepared)?;
         let input = self.input.take_egui_input(window);
         let begin = Instant::now();
         let (mut shown, mut commands) = (None, Vec::new());

@@ -6,7 +6,7 @@ use super::Viewer;
 use crate::app::inspector::{Asked, Page, Reading, Shown, text};
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
-use crate::scene::hit_at;
+use crate::scene::pick;
 use crate::shader::{PixelValue, ShaderSet};
 use crate::threads::measurer::{CurvesRequest, Measured};
 
@@ -123,11 +123,11 @@ impl Viewer {
 fn names(state: &FrameState, at: [u32; 2]) -> Option<[String; 2]> {
     let scene = state.scene.as_ref()?;
     let model = scene.model();
-    let (instance, _) = hit_at(model, &state.camera, state.size, (at[0], at[1]))?;
-    let instance = model.instances.get(instance)?;
-    let material = match scene.material_of(instance) {
-        Some(material) => model.materials.get(material)?.name.clone(),
-        None => "material override".to_owned(),
+    let hit = pick(model, &state.camera, state.size, (at[0], at[1]), |instance| scene.sides(instance))?;
+    let instance = model.instances.get(hit.instance)?;
+    let material = match scene.replacement() {
+        Some(_) => "material override".to_owned(),
+        None => model.materials.get(scene.material_of(instance))?.name.clone(),
     };
     let named = |name: &str, instead: &str| if name.is_empty() { instead.to_owned() } else { name.to_owned() };
     let primitive = model.primitives.get(instance.primitive)?;

@@ -7,13 +7,14 @@ use std::sync::Arc;
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
 use crate::app::recent::Kind;
+use crate::app::selection::Selected;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
 use crate::message;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
 use crate::scene::{BUILT_IN, environment};
-use crate::settings::{GROUND, LightSource};
+use crate::settings::{GROUND, LightSource, SceneSettings};
 use crate::shader::{Diagnostic, Severity, ShaderSet};
 use crate::threads::baker::BakeMessage;
 use crate::threads::loader::Loaded;
@@ -51,6 +52,7 @@ impl Viewer {
             Message::Curves(measured) => self.on_curves(*measured),
             Message::Pictures(pictures) => self.panels.open_gallery.take(pictures),
             Message::Say(text) => self.say(text),
+            Message::Tools(tools) => self.on_tools(tools),
             Message::Look(Ok(settings)) => {
                 self.session.settings = *settings;
                 self.look_read(&Ok(()));
@@ -214,15 +216,26 @@ impl Viewer {
             Ok(uploaded) => {
                 // The pictures of older versions would keep the old model on the device.
                 self.versions.drop_pictures();
-                let model = uploaded.model();
+                let (model, is_other) = (uploaded.model(), loaded.path != self.model.path);
                 for warning in &model.warnings {
                     message::warn(format_args!("{}: {warning}", model.name));
                 }
                 if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
                     self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
                 }
-                if !std::mem::take(&mut self.model.keeps_camera) && loaded.path != self.model.path {
+                // A session that is restored brings its own settings.
+                let is_restored = std::mem::take(&mut self.model.keeps_camera);
+                if is_other && !is_restored {
                     self.execute(Command::FrameModel);
+                    // They name parts of the model before.
+                    self.session.settings.scene = SceneSettings::default();
+                    self.session.settings.materials.clear();
+                }
+                if is_other || !self.selected.is_in(model) {
+                    self.select(Selected::Nothing);
+                }
+                if !is_restored && (is_other || self.session.model().is_none()) {
+                    self.follow_lights(model);
                 }
                 self.panels.show_model_warnings = true;
                 if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {
@@ -233,6 +246,10 @@ impl Viewer {
                 self.model.files.clone_from(&model.files);
                 self.session.set_model(model);
                 self.resources.set_model(&uploaded);
+                let settings = &self.session.settings;
+                let unknown = model.unknown_part(&settings.scene);
+                let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
+                unknown.into_iter().for_each(|problem| self.say(problem));
             }
             Err((message, tried)) => {
                 self.model.keeps_camera = false;
@@ -378,6 +395,7 @@ impl Viewer {
                 self.controlled.captures.ended(number);
                 "capturing"
             }
+            Role::Toolmaker => "toolmaker",
             Role::Waiter => {
                 (self.is_choosing, self.compare.measuring) = (false, None);
                 "waiting"

@@ -89,7 +89,7 @@ impl Viewer {
     pub(super) fn interim(&self, shown: &LastComplete, clock: Clock, size: (u32, u32)) -> BoundFrame {
         let mut settings = shown.settings.clone();
         let same_model = match (&shown.scene, self.session.model()) {
-            (Some(scene), Some(model)) => Arc::ptr_eq(scene.model(), model),
+            (Some(scene), Some(model)) => Arc::ptr_eq(scene.loaded(), model),
             (scene, model) => scene.is_none() && model.is_none(),
         };
         if same_model {

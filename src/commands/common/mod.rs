@@ -124,10 +124,18 @@ impl Common {
             let path = set.split('=').next().unwrap_or_default().trim();
             path.starts_with("material.") && path != "material.enabled"
         };
-        if let Some(set) = self.set.iter().find(of_material).filter(|_| !settings.material.enabled) {
+        let material = &settings.material;
+        let is_unused = !material.enabled && material.channels.is_empty();
+        if let Some(set) = self.set.iter().find(of_material).filter(|_| is_unused) {
             warn_once(&format!("--set {set} changes nothing without --set material.enabled=true"));
         }
         Ok(settings)
+    }
+
+    /// Whether no option says which lights shine.
+    pub fn leaves_lights_open(&self) -> bool {
+        let is_source = |set: &String| set.trim_start().starts_with("lights.source");
+        self.lights.is_none() && self.look.is_none() && !self.set.iter().any(is_source)
     }
 
     /// The same without the warnings.

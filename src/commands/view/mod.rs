@@ -94,6 +94,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         model: args.model,
         tree: source.location().map(Path::to_owned),
     };
+    let follows_lights = args.common.leaves_lights_open();
     let state = folder.as_deref().map(State::read).unwrap_or_default();
     // A model and options say what is wanted, and after a loss the record does.
     let is_plain = given.model.is_none() && args.common.chooses_nothing() && state.work.is_none();
@@ -115,6 +116,8 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         source,
         compiler: compiler()?,
         model: work.model,
+        // After a loss the settings are those of the session.
+        follows_lights: follows_lights && state.work.is_none(),
         settings: work.settings,
         plain,
         size: state.window.map_or(args.common.size, |window| window.size),

@@ -87,6 +87,8 @@ pub struct Image {
     pub(in crate::gpu) level_views: Vec<vk::ImageView>,
     allocation: Option<Allocation>,
     owned: bool,
+    /// The image that has the memory, if this is another view of it.
+    _of: Option<Arc<Image>>,
     desc: ImageDesc,
 }
 
@@ -120,6 +122,7 @@ impl Image {
             level_views: Vec::new(),
             allocation: None,
             owned: true,
+            _of: None,
             desc,
         };
         gpu.name(raw, name);
@@ -167,7 +170,31 @@ impl Image {
             level_views: Vec::new(),
             allocation: None,
             owned: false,
+            _of: None,
             desc,
+        }))
+    }
+
+    /// The same image, sampled with these channels, red first, as 1.
+    ///
+    /// # Errors
+    /// The device is out of memory.
+    pub fn with_ones(self: &Arc<Self>, ones: [bool; 4]) -> Result<Arc<Self>, GpuError> {
+        let channel = |is_one| if is_one { vk::ComponentSwizzle::ONE } else { vk::ComponentSwizzle::IDENTITY };
+        let [r, g, b, a] = ones.map(channel);
+        let components = vk::ComponentMapping { r, g, b, a };
+        let Self { gpu, raw, desc, .. } = &**self;
+        let view = view_of_levels(gpu, *raw, desc, desc.view, 0..desc.mips, components)?;
+        gpu.name(view, "a texture without some channels");
+        Ok(Arc::new(Self {
+            gpu: gpu.clone(),
+            raw: *raw,
+            view,
+            level_views: Vec::new(),
+            allocation: None,
+            owned: false,
+            _of: Some(self.clone()),
+            desc: *desc,
         }))
     }
 
@@ -186,12 +213,13 @@ fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
 }
 
 fn create_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc) -> Result<vk::ImageView, GpuError> {
-    view_of_levels(gpu, raw, desc, desc.view, 0..desc.mips)
+    view_of_levels(gpu, raw, desc, desc.view, 0..desc.mips, vk::ComponentMapping::default())
 }
 
 /// A view of one level with all its layers, for a shader's `image2DArray`.
 fn create_level_view(gpu: &Gpu, raw: vk::Image, desc: &ImageDesc, level: u32) -> Result<vk::ImageView, GpuError> {
-    view_of_levels(gpu, raw, desc, vk::ImageViewType::TYPE_2D_ARRAY, level..level + 1)
+    let same = vk::ComponentMapping::default();
+    view_of_levels(gpu, raw, desc, vk::ImageViewType::TYPE_2D_ARRAY, level..level + 1, same)
 }
 
 fn view_of_levels(
@@ -200,6 +228,7 @@ fn view_of_levels(
     desc: &ImageDesc,
     kind: vk::ImageViewType,
     levels: std::ops::Range<u32>,
+    components: vk::ComponentMapping,
 ) -> Result<vk::ImageView, GpuError> {
     let range = vk::ImageSubresourceRange {
         aspect_mask: aspect(desc.format),
@@ -208,8 +237,8 @@ fn view_of_levels(
         base_array_layer: 0,
         layer_count: desc.layers,
     };
-    let info =
-        vk::ImageViewCreateInfo::default().image(raw).view_type(kind).format(desc.format).subresource_range(range);
+    let info = vk::ImageViewCreateInfo::default().image(raw).view_type(kind).format(desc.format);
+    let info = info.components(components).subresource_range(range);
     // SAFETY: the image is live.
     unsafe { gpu.device.create_image_view(&info, None) }.context("creating an image view")
 }

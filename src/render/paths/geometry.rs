@@ -34,7 +34,8 @@ impl Geometry {
                 continue;
             }
             let index = appearance.material.unwrap_or(model.materials.len());
-            let Some(material) = model.materials.get(index).or(replacement.as_ref()) else { continue };
+            let own = appearance.material.map(|index| scene.material(index));
+            let Some(material) = own.or(replacement.as_ref()) else { continue };
             let primitive = &model.primitives[instance.primitive];
             let placed = Placed::new(instance, material, index as u32, appearance.attributes & ATTRIBUTE_COLOR != 0);
             let indices = triangles(primitive.topology, &primitive.indices);

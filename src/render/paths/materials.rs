@@ -12,6 +12,7 @@ use crate::interface::{
 };
 use crate::render::scene::GpuModel;
 use crate::scene::{AlphaMode, Material, TextureSource};
+use crate::settings::MaterialChannel;
 
 /// Width and height of a layer, texels. What a path sees after its first hit is blurred by the next one, so detail is lost.
 const SIDE: u32 = 256;
@@ -54,7 +55,8 @@ impl<'a> Materials<'a> {
         let mut layers = [NO_TEXTURE; 3];
         for ((layer, slot), used) in layers.iter_mut().zip(SLOTS).zip(uses) {
             // With specular-glossiness the slot of metallic-roughness holds something else.
-            if used.is_some() && !(material.specular_glossiness && slot == TEXTURE_METALLIC_ROUGHNESS) {
+            let is_other = material.specular_glossiness && slot == TEXTURE_METALLIC_ROUGHNESS;
+            if used.is_some() && !is_other && !is_constant(material, slot) {
                 *layer = self.layer(material, slot);
             }
         }
@@ -128,6 +130,17 @@ fn level_above(image: &Image, side: u32) -> u32 {
     let desc = image.desc();
     let longer = desc.width.max(desc.height);
     (0..desc.mips).take_while(|level| longer >> level >= side).last().unwrap_or(0)
+}
+
+/// Whether a texture reads as 1 in all channels that paths see. Of metallic and roughness alone, the texture still multiplies the value.
+fn is_constant(material: &Material, slot: u32) -> bool {
+    let has = |channel| material.constant.has(channel);
+    match slot {
+        // The texture also has the coverage.
+        TEXTURE_BASE_COLOR => has(MaterialChannel::BaseColor) && material.alpha_mode == AlphaMode::Opaque,
+        TEXTURE_METALLIC_ROUGHNESS => has(MaterialChannel::Metallic) && has(MaterialChannel::Roughness),
+        _ => false,
+    }
 }
 
 fn columns(m: Affine2) -> [[f32; 2]; 3] {

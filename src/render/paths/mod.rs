@@ -133,7 +133,8 @@ impl TracedScene {
         let geometry = Geometry::new(scene)?;
         let mut materials = Materials::new(model);
         let replacement = scene.replacement();
-        let all = scene.model().materials.iter().chain(&replacement);
+        let own = (0..scene.model().materials.len()).map(|index| scene.material(index));
+        let all = own.chain(&replacement);
         let packed: Vec<TracedMaterial> = all.map(|material| materials.pack(material)).collect();
         let (triangles, nodes) = (geometry.triangles.len(), geometry.nodes.len());
         let ms = start.elapsed().as_secs_f64() * 1e3;

@@ -6,40 +6,59 @@ use std::sync::Arc;
 use crate::gpu::{
     Buffer, DescriptorSet, Gpu, GpuError, Image, Memory, Sampler, SamplerDesc, SetLayouts, SetWriter, vk,
 };
-use crate::interface;
-use crate::scene::{self as model, Model, TextureSource, pack_material};
+use crate::interface::{self, TEXTURE_BASE_COLOR, TEXTURE_METALLIC_ROUGHNESS};
+use crate::scene::{self as model, Material, Model, TextureSource, pack_material};
+use crate::settings::MaterialChannel;
 
 /// The textures on the device, by source.
 pub(crate) type Textures = HashMap<TextureSource, Arc<Image>>;
 
-/// Creates a descriptor set for each material of the model.
-pub(crate) fn materials(
-    gpu: &Arc<Gpu>,
-    layouts: &Arc<SetLayouts>,
-    model: &Model,
-    textures: &Textures,
-) -> Result<Vec<Arc<DescriptorSet>>, GpuError> {
-    let mut samplers: HashMap<model::Sampler, Arc<Sampler>> = HashMap::new();
-    let mut sets = Vec::new();
-    for (id, material) in (0u32..).zip(&model.materials) {
+/// What materials of a model are bound with.
+pub(super) struct MaterialSets<'a> {
+    pub(super) gpu: &'a Arc<Gpu>,
+    pub(super) layouts: &'a Arc<SetLayouts>,
+    pub(super) model: &'a Model,
+    pub(super) textures: &'a Textures,
+    pub(super) samplers: HashMap<model::Sampler, Arc<Sampler>>,
+}
+
+impl MaterialSets<'_> {
+    /// The descriptor set of a material, which may differ from the model's material with this index. A texture that reads as 1 in some
+    /// of its channels is a view of the same image.
+    pub(super) fn set(&mut self, material: &Material, id: u32) -> Result<Arc<DescriptorSet>, GpuError> {
+        let Self { gpu, layouts, model, textures, samplers } = self;
         let packed = pack_material(material, id);
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let buffer = Buffer::new(gpu, "material", size_of_val(&packed) as u64, usage, Memory::Upload)?;
         buffer.write(0, bytemuck::bytes_of(&packed));
         let mut writer = SetWriter::default().named(&format!("material `{}`", material.name)).buffer(0, &buffer);
         for (slot, used) in material.textures.iter().enumerate() {
-            let wanted = used.map(|u| model.textures[u.texture].sampler).unwrap_or_default();
+            let wanted = used.map(|used| model.textures[used.texture].sampler).unwrap_or_default();
             let sampler = match samplers.get(&wanted) {
                 Some(sampler) => sampler.clone(),
                 None => samplers.entry(wanted).or_insert(make_sampler(gpu, &wanted)?).clone(),
             };
             if let Some(image) = textures.get(&TextureSource::of(model, material, slot)) {
-                writer = writer.texture(1 + slot as u32, image, &sampler);
+                let ones = constant_channels(material, slot);
+                let image = if ones == [false; 4] { image.clone() } else { image.with_ones(ones)? };
+                writer = writer.texture(1 + slot as u32, &image, &sampler);
             }
         }
-        sets.push(DescriptorSet::new(layouts, interface::SET_MATERIAL, writer)?);
+        DescriptorSet::new(layouts, interface::SET_MATERIAL, writer)
     }
-    Ok(sets)
+}
+
+/// The channels of a texture, red first, that must read as 1.
+fn constant_channels(material: &Material, slot: usize) -> [bool; 4] {
+    let is_constant = |channel| material.constant.has(channel);
+    let (metallic, roughness) = (is_constant(MaterialChannel::Metallic), is_constant(MaterialChannel::Roughness));
+    match u32::try_from(slot) {
+        Ok(TEXTURE_BASE_COLOR) if is_constant(MaterialChannel::BaseColor) => [true, true, true, false],
+        // Its alpha is the glossiness.
+        Ok(TEXTURE_METALLIC_ROUGHNESS) if material.specular_glossiness => [false, false, false, roughness],
+        Ok(TEXTURE_METALLIC_ROUGHNESS) => [false, roughness, metallic, false],
+        _ => [false; 4],
+    }
 }
 
 fn make_sampler(gpu: &Arc<Gpu>, sampler: &model::Sampler) -> Result<Arc<Sampler>, GpuError> {

@@ -3,6 +3,7 @@
 mod materials;
 mod upload;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::Mat3;
@@ -11,7 +12,7 @@ use crate::frame::{Appearance, MaterialVariant, Scene};
 use crate::gpu::{Buffer, DescriptorSet, Gpu, GpuError, Image, SetLayouts, vk};
 use crate::interface::{Draw, Vertex};
 use crate::scene::{Instance, Model, Primitive, TextureSource, Topology, triangles};
-use materials::{Textures, materials};
+use materials::{MaterialSets, Textures};
 use upload::{Range, Uploaded, upload};
 
 /// Why a model cannot be uploaded.
@@ -37,6 +38,8 @@ pub enum UploadError {
 /// One draw call.
 #[derive(Clone)]
 pub(crate) struct GpuDraw {
+    /// Index into `Model::instances`.
+    pub(crate) instance: usize,
     pub(crate) push: Draw,
     pub(crate) first_index: u32,
     pub(crate) index_count: u32,
@@ -65,9 +68,12 @@ impl GpuModel {
     /// # Errors
     /// An image that exceeds the device's limit, or no memory left.
     pub fn upload(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, mut model: Model) -> Result<Arc<Self>, UploadError> {
-        model.primitives.iter_mut().for_each(list_triangles);
+        Arc::make_mut(&mut model.primitives).iter_mut().for_each(list_triangles);
         let Uploaded { vertices, indices, ranges, textures } = upload(gpu, &mut model)?;
-        let materials = materials(gpu, layouts, &model, &textures)?;
+        let samplers = HashMap::new();
+        let mut sets = MaterialSets { gpu, layouts, model: &model, textures: &textures, samplers };
+        let materials =
+            (0..).zip(&model.materials).map(|(id, material)| sets.set(material, id)).collect::<Result<_, _>>()?;
         Ok(Arc::new(Self { model: Arc::new(model), vertices, indices, ranges, materials, textures }))
     }
 
@@ -81,27 +87,28 @@ impl GpuModel {
         self.textures.get(source)
     }
 
-    /// The draws of a scene of this model. Uploads only a material override, if there is one.
+    /// The draws of a scene of this model. Uploads only the materials that the settings change.
     ///
     /// # Errors
     /// No memory left.
     pub fn scene(&self, gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, scene: &Scene) -> Result<Arc<GpuScene>, GpuError> {
-        let replacement = scene.replacement();
-        let replacement_set = match &replacement {
-            Some(material) => {
-                let alone = Model { materials: vec![material.clone()], ..Model::default() };
-                materials(gpu, layouts, &alone, &self.textures)?.pop()
-            }
-            None => None,
+        let (replacement, samplers) = (scene.replacement(), HashMap::new());
+        let mut sets = MaterialSets { gpu, layouts, model: &self.model, textures: &self.textures, samplers };
+        let replacement_set = replacement.as_ref().map(|material| sets.set(material, 0)).transpose()?;
+        let mut of_material = |(index, own): (usize, &Arc<DescriptorSet>)| match scene.changed_material(index) {
+            Some(material) if replacement.is_none() => sets.set(material, index as u32),
+            _ => Ok(own.clone()),
         };
+        let materials: Vec<_> = self.materials.iter().enumerate().map(&mut of_material).collect::<Result<_, _>>()?;
         let vertices = self.vertices.address();
-        let draw = |instance: &Instance| {
+        let draw = |(index, instance): (usize, &Instance)| {
             let appearance = scene.appearance(instance, replacement.as_ref());
-            let own = appearance.material.and_then(|index| self.materials.get(index));
+            let own = appearance.material.and_then(|index| materials.get(index));
             let set = own.or(replacement_set.as_ref())?.clone();
-            Some(draw(&self.model, instance, &self.ranges[instance.primitive], vertices, &appearance, set))
+            let draw = draw(&self.model, instance, &self.ranges[instance.primitive], vertices, &appearance, set);
+            Some(GpuDraw { instance: index, ..draw })
         };
-        let draws = scene.instances().filter_map(draw).collect();
+        let draws = scene.numbered_instances().filter_map(draw).collect();
         Ok(Arc::new(GpuScene { vertices: self.vertices.clone(), indices: self.indices.clone(), draws }))
     }
 }
@@ -126,6 +133,7 @@ fn draw(
     let linear = Mat3::from_mat4(world);
     let determinant = linear.determinant();
     GpuDraw {
+        instance: 0,
         push: Draw {
             vertices: vertices + range.first_vertex * size_of::<Vertex>() as u64,
             world_from_object: world.to_cols_array_2d().map(|c| [c[0], c[1], c[2]]),

@@ -55,7 +55,7 @@ pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, Uplo
     let staging = Staging::new(gpu, model, &sources)?;
     let textures = staging.textures(model, &sources)?;
     let (mut ranges, mut first_vertex, mut first_index) = (Vec::new(), 0u64, 0u32);
-    for primitive in &model.primitives {
+    for primitive in model.primitives.iter() {
         ranges.push(Range { first_vertex, first_index });
         first_vertex += primitive.vertices.len() as u64;
         first_index += primitive.indices.len() as u32;

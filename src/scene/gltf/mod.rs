@@ -13,6 +13,7 @@ mod variants;
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use gltf::json;
@@ -76,15 +77,17 @@ fn build(name: &str, bytes: &[u8], mut files: Files<'_>, start: Instant) -> Resu
     warnings.extend(placeholder::replace(&mut materials, &textures, &failures));
     let files = files.tried.clone();
     let mut model = Model { name: name.to_owned(), materials, textures, images, variants, files, ..Model::default() };
-    let mut ranges = HashMap::new();
+    let (mut ranges, mut primitives) = (HashMap::new(), Vec::new());
     for (mesh, geometries) in meshes {
-        let first = model.primitives.len();
+        let first = primitives.len();
         for Geometry { primitive, warnings: more } in geometries {
-            model.primitives.push(primitive);
+            primitives.push(primitive);
             warnings.extend(more);
         }
-        ranges.insert(mesh, first..model.primitives.len());
+        ranges.insert(mesh, first..primitives.len());
     }
+    model.primitives = Arc::new(primitives);
+    model.nodes = scene.nodes;
     for placed in scene.meshes {
         for primitive in ranges.get(&placed.mesh).cloned().unwrap_or_default() {
             let world_from_object = placed.world_from_object;
@@ -132,12 +135,7 @@ fn finish_meshes(mut meshes: Meshes, materials: &[Material]) -> Meshes {
 }
 
 fn world_bounds(model: &Model) -> Result<Bounds, Problem> {
-    let mut bounds = Bounds::default();
-    for instance in &model.instances {
-        for corner in model.primitives[instance.primitive].bounds.corners() {
-            bounds.include(instance.world_from_object.transform_point3(corner));
-        }
-    }
+    let bounds = model.instance_bounds();
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
     if model.instances.is_empty() {
         return Err(Problem::NothingToDraw { found: "meshes without drawable primitives".into() });

@@ -6,12 +6,14 @@ use json::extensions::scene::khr_lights_punctual as punctual;
 use json::validation::Checked;
 
 use super::super::error::Problem;
-use super::super::model::{Bounds, Camera, Light, LightKind};
+use super::super::model::{Bounds, Camera, Light, LightKind, Node};
 use super::{get, out_of_range, place};
 
 /// The objects of a scene.
 #[derive(Default)]
 pub struct Scene {
+    /// The nodes, in the order of the hierarchy.
+    pub nodes: Vec<Node>,
     /// Meshes, in the order of the hierarchy.
     pub meshes: Vec<PlacedMesh>,
     /// Lights in world space.
@@ -56,17 +58,20 @@ pub fn walk(root: &json::Root) -> Result<Scene, Problem> {
         (None, None) => (0..root.nodes.len()).filter(|&node| !has_parent[node]).collect(),
     };
     // An explicit stack, since files may nest deeper than the thread's stack allows.
-    let mut stack: Vec<(usize, Mat4)> = start.into_iter().rev().map(|node| (node, Mat4::IDENTITY)).collect();
-    while let Some((index, world_from_parent)) = stack.pop() {
+    let root_of = |node| (node, None, Mat4::IDENTITY);
+    let mut stack: Vec<(usize, Option<usize>, Mat4)> = start.into_iter().rev().map(root_of).collect();
+    while let Some((index, parent, world_from_parent)) = stack.pop() {
         let node = &root.nodes[index];
         let place = place("nodes", index, node.name.as_deref());
         let world_from_object = world_from_parent * local_transform(node, &place, &mut scene.warnings)?;
         if !world_from_object.is_finite() {
             return Err(Problem::invalid(place, "a finite world transform", "one that overflows"));
         }
+        let at = scene.nodes.len();
+        scene.nodes.push(Node { index, name: node.name.clone().unwrap_or_default(), parent, ..Node::default() });
         scene.add(root, node, index, world_from_object, &place)?;
         let children = node.children.iter().flatten().rev();
-        stack.extend(children.map(|child| (child.value(), world_from_object)));
+        stack.extend(children.map(|child| (child.value(), Some(at), world_from_object)));
     }
     if scene.meshes.is_empty() {
         let found = format!("{} nodes, {} meshes in the file, none in the scene", root.nodes.len(), root.meshes.len());
@@ -164,7 +169,8 @@ impl Scene {
     ) -> Result<(), Problem> {
         let name = node.name.clone().unwrap_or_default();
         if let Some(mesh) = node.mesh {
-            get(&root.meshes, mesh, place, "meshes")?;
+            let named = get(&root.meshes, mesh, place, "meshes")?.name.clone().unwrap_or_default();
+            self.last_node().mesh = Some(named);
             let placed = PlacedMesh { mesh: mesh.value(), node: index, name: name.clone(), world_from_object: world };
             self.meshes.push(placed);
         }
@@ -172,15 +178,28 @@ impl Scene {
             let lens = read_lens(get(&root.cameras, camera, place, "cameras")?, camera.value())?;
             let name =
                 root.cameras[camera.value()].name.clone().filter(|n| !n.is_empty()).unwrap_or_else(|| name.clone());
+            let number = self.cameras.len();
+            self.last_node().camera = Some(number);
             self.cameras.push(PlacedCamera { name, world_from_object: world, lens });
         }
         if let Some(light) = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref()) {
             let lights: &[punctual::Light] = root.as_ref();
             let source = get(lights, light.light, place, "KHR_lights_punctual.lights")?;
             let light = read_light(source, light.light.value(), &world, &mut self.warnings)?;
+            let number = self.lights.len();
+            self.last_node().light = Some(number);
             self.lights.push(light);
         }
         Ok(())
+    }
+
+    /// The node that is being added.
+    fn last_node(&mut self) -> &mut Node {
+        if self.nodes.is_empty() {
+            self.nodes.push(Node::default());
+        }
+        let last = self.nodes.len() - 1;
+        &mut self.nodes[last]
     }
 
     /// Warns of animations, skins and morph targets, which are not supported.

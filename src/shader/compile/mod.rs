@@ -144,6 +144,16 @@ impl Compiler {
         }
     }
 
+    /// Compiles a text of the program's own, which includes nothing. `name` is for messages.
+    ///
+    /// # Errors
+    /// The compiler's log.
+    pub fn compile_alone(&self, name: &str, text: &str, kind: StageKind) -> Result<Vec<u32>, String> {
+        let options = options(kind, text).map_err(|error| error.to_string())?;
+        let compiled = self.shaderc.compile_into_spirv(text, kind.shaderc(), name, "main", Some(&options));
+        compiled.map(|compiled| compiled.as_binary().to_vec()).map_err(|error| error.to_string())
+    }
+
     /// Compiles a file with a `main()`. Its extension gives the kind of stage.
     pub fn compile(&self, snapshot: &Snapshot<'_>, stage: &TreePath) -> Compiled {
         let file = || snapshot.display_path(stage);

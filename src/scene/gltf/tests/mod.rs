@@ -156,7 +156,7 @@ impl Builder {
 /// The invariants of `Model`, on which drawing relies.
 #[track_caller]
 fn assert_sound(model: &Model) {
-    for primitive in &model.primitives {
+    for primitive in model.primitives.iter() {
         assert!(primitive.material < model.materials.len());
         assert!(primitive.indices.iter().all(|&index| (index as usize) < primitive.vertices.len()));
         for vertex in &primitive.vertices {

@@ -1,0 +1,244 @@
+//! Handles of the lights in the picture. They are shown while a light is selected. A drag turns a light around the model; with Ctrl it
+//! changes the distance.
+
+use egui::{
+    Align2, Area, Color32, CursorIcon, FontId, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, pos2, vec2,
+};
+use glam::Vec3;
+
+use super::theme::SELECTION;
+use crate::app::selection::{LightId, Selected};
+use crate::app::viewer::Viewer;
+use crate::scene::{Bounds, CameraView, light_direction, ray};
+use crate::settings::{LightSettings, LightSource};
+
+/// Radius of a handle, points.
+const HANDLE: f32 = 8.0;
+/// Radius of the sphere on which a light is shown that the picture does not have in it, in radii of the model.
+const NEAR: f32 = 1.3;
+/// Points of a drag that double the distance.
+const DOUBLE: f32 = 120.0;
+
+/// What is being dragged.
+#[derive(Default)]
+pub(super) struct Gizmo {
+    drag: Option<Drag>,
+}
+
+struct Drag {
+    light: LightId,
+    /// Radius of the sphere that the handle moves on, meters.
+    radius: f32,
+    /// Whether the handle is on the side of the sphere that faces the camera.
+    is_near: bool,
+}
+
+/// Azimuth, polar angle and distance of a light.
+struct Place<'a> {
+    azimuth: &'a mut f32,
+    polar: &'a mut f32,
+    distance: &'a mut f32,
+    color: [f32; 3],
+}
+
+fn place(lights: &mut LightSettings, light: LightId) -> Option<Place<'_>> {
+    match light {
+        LightId::Orbit(index) => {
+            let light = lights.orbit.get_mut(index)?;
+            let (azimuth, polar, distance) = (&mut light.azimuth, &mut light.polar, &mut light.distance);
+            Some(Place { azimuth, polar, distance, color: light.color })
+        }
+        LightId::Rectangle => {
+            let light = &mut lights.rect;
+            let (azimuth, polar, distance) = (&mut light.azimuth, &mut light.polar, &mut light.distance);
+            Some(Place { azimuth, polar, distance, color: light.color })
+        }
+        LightId::Model(_) => None,
+    }
+}
+
+/// A picture with its camera.
+struct Frame {
+    view: CameraView,
+    bounds: Bounds,
+    rect: Rect,
+    /// Pixels.
+    size: (u32, u32),
+}
+
+impl Frame {
+    /// Where a point is in the window; `None` behind the camera.
+    fn project(&self, point: Vec3) -> Option<Pos2> {
+        let clip = self.view.clip_from_world() * point.extend(1.0);
+        let (x, y) = (clip.x / clip.w * 0.5 + 0.5, clip.y / clip.w * 0.5 + 0.5);
+        (clip.w > 0.0).then(|| self.rect.min + vec2(x, y) * self.rect.size())
+    }
+
+    /// The direction from the model's center to the point of a sphere around it that a point of the window shows. Beside the sphere it
+    /// is that of its edge.
+    fn direction_at(&self, at: Pos2, radius: f32, is_near: bool) -> Vec3 {
+        let scale = vec2(self.size.0 as f32, self.size.1 as f32) / self.rect.size();
+        let pixel = (at - self.rect.min) * scale;
+        let clamp = |x: f32, most: u32| (x.max(0.0) as u32).min(most.saturating_sub(1));
+        let ray = ray(&self.view, self.size, (clamp(pixel.x, self.size.0), clamp(pixel.y, self.size.1))).normalize();
+        let to_eye = self.view.eye - self.bounds.center();
+        let along = to_eye.dot(ray);
+        let beside = along * along - (to_eye.length_squared() - radius * radius);
+        let distance = match (beside > 0.0, is_near) {
+            (false, _) => -along,
+            (true, true) => -along - beside.sqrt(),
+            (true, false) => -along + beside.sqrt(),
+        };
+        (to_eye + ray * distance).normalize_or(Vec3::Y)
+    }
+}
+
+/// Shows the handles over the picture while a light is selected.
+pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, rect: Rect) {
+    let Selected::Light(selected) = viewer.selected else {
+        viewer.panels.gizmo.drag = None;
+        return;
+    };
+    let Some(state) = viewer.shown().filter(|state| state.pipelines.draws_model) else { return };
+    let Some(model) = state.scene.as_ref().map(|scene| scene.model().clone()) else { return };
+    let frame = Frame { view: state.camera, bounds: model.bounds, rect, size: state.size };
+    let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("gizmo"))).with_clip_rect(rect);
+    if let LightId::Model(index) = selected {
+        if let Some(light) = model.lights.get(index) {
+            mark(&painter, &frame, light.position, light.direction);
+        }
+        return;
+    }
+    let lights = &mut viewer.session.settings.lights;
+    let mut shown = Vec::new();
+    if lights.source == LightSource::Orbit {
+        shown.extend((0..lights.orbit.len()).map(LightId::Orbit));
+    }
+    if lights.rect.enabled && lights.source != LightSource::None {
+        shown.push(LightId::Rectangle);
+    }
+    let mut chosen = None;
+    for light in shown {
+        if handle(egui, &painter, &frame, lights, light, light == selected, &mut viewer.panels.gizmo) {
+            chosen = Some(light);
+        }
+    }
+    if let Some(light) = chosen.filter(|light| *light != selected) {
+        viewer.select(Selected::Light(light));
+    }
+}
+
+/// Shows the handle of a light and moves the light by it. Returns whether the user takes hold of it.
+fn handle(
+    egui: &egui::Context,
+    painter: &Painter,
+    frame: &Frame,
+    lights: &mut LightSettings,
+    light: LightId,
+    is_selected: bool,
+    gizmo: &mut Gizmo,
+) -> bool {
+    let Some(place) = place(lights, light) else { return false };
+    let (center, model_radius) = (frame.bounds.center(), frame.bounds.radius());
+    let direction = light_direction(*place.azimuth, *place.polar);
+    let drag = gizmo.drag.take_if(|drag| drag.light == light);
+    let own = model_radius * *place.distance;
+    let is_seen = |radius: f32| frame.project(center + direction * radius).is_some_and(|at| frame.rect.contains(at));
+    let radius = drag.as_ref().map_or(if is_seen(own) { own } else { NEAR * model_radius }, |drag| drag.radius);
+    let (Some(at), Some(middle)) = (frame.project(center + direction * radius), frame.project(center)) else {
+        return false;
+    };
+    let color = if is_selected { SELECTION } else { Color32::from_gray(200) };
+    let thin = Stroke::new(1.0, color.gamma_multiply(0.6));
+    painter.extend(egui::Shape::dashed_line(&[middle, at], thin, 5.0, 4.0));
+    let area = Area::new(Id::new(("light", light))).order(Order::Middle).fade_in(false).constrain(false);
+    let side = vec2(2.5 * HANDLE, 2.5 * HANDLE);
+    let area = area.fixed_pos(at - 0.5 * side);
+    let response = area.show(egui, |ui| ui.allocate_response(side, Sense::click_and_drag())).inner;
+    let [r, g, b] = place.color.map(|channel| (channel.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8);
+    let size = if response.hovered() || drag.is_some() { HANDLE + 1.5 } else { HANDLE };
+    painter.circle(at, size, Color32::from_rgb(r, g, b), Stroke::new(2.5, Color32::from_black_alpha(200)));
+    painter.circle_stroke(at, size + 1.0, Stroke::new(1.5, color));
+    let name = match light {
+        LightId::Orbit(index) => (index + 1).to_string(),
+        _ => "R".to_owned(),
+    };
+    painter.text(at, Align2::CENTER_CENTER, name, FontId::proportional(11.0), Color32::BLACK);
+    let is_held = response.dragged();
+    if is_held {
+        // Towards the camera is on its side of the sphere.
+        let is_near = (frame.view.eye - center).dot(direction) > radius * radius / (frame.view.eye - center).length();
+        let mut drag = drag.unwrap_or(Drag { light, radius, is_near });
+        if egui.input(|input| input.modifiers.command) {
+            let factor = (-response.drag_delta().y / DOUBLE).exp2();
+            *place.distance = (*place.distance * factor).clamp(1e-3, 1e6);
+            drag.radius = if radius == own { model_radius * *place.distance } else { radius };
+        } else if let Some(to) = response.interact_pointer_pos() {
+            let direction = frame.direction_at(to, radius, drag.is_near);
+            *place.azimuth = direction.x.atan2(direction.z).to_degrees();
+            *place.polar = direction.y.clamp(-1.0, 1.0).acos().to_degrees();
+        }
+        gizmo.drag = Some(drag);
+        let text = format!("{:.0}° {:.0}°  {:.2} R", *place.azimuth, *place.polar, *place.distance);
+        let label = painter.layout_no_wrap(text, FontId::monospace(11.0), Color32::WHITE);
+        let back = Rect::from_min_size(at + vec2(14.0, -8.0), label.size() + vec2(8.0, 4.0));
+        painter.rect_filled(back, 3.0, Color32::from_black_alpha(200));
+        painter.galley(back.min + vec2(4.0, 2.0), label, Color32::WHITE);
+        // The next frame shows the light where it is now.
+        egui.request_repaint();
+    }
+    if light == LightId::Rectangle {
+        outline(painter, frame, lights, color);
+    }
+    let is_taken = is_held || response.clicked() || response.is_pointer_button_down_on();
+    response.on_hover_cursor(CursorIcon::Grab).on_hover_text(
+        "Drag to turn the light around the model. Ctrl+drag up or down changes its distance. Esc hides the handles",
+    );
+    is_taken
+}
+
+/// The rectangle of the area light.
+fn outline(painter: &Painter, frame: &Frame, lights: &LightSettings, color: Color32) {
+    let light = crate::scene::rectangle_corners(&lights.rect, &frame.bounds);
+    let corners: Option<Vec<Pos2>> = light.into_iter().map(|corner| frame.project(corner)).collect();
+    if let Some(corners) = corners {
+        painter.add(egui::Shape::closed_line(corners, Stroke::new(1.5, color)));
+    }
+}
+
+/// A light of the file, which does not move: a ring at its place, and where it shines.
+fn mark(painter: &Painter, frame: &Frame, position: Vec3, direction: Vec3) {
+    let Some(at) = frame.project(position) else { return };
+    painter.circle_stroke(at, HANDLE, Stroke::new(2.0, SELECTION));
+    let ahead = frame.project(position + direction * 0.25 * frame.bounds.radius());
+    if let Some(ahead) = ahead.filter(|ahead| ahead.distance(at) > HANDLE) {
+        let start = at + (ahead - at).normalized() * HANDLE;
+        painter.arrow(start, ahead - start, Stroke::new(1.5, SELECTION));
+    } else {
+        painter.circle_filled(pos2(at.x, at.y), 2.0, SELECTION);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_of_the_window_is_the_direction_that_it_shows() {
+        let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+        let view = CameraView::new(Vec3::new(1.0, 2.0, 8.0), Vec3::ZERO, 0.7, 1.5, &bounds);
+        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(600.0, 400.0));
+        let frame = Frame { view, bounds, rect, size: (600, 400) };
+        for (azimuth, polar) in [(0.0, 90.0), (40.0, 60.0), (-30.0, 110.0), (170.0, 80.0)] {
+            let direction = light_direction(azimuth, polar);
+            let radius = 1.3 * bounds.radius();
+            let at = frame.project(direction * radius).unwrap();
+            let is_near = (view.eye - direction * radius).dot(direction) > 0.0;
+            let found = frame.direction_at(at, radius, is_near);
+            assert!(found.distance(direction) < 0.02, "{azimuth} {polar}: {found} instead of {direction}");
+        }
+        // Beside the sphere, its edge.
+        let edge = frame.direction_at(pos2(101.0, 51.0), 0.5, true);
+        assert!((edge.length() - 1.0).abs() < 1e-4);
+    }
+}

@@ -1,0 +1,140 @@
+//! What is selected: its numbers, and what can be done with it.
+
+use egui::{Button, Label, RichText, Ui};
+
+use super::material;
+use super::tree::kind;
+use crate::app::command::Command;
+use crate::app::layout::Panel;
+use crate::app::panels::rows::heading;
+use crate::app::panels::{ACCENT, QUIET, lights, plural};
+use crate::app::selection::{LightId, Selected, name_or};
+use crate::app::viewer::Viewer;
+use crate::frame::Scene;
+use crate::scene::{Bounds, Model};
+
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, selected: Selected, commands: &mut Vec<Command>) {
+    let model = scene.model();
+    match selected {
+        Selected::Nothing => {}
+        Selected::Node(node) => {
+            let Some(of) = model.nodes.get(node) else { return };
+            title(ui, "Node", &name_or(&of.name, || format!("#{}", of.index)));
+            parts(ui, viewer, scene, selected, commands);
+        }
+        Selected::Instance(index) => {
+            let Some(instance) = model.instances.get(index) else { return };
+            title(ui, "Primitive", &model.primitives[instance.primitive].name);
+            parts(ui, viewer, scene, selected, commands);
+        }
+        Selected::Material(index) => material::show(ui, viewer, scene, index, commands),
+        Selected::Texture(source) => {
+            let image = source.image(model);
+            title(ui, "Texture", image.map_or("", |image| &image.name));
+            if ui.button("Show it").on_hover_text("Open the panel Texture").clicked() {
+                commands.push(Command::OpenPanel(Panel::Texture));
+            }
+        }
+        Selected::Camera(index) => {
+            let Some(camera) = model.cameras.get(index) else { return };
+            title(ui, "Camera", &camera.name);
+            if ui.button("Look through it").on_hover_text("R frames the model again").clicked() {
+                commands.push(Command::LookThrough(index));
+            }
+        }
+        Selected::Light(light) => show_light(ui, viewer, model, light),
+    }
+}
+
+/// Kind and name of what is selected.
+pub(super) fn title(ui: &mut Ui, kind: &str, name: &str) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(kind).small().color(QUIET));
+        ui.add(Label::new(RichText::new(name).strong()).truncate());
+    });
+}
+
+/// The counts of the selected primitives, what is done with them, and their material.
+fn parts(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, selected: Selected, commands: &mut Vec<Command>) {
+    let model = scene.model();
+    let instances = selected.instances(scene);
+    let of = || model.instances.iter().zip(&instances).filter(|(_, is)| **is).map(|(instance, _)| instance);
+    let (mut bounds, mut vertices, mut triangles) = (Bounds::default(), 0, 0);
+    for instance in of() {
+        let primitive = &model.primitives[instance.primitive];
+        vertices += primitive.vertices.len();
+        triangles += primitive.indices.len() / 3;
+        for corner in primitive.bounds.corners() {
+            bounds.include(instance.world_from_object.transform_point3(corner));
+        }
+    }
+    let size = if bounds.is_empty() { glam::Vec3::ZERO } else { bounds.max - bounds.min };
+    let counts = format!(
+        "{}, {}, {}\n{:.3} × {:.3} × {:.3} m",
+        plural(of().count(), "primitive"),
+        plural(triangles, "triangle"),
+        if vertices == 1 { "1 vertex".to_owned() } else { format!("{vertices} vertices") },
+        size.x,
+        size.y,
+        size.z
+    );
+    ui.add(Label::new(RichText::new(counts).small().color(QUIET)).selectable(true));
+    ui.horizontal_wrapped(|ui| {
+        let is_isolated = !viewer.session.settings.scene.isolated.is_empty();
+        if ui.button("Hide").on_hover_text("Do not draw it (Ctrl+H). Alt+H draws everything again").clicked() {
+            commands.push(Command::HideSelected);
+        }
+        let (name, about) = match is_isolated {
+            true => ("Show others", "Draw everything again (/)"),
+            false => ("Isolate", "Draw nothing else (/)"),
+        };
+        if ui.button(name).on_hover_text(about).clicked() {
+            commands.push(Command::IsolateSelected);
+        }
+        if ui.button("Deselect").on_hover_text("Select nothing (Esc)").clicked() {
+            commands.push(Command::Select(Selected::Nothing));
+        }
+    });
+    if let Some(index) = selected.material(scene) {
+        ui.add_space(4.0);
+        material::show(ui, viewer, scene, index, commands);
+    } else {
+        heading(ui, "Materials");
+        let mut used: Vec<usize> = of().map(|instance| scene.material_of(instance)).collect();
+        used.sort_unstable();
+        used.dedup();
+        for index in used {
+            let name = model.material_key(index);
+            let link = ui.add(Button::new(RichText::new(name).color(ACCENT)).frame(false).truncate());
+            if link.on_hover_text("Select the material").clicked() {
+                commands.push(Command::Select(Selected::Material(index)));
+            }
+        }
+    }
+}
+
+fn show_light(ui: &mut Ui, viewer: &mut Viewer, model: &Model, light: LightId) {
+    match light {
+        LightId::Orbit(index) => {
+            title(ui, "Orbiting light", &format!("Light {}", index + 1));
+            lights::orbit(ui, &mut viewer.session.settings, index);
+        }
+        LightId::Rectangle => {
+            title(ui, "Area light", "Rectangle");
+            lights::rectangle(ui, &mut viewer.session.settings);
+        }
+        LightId::Model(index) => {
+            let Some(light) = model.lights.get(index) else { return };
+            title(ui, kind(light.kind), &name_or(&light.name, || format!("light {index} of the file")));
+            let unit = if kind(light.kind) == "directional" { "lx" } else { "cd" };
+            let [r, g, b] = light.intensity.to_array();
+            let [x, y, z] = light.position.to_array();
+            let text =
+                format!("{r:.2} {g:.2} {b:.2} {unit}\nat {x:.2} {y:.2} {z:.2} m\nIts place is that of the file.");
+            ui.label(RichText::new(text).small().color(QUIET));
+            return;
+        }
+    }
+    let text = "Drag its handle in the picture to turn it around the model; Ctrl+drag changes its distance.";
+    ui.label(RichText::new(text).small().color(QUIET));
+}

@@ -1,0 +1,347 @@
+//! The rows of the tree: nodes with their primitives, materials, textures, cameras and lights.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::Arc;
+
+use crate::app::panels::plural;
+use crate::app::selection::{LightId, Selected, name_or};
+use crate::frame::Scene;
+use crate::scene::{LightKind, Model, TextureSource};
+
+/// A list of parts of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Group {
+    Nodes,
+    Materials,
+    Textures,
+    Cameras,
+    Lights,
+}
+
+/// A row of the tree.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    pub(super) depth: usize,
+    pub(super) name: String,
+    /// Counts and sizes, at the right.
+    pub(super) detail: String,
+    /// What it selects; `None` for the title of a group.
+    pub(super) item: Option<Selected>,
+    group: Group,
+    /// Whether rows below it can be folded away; `Some(true)` if they are.
+    pub(super) is_folded: Option<bool>,
+    /// The name by which settings hide it.
+    pub(super) key: Option<String>,
+}
+
+/// The rows that are shown, and which are folded.
+#[derive(Default)]
+pub(super) struct Tree {
+    folded: HashSet<(Group, Option<Selected>)>,
+    rows: Vec<Row>,
+    /// The scene of the last frame, and whether each of its nodes, or something below it, is drawn.
+    drawn: Option<(Scene, Vec<bool>)>,
+    /// Whether other rows are folded than when the rows were made.
+    is_changed: bool,
+    /// What the rows were made of: a model and a search.
+    made_of: Option<(Arc<Model>, String)>,
+}
+
+impl Tree {
+    pub(super) fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Whether a part is drawn, or something below it.
+    pub(super) fn is_drawn(&self, item: Selected) -> bool {
+        let Some((scene, nodes)) = &self.drawn else { return true };
+        match item {
+            Selected::Node(node) => nodes.get(node) != Some(&false),
+            Selected::Instance(instance) => scene.is_visible(instance),
+            _ => true,
+        }
+    }
+
+    /// Makes the rows again if the model or the search is another one.
+    pub(super) fn update(&mut self, scene: &Scene, search: &str) {
+        if self.drawn.as_ref().is_none_or(|(before, _)| before != scene) {
+            self.drawn = Some((scene.clone(), drawn_nodes(scene)));
+        }
+        let model = scene.loaded();
+        let is_same = |(made, text): &(Arc<Model>, String)| Arc::ptr_eq(made, model) && text == search;
+        if !std::mem::take(&mut self.is_changed) && self.made_of.as_ref().is_some_and(is_same) {
+            return;
+        }
+        if self.made_of.as_ref().is_none_or(|(made, _)| !Arc::ptr_eq(made, model)) {
+            self.folded.clear();
+        }
+        let all = rows(model);
+        let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
+        self.rows = match words.is_empty() {
+            true => self.unfolded(all),
+            false => {
+                let has = |row: &Row| words.iter().all(|word| row.name.to_lowercase().contains(word));
+                all.into_iter().filter(|row| row.item.is_some() && has(row)).collect()
+            }
+        };
+        self.made_of = Some((model.clone(), search.to_owned()));
+    }
+
+    /// Leaves out what is below folded rows.
+    fn unfolded(&self, all: Vec<Row>) -> Vec<Row> {
+        let mut below = None;
+        let mut shown = Vec::with_capacity(all.len());
+        for mut row in all {
+            if below.is_some_and(|depth| row.depth > depth) {
+                continue;
+            }
+            let is_folded = row.is_folded.is_some() && self.folded.contains(&(row.group, row.item));
+            below = is_folded.then_some(row.depth);
+            row.is_folded = row.is_folded.map(|_| is_folded);
+            shown.push(row);
+        }
+        shown
+    }
+
+    /// Folds or unfolds the rows below a row.
+    pub(super) fn toggle(&mut self, at: usize) {
+        let Some(row) = self.rows.get(at) else { return };
+        let key = (row.group, row.item);
+        if !self.folded.remove(&key) {
+            self.folded.insert(key);
+        }
+        self.is_changed = true;
+    }
+
+    /// Unfolds what hides a selection.
+    pub(super) fn reveal(&mut self, scene: &Scene, selected: Selected) {
+        let Some(part) = self.part_of(scene, selected) else { return };
+        let mut node = match part {
+            Selected::Node(node) => Some(node),
+            Selected::Instance(instance) => scene.model().node_of(&scene.model().instances[instance]),
+            _ => None,
+        };
+        let before = self.folded.len();
+        self.folded.retain(|(_, item)| item.is_some());
+        while let Some(at) = node {
+            self.folded.remove(&(Group::Nodes, Some(Selected::Node(at))));
+            node = scene.model().nodes[at].parent;
+        }
+        self.is_changed |= self.folded.len() != before;
+    }
+
+    /// The row that stands for a selection: a primitive that is alone in its node has none of its own.
+    pub(super) fn part_of(&self, scene: &Scene, selected: Selected) -> Option<Selected> {
+        let model = scene.model();
+        match selected {
+            Selected::Nothing => None,
+            Selected::Instance(index) => {
+                let instance = model.instances.get(index)?;
+                let in_node = model.instances.iter().filter(|other| other.node == instance.node).count();
+                if in_node > 1 { Some(selected) } else { model.node_of(instance).map(Selected::Node) }
+            }
+            other => Some(other),
+        }
+    }
+
+    /// The index of the row of a selection.
+    pub(super) fn place(&self, scene: &Scene, selected: Selected) -> Option<usize> {
+        let part = self.part_of(scene, selected)?;
+        self.rows.iter().position(|row| row.item == Some(part))
+    }
+}
+
+/// Whether each node, or something below it, is drawn; true for nodes with nothing to draw.
+fn drawn_nodes(scene: &Scene) -> Vec<bool> {
+    let model = scene.model();
+    let at: HashMap<usize, usize> = model.nodes.iter().enumerate().map(|(at, node)| (node.index, at)).collect();
+    // Whether there is something to draw, and whether it is drawn.
+    let mut nodes = vec![(false, false); model.nodes.len()];
+    for (index, instance) in model.instances.iter().enumerate() {
+        if let Some(at) = at.get(&instance.node) {
+            nodes[*at].0 = true;
+            nodes[*at].1 |= scene.is_visible(index);
+        }
+    }
+    // Children come after their parents.
+    for (at, node) in model.nodes.iter().enumerate().rev() {
+        if let Some(parent) = node.parent {
+            let (has, is) = nodes[at];
+            nodes[parent].0 |= has;
+            nodes[parent].1 |= is;
+        }
+    }
+    nodes.into_iter().map(|(has, is)| is || !has).collect()
+}
+
+/// All rows of a model.
+fn rows(model: &Model) -> Vec<Row> {
+    let mut rows = Vec::new();
+    nodes(model, &mut rows);
+    let materials = (1..model.materials.len().max(1)).map(|index| {
+        let used = model.primitives.iter().filter(|primitive| primitive.default_material == index).count();
+        (model.material_key(index), plural(used, "primitive"), Selected::Material(index))
+    });
+    group(&mut rows, Group::Materials, "Materials", materials.collect());
+    let textures = textures(model).into_iter().map(|(source, _)| {
+        let image = source.image(model);
+        let (name, size) = image
+            .map_or_else(Default::default, |image| (image.name.clone(), format!("{} × {}", image.width, image.height)));
+        (name_or(&name, || "texture".to_owned()), size, Selected::Texture(source))
+    });
+    group(&mut rows, Group::Textures, "Textures", textures.collect());
+    let cameras = model.cameras.iter().enumerate().map(|(index, camera)| {
+        let name = name_or(&camera.name, || format!("camera {index}"));
+        (name, format!("{:.0}°", camera.fovy.to_degrees()), Selected::Camera(index))
+    });
+    group(&mut rows, Group::Cameras, "Cameras", cameras.collect());
+    let mut lights: Vec<(String, String, Selected)> = (0..3)
+        .map(|light| (format!("Light {}", light + 1), "orbit".to_owned(), Selected::Light(LightId::Orbit(light))))
+        .collect();
+    lights.push(("Rectangle".to_owned(), "area".to_owned(), Selected::Light(LightId::Rectangle)));
+    lights.extend(model.lights.iter().enumerate().map(|(index, light)| {
+        let name = name_or(&light.name, || format!("light {index} of the file"));
+        (name, kind(light.kind).to_owned(), Selected::Light(LightId::Model(index)))
+    }));
+    group(&mut rows, Group::Lights, "Lights", lights);
+    rows
+}
+
+/// The name of a kind of light.
+pub(super) fn kind(kind: LightKind) -> &'static str {
+    match kind {
+        LightKind::Directional => "directional",
+        LightKind::Point => "point",
+        LightKind::Spot { .. } => "spot",
+    }
+}
+
+/// The title of a group, and its rows.
+fn group(rows: &mut Vec<Row>, group: Group, title: &str, items: Vec<(String, String, Selected)>) {
+    if items.is_empty() {
+        return;
+    }
+    rows.push(title_of(group, title, items.len()));
+    rows.extend(items.into_iter().map(|(name, detail, item)| Row {
+        depth: 1,
+        name,
+        detail,
+        item: Some(item),
+        group,
+        is_folded: None,
+        key: None,
+    }));
+}
+
+fn title_of(group: Group, title: &str, count: usize) -> Row {
+    let (name, detail) = (title.to_owned(), count.to_string());
+    Row { depth: 0, name, detail, item: None, group, is_folded: Some(false), key: None }
+}
+
+/// The nodes, each with the primitives of its mesh if there are several.
+fn nodes(model: &Model, rows: &mut Vec<Row>) {
+    let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (index, instance) in model.instances.iter().enumerate() {
+        of_node.entry(instance.node).or_default().push(index);
+    }
+    let group = Group::Nodes;
+    rows.push(title_of(group, "Nodes", model.nodes.len()));
+    let mut depths = Vec::with_capacity(model.nodes.len());
+    for (at, node) in model.nodes.iter().enumerate() {
+        let depth = node.parent.map_or(1, |parent| depths[parent] + 1);
+        depths.push(depth);
+        let instances = of_node.get(&node.index).map(Vec::as_slice).unwrap_or_default();
+        let triangles = |instance: &usize| model.primitives[model.instances[*instance].primitive].indices.len() / 3;
+        let total: usize = instances.iter().map(triangles).sum();
+        let has_children = model.nodes.get(at + 1).is_some_and(|next| next.parent == Some(at));
+        let detail = match (instances, node.camera, node.light) {
+            ([], Some(_), _) => "camera".to_owned(),
+            ([], _, Some(_)) => "light".to_owned(),
+            ([], ..) => String::new(),
+            _ => thousands(total),
+        };
+        let item = Some(Selected::Node(at));
+        let name = name_or(&node.name, || {
+            node.mesh.clone().filter(|mesh| !mesh.is_empty()).unwrap_or_else(|| format!("node {}", node.index))
+        });
+        let is_folded = (has_children || instances.len() > 1).then_some(false);
+        rows.push(Row { depth, name, detail, item, group, is_folded, key: Some(model.node_key(at)) });
+        for instance in instances.iter().filter(|_| instances.len() > 1) {
+            let primitive = &model.primitives[model.instances[*instance].primitive];
+            rows.push(Row {
+                depth: depth + 1,
+                name: format!("{} · {}", primitive.name, model.material_key(primitive.default_material)),
+                detail: thousands(triangles(instance)),
+                item: Some(Selected::Instance(*instance)),
+                group,
+                is_folded: None,
+                key: Some(primitive.name.clone()),
+            });
+        }
+    }
+}
+
+/// A count with its unit, short: `12.3k tris`.
+fn thousands(triangles: usize) -> String {
+    match triangles {
+        0..1000 => format!("{triangles} tris"),
+        1000..1_000_000 => format!("{:.1}k tris", triangles as f64 / 1e3),
+        _ => format!("{:.1}M tris", triangles as f64 / 1e6),
+    }
+}
+
+/// The textures of the materials, each with the materials and slots that read it.
+pub(in crate::app) fn textures(model: &Model) -> BTreeMap<TextureSource, Vec<(usize, usize)>> {
+    let mut textures: BTreeMap<TextureSource, Vec<(usize, usize)>> = BTreeMap::new();
+    for (index, material) in model.materials.iter().enumerate() {
+        for slot in (0..material.textures.len()).filter(|slot| material.textures[*slot].is_some()) {
+            textures.entry(TextureSource::of(model, material, slot)).or_default().push((index, slot));
+        }
+    }
+    textures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{BUILT_IN, built_in};
+    use crate::settings::Settings;
+
+    fn scene(name: &str) -> Scene {
+        Scene::new(&Arc::new(built_in(name).unwrap().unwrap()), &Settings::default())
+    }
+
+    #[test]
+    fn the_tree_lists_every_part_and_a_search_finds_it() {
+        for name in BUILT_IN {
+            let (scene, mut tree) = (scene(name), Tree::default());
+            let model = scene.model();
+            tree.update(&scene, "");
+            let has = |tree: &Tree, item| tree.rows().iter().any(|row| row.item == Some(item));
+            assert!((0..model.nodes.len()).all(|node| has(&tree, Selected::Node(node))), "{name}");
+            assert!((1..model.materials.len()).all(|material| has(&tree, Selected::Material(material))), "{name}");
+            assert!((0..model.lights.len()).all(|light| has(&tree, Selected::Light(LightId::Model(light)))), "{name}");
+            for instance in 0..model.instances.len() {
+                assert!(tree.place(&scene, Selected::Instance(instance)).is_some(), "{name}: {instance}");
+            }
+            let material = model.material_key(1);
+            tree.update(&scene, &material.to_uppercase());
+            assert!(has(&tree, Selected::Material(1)), "{name}: {material}");
+            tree.update(&scene, "no part has this name");
+            assert!(tree.rows().is_empty());
+        }
+    }
+
+    #[test]
+    fn folded_rows_unfold_for_a_selection() {
+        let (scene, mut tree) = (scene(BUILT_IN[0]), Tree::default());
+        tree.update(&scene, "");
+        let all = tree.rows().len();
+        tree.toggle(0);
+        tree.update(&scene, "");
+        assert!(tree.rows().len() < all && tree.place(&scene, Selected::Instance(0)).is_none());
+        tree.reveal(&scene, Selected::Instance(0));
+        tree.update(&scene, "");
+        assert!(tree.place(&scene, Selected::Instance(0)).is_some());
+    }
+}

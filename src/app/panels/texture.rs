@@ -1,0 +1,246 @@
+//! The panel Texture: the selected texture as the device has it, with its channels, levels, zoom and the texture coordinates of the
+//! meshes that use it.
+
+use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
+
+use super::QUIET;
+use super::scene::material::slot_name;
+use super::scene::tree::textures;
+use crate::app::selection::Selected;
+use crate::app::viewer::Viewer;
+use crate::frame::Scene;
+use crate::render::tools::{TextureView, UvMesh};
+use crate::scene::{Mip, Model, TextureSource, Wrap, mips};
+
+/// What the screen draws for the panel.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct TextureRequest {
+    pub(in crate::app) source: TextureSource,
+    pub(in crate::app) view: TextureView,
+    pub(in crate::app) meshes: Vec<UvMesh>,
+    /// Pixels.
+    pub(in crate::app) size: (u32, u32),
+}
+
+/// The channels that can be looked at, with their hover texts.
+const CHANNELS: [(&str, &str); 6] = [
+    ("RGB", "Colors, whatever their alpha"),
+    ("RGBA", "Colors over a checkerboard, by their alpha"),
+    ("R", "The red channel: occlusion, where it shares a texture with metallic and roughness"),
+    ("G", "The green channel: roughness"),
+    ("B", "The blue channel: metallic"),
+    ("A", "The alpha channel: coverage"),
+];
+
+/// State of the panel between frames.
+pub(in crate::app) struct TextureState {
+    /// What the screen draws; `None` while the panel is not in sight.
+    pub(in crate::app) request: Option<TextureRequest>,
+    /// The picture that the screen has drawn, and the part of it that shows the texture.
+    pub(in crate::app) shown: Option<(egui::TextureId, Rect)>,
+    source: Option<TextureSource>,
+    channels: u32,
+    /// `None` is the level that fits the scale.
+    level: Option<u32>,
+    shows_uv: bool,
+    /// Points per texel; `None` fits the texture into the panel.
+    scale: Option<f32>,
+    /// The texture coordinates in the middle.
+    middle: [f32; 2],
+}
+
+impl Default for TextureState {
+    fn default() -> Self {
+        Self {
+            request: None,
+            shown: None,
+            source: None,
+            channels: 0,
+            level: None,
+            shows_uv: false,
+            scale: None,
+            middle: [0.5; 2],
+        }
+    }
+}
+
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TextureState) {
+    let Some(scene) = viewer.session.scene() else { return };
+    let model = scene.model();
+    let all = textures(model);
+    if let Selected::Texture(source) = viewer.selected
+        && state.source != Some(source)
+    {
+        (state.source, state.level, state.scale, state.middle) = (Some(source), None, None, [0.5; 2]);
+    }
+    let source = state.source.filter(|source| all.contains_key(source)).or_else(|| all.keys().next().copied());
+    let Some(source) = source else {
+        ui.label(RichText::new("The model has no textures").color(QUIET));
+        return;
+    };
+    state.source = Some(source);
+    let (uses, image) = (&all[&source], source.image(model));
+    let (width, height) = image.map_or((1, 1), |image| (image.width, image.height));
+    let name = image.map_or("", |image| image.name.as_str());
+    let list = egui::ComboBox::from_id_salt("texture").selected_text(name).width(ui.available_width()).truncate();
+    let list = list.show_ui(ui, |ui| {
+        for other in all.keys() {
+            let label = other.image(model).map_or("", |image| image.name.as_str());
+            ui.selectable_value(&mut state.source, Some(*other), label);
+        }
+    });
+    list.response.on_hover_text("Texture to look at. The panel Scene lists them by material");
+    controls(ui, state, mips::count(width, height));
+    let about = about(model, source, uses, (width, height));
+    let text_height = 4.0 * 14.0;
+    let area = vec2(ui.available_width(), (ui.available_height() - text_height).max(80.0));
+    picture(ui, state, source, (width, height), area, meshes(&scene, source, uses));
+    ui.add(Label::new(RichText::new(about).small().color(QUIET)).selectable(true));
+}
+
+/// Channels, level and texture coordinates.
+fn controls(ui: &mut Ui, state: &mut TextureState, levels: u32) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        for ((name, doc), channels) in CHANNELS.into_iter().zip(0..) {
+            ui.selectable_value(&mut state.channels, channels, name).on_hover_text(doc);
+        }
+        ui.add_space(6.0);
+        let shown = state.level.map_or_else(|| "auto".to_owned(), |level| level.to_string());
+        let list = egui::ComboBox::from_id_salt("level").selected_text(format!("level {shown}")).width(74.0);
+        let list = list.show_ui(ui, |ui| {
+            ui.selectable_value(&mut state.level, None, "auto");
+            for level in 0..levels {
+                ui.selectable_value(&mut state.level, Some(level), format!("level {level}"));
+            }
+        });
+        list.response.on_hover_text("Mip level: each has half the width and height of the one before");
+        ui.toggle_value(&mut state.shows_uv, "UV")
+            .on_hover_text("Draw the texture coordinates of the meshes that use it, as lines");
+        if ui.small_button("Fit").on_hover_text("Show the whole texture").clicked() {
+            (state.scale, state.middle) = (None, [0.5; 2]);
+        }
+        if ui.small_button("1:1").on_hover_text("One texel per point").clicked() {
+            state.scale = Some(1.0);
+        }
+    });
+}
+
+/// Shows the picture, zooms and pans, and asks the screen to draw it.
+fn picture(
+    ui: &mut Ui,
+    state: &mut TextureState,
+    source: TextureSource,
+    (width, height): (u32, u32),
+    area: Vec2,
+    meshes: Vec<UvMesh>,
+) {
+    let (rect, response) = ui.allocate_exact_size(area, Sense::click_and_drag());
+    let texels = vec2(width as f32, height as f32);
+    let fit = (area.x / texels.x).min(area.y / texels.y);
+    let mut scale = state.scale.unwrap_or(fit);
+    // Texture coordinates of a point of the window.
+    let corner_of = |middle: [f32; 2], scale: f32| {
+        [middle[0] - 0.5 * area.x / (scale * texels.x), middle[1] - 0.5 * area.y / (scale * texels.y)]
+    };
+    let drag = response.drag_delta();
+    if drag != Vec2::ZERO {
+        state.scale = Some(scale);
+        state.middle[0] -= drag.x / (scale * texels.x);
+        state.middle[1] -= drag.y / (scale * texels.y);
+    }
+    let zoom = ui.input(|input| input.zoom_delta() * (input.smooth_scroll_delta().y * 0.005).exp());
+    if let Some(at) = response.hover_pos().filter(|_| zoom != 1.0) {
+        let next = (scale * zoom).clamp(fit * 0.2, 64.0_f32.max(fit));
+        let offset = at - rect.center();
+        for (axis, (offset, texels)) in [(offset.x, texels.x), (offset.y, texels.y)].into_iter().enumerate() {
+            state.middle[axis] += offset / texels * (scale.recip() - next.recip());
+        }
+        (scale, state.scale) = (next, Some(next));
+    }
+    if response.double_clicked() {
+        (state.scale, state.middle) = (None, [0.5; 2]);
+        scale = fit;
+    }
+    let (corner, size) = (corner_of(state.middle, scale), [area.x / (scale * texels.x), area.y / (scale * texels.y)]);
+    let per_point = ui.ctx().pixels_per_point();
+    let pixels = ((area.x * per_point).round().max(1.0) as u32, (area.y * per_point).round().max(1.0) as u32);
+    let view = TextureView { corner, size, level: state.level, channels: state.channels, is_srgb: source.is_srgb() };
+    let meshes = if state.shows_uv { meshes } else { Vec::new() };
+    state.request = Some(TextureRequest { source, view, meshes, size: pixels });
+    match state.shown {
+        Some((texture, part)) => {
+            ui.painter().image(texture, rect, part, Color32::WHITE);
+        }
+        None => drop(ui.painter().rect_filled(rect, 0.0, super::EDGE)),
+    }
+    let border = Rect::from_min_size(
+        rect.min + vec2(-corner[0] * scale * texels.x, -corner[1] * scale * texels.y),
+        texels * scale,
+    );
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect_stroke(border, 0.0, egui::Stroke::new(1.0, Color32::from_gray(110)), egui::StrokeKind::Outside);
+    if let Some(at) = response.hover_pos() {
+        let uv = [
+            corner[0] + (at.x - rect.min.x) / (scale * texels.x),
+            corner[1] + (at.y - rect.min.y) / (scale * texels.y),
+        ];
+        let texel = [(uv[0] * texels.x).floor(), (uv[1] * texels.y).floor()];
+        let text = format!("uv {:.4} {:.4}   texel {} {}   {:.0} %", uv[0], uv[1], texel[0], texel[1], 100.0 * scale);
+        let at = pos2(rect.min.x + 6.0, rect.max.y - 6.0);
+        let galley = ui.painter().layout_no_wrap(text, egui::FontId::monospace(11.0), Color32::WHITE);
+        let back = Rect::from_min_size(at - vec2(2.0, galley.size().y + 2.0), galley.size() + vec2(4.0, 4.0));
+        painter.rect_filled(back, 3.0, Color32::from_black_alpha(190));
+        painter.galley(back.min + vec2(2.0, 2.0), galley, Color32::WHITE);
+        response.on_hover_cursor(egui::CursorIcon::Crosshair);
+    }
+}
+
+/// The meshes whose texture coordinates read a texture, each once.
+fn meshes(scene: &Scene, source: TextureSource, uses: &[(usize, usize)]) -> Vec<UvMesh> {
+    let model = scene.model();
+    let mut meshes: Vec<UvMesh> = Vec::new();
+    for instance in &model.instances {
+        let material = scene.material_of(instance);
+        let used = uses.iter().find(|(index, slot)| {
+            *index == material && TextureSource::of(model, &model.materials[material], *slot) == source
+        });
+        let Some(used) = used.and_then(|(index, slot)| model.materials[*index].textures[*slot]) else { continue };
+        if meshes.iter().all(|mesh| mesh.primitive != instance.primitive) {
+            let (primitive, uv_set, uv_from_mesh) = (instance.primitive, used.uv_set, used.uv_from_mesh);
+            meshes.push(UvMesh { primitive, uv_set, uv_from_mesh });
+        }
+    }
+    meshes
+}
+
+/// Size, format, color space, sampler and uses of a texture.
+fn about(model: &Model, source: TextureSource, uses: &[(usize, usize)], (width, height): (u32, u32)) -> String {
+    let levels = mips::count(width, height);
+    let space = if source.is_srgb() { "sRGB" } else { "linear" };
+    let packed = if matches!(source, TextureSource::Packed { .. }) { ", occlusion packed into red" } else { "" };
+    let sampler = uses.first().and_then(|(material, slot)| {
+        let used = model.materials[*material].textures[*slot]?;
+        Some(model.textures[used.texture].sampler)
+    });
+    let sampler = sampler.map_or_else(String::new, |sampler| {
+        let filter = |linear| if linear { "linear" } else { "nearest" };
+        let mip = match sampler.mip {
+            Mip::None => "no mip levels",
+            Mip::Nearest => "nearest level",
+            Mip::Linear => "linear between levels",
+        };
+        let wrap = |wrap| match wrap {
+            Wrap::Repeat => "repeat",
+            Wrap::Mirror => "mirror",
+            Wrap::Clamp => "clamp",
+        };
+        let (mag, min) = (filter(sampler.mag_linear), filter(sampler.min_linear));
+        format!("mag {mag}, min {min}, {mip}; u {}, v {}", wrap(sampler.wrap_u), wrap(sampler.wrap_v))
+    });
+    let users: Vec<String> = uses
+        .iter()
+        .map(|(material, slot)| format!("{} ({})", model.material_key(*material), slot_name(*slot)))
+        .collect();
+    format!("{width} × {height}, {levels} levels, RGBA8 {space}{packed}\n{sampler}\n{}", users.join(", "))
+}

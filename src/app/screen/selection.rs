@@ -1,0 +1,43 @@
+//! The outline of the selection, over the picture on the screen. Screenshots and recordings do not have it.
+
+use std::sync::Arc;
+
+use super::Screen;
+use crate::app::panels::theme::SELECTION;
+use crate::app::viewer::Viewer;
+use crate::gpu::{Encoder, GpuError, Image};
+use crate::render::BoundFrame;
+use crate::render::tools::{Outline, OutlineStyle};
+
+/// Width of the line, points.
+const WIDTH: f32 = 2.0;
+
+impl Screen {
+    /// Draws the outline of the selected instances of `frame` over its picture in `target`, which is in [`crate::gpu::Use::Color`] before
+    /// and after. Without a selection it does nothing and has no targets.
+    pub(super) fn draw_outline(
+        &mut self,
+        encoder: &mut Encoder,
+        viewer: &mut Viewer,
+        frame: Option<&BoundFrame>,
+        target: &Arc<Image>,
+    ) -> Result<(), GpuError> {
+        let selected = viewer.selected_instances();
+        let frame = frame.filter(|frame| frame.state.pipelines.draws_model && !selected.is_empty());
+        let Some((frame, tools)) = frame.and_then(|frame| Some((frame, viewer.tools()?))) else {
+            self.outline = None;
+            return Ok(());
+        };
+        let size = frame.state.size;
+        let outline = match self.outline.take().filter(|outline| outline.fits(size)) {
+            Some(outline) => outline,
+            None => Outline::new(&tools, size)?,
+        };
+        let [r, g, b, _] = SELECTION.to_array().map(|channel| f32::from(channel) / 255.0);
+        let style = OutlineStyle { color: [r, g, b], width: WIDTH * self.egui.pixels_per_point() };
+        let is_selected = |instance: usize| selected.get(instance) == Some(&true);
+        encoder.pass("outline", |encoder| outline.draw(encoder, frame, is_selected, (target, self.rect.at), style));
+        self.outline = Some(outline);
+        Ok(())
+    }
+}

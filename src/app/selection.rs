@@ -1,0 +1,118 @@
+//! What is selected: in the panel Scene, and by a click in the picture.
+
+use crate::frame::Scene;
+use crate::scene::{Model, TextureSource};
+
+/// A part of the scene. Indices are into the vectors of the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) enum Selected {
+    #[default]
+    Nothing,
+    /// A node with all below it.
+    Node(usize),
+    /// A primitive of a node.
+    Instance(usize),
+    Material(usize),
+    Texture(TextureSource),
+    Camera(usize),
+    Light(LightId),
+}
+
+/// A light: one of the settings, or one of the model's file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum LightId {
+    Orbit(usize),
+    Rectangle,
+    Model(usize),
+}
+
+impl Selected {
+    /// Whether each instance belongs to the selection; empty if none does.
+    pub(super) fn instances(self, scene: &Scene) -> Vec<bool> {
+        let model = scene.model();
+        match self {
+            Self::Node(node) => model.named(&[model.node_key(node)]),
+            Self::Instance(instance) => (0..model.instances.len()).map(|index| index == instance).collect(),
+            Self::Material(material) => {
+                model.instances.iter().map(|instance| scene.material_of(instance) == material).collect()
+            }
+            Self::Nothing | Self::Texture(_) | Self::Camera(_) | Self::Light(_) => Vec::new(),
+        }
+    }
+
+    /// The name by which settings hide and isolate it.
+    pub(super) fn key(self, model: &Model) -> Option<String> {
+        match self {
+            Self::Node(node) => Some(model.node_key(node)),
+            Self::Instance(index) => {
+                let instance = model.instances.get(index)?;
+                let shares_node = |other: &&crate::scene::Instance| other.node == instance.node;
+                match model.instances.iter().filter(shares_node).count() {
+                    1 => model.node_of(instance).map(|node| model.node_key(node)),
+                    _ => Some(model.primitives[instance.primitive].name.clone()),
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// The material that it has.
+    pub(super) fn material(self, scene: &Scene) -> Option<usize> {
+        let instances = &scene.model().instances;
+        match self {
+            Self::Material(material) => Some(material),
+            Self::Instance(index) => instances.get(index).map(|instance| scene.material_of(instance)),
+            Self::Node(_) => {
+                let selected = self.instances(scene);
+                let mut found =
+                    instances.iter().zip(selected).filter(|(_, is)| *is).map(|(one, _)| scene.material_of(one));
+                let first = found.next()?;
+                found.all(|other| other == first).then_some(first)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the model has it.
+    pub(super) fn is_in(self, model: &Model) -> bool {
+        match self {
+            Self::Nothing | Self::Light(LightId::Orbit(_) | LightId::Rectangle) => true,
+            Self::Node(node) => node < model.nodes.len(),
+            Self::Instance(instance) => instance < model.instances.len(),
+            Self::Material(material) => material < model.materials.len(),
+            Self::Texture(source) => source.images().all(|image| image < model.images.len()),
+            Self::Camera(camera) => camera < model.cameras.len(),
+            Self::Light(LightId::Model(light)) => light < model.lights.len(),
+        }
+    }
+}
+
+/// Names of a node, a camera or a light that may have none.
+pub(super) fn name_or(name: &str, other: impl FnOnce() -> String) -> String {
+    if name.is_empty() { other() } else { name.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::scene::{BUILT_IN, built_in};
+    use crate::settings::Settings;
+
+    #[test]
+    fn a_selection_knows_its_instances_material_and_name() {
+        let model = Arc::new(built_in(BUILT_IN[0]).unwrap().unwrap());
+        let scene = Scene::new(&model, &Settings::default());
+        for index in 0..model.instances.len() {
+            let selected = Selected::Instance(index);
+            assert_eq!(selected.instances(&scene).iter().filter(|is| **is).count(), 1);
+            let material = selected.material(&scene).unwrap();
+            assert!(Selected::Material(material).instances(&scene)[index]);
+            let key = selected.key(&model).unwrap();
+            assert!(model.named(&[key])[index]);
+            assert!(selected.is_in(&model) && !selected.is_in(&Model::default()));
+        }
+        assert!(Selected::Nothing.instances(&scene).is_empty());
+    }
+}
