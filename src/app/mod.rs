@@ -8,6 +8,7 @@ mod dialog;
 mod difference;
 mod editor;
 mod gallery;
+mod grid;
 mod history;
 mod input;
 mod keys;

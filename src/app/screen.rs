@@ -2,6 +2,7 @@
 
 mod error_map;
 mod gallery;
+mod grid;
 mod loops;
 mod probe;
 mod reference;
@@ -86,7 +87,14 @@ pub(super) struct Screen {
     pixel: Option<(PixelAt, bool)>,
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
+    /// The part of the window that shows the selected mode.
     pub(super) rect: PictureRect,
+    /// The part that shows all modes of the grid.
+    pub(super) whole: PictureRect,
+    /// The modes of the grid beside the selected one.
+    cells: Vec<grid::Cell>,
+    /// Their slugs and places in this frame.
+    wanted: Vec<(String, PictureRect)>,
     /// The part of the picture that no handle between it and a panel covers, in points.
     free: egui::Rect,
     last_frame: Instant,
@@ -137,6 +145,9 @@ impl Screen {
             mouse: Mouse::default(),
             camera: CameraController::default(),
             rect: PictureRect::default(),
+            whole: PictureRect::default(),
+            cells: Vec::new(),
+            wanted: Vec::new(),
             free: egui::Rect::NOTHING,
             last_frame: Instant::now(),
         })
@@ -178,6 +189,7 @@ impl Screen {
         if drawn.is_none() {
             self.view.forget();
             (self.reference, self.thumbnails, self.thumbnail) = (None, None, None);
+            self.cells.clear();
             self.gallery.forget();
         }
         let shortage = self.shortage.take();
@@ -204,6 +216,8 @@ impl Screen {
         }
         let frame = self.next_frame(viewer)?;
         self.prepare_reference(viewer, frame.as_ref())?;
+        self.prepare_grid(viewer)?;
+        self.view.surveys = viewer.panels.legend.shows_histogram && viewer.panels.visible;
         self.place_probe();
         let measures = self.measure_error(viewer, frame.as_ref());
         let measures = self.survive(measures)?.unwrap_or(false);
@@ -236,6 +250,7 @@ impl Screen {
             None => View::clear(&mut encoder, &output),
         }
         self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
+        self.draw_grid(&mut encoder, slot, &acquired.image)?;
         let recorded = self.record_thumbnail(&mut encoder, slot, viewer);
         if self.survive(recorded)?.is_none() {
             // The newest picture matters more.
@@ -246,7 +261,7 @@ impl Screen {
         let next_thumbnails = self.gallery.draw(&mut encoder, slot, viewer, &mut self.ui, context)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
-        self.has_others[slot] |= self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some();
+        self.has_others[slot] |= self.reference.is_some() || !self.cells.is_empty() || self.thumbnail.is_some() || next_thumbnails.is_some();
         self.attempts[slot] = viewer.record(window);
         self.frames.submit(encoder, acquired.submission)?;
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());
@@ -256,7 +271,8 @@ impl Screen {
 
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
         let reference = self.reference.as_ref().map(|reference| (&reference.view, &reference.frame));
-        let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference);
+        let cells = || self.cells.iter().filter_map(|cell| Some((&cell.view, cell.shown.as_ref()?.frame())));
+        let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference).chain(cells());
         let leaves_motion = views().any(|(view, frame)| view.is_moving(frame));
         let gets_better = views()
             .any(|(view, frame)| frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED);
@@ -264,6 +280,7 @@ impl Screen {
             || moving
             || reported
             || self.awaits_pixel()
+            || views().any(|(view, _)| view.awaits_survey())
             || self.thumbnail.is_some()
             || measures
             || self.error_map.awaits_copies()
@@ -330,7 +347,7 @@ impl Screen {
         // SYNC: once per reload, so that the time includes the device's work.
         self.frames.wait_all()?;
         // A frame with an older picture does not tell what the newest one takes.
-        let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none());
+        let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none() && self.cells.is_empty());
         viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, device_ms);
         Ok(!viewer.times_next_frame())
     }

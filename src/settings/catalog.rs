@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use clap::ValueEnum;
 
-use super::{LightSource, Settings, Tonemap};
+use super::{Channels, Colormap, LightSource, Settings, Tonemap};
 use crate::message;
 
 /// One setting, ready to be printed.
@@ -25,7 +25,7 @@ pub struct Setting {
 }
 
 /// Path, unit and meaning of every setting. A `*` in a path stands for the number of an orbiting light.
-const DESCRIBED: [(&str, &str, &str); 38] = [
+const DESCRIBED: [(&str, &str, &str); 42] = [
     ("mode", "", "Debug mode; `specula modes` lists them"),
     ("variant", "", "Variant of the model; without one its own materials"),
     ("measured", "", "File of a measured BRDF, for the modes `measured...`"),
@@ -64,11 +64,21 @@ const DESCRIBED: [(&str, &str, &str); 38] = [
     ("environment.blur", "", "Blur behind the model, as a roughness"),
     ("view.tonemap", "", "Tone map"),
     ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100)"),
+    ("view.channels", "", "Channels that the picture shows; a is coverage"),
+    ("view.colormap", "", "Colors that stand for a number, in modes with one component and for a single channel"),
+    ("view.dither", "", "Noise of half a step of 8 bits, which hides bands in light; the window has it, `render` does not"),
+    ("view.wireframe", "", "Edges of the triangles over the picture"),
 ];
 
 /// The rest of [`DESCRIBED`]: what each can be is no range of floats.
-const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 5] = [
+const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 6] = [
     ("view.background", "", "", "none (transparent), env, or #rrggbb"),
+    (
+        "view.range",
+        "",
+        "mode, auto, fit or LOW..HIGH",
+        "Values that are black and white: as the mode stores them, those of the picture where that helps (auto) or always (fit)",
+    ),
     ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
     ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),
     (
@@ -119,6 +129,8 @@ pub(super) fn names(path: &str) -> Vec<String> {
     match path {
         "view.tonemap" => of::<Tonemap>(),
         "lights.source" => of::<LightSource>(),
+        "view.channels" => of::<Channels>(),
+        "view.colormap" => of::<Colormap>(),
         _ => Vec::new(),
     }
 }

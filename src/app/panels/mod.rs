@@ -4,7 +4,9 @@
 mod camera;
 mod compare;
 mod environment;
+mod grid;
 mod keys;
+mod labels;
 mod lights;
 mod mode_tile;
 mod model;
@@ -21,15 +23,22 @@ pub(super) mod timeline;
 mod timing;
 mod top_bar;
 
+use std::sync::Arc;
+
 use egui::{Ui, Vec2};
 
 use super::command::Command;
 use super::gallery::GalleryState;
+use super::grid::Grid;
 use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
 use super::viewer::Viewer;
+use crate::frame::Limits;
 use crate::gpu::PassTime;
+use crate::render::Survey;
+use crate::settings::Colormap;
+use crate::shader::Mode;
 use theme::{ACCENT, EDGE, ERROR, QUIET, WARNING};
 
 /// A window smaller than this, in points, shows only the picture.
@@ -56,6 +65,10 @@ pub(super) struct PanelState {
     timing: timing::Timing,
     pub(super) timeline: timeline::TimelineState,
     files: overlay::diagnostics::Files,
+    pub(super) legend: overlay::legend::LegendState,
+    labels: labels::Labels,
+    /// The modes that the picture shows side by side.
+    pub(super) grid: Grid,
 }
 
 impl PanelState {
@@ -75,6 +88,9 @@ impl PanelState {
             timing: timing::Timing::default(),
             timeline: timeline::TimelineState::default(),
             files: overlay::diagnostics::Files::default(),
+            legend: overlay::legend::LegendState::default(),
+            labels: labels::Labels::default(),
+            grid: Grid::default(),
         }
     }
 }
@@ -89,6 +105,20 @@ pub(super) struct Readings {
     pub(super) value: Option<String>,
     /// Title over the picture.
     pub(super) title: Option<String>,
+    /// What the legend says; `None` before the first picture.
+    pub(super) legend: Option<LegendOf>,
+}
+
+/// The picture of which the legend speaks.
+pub(super) struct LegendOf {
+    pub(super) mode: Mode,
+    /// The values that the display shows as black and white; `None` for those of the mode.
+    pub(super) limits: Option<Limits>,
+    /// Samples of the picture's values.
+    pub(super) survey: Option<Arc<Survey>>,
+    pub(super) colormap: Colormap,
+    /// Factor from luminance to the display's 0..1.
+    pub(super) exposure: f32,
 }
 
 /// Where the picture is, in points.
@@ -102,6 +132,7 @@ pub(super) struct PictureArea {
 /// Shows bars, panels and messages. Returns what is left for the picture.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> PictureArea {
     let whole = ui.max_rect();
+    theme::choose(ui.ctx(), viewer.panels.layout.is_light());
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.panels.timing.record(readings);
     viewer.panels.timeline.is_visible = false;
@@ -117,11 +148,19 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
         PictureArea { rect: whole, free: whole }
     };
     compare::show(ui.ctx(), viewer, picture.rect);
+    grid::show(ui.ctx(), &viewer.session, &viewer.panels, picture.rect);
+    if viewer.panels.visible && !viewer.panels.grid.is_on()
+        && let Some(model) = viewer.session.model()
+    {
+        let (labels, camera) = (&mut viewer.panels.labels, &viewer.session.settings.camera);
+        labels::show(ui.ctx(), labels, model, camera, picture.rect);
+    }
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
     palette::show(ui.ctx(), viewer, whole, commands);
     viewer.panels.gallery.end_frame(ui.ctx());
+    viewer.panels.grid.follow(&viewer.session.settings.mode);
     picture
 }
 
@@ -158,7 +197,12 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     let declared = shaders.clone().unwrap_or_default();
     match panel {
         Panel::Viewport | Panel::Timeline => {}
-        Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
+        Panel::Modes => {
+            if modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels) {
+                let text = "Nine modes fit side by side, and modes of random paths are shown alone";
+                commands.push(Command::Say(text.into()));
+            }
+        }
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
             model::show(ui, settings, &model, &viewer.model, recent, commands);

@@ -36,6 +36,8 @@ impl Screen {
     /// Draws nothing beside the picture until something changes.
     fn end_others(&mut self, viewer: &mut Viewer) {
         self.gallery.stop();
+        self.cells.clear();
+        viewer.panels.grid.end();
         viewer.end_comparison();
         if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
             viewer.versions.cut_short(number);

@@ -18,6 +18,7 @@ impl Screen {
         viewer: &mut Viewer,
     ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
         self.read_pixel();
+        self.read_survey();
         self.take_thumbnail(viewer);
         self.take_copies(viewer);
         if self.gallery.is_misfit(&viewer.gpu, &viewer.panels.gallery, self.egui.pixels_per_point()) {
@@ -30,6 +31,7 @@ impl Screen {
             passes: self.frames.pass_times().to_vec(),
             value: self.value_text(viewer),
             title: viewer.title(self.view.accumulated()),
+            legend: self.legend(viewer),
         };
         let input = self.input.take_egui_input(window);
         let (mut shown, mut commands) = (None, Vec::new());
@@ -40,9 +42,10 @@ impl Screen {
         viewer.history.record(&viewer.session.settings, is_held);
         self.input.handle_platform_output(window, output.platform_output);
         if let Some((swapchain, area)) = self.swapchain.as_ref().zip(shown) {
-            self.rect = pixels(area.rect, output.pixels_per_point, swapchain.extent());
+            self.whole = pixels(area.rect, output.pixels_per_point, swapchain.extent());
             self.free = area.free;
         }
+        self.arrange_grid(viewer);
         self.take_textures(output.textures_delta)?;
         let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);
         let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
