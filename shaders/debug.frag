@@ -24,6 +24,13 @@ void main() {
     user_surface(surface);
     antialias_specular(surface);
     if (ALPHA_MODE == ALPHA_MASK && surface.coverage < material.alpha_cutoff) discard;
+    if (MODE == EDGES_MODE) {
+        // One color on the display, whatever the exposure. Edges are no data, so ranges do not follow them.
+        const vec3 EDGE_COLOR = vec3(1.0, 0.42, 0.06);
+        bool is_light = TONEMAP != TONEMAP_OFF;
+        out_color = hdr_pixel(is_light ? EDGE_COLOR / frame.exposure : EDGE_COLOR, 1.0, !is_light);
+        return;
+    }
     surface = surface_of_mode(surface);
     complete_surface(surface, v);
 

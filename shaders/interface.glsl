@@ -66,6 +66,7 @@ const int BINDING_THICKNESS_TEXTURE = 17;
 const int BINDING_DIFFUSE_TRANSMISSION_TEXTURE = 18;
 const int BINDING_DIFFUSE_TRANSMISSION_COLOR_TEXTURE = 19;
 const int USER_CONSTANTS = 32;
+const uint EDGES_MODE = 0x3fffffffu;
 const uint PASS_MODES = 0x40000000u;
 const uint ALPHA_OPAQUE = 0u;
 const uint ALPHA_MASK = 1u;
@@ -140,6 +141,7 @@ const uint TEXTURE_DIFFUSE_TRANSMISSION_COLOR = 18u;
 const int TEXTURE_COUNT = 19;
 const int MAX_LIGHTS = 204;
 const int MAX_LIGHT_VIEWS = 16;
+const int COLORMAP_STEPS = 17;
 
 layout(constant_id = 0) const uint MODE = 0u; // debug mode, one of MODE_* in debug/modes.glsl
 layout(constant_id = 1) const uint ALPHA_MODE = 0u; // glTF alphaMode, one of ALPHA_*
@@ -185,6 +187,12 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     mat4 light_clip_from_world[MAX_LIGHT_VIEWS]; // The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
     vec4 date;                         // Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
     uint keys[24];                     // Keys, 32 in an element: 8 elements tell which are down, 8 which went down in this frame, 8 which are toggled. See common/keys.glsl.
+    float range_low;                   // The value that the display shows as 0, if range_scale is not 0.
+    float range_scale;                 // 1 / the range of values that the display shows; 0: values are stored as the mode says.
+    uint channels;                     // The channels that the display shows: 0 RGB, 1 to 3 one of them, 4 coverage.
+    uint has_colormap;                 // Whether colors stand for a number: 0 or 1.
+    float dither;                      // Amplitude of the dither in steps of 8 bits: 0 or 1.
+    vec3 colormap[COLORMAP_STEPS];     // The colors that stand for the numbers from 0 to 1, at equal steps. Linear RGB.
 } frame;
 
 struct Light {

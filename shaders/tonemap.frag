@@ -4,6 +4,7 @@
 #include "common/bloom.glsl"
 #include "common/color.glsl"
 #include "common/pixel.glsl"
+#include "common/range.glsl"
 #include "common/tonemap.glsl"
 #include "user/display.glsl"
 
@@ -26,15 +27,26 @@ void main() {
     // The image of a pass may have anything in alpha.
     bool is_pass = TONEMAP == TONEMAP_OFF && frame.mode >= PASS_MODES;
     float coverage = is_pass ? 1.0 : coverage_of(scene.a);
+    // Where there is no value, the picture says so in colors of its own.
+    bool has_value = is_pass || scene.a < 2.0;
+    bool ranged = has_value && has_range();
     vec2 uv = (gl_FragCoord.xy - frame.viewport_origin_px) / frame.viewport_px;
     vec3 value = scene.rgb;
-    if (TONEMAP != TONEMAP_OFF) {
+    if (TONEMAP != TONEMAP_OFF && !ranged) {
         value *= frame.exposure;
         if (BLOOM) add_bloom(value, coverage, uv);
     }
     // The curves are not linear, so they want the color of the surface, not the color times how much of it there is. 1e-6:
     // where nothing covers the pixel, the color is 0.
-    vec3 front = display_value(value / max(coverage, 1e-6), uv);
+    value /= max(coverage, 1e-6);
+    vec3 front = ranged ? saturate(in_range(value)) : display_value(value, uv);
+    if (has_value) {
+        front = chosen_channels(front, is_pass ? saturate(scene.a) : coverage);
+        if (frame.has_colormap != 0u) {
+            front = color_of_number(front.x);
+            if (ENCODE != ENCODE_COLOR) front = srgb_from_linear(front);
+        }
+    }
 
     // Colors meet in linear light, as they do in a lens. Numbers have no such space: they meet the encoded background.
     vec3 back = ENCODE == ENCODE_COLOR ? frame.background.rgb : srgb_from_linear(frame.background.rgb);
@@ -42,5 +54,7 @@ void main() {
     // A over B (Porter & Duff 1984), divided by its alpha: the mean of both colors.
     float alpha = mix(frame.background.a, 1.0, coverage);
     vec3 color = mix(back, front, coverage / max(alpha, 1e-6));
-    out_color = vec4(ENCODE == ENCODE_COLOR ? srgb_from_linear(color) : color, alpha);
+    if (ENCODE == ENCODE_COLOR) color = srgb_from_linear(color);
+    if (TONEMAP != TONEMAP_OFF) color += dither_noise(gl_FragCoord.xy);
+    out_color = vec4(color, alpha);
 }

@@ -44,6 +44,9 @@ pub const PARAMS_SIZE: u32 = 4096;
 /// Maximum number of lights in a frame: as many as fit into 16 KiB, the uniform block size that Vulkan guarantees.
 pub const MAX_LIGHTS: usize = 16384 / size_of::<Light>();
 
+/// Number of colors in `Frame::colormap`.
+pub const COLORMAP_STEPS: usize = 17;
+
 /// Number of lights whose view of the model is in the block [`Frame`].
 pub const MAX_LIGHT_VIEWS: usize = 16;
 

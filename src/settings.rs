@@ -2,6 +2,7 @@
 
 mod assign;
 mod catalog;
+mod display;
 mod environment;
 mod expression;
 mod factors;
@@ -20,6 +21,7 @@ use crate::message::did_you_mean;
 
 pub use assign::unknown_setting;
 pub use catalog::{Setting, catalog, limits, told};
+pub use display::{Channels, Colormap, ViewRange};
 pub use environment::EnvironmentSettings;
 pub use expression::ExpressionSettings;
 pub use factors::{Factor, FactorInfo, FactorValue, MaterialValues, path as factor_path};
@@ -57,6 +59,9 @@ pub struct Settings {
     pub expression: ExpressionSettings,
     /// Exposure, tone mapping, background, multisampling.
     pub view: ViewSettings,
+    /// Cameras that the user has kept, by their number.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub bookmarks: BTreeMap<String, CameraSettings>,
     /// Declared passes that are switched on or off, by name. The others are as their `//@pass` says.
     pub passes: BTreeMap<String, bool>,
     /// Values of the constants and parameters that `//@ui` annotations declare, by name.
@@ -72,6 +77,8 @@ impl Settings {
         let mut settings = Self::default();
         settings.view.background = "env".into();
         settings.environment.blur = 0.3;
+        settings.view.range = ViewRange::Auto;
+        settings.view.dither = true;
         settings.passes.insert(GROUND.into(), true);
         settings
     }
@@ -92,6 +99,7 @@ impl Default for Settings {
             measured: String::new(),
             expression: ExpressionSettings::default(),
             view: ViewSettings::default(),
+            bookmarks: BTreeMap::new(),
             passes: BTreeMap::new(),
             shader: BTreeMap::new(),
         }
@@ -171,6 +179,16 @@ pub struct ViewSettings {
     pub ev: f32,
     /// `none`, `env` or `#rrggbb`.
     pub background: String,
+    /// Range of values that the picture spreads over the display.
+    pub range: ViewRange,
+    /// Channels that the picture shows.
+    pub channels: Channels,
+    /// Colors that stand for a number.
+    pub colormap: Colormap,
+    /// Whether light is dithered before it is stored with 8 bits.
+    pub dither: bool,
+    /// Whether the edges of the triangles lie over the picture.
+    pub wireframe: bool,
     /// Samples per pixel, 1 or 4.
     pub msaa: u32,
     /// Number of frames that accumulating modes average when rendering without a window.
@@ -187,7 +205,21 @@ const BACKGROUND: &str = "#1b1d21";
 impl Default for ViewSettings {
     fn default() -> Self {
         let (tonemap, background) = (Tonemap::default(), BACKGROUND.into());
-        Self { tonemap, ev: 0.0, background, msaa: 4, frames: 64, bounces: 4, pass_memory: 2048 }
+        let (range, channels, colormap) = (ViewRange::default(), Channels::default(), Colormap::default());
+        Self {
+            tonemap,
+            ev: 0.0,
+            background,
+            range,
+            channels,
+            colormap,
+            dither: false,
+            wireframe: false,
+            msaa: 4,
+            frames: 64,
+            bounces: 4,
+            pass_memory: 2048,
+        }
     }
 }
 

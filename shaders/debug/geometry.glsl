@@ -15,19 +15,16 @@ const vec3 BAD = vec3(0.8, 0.06, 0.03);
 
 bool has_attribute(uint bit) { return (draw.attributes & bit) != 0u; }
 
-// The mip level at which the base color texture is sampled; the middle of the scale is level 4.
-vec3 mip_level_color(Fragment f) {
-    return heat(textureQueryLod(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR)).x / 8.0);
-}
+// The mip level at which the base color texture is sampled.
+float mip_level(Fragment f) { return textureQueryLod(base_color_texture, texture_uv(f, TEXTURE_BASE_COLOR)).x; }
 
-// Texels per meter: the square root of a pixel's area in texels over its area in the world. Scale: 2^4 to 2^14.
-vec3 texel_density_color(Fragment f) {
+// Texels per meter as a power of 2: the square root of a pixel's area in texels over its area in the world.
+float texel_density_log2(Fragment f) {
     vec2 texel = texture_uv(f, TEXTURE_BASE_COLOR) * vec2(textureSize(base_color_texture, 0));
     float texels = abs(determinant(mat2(dFdx(texel), dFdy(texel))));
     float area = length(cross(dFdx(f.position_ws), dFdy(f.position_ws)));
     // 1e-20: a triangle may have zero area in UV or world space.
-    float density_log2 = 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));
-    return heat((density_log2 - 4.0) / 10.0);
+    return 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));
 }
 bool debug_geometry(Fragment f, Surface s, vec3 v, out vec3 value) {
     bool has_frame = has_attribute(ATTRIBUTE_TANGENT_FRAME);
@@ -49,8 +46,8 @@ bool debug_geometry(Fragment f, Surface s, vec3 v, out vec3 value) {
     else if (MODE == MODE_MESH_ID) value = color_from_id(draw.primitive_id);
     else if (MODE == MODE_NODE_ID) value = color_from_id(draw.node_id);
     else if (MODE == MODE_MATERIAL_ID) value = color_from_id(material.id);
-    else if (MODE == MODE_MIP_LEVEL) value = if_present(has_base_color, mip_level_color(f));
-    else if (MODE == MODE_TEXEL_DENSITY) value = if_present(has_base_color, texel_density_color(f));
+    else if (MODE == MODE_MIP_LEVEL) value = if_present(has_base_color, vec3(mip_level(f)));
+    else if (MODE == MODE_TEXEL_DENSITY) value = if_present(has_base_color, vec3(texel_density_log2(f)));
     else if (MODE == MODE_WIREFRAME) value = vec3(0.02 + 0.6 * pow(abs(dot(s.n, v)), 3.0));
     else if (MODE == MODE_OVERDRAW) value = vec3(0.1);
     else known = false;

@@ -3,6 +3,7 @@
 // To add a mode, write an annotation and a constant here, compute its value in `your_mode` below, and save.
 //
 //   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [stage=debug]
+//         [range=LOW..HIGH] [colormap=viridis|magma|turbo|coolwarm|heat]
 //         [tonemap] [accumulate] [traces] [through] [draw=lines|layers] [needs=FEATURES] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
@@ -11,6 +12,9 @@
 //   encode    how a PNG and the window store the value: color: sRGB curve; data: unchanged; vector: v * 0.5 + 0.5
 //   components  components of a value, 3 by default; with 1, the shader repeats the scalar in all channels
 //   unit      unit of the returned value, before exposure: m, 1/sr, cd/m^2
+//   range     values that the picture shows as 0 and 1; without it those of `encode`. The window fits it to the picture where
+//             values have a unit or leave 0..1 (view.range)
+//   colormap  colors that stand for a number, in a mode with one component
 //   draw      lines: the edges of triangles; layers: the sum of all fragments, hidden or not
 //   tonemap   the value is light, so exposure and tone map apply
 //   accumulate  the value is an estimate from frame.sample_count random paths per pixel; the renderer shows the mean
@@ -68,9 +72,9 @@ const uint MODE_MESH_ID = 213u;
 const uint MODE_NODE_ID = 214u;
 //@mode material-id "Material" group="Geometry" encode=color doc="A color for each material."
 const uint MODE_MATERIAL_ID = 215u;
-//@mode mip-level "Mip level" group="Geometry" encode=color doc="Of the base color texture: blue level 0, red 8 and up."
+//@mode mip-level "Mip level" group="Geometry" encode=color components=1 unit="level" range=0..8 colormap=heat doc="Of the base color texture: blue level 0, red 8 and up."
 const uint MODE_MIP_LEVEL = 216u;
-//@mode texel-density "Texel density" group="Geometry" encode=color doc="Base color texels per meter: blue 16, red 16384."
+//@mode texel-density "Texel density" group="Geometry" encode=color components=1 unit="log2 texels/m" range=4..14 colormap=heat doc="Base color texels per meter, as a power of 2: blue 16, red 16384."
 const uint MODE_TEXEL_DENSITY = 217u;
 //@mode wireframe "Wireframe" group="Geometry" encode=color draw=lines key=w doc="Edges of the triangles."
 const uint MODE_WIREFRAME = 218u;
@@ -234,7 +238,7 @@ const uint MODE_NAN = 500u;
 const uint MODE_NEGATIVE = 501u;
 //@mode clipped "Clipped" group="Truth" encode=color doc="Channels above 1 after exposure, before tone mapping."
 const uint MODE_CLIPPED = 502u;
-//@mode false-color "False-color exposure" group="Truth" encode=color doc="Stops from middle gray: blue -6, red +6."
+//@mode false-color "False-color exposure" group="Truth" encode=color components=1 unit="EV" range=-6..6 colormap=heat doc="Stops from middle gray: blue -6, red +6."
 const uint MODE_FALSE_COLOR = 503u;
 //@mode albedo-range "Albedo range" group="Truth" encode=color doc="Blue below sRGB 30, red above 240 (McDermott 2018)."
 const uint MODE_ALBEDO_RANGE = 504u;

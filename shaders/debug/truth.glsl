@@ -39,11 +39,11 @@ vec3 clipped_color(vec3 radiance) {
     return any(above) ? vec3(above) : dimmed(radiance);
 }
 
-// Stops above and below 18 % gray, the mean reflectance that light meters assume: -6 .. +6.
-vec3 false_color(vec3 radiance) {
+// Stops above and below 18 % gray, the mean reflectance that light meters assume.
+float stops_from_gray(vec3 radiance) {
     // 1e-6: log2(0) is -infinity; 17 stops below gray is off the scale anyway.
     float seen = max(luminance(radiance) * frame.exposure, 1e-6);
-    return heat((log2(seen / 0.18) + 6.0) / 12.0);
+    return log2(seen / 0.18);
 }
 
 // No common dielectric is darker than charcoal (sRGB 30) or lighter than fresh snow (240) (McDermott 2018, The PBR
@@ -71,7 +71,7 @@ bool debug_truth(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     if (MODE == MODE_NAN) value = nan_color(radiance);
     else if (MODE == MODE_NEGATIVE) value = negative_color(radiance);
     else if (MODE == MODE_CLIPPED) value = clipped_color(radiance);
-    else if (MODE == MODE_FALSE_COLOR) value = false_color(radiance);
+    else if (MODE == MODE_FALSE_COLOR) value = vec3(stops_from_gray(radiance));
     else if (MODE == MODE_ALBEDO_RANGE) value = albedo_range_color(s);
     else if (MODE == MODE_F0_RANGE) value = f0_range_color(s);
     else known = false;

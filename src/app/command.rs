@@ -74,6 +74,10 @@ pub(super) enum Command {
     FrameModel,
     /// Frame the model, seen from this side.
     ViewFrom(Side),
+    /// Keep the camera under this number.
+    KeepCamera(u32),
+    /// Go back to the camera that was kept under this number.
+    RecallCamera(u32),
     /// Write the picture to `specula-N.png`.
     Screenshot,
     /// Inspect this pixel of the picture, counted from its upper left corner, and select what it shows: the user has clicked it.

@@ -75,6 +75,10 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                 viewer.execute(Command::ViewFrom(side));
                 return true;
             }
+            if let Some(command) = bookmark(event.physical_key, screen.mouse.modifiers).filter(|_| !taken) {
+                viewer.execute(command);
+                return true;
+            }
             let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
             !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
         }
@@ -99,7 +103,11 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
                     if is_double {
                         return focus(viewer, screen);
                     }
-                    if let Some((x, y)) = clicked.and_then(|_| screen.mouse_pixel()).filter(|_| was && !pressed) {
+                    let is_click = clicked.is_some() && was && !pressed;
+                    if is_click && keep_mode_at(viewer, screen) {
+                        return true;
+                    }
+                    if let Some((x, y)) = screen.mouse_pixel().filter(|_| is_click) {
                         viewer.execute(Command::Pick([x, y]));
                         return true;
                     }
@@ -139,6 +147,18 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
     }
 }
 
+/// Shows the mode of the grid under the mouse alone. Returns whether there is one.
+fn keep_mode_at(viewer: &mut Viewer, screen: &Screen) -> bool {
+    if !viewer.panels.grid.is_on() {
+        return false;
+    }
+    if let Some(mode) = screen.grid_mode_at(screen.mouse.at) {
+        viewer.session.settings.mode = mode;
+    }
+    viewer.panels.grid.end();
+    true
+}
+
 /// Whether a press of the left button is the second of a double click.
 fn is_double_click(mouse: &mut Mouse) -> bool {
     let (now, at) = (Instant::now(), mouse.at);
@@ -166,8 +186,8 @@ fn in_picture(screen: &Screen, at: Vec2) -> [f32; 2] {
 }
 
 fn inside(screen: &Screen, at: Vec2) -> bool {
-    let (x, y) = (at.x - screen.rect.at.0 as f32, at.y - screen.rect.at.1 as f32);
-    (0.0..screen.rect.size.0 as f32).contains(&x) && (0.0..screen.rect.size.1 as f32).contains(&y)
+    let (x, y) = (at.x - screen.whole.at.0 as f32, at.y - screen.whole.at.1 as f32);
+    (0.0..screen.whole.size.0 as f32).contains(&x) && (0.0..screen.whole.size.1 as f32).contains(&y)
 }
 
 fn drag(viewer: &mut Viewer, screen: &Screen, delta: Vec2) -> bool {
@@ -220,6 +240,24 @@ fn side(key: PhysicalKey, modifiers: ModifiersState) -> Option<Side> {
     }
 }
 
+/// The camera that a digit keeps with Ctrl and Shift, or returns to with Ctrl.
+fn bookmark(key: PhysicalKey, modifiers: ModifiersState) -> Option<Command> {
+    let digits = [
+        KeyCode::Digit1,
+        KeyCode::Digit2,
+        KeyCode::Digit3,
+        KeyCode::Digit4,
+        KeyCode::Digit5,
+        KeyCode::Digit6,
+        KeyCode::Digit7,
+        KeyCode::Digit8,
+        KeyCode::Digit9,
+    ];
+    let PhysicalKey::Code(code) = key else { return None };
+    let number = digits.iter().position(|digit| *digit == code).filter(|_| modifiers.control_key())? as u32 + 1;
+    Some(if modifiers.shift_key() { Command::KeepCamera(number) } else { Command::RecallCamera(number) })
+}
+
 /// Whether a key types nothing and so is never meant for a text.
 fn is_function_key(key: &Key) -> bool {
     matches!(key, Key::Named(NamedKey::F1 | NamedKey::F5 | NamedKey::F12))
@@ -268,6 +306,7 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
         Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing => {
             viewer.execute(Command::Select(Selected::Nothing));
         }
+        Key::Named(NamedKey::Escape) if viewer.panels.grid.is_on() => viewer.panels.grid.end(),
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {

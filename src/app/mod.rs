@@ -9,6 +9,7 @@ mod dialog;
 mod difference;
 mod editor;
 mod gallery;
+mod grid;
 mod hint;
 mod history;
 mod input;

@@ -2,6 +2,7 @@
 
 mod error_map;
 mod gallery;
+mod grid;
 mod inspector;
 mod loops;
 mod probe;
@@ -101,7 +102,14 @@ pub(super) struct Screen {
     pixel: Option<(PixelAt, bool)>,
     pub(super) mouse: Mouse,
     pub(super) camera: CameraController,
+    /// The part of the window that shows the selected mode.
     pub(super) rect: PictureRect,
+    /// The part that shows all modes of the grid.
+    pub(super) whole: PictureRect,
+    /// The modes of the grid beside the selected one.
+    cells: Vec<grid::Cell>,
+    /// Their slugs and places in this frame.
+    wanted: Vec<(String, PictureRect)>,
     /// The part of the picture that no handle between it and a panel covers, in points.
     free: egui::Rect,
     last_frame: Instant,
@@ -158,6 +166,9 @@ impl Screen {
             mouse: Mouse::default(),
             camera: CameraController::default(),
             rect: PictureRect::default(),
+            whole: PictureRect::default(),
+            cells: Vec::new(),
+            wanted: Vec::new(),
             free: egui::Rect::NOTHING,
             last_frame: Instant::now(),
             cpu: CpuTimes::default(),
@@ -201,6 +212,7 @@ impl Screen {
             self.view.forget();
             (self.reference, self.thumbnails, self.thumbnail, self.outline) = (None, None, None, None);
             self.texture.forget();
+            self.cells.clear();
             self.gallery.forget();
             self.inspector.forget();
         }
@@ -229,6 +241,8 @@ impl Screen {
         }
         let frame = self.next_frame(viewer)?;
         self.prepare_reference(viewer, frame.as_ref())?;
+        self.prepare_grid(viewer)?;
+        self.view.surveys = viewer.panels.legend.shows_histogram && viewer.panels.visible;
         self.place_probe();
         let measures = self.measure_error(viewer, frame.as_ref());
         let measures = self.survive(measures)?.unwrap_or(false);
@@ -270,6 +284,7 @@ impl Screen {
         self.survive(outlined)?;
         let shown = self.draw_texture(&mut encoder, viewer, frame.as_ref());
         self.survive(shown)?;
+        self.draw_grid(&mut encoder, slot, &acquired.image)?;
         let recorded = self.record_thumbnail(&mut encoder, slot, viewer);
         if self.survive(recorded)?.is_none() {
             // The newest picture matters more.
@@ -285,6 +300,7 @@ impl Screen {
         self.record_window_shot(&mut encoder, slot, viewer, &acquired.image)?;
         self.has_others[slot] |=
             self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some() || next_values.is_some();
+        self.has_others[slot] |= !self.cells.is_empty();
         self.attempts[slot] = viewer.record(window);
         self.cpu.record_ms = record.elapsed().as_secs_f64() * 1e3;
         self.frames.submit(encoder, acquired.submission)?;
@@ -297,7 +313,8 @@ impl Screen {
         viewer.answer();
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
         let reference = self.reference.as_ref().map(|reference| (&reference.view, &reference.frame));
-        let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference);
+        let cells = || self.cells.iter().filter_map(|cell| Some((&cell.view, cell.shown.as_ref()?.frame())));
+        let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference).chain(cells());
         let leaves_motion = views().any(|(view, frame)| view.is_moving(frame));
         let gets_better = views()
             .any(|(view, frame)| frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED);
@@ -305,6 +322,7 @@ impl Screen {
             || moving
             || reported
             || self.awaits_pixel()
+            || views().any(|(view, _)| view.awaits_survey())
             || self.thumbnail.is_some()
             || self.window_shot.is_some()
             || viewer.has_unanswered()
@@ -374,7 +392,7 @@ impl Screen {
         // SYNC: once per reload, so that the time includes the device's work.
         self.frames.wait_all()?;
         // A frame with an older picture does not tell what the newest one takes.
-        let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none());
+        let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none() && self.cells.is_empty());
         viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, device_ms);
         Ok(!viewer.times_next_frame())
     }

@@ -56,11 +56,18 @@ use versions::Versions;
 
 /// The last complete picture and its inputs. The window draws it until the next picture is complete.
 #[derive(Clone)]
-struct LastComplete {
+pub(super) struct LastComplete {
     settings: Settings,
     scene: Option<Scene>,
     revisions: Revisions,
     frame: BoundFrame,
+}
+
+impl LastComplete {
+    /// The picture.
+    pub(super) fn frame(&self) -> &BoundFrame {
+        &self.frame
+    }
 }
 
 /// A loop that did not end.
@@ -367,6 +374,15 @@ impl Viewer {
                 (camera.eye, camera.target) = (None, None);
                 [camera.azimuth, camera.elevation] = side.angles();
             }
+            Command::KeepCamera(number) => {
+                let settings = &mut self.session.settings;
+                settings.bookmarks.insert(number.to_string(), settings.camera.clone());
+                self.say(format!("Kept this camera as {number}. Ctrl+{number} returns to it"));
+            }
+            Command::RecallCamera(number) => match self.session.settings.bookmarks.get(&number.to_string()).cloned() {
+                Some(camera) => self.session.settings.camera = camera,
+                None => self.say(format!("No camera is kept as {number}. Ctrl+Shift+{number} keeps this one")),
+            },
             Command::Screenshot => self.screenshot = true,
             Command::Pick(at) => {
                 self.inspect(at);

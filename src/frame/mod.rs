@@ -5,6 +5,7 @@
 
 mod baked;
 mod date;
+mod display;
 mod formats;
 mod keys;
 mod mode_sets;
@@ -20,6 +21,7 @@ use std::sync::Arc;
 pub(crate) use baked::BakeStage;
 pub use baked::{EnvironmentKey, TablesKey};
 pub use date::Date;
+pub use display::{Display, Limits};
 pub use formats::TargetFormat;
 pub(crate) use formats::pass_format;
 pub use keys::{Keys, key_names};
@@ -118,6 +120,10 @@ pub struct FrameState {
     pub lights: Vec<Light>,
     /// Width and height, pixels, at least 1.
     pub size: (u32, u32),
+    /// What the display makes of the values.
+    pub display: Display,
+    /// The same for each mode of a set of thumbnails: value of `MODE`, components of a value, display.
+    pub displays: Vec<(u32, u8, Display)>,
     /// Bytes that images and buffers of passes may take.
     pub pass_memory: u64,
     params: Vec<u8>,
@@ -148,7 +154,9 @@ impl FrameState {
     /// The state of thumbnails of these modes, which are one of [`mode_sets`]. Passes after the model but the tone map are left out.
     pub fn of_modes(inputs: &FrameInputs<'_>, modes: &[&Mode]) -> Self {
         let FrameInputs { settings, shaders, scene, target, .. } = *inputs;
-        Self::with_pipelines(inputs, PipelineRequest::of_modes(settings, shaders, scene, target, modes))
+        let displays = modes.iter().map(|mode| (mode.id, mode.components, Display::new(&settings.view, Some(mode))));
+        let pipelines = PipelineRequest::of_modes(settings, shaders, scene, target, modes);
+        Self { displays: displays.collect(), ..Self::with_pipelines(inputs, pipelines) }
     }
 
     fn with_pipelines(inputs: &FrameInputs<'_>, pipelines: PipelineRequest) -> Self {
@@ -208,6 +216,8 @@ impl FrameState {
             }),
             measured: (!settings.measured.is_empty())
                 .then(|| MeasuredKey { path: settings.measured.as_str().into(), revision: revisions.measured }),
+            displays: Vec::new(),
+            display: Display::new(&settings.view, shaders.modes.iter().find(|mode| mode.id == pipelines.mode)),
             shaders: shaders.clone(),
             scene: scene.cloned(),
             pipelines,
@@ -224,8 +234,8 @@ impl FrameState {
         self.shaders.modes.iter().find(|mode| mode.id == self.pipelines.mode)
     }
 
-    /// Factor from a value before exposure to one after it.
-    pub(crate) fn exposure(&self) -> f32 {
+    /// Factor from luminance to the display's 0..1.
+    pub fn exposure(&self) -> f32 {
         self.constants.exposure
     }
 

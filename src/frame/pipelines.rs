@@ -8,7 +8,7 @@ use super::pipeline_key::{KeyPass, PipelineKey};
 use super::{Scene, SharedMode};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
-    self, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
+    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
     UNROLLED_LIGHTS,
 };
 use crate::scene::{has_exact_sun, light_count};
@@ -63,6 +63,8 @@ pub struct PipelineRequest {
     pub draws_model: bool,
     /// The pass whose image is shown instead of the picture.
     pub shown_pass: Option<String>,
+    /// The pass that draws the edges of triangles over the picture; `None` if they are not shown.
+    pub edges: Option<Arc<GraphPass>>,
     /// The modes that are drawn at once, each to a target of its own: see `frame::mode_sets`. Empty for a picture of `mode` alone.
     pub modes: Vec<SharedMode>,
 }
@@ -158,6 +160,7 @@ impl PipelineRequest {
             stage,
             passes,
             draws_model,
+            edges: edges(settings, shaders),
             shown_pass,
             modes: Vec::new(),
         }
@@ -221,6 +224,18 @@ impl PipelineRequest {
             (SPEC_LIGHT_COUNT, self.light_count),
         ];
         own.iter().chain(&self.constants).copied().collect()
+    }
+
+    /// The pipeline that draws the edges of a material's triangles over the picture.
+    pub(crate) fn edges_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
+        let pass = self.edges.as_ref().filter(|pass| material.is_taken_by(pass))?;
+        if material.class != PrimitiveClass::Triangles {
+            return None;
+        }
+        let key = self.key_with_model(pass, material, Raster::Edges);
+        let own = [(SPEC_TONEMAP, self.tonemap)];
+        let rest = key.specialization.iter().map(|(id, value)| (*id, if *id == SPEC_MODE { EDGES_MODE } else { *value }));
+        Some(PipelineKey { specialization: own.into_iter().chain(rest).collect(), modes: Vec::new(), ..key })
     }
 
     /// Random paths per pixel in each frame of an accumulating mode. Tracing the model takes so long on a software device that a
@@ -369,7 +384,8 @@ impl PipelineRequest {
     pub fn stages(&self) -> BTreeSet<String> {
         // Without a model the stages of the mode count too: the model is still loading. Its stage may be still to be compiled.
         let model = self.draws_model.then(|| self.stage.clone());
-        let passes = self.passes.iter().flat_map(|pass| pass.stages()).map(str::to_owned);
+        let all = self.passes.iter().chain(&self.edges);
+        let passes = all.flat_map(|pass| pass.stages()).map(str::to_owned);
         passes.chain(model).collect()
     }
 
@@ -382,7 +398,8 @@ impl PipelineRequest {
 
     /// The pipelines of the model, of what is drawn with it, and of the mean.
     pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let model = self.materials.iter().flat_map(|m| [self.model_key(*m), self.behind_key(*m)]).flatten();
+        let of = |m: &MaterialVariant| [self.model_key(*m), self.behind_key(*m), self.edges_key(*m)];
+        let model = self.materials.iter().flat_map(of).flatten();
         let added = self.added_passes().flat_map(|pass| self.pass_keys(pass));
         model.chain(added).chain(self.background_keys()).chain(self.average_key())
     }
@@ -410,6 +427,13 @@ pub(crate) fn shared_features(settings: &Settings) -> u32 {
         features |= interface::FEATURE_RECT_LIGHTS;
     }
     features
+}
+
+/// The pass whose stage draws the edges of triangles: that of the mode which draws lines.
+fn edges(settings: &Settings, shaders: &ShaderSet) -> Option<Arc<GraphPass>> {
+    let lines = shaders.modes.iter().find(|mode| mode.draw == DrawAs::Lines).filter(|_| settings.view.wireframe)?;
+    let draws = |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.stage == lines.stage;
+    shaders.graph.passes.iter().find(draws).cloned()
 }
 
 /// Whether the constant is set that the annotation of the pass names.

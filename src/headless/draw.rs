@@ -43,6 +43,7 @@ impl Headless {
     /// As [`Headless::render`].
     pub fn render_with(&mut self, mut progress: impl FnMut(&Step)) -> Result<Capture, HeadlessError> {
         self.view.restart_passes();
+        self.view.forget_limits();
         let frames = self.sequence.frames.max(1);
         let last = frames - 1;
         for index in 0..last {
@@ -62,7 +63,15 @@ impl Headless {
                 progress(&Step { done: u64::from(sample) * paths, of, unit: "paths per pixel" });
             }
         }
-        let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;
+        self.read_frame(&frame)
+    }
+
+    /// Draws a frame and reads it back. If its range follows its values, it is tone mapped again once these are known.
+    fn read_frame(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
+        let mut readback = self.draw_frame(frame, Redraw::Always, View::read_back)?;
+        if frame.state.display.is_measured() {
+            readback = self.draw_frame(frame, Redraw::ToneMap, View::read_back)?;
+        }
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
@@ -73,8 +82,7 @@ impl Headless {
     pub fn render_next(&mut self) -> Result<Capture, HeadlessError> {
         self.clock = self.sequence.clock(self.clock.frame_index + 1);
         let frame = self.bind()?;
-        let readback = self.draw_frame(&frame, Redraw::Always, View::read_back)?;
-        readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
+        self.read_frame(&frame)
     }
 
     /// [`Headless::render_next`] without reading the frame back.
@@ -114,6 +122,7 @@ impl Headless {
         }
         let result = submitted?;
         self.frames.wait()?;
+        self.view.take_survey(slot);
         match self.frames.endless_loop(self.frames.current()) {
             Some(words) => Err(self.explained(HeadlessError::Gpu(GpuError::EndlessLoop(words)))),
             None => Ok(result),

@@ -7,7 +7,7 @@ use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{MAX_LIGHT_VIEWS, PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
+use super::{COLORMAP_STEPS, MAX_LIGHT_VIEWS, PUSH_CONSTANT_SIZE, TEXTURE_COUNT};
 
 /// A struct of the contract.
 #[derive(Debug)]
@@ -162,6 +162,18 @@ blocks! {
         date: vec4,
         /// Keys, 32 in an element: 8 elements tell which are down, 8 which went down in this frame, 8 which are toggled. See common/keys.glsl.
         keys: [uint; 24],
+        /// The value that the display shows as 0, if range_scale is not 0.
+        range_low: float,
+        /// 1 / the range of values that the display shows; 0: values are stored as the mode says.
+        range_scale: float,
+        /// The channels that the display shows: 0 RGB, 1 to 3 one of them, 4 coverage.
+        channels: uint,
+        /// Whether colors stand for a number: 0 or 1.
+        has_colormap: uint,
+        /// Amplitude of the dither in steps of 8 bits: 0 or 1.
+        dither: float,
+        /// The colors that stand for the numbers from 0 to 1, at equal steps. Linear RGB.
+        colormap: [vec3; COLORMAP_STEPS],
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.

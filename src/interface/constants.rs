@@ -10,6 +10,8 @@ macro_rules! constants {
 }
 
 constants! {
+    /// The mode in which `debug.frag` draws the edges of triangles over the picture.
+    EDGES_MODE = (1 << 30) - 1;
     /// Modes from here on show the image of a declared pass.
     PASS_MODES = 1 << 30;
 

@@ -35,6 +35,7 @@ pub fn glsl() -> String {
     constant("int", "TEXTURE_COUNT", TEXTURE_COUNT.to_string());
     constant("int", "MAX_LIGHTS", MAX_LIGHTS.to_string());
     constant("int", "MAX_LIGHT_VIEWS", MAX_LIGHT_VIEWS.to_string());
+    constant("int", "COLORMAP_STEPS", COLORMAP_STEPS.to_string());
     out.push('\n');
     for s in SPECIALIZATION {
         let _ = writeln!(out, "layout(constant_id = {}) const uint {} = 0u; // {}", s.id, s.name, s.doc);

@@ -21,5 +21,5 @@ pub use environment::maps::{BakeReport, GpuEnvironment};
 pub use paths::{TraceError, TraceKey, TraceRequest, Traced};
 pub use resources::{Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};
-pub use view::{Capture, Output, PixelAt, PixelModes, Readback, Redraw, Thumbnails, View};
+pub use view::{Capture, Output, PixelAt, PixelModes, Readback, Redraw, Survey, Thumbnails, View};
 pub(crate) use view::{SharedImages, Sources, Uniforms};

@@ -166,6 +166,8 @@ fn takes(path: &str, text: &str, old: Option<&toml::Value>, cause: &str) -> Stri
             format!("it takes {} numbers, as 0.9{}", list.len(), ",0.1".repeat(list.len().saturating_sub(1)))
         }
         Some(toml::Value::Array(_)) => format!("it is a list of settings, as {path}.0"),
+        // The setting itself says what it takes.
+        Some(toml::Value::String(_)) => cause.to_owned(),
         Some(group) => format!("it is a group of settings: {}", keys(group)),
         None => cause.to_owned(),
     }

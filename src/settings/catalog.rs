@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use clap::ValueEnum;
 
-use super::{LightSource, Settings, Tonemap};
+use super::{Channels, Colormap, LightSource, Settings, Tonemap};
 use crate::message;
 
 /// One setting, ready to be printed.
@@ -25,7 +25,7 @@ pub struct Setting {
 }
 
 /// Path, unit and meaning of every setting. A `*` in a path stands for the number of an orbiting light.
-const DESCRIBED: [(&str, &str, &str); 45] = [
+const DESCRIBED: &[(&str, &str, &str)] = &[
     ("mode", "", "Debug mode; `specula modes` lists them"),
     ("variant", "", "Variant of the model; without one its own materials"),
     ("measured", "", "File of a measured BRDF, for the modes `measured...`"),
@@ -71,10 +71,14 @@ const DESCRIBED: [(&str, &str, &str); 45] = [
     ("environment.blur", "", "Blur behind the model, as a roughness"),
     ("view.tonemap", "", "Tone map"),
     ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100)"),
+    ("view.channels", "", "Channels that the picture shows; a is coverage"),
+    ("view.colormap", "", "Colors that stand for a number, in modes with one component and for a single channel"),
+    ("view.dither", "", "Noise of half a step of 8 bits, which hides bands in light; the window has it, `render` does not"),
+    ("view.wireframe", "", "Edges of the triangles over the picture"),
 ];
 
 /// The rest of [`DESCRIBED`]: what each can be is no range of floats.
-const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 6] = [
+const DESCRIBED_WITH_RANGE: &[(&str, &str, &str, &str)] = &[
     (
         "expression.evaluation",
         "",
@@ -82,6 +86,12 @@ const DESCRIBED_WITH_RANGE: [(&str, &str, &str, &str); 6] = [
         "Which evaluation of the expression in a pixel counts, from 1; 0: the last",
     ),
     ("view.background", "", "", "none (transparent), env, or #rrggbb"),
+    (
+        "view.range",
+        "",
+        "mode, auto, fit or LOW..HIGH",
+        "Values that are black and white: as the mode stores them, those of the picture where that helps (auto) or always (fit)",
+    ),
     ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
     ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),
     (
@@ -98,7 +108,7 @@ pub fn catalog() -> Vec<Setting> {
     let defaults = toml::Value::try_from(Settings::default()).ok();
     let known = Settings::default().known().ok();
     let described = DESCRIBED.iter().map(|(path, unit, doc)| (*path, *unit, "", *doc));
-    let all = described.chain(DESCRIBED_WITH_RANGE);
+    let all = described.chain(DESCRIBED_WITH_RANGE.iter().copied());
     let rows = all.flat_map(|(path, unit, range, doc)| {
         let lights = if path.contains('*') { 3 } else { 1 };
         (0..lights).map(move |light| (path.replace('*', &light.to_string()), unit, range, doc))
@@ -132,6 +142,8 @@ pub(super) fn names(path: &str) -> Vec<String> {
     match path {
         "view.tonemap" => of::<Tonemap>(),
         "lights.source" => of::<LightSource>(),
+        "view.channels" => of::<Channels>(),
+        "view.colormap" => of::<Colormap>(),
         _ => Vec::new(),
     }
 }

@@ -43,6 +43,9 @@ impl PixelValue {
     /// The value as text: one number per component of the mode, the unit, and whether the value is before exposure; or
     /// `no data`; or `NaN`, which also stands for infinity. The width depends only on the mode.
     pub fn text(&self, mode: &Mode) -> String {
+        if let Some(text) = self.words(mode) {
+            return text;
+        }
         let count = usize::from(mode.components).clamp(1, 3);
         let width = count * (NUMBER_WIDTH + 1) - 1;
         let mut unit = String::new();
@@ -67,6 +70,37 @@ impl PixelValue {
         };
         format!("{text:<total$}")
     }
+
+    /// The value in words, for units that people read so: `-2.1 EV`, `level 0`, `1,024 texels/m`. Always of the same width.
+    fn words(&self, mode: &Mode) -> Option<String> {
+        let number = self.value[0];
+        let (text, width) = match &*mode.unit {
+            "EV" => (format!("{number:+.1} EV"), 8),
+            "level" if (number - number.round()).abs() < 0.05 => (format!("level {:.0}", number.abs()), 10),
+            "level" => (format!("level {number:.1}"), 10),
+            "log2 texels/m" => (format!("{} texels/m", grouped(number.exp2())), 22),
+            _ => return None,
+        };
+        let text = match self {
+            Self { not_finite: true, .. } => "NaN".to_owned(),
+            Self { no_data: true, .. } => "no data".to_owned(),
+            _ => text,
+        };
+        Some(format!("{text:>width$}"))
+    }
+}
+
+/// A number of texels per meter, with commas between thousands.
+fn grouped(number: f32) -> String {
+    let digits = format!("{:.0}", number.min(1e9));
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 /// A number in [`NUMBER_WIDTH`] characters, with six significant digits. Uses powers of ten if fewer than three would be left.
@@ -141,6 +175,18 @@ mod tests {
         assert_eq!(absent.text(&mode(1, "m", false)), "   no data  ");
         let broken = PixelValue { not_finite: true, ..value };
         assert_eq!(broken.text(&mode(1, "", false)), "       NaN");
+    }
+
+    #[test]
+    fn some_units_are_read_as_words() {
+        let of = |unit: &str, number: f32| PixelValue { value: [number; 4], ..PixelValue::default() }.text(&mode(1, unit, false));
+        assert_eq!(of("EV", -2.12).trim(), "-2.1 EV");
+        assert_eq!(of("level", 0.01).trim(), "level 0");
+        assert_eq!(of("level", 1.34).trim(), "level 1.3");
+        assert_eq!(of("log2 texels/m", 10.0).trim(), "1,024 texels/m");
+        assert_eq!(of("log2 texels/m", 4.0).trim(), "16 texels/m");
+        let absent = PixelValue { no_data: true, ..PixelValue::default() };
+        assert_eq!(absent.text(&mode(1, "EV", false)).trim(), "no data");
     }
 
     #[test]

@@ -67,6 +67,13 @@ impl Behavior<Panel> for Dock<'_> {
         if *panel == Panel::Viewport {
             return tab;
         }
+        let is_front = tiles.parent_of(id).and_then(|parent| tiles.get_container(parent)).is_some_and(
+            |container| matches!(container, egui_tiles::Container::Tabs(tabs) if tabs.active == Some(id)),
+        );
+        if is_front {
+            let line = tab.rect.with_min_y(tab.rect.max.y - 2.0);
+            tab.ctx.layer_painter(tab.layer_id).rect_filled(line, 0.0, ACCENT);
+        }
         let mut closes = tab.middle_clicked();
         tab.context_menu(|ui| {
             if ui.button("Close").clicked() {
@@ -89,11 +96,11 @@ impl Behavior<Panel> for Dock<'_> {
     }
 
     fn tab_bar_color(&self, _: &Visuals) -> Color32 {
-        EDGE
+        EDGE.color()
     }
 
     fn tab_bg_color(&self, _: &Visuals, _: &Tiles<Panel>, _: TileId, state: &TabState) -> Color32 {
-        if state.active { PANEL } else { Color32::TRANSPARENT }
+        if state.active { PANEL.color() } else { Color32::TRANSPARENT }
     }
 
     fn tab_outline_stroke(&self, _: &Visuals, _: &Tiles<Panel>, _: TileId, _: &TabState) -> Stroke {
@@ -105,7 +112,7 @@ impl Behavior<Panel> for Dock<'_> {
     }
 
     fn tab_text_color(&self, visuals: &Visuals, _: &Tiles<Panel>, _: TileId, state: &TabState) -> Color32 {
-        if state.active { visuals.strong_text_color() } else { QUIET }
+        if state.active { visuals.strong_text_color() } else { QUIET.color() }
     }
 
     fn resize_stroke(&self, _: &egui::Style, state: ResizeState) -> Stroke {

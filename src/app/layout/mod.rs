@@ -95,6 +95,8 @@ pub(super) struct Layout {
     is_settled: bool,
     /// The part of the picture that no handle covers, in points.
     free: Rect,
+    /// Whether the light theme is shown.
+    is_light: bool,
 }
 
 impl Default for Layout {
@@ -107,16 +109,16 @@ impl Default for Layout {
 impl Layout {
     /// The arrangement of the last run, or the first preset.
     pub(super) fn restored() -> Self {
-        let Some(store::Stored { mut tree, is_own, own }) = store::load() else {
+        let Some(store::Stored { mut tree, is_own, own, is_light }) = store::load() else {
             return Self { is_changed: true, ..Self::of_tree(Preset::Debug.tree()) };
         };
         repair(&mut tree);
-        Self { is_own, own, ..Self::of_tree(tree) }
+        Self { is_own, own, is_light, ..Self::of_tree(tree) }
     }
 
     fn of_tree(tree: Tree<Panel>) -> Self {
         let (fit, free) = (Fit::default(), Rect::ZERO);
-        Self { tree, fit, own: None, is_own: false, is_changed: false, is_settled: false, free }
+        Self { tree, fit, own: None, is_own: false, is_changed: false, is_settled: false, free, is_light: false }
     }
 
     /// Shows a preset. The user's own arrangement is kept for [`Self::arrange_own`].
@@ -125,7 +127,7 @@ impl Layout {
             self.own = Some(self.fit.measured(&self.tree));
         }
         let own = self.own.take();
-        *self = Self { own, is_changed: true, ..Self::of_tree(preset.tree()) };
+        *self = Self { own, is_changed: true, is_light: self.is_light, ..Self::of_tree(preset.tree()) };
     }
 
     /// Whether there is an arrangement of the user's to go back to.
@@ -136,8 +138,20 @@ impl Layout {
     /// Shows the user's own arrangement again.
     pub(super) fn arrange_own(&mut self) {
         if let Some(tree) = self.own.take() {
-            *self = Self { is_own: true, is_changed: true, ..Self::of_tree(tree) };
+            let is_light = self.is_light;
+            *self = Self { is_own: true, is_changed: true, is_light, ..Self::of_tree(tree) };
         }
+    }
+
+    /// Whether the light theme is shown.
+    pub(super) fn is_light(&self) -> bool {
+        self.is_light
+    }
+
+    /// Shows the light or the dark theme.
+    pub(super) fn set_light(&mut self, is_light: bool) {
+        self.is_changed |= self.is_light != is_light;
+        self.is_light = is_light;
     }
 
     /// Notes a change by the user, who then has an arrangement of her own. One that she has already stays as it is while she changes
@@ -253,7 +267,7 @@ impl Layout {
             (self.is_changed, self.is_settled) = (false, false);
             self.fit.remember(&self.tree);
             let (tree, own) = (self.fit.measured(&self.tree), self.own.clone());
-            store::save(&store::Stored { tree, is_own: self.is_own, own });
+            store::save(&store::Stored { tree, is_own: self.is_own, own, is_light: self.is_light });
         } else {
             ui.ctx().request_repaint();
         }

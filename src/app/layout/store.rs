@@ -18,6 +18,9 @@ pub(super) struct Stored {
     pub(super) is_own: bool,
     /// The arrangement that the user made before a preset was chosen.
     pub(super) own: Option<Tree<Panel>>,
+    /// Whether the light theme is shown.
+    #[serde(default)]
+    pub(super) is_light: bool,
 }
 
 /// The stored arrangement.
@@ -59,7 +62,7 @@ mod tests {
     #[test]
     fn an_arrangement_is_read_as_it_was_written() {
         for preset in Preset::ALL {
-            let stored = Stored { tree: preset.tree(), is_own: true, own: Some(Preset::Look.tree()) };
+            let stored = Stored { tree: preset.tree(), is_own: true, own: Some(Preset::Look.tree()), is_light: true };
             let value = serde_json::to_value(&stored).unwrap();
             let read = parse(&value.to_string()).unwrap();
             assert_eq!(serde_json::to_value(read).unwrap(), value);
@@ -68,7 +71,7 @@ mod tests {
 
     #[test]
     fn what_is_no_arrangement_counts_as_absent() {
-        let stored = Stored { tree: Preset::Debug.tree(), is_own: false, own: None };
+        let stored = Stored { tree: Preset::Debug.tree(), is_own: false, own: None, is_light: false };
         let whole = serde_json::to_string(&stored).unwrap();
         let broken = ["", "{}", "[1]", &whole[..whole.len() / 2]];
         assert!(broken.iter().all(|text| parse(text).is_none()));

@@ -41,6 +41,7 @@ pub(in crate::app) static BLUR: Number = Number::new(
     "Blur of the map behind the model, as a roughness: 0 is sharp",
     |settings, _| &mut settings.environment.blur,
 )
+.squared()
 .when(|settings| settings.environment.is_shown(&settings.view));
 
 pub(in crate::app) static SPIN: Number = Number::new(

@@ -25,6 +25,8 @@ pub(super) struct Scale {
     pub(super) decimals: usize,
     /// Whether equal steps of the slider are equal factors.
     pub(super) is_logarithmic: bool,
+    /// Whether the number is the square of the place on the slider.
+    pub(super) is_squared: bool,
     /// Whether a positive number has its sign.
     pub(super) is_signed: bool,
 }
@@ -40,6 +42,7 @@ impl Scale {
             suffix,
             decimals: if is_whole { 0 } else { decimals(range) },
             is_logarithmic: false,
+            is_squared: false,
             is_signed: false,
         }
     }
@@ -99,6 +102,7 @@ pub(super) struct Number {
     slider: (f64, f64),
     decimals: usize,
     is_logarithmic: bool,
+    is_squared: bool,
     /// Whether the row shows the negative of the setting.
     is_negated: bool,
     /// Meaning, for the hover text.
@@ -115,8 +119,9 @@ impl Number {
         doc: &'static str,
         place: fn(&mut Settings, usize) -> &mut f32,
     ) -> Self {
-        let (is_logarithmic, is_negated) = (false, false);
-        Self { path, light: 0, name, unit, slider, decimals, is_logarithmic, is_negated, doc, place, is_used: |_| true }
+        let (is_logarithmic, is_squared, is_negated, is_used) = (false, false, false, (|_| true) as fn(&Settings) -> bool);
+        let light = 0;
+        Self { path, light, name, unit, slider, decimals, is_logarithmic, is_squared, is_negated, doc, place, is_used }
     }
 
     const fn when(mut self, is_used: fn(&Settings) -> bool) -> Self {
@@ -126,6 +131,11 @@ impl Number {
 
     const fn logarithmic(mut self) -> Self {
         self.is_logarithmic = true;
+        self
+    }
+
+    const fn squared(mut self) -> Self {
+        self.is_squared = true;
         self
     }
 
@@ -178,6 +188,7 @@ impl Number {
             suffix: self.unit.to_owned(),
             decimals: self.decimals,
             is_logarithmic: self.is_logarithmic,
+            is_squared: self.is_squared,
             is_signed: self.is_negated,
         }
     }

@@ -116,7 +116,7 @@ fn window(egui: &egui::Context, palette: &mut Palette, entries: &[Entry], area: 
     let at = area.center_top() + vec2(0.0, top);
     let popup = Area::new(Id::new("palette")).order(Order::Foreground).pivot(Align2::CENTER_TOP).fixed_pos(at);
     let shown = popup.fade_in(false).show(egui, |ui| {
-        let frame = egui::Frame::popup(ui.style()).fill(PANEL).inner_margin(8);
+        let frame = egui::Frame::popup(ui.style()).fill(PANEL.color()).inner_margin(8);
         let content = |ui: &mut Ui| {
             ui.set_width(width);
             match &mut palette.asks {
@@ -140,7 +140,7 @@ fn field(ui: &mut Ui, text: &mut String, hint: &str) -> egui::Response {
         ui.memory_mut(|memory| memory.request_focus(id));
     }
     let field = TextEdit::singleline(text).id(id).desired_width(f32::INFINITY);
-    ui.add(field.background_color(EDGE).hint_text(hint))
+    ui.add(field.background_color(EDGE.color()).hint_text(hint))
 }
 
 /// Shows the search and the list. Returns the chosen action.

@@ -6,7 +6,7 @@ use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{Align2, Color32, FontId, TextStyle, Ui, pos2, vec2};
 
 use super::search::Found;
-use crate::app::panels::theme::{ACCENT, EDGE, QUIET};
+use crate::app::panels::theme::{ACCENT, EDGE, QUIET, STRONG, TEXT};
 
 /// Height in points.
 pub(super) const HEIGHT: f32 = 22.0;
@@ -18,11 +18,11 @@ const GAP: f32 = 10.0;
 pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), egui::Sense::click());
     if is_chosen || response.hovered() {
-        let fill = if is_chosen { ui.visuals().selection.bg_fill } else { EDGE };
+        let fill = if is_chosen { ui.visuals().selection.bg_fill } else { EDGE.color() };
         ui.painter().rect_filled(rect, 3.0, fill);
     }
     let text = rect.shrink2(vec2(6.0, 0.0));
-    let quiet = if is_chosen { Color32::WHITE } else { QUIET };
+    let quiet = if is_chosen { STRONG.color() } else { QUIET.color() };
     let small = TextStyle::Small.resolve(ui.style());
     ui.painter().text(text.right_center(), Align2::RIGHT_CENTER, found.entry.group, small.clone(), quiet);
     let at = pos2(text.right() - GROUP - GAP, text.center().y);
@@ -31,8 +31,8 @@ pub(super) fn show(ui: &mut Ui, found: &Found<'_>, note: &str, is_chosen: bool) 
     let room = note.left() - GAP - text.left();
     let font = TextStyle::Body.resolve(ui.style());
     let colors = match is_chosen {
-        true => [Color32::from_gray(205), Color32::WHITE],
-        false => [ui.visuals().text_color(), ACCENT],
+        true => [TEXT.color(), STRONG.color()],
+        false => [ui.visuals().text_color(), ACCENT.color()],
     };
     let galley = ui.painter().layout_job(job(&found.entry.title, &found.marks, room, font, colors));
     let is_elided = galley.elided;

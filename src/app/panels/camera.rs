@@ -1,9 +1,9 @@
 //! The panel Camera: field of view, framing, and the cameras in the model.
 
-use egui::{Label, RichText, Ui};
+use egui::{Button, Label, RichText, Ui};
 
-use super::QUIET;
-use super::rows::{number, option_text};
+use super::{ACCENT, QUIET};
+use super::rows::{heading, number, option_text};
 use crate::app::command::Command;
 use crate::app::numbers::FIELD_OF_VIEW;
 use crate::scene::Model;
@@ -11,13 +11,14 @@ use crate::settings::Settings;
 
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands: &mut Vec<Command>) {
     number(ui, settings, &FIELD_OF_VIEW);
+    bookmarks(ui, settings, commands);
     let settings = &mut settings.camera;
     if ui.button("Frame the model").on_hover_text("Show the whole model (R or Home)").clicked() {
         commands.push(Command::FrameModel);
     }
     for (index, camera) in model.cameras.iter().enumerate() {
         let name = if camera.name.is_empty() { "Camera of the model" } else { &camera.name };
-        if ui.add(egui::Button::new(name).truncate()).on_hover_text("Look through this camera of the model").clicked() {
+        if ui.add(Button::new(name).truncate()).on_hover_text("Look through this camera of the model").clicked() {
             commands.push(Command::LookThrough(index));
         }
     }
@@ -32,4 +33,24 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands
     let help = "Drag to orbit, Shift+drag to pan, wheel to zoom, Alt+drag to turn the environment.\n\
                 Hold the right button and W A S D Q E to fly.";
     ui.label(RichText::new(help).small().color(QUIET));
+}
+
+/// The cameras that the user has kept.
+fn bookmarks(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+    heading(ui, "Kept cameras");
+    ui.horizontal_wrapped(|ui| {
+        for number in 1..=9_u32 {
+            let is_kept = settings.bookmarks.contains_key(&number.to_string());
+            let text = RichText::new(number.to_string()).monospace();
+            let button = ui.add(Button::new(if is_kept { text.color(ACCENT) } else { text.color(QUIET) }));
+            let hint = match is_kept {
+                true => format!("Return to this camera (Ctrl+{number}). Shift+click keeps the present one in its place"),
+                false => format!("Keep this camera as {number} (Ctrl+Shift+{number})"),
+            };
+            if button.on_hover_text(hint).clicked() {
+                let keeps = !is_kept || ui.input(|input| input.modifiers.shift);
+                commands.push(if keeps { Command::KeepCamera(number) } else { Command::RecallCamera(number) });
+            }
+        }
+    });
 }

@@ -5,11 +5,11 @@ use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 24] = [
+const KEYS: [(&str, &str); 27] = [
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
-    ("Esc", "close this list; otherwise the final picture"),
+    ("Esc", "close this list, or show one mode alone; otherwise the final picture"),
     ("drag", "orbit"),
     ("Shift+drag, middle drag", "pan"),
     ("Alt+drag", "turn the environment"),
@@ -20,6 +20,9 @@ const KEYS: [(&str, &str); 24] = [
     ("Ctrl+K", "keep this picture and compare with it; again ends the comparison"),
     ("R, Home", "frame the model"),
     ("Numpad 1, 3, 7", "see it from the front, the right, the top; with Ctrl from the opposite side"),
+    ("Ctrl+Shift+1 … 9", "keep this camera under a number"),
+    ("Ctrl+1 … 9", "return to the camera of this number"),
+    ("Ctrl+click on a mode", "show it beside the others; a click in the picture keeps one of them"),
     ("L", "let the lights orbit"),
     ("H", "hide the panels"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo and redo a change of the settings"),

@@ -62,8 +62,11 @@ fn source(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
 }
 
 fn terms(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
-    let name = |light: u32| if light == 0 { "All lights".to_owned() } else { format!("Light {light}") };
-    let doc = "Light whose BRDF terms the modes show. All lights: the terms of light 1, and the sum of the lobes over all lights";
+    let name = |light: u32| {
+        if light == 0 { "All (D to V·H: light 1)".to_owned() } else { format!("Light {light}") }
+    };
+    let doc = "Light whose BRDF terms the modes show. With all, the lobes are the sum over all lights; D, G, V, F, weights and cosines have \
+        a direction to one light, and are those of light 1";
     let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
     setting(ui, ("Terms of", doc, "lights.chosen"), &mut lights.chosen, 0, |ui, chosen| {
         choose(ui, "terms", name(*chosen), |ui| {

@@ -8,8 +8,10 @@ pub(super) mod defaults;
 mod environment;
 pub(super) mod expression;
 mod gizmo;
+mod grid;
 mod inspector;
 mod keys;
+mod labels;
 mod learn;
 mod lights;
 mod mode_tile;
@@ -30,10 +32,13 @@ pub(super) mod timeline;
 mod timing;
 mod top_bar;
 
+use std::sync::Arc;
+
 use egui::{Ui, Vec2};
 
 use super::command::Command;
 use super::gallery::GalleryState;
+use super::grid::Grid;
 use super::hint::Hint;
 use super::inspector::Inspector;
 use super::last_session::LastSessions;
@@ -41,6 +46,10 @@ use super::layout::{Layout, Panel};
 use super::palette::{self, Palette};
 use super::recent::{Kind, Recent};
 use super::viewer::Viewer;
+use crate::frame::Limits;
+use crate::render::Survey;
+use crate::settings::Colormap;
+use crate::shader::Mode;
 use theme::{ACCENT, EDGE, ERROR, QUIET, WARNING};
 
 /// A window smaller than this, in points, shows only the picture.
@@ -78,6 +87,10 @@ pub(super) struct PanelState {
     capture: capture::CaptureState,
     files: overlay::diagnostics::Files,
     pub(super) hint: Hint,
+    pub(super) legend: overlay::legend::LegendState,
+    labels: labels::Labels,
+    /// The modes that the picture shows side by side.
+    pub(super) grid: Grid,
 }
 
 impl PanelState {
@@ -113,6 +126,9 @@ impl PanelState {
             capture: capture::CaptureState::default(),
             files: overlay::diagnostics::Files::default(),
             hint: Hint::restored(),
+            legend: overlay::legend::LegendState::default(),
+            labels: labels::Labels::default(),
+            grid: Grid::default(),
         }
     }
 }
@@ -123,6 +139,20 @@ pub(super) struct Readings {
     pub(super) value: Option<String>,
     /// Title over the picture.
     pub(super) title: Option<String>,
+    /// What the legend says; `None` before the first picture.
+    pub(super) legend: Option<LegendOf>,
+}
+
+/// The picture of which the legend speaks.
+pub(super) struct LegendOf {
+    pub(super) mode: Mode,
+    /// The values that the display shows as black and white; `None` for those of the mode.
+    pub(super) limits: Option<Limits>,
+    /// Samples of the picture's values.
+    pub(super) survey: Option<Arc<Survey>>,
+    pub(super) colormap: Colormap,
+    /// Factor from luminance to the display's 0..1.
+    pub(super) exposure: f32,
 }
 
 /// Where the picture is, in points.
@@ -136,6 +166,7 @@ pub(super) struct PictureArea {
 /// Shows bars, panels and messages. Returns what is left for the picture.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, commands: &mut Vec<Command>) -> PictureArea {
     let whole = ui.max_rect();
+    theme::choose(ui.ctx(), viewer.panels.layout.is_light());
     let has_room = whole.width() >= SMALLEST_WITH_PANELS.x && whole.height() >= SMALLEST_WITH_PANELS.y;
     viewer.update_stages();
     viewer.panels.timeline.is_visible = false;
@@ -156,6 +187,13 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     compare::show(ui.ctx(), viewer, picture.rect);
     inspector::marker(ui.ctx(), &viewer.panels.inspector, picture.rect);
     gizmo::show(ui.ctx(), viewer, picture.rect);
+    grid::show(ui.ctx(), &viewer.session, &viewer.panels, picture.rect);
+    if viewer.panels.visible && !viewer.panels.grid.is_on()
+        && let Some(model) = viewer.session.model()
+    {
+        let (labels, camera) = (&mut viewer.panels.labels, &viewer.session.settings.camera);
+        labels::show(ui.ctx(), labels, model, camera, picture.rect);
+    }
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
@@ -163,6 +201,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     palette::show(ui.ctx(), viewer, whole, commands);
     defaults::show(ui.ctx(), viewer, commands);
     viewer.panels.gallery.end_frame(ui.ctx());
+    viewer.panels.grid.follow(&viewer.session.settings.mode);
     picture
 }
 
@@ -246,7 +285,12 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     match panel {
         Panel::Viewport | Panel::Timeline | Panel::Learn | Panel::Shaders | Panel::Timing => {}
         Panel::Expression | Panel::Inspector | Panel::Capture | Panel::Scene | Panel::Texture => {}
-        Panel::Modes => modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels),
+        Panel::Modes => {
+            if modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels) {
+                let text = "Nine modes fit side by side, and modes of random paths are shown alone";
+                commands.push(Command::Say(text.into()));
+            }
+        }
         Panel::Model => {
             let recent = viewer.panels.recent.of(Kind::Model);
             model::show(ui, settings, &model, &viewer.model, recent, commands);

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use super::QUIET;
-use super::theme::{ACCENT, EDGE};
+use super::theme::{ACCENT, EDGE, LINE};
 use crate::app::gallery::GalleryState;
 use crate::shader::Mode;
 
@@ -56,20 +56,20 @@ pub(super) fn show(
         }
         None => {
             let font = FontId::proportional(11.0);
-            painter.text(picture.center(), Align2::CENTER_CENTER, without_thumbnail(mode), font, QUIET);
+            painter.text(picture.center(), Align2::CENTER_CENTER, without_thumbnail(mode), font, QUIET.color());
         }
     }
     let stroke = match (is_current, response.hovered()) {
         (true, _) => Stroke::new(2.0, ACCENT),
-        (false, true) => Stroke::new(1.0, Color32::from_gray(170)),
-        (false, false) => Stroke::new(1.0, Color32::from_gray(48)),
+        (false, true) => Stroke::new(1.0, QUIET),
+        (false, false) => Stroke::new(1.0, LINE),
     };
     painter.rect_stroke(picture, ROUND, stroke, StrokeKind::Inside);
     if let Some(key) = key {
         badge(ui, picture, key);
     }
     let visuals = ui.visuals();
-    let color = if is_current { ACCENT } else { visuals.text_color() };
+    let color = if is_current { ACCENT.color() } else { visuals.text_color() };
     let mut job = egui::text::LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(11.5), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(size.x);
     let name = ui.painter().layout_job(job);

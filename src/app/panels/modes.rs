@@ -3,38 +3,50 @@
 
 use egui::{RichText, Ui, vec2};
 
+use super::theme::icon;
 use super::{PanelState, QUIET, mode_tile};
 use crate::shader::ShaderSet;
 use crate::shader::annotation::Mode;
 
 /// Width of the button that switches between gallery and list, points.
-const TOGGLE: f32 = 56.0;
+const TOGGLE: f32 = 34.0;
 
 /// Shows the modes. `current` is the slug of the selected mode. `features` are those of the model; modes for which it has no data are
-/// folded away.
+/// folded away. Returns whether a mode that the user adds has no place beside the others.
 pub(super) fn show(
     ui: &mut Ui,
     shaders: Option<&ShaderSet>,
     features: Option<u32>,
     current: &mut String,
     state: &mut PanelState,
-) {
+) -> bool {
     let Some(shaders) = shaders else {
         ui.label(RichText::new("Compiling shaders…").color(QUIET));
-        return;
+        return false;
     };
-    let PanelState { search, scrolled_to, gallery, .. } = state;
+    let PanelState { search, scrolled_to, gallery, grid, .. } = state;
     ui.horizontal(|ui| {
         let width = ui.available_width() - TOGGLE - if search.is_empty() { 0.0 } else { 24.0 };
-        ui.add(egui::TextEdit::singleline(search).hint_text("Search modes").desired_width(width));
-        if !search.is_empty() && ui.small_button("x").on_hover_text("Show all modes").clicked() {
+        ui.add(egui::TextEdit::singleline(search).hint_text(format!("{}  Search {} modes", icon::MAGNIFYING_GLASS, shaders.modes.len())).desired_width(width));
+        if !search.is_empty() && ui.small_button(icon::X).on_hover_text("Show all modes").clicked() {
             search.clear();
         }
-        let (name, hint) = if gallery.is_on { ("List", "Show names only") } else { ("Gallery", "Show thumbnails") };
-        if ui.add_sized([TOGGLE - 6.0, 18.0], egui::Button::new(name).small()).on_hover_text(hint).clicked() {
+        let (name, hint) =
+            if gallery.is_on { (icon::LIST, "Show names only") } else { (icon::GRID_FOUR, "Show thumbnails") };
+        if ui.add_sized([TOGGLE - 6.0, 18.0], egui::Button::new(name)).on_hover_text(hint).clicked() {
             gallery.is_on = !gallery.is_on;
         }
     });
+    if grid.is_on() {
+        let text = format!("{}  {} modes side by side", icon::SQUARES_FOUR, grid.modes().len());
+        let close = egui::Button::new(RichText::new(text).small()).right_text(icon::X);
+        let hint = "Click to show the selected mode alone (Esc). Ctrl+click adds a mode or takes it away";
+        if ui.add(close.min_size(vec2(ui.available_width(), 18.0))).on_hover_text(hint).clicked() {
+            grid.end();
+        }
+    }
+    let adds = ui.input(|input| input.modifiers.command);
+    let mut added = None;
     let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let is_found = |mode: &Mode| words.iter().all(|word| text_of(mode).contains(word));
     let found: Vec<(usize, &Mode)> = shaders.modes.iter().enumerate().filter(|(_, mode)| is_found(mode)).collect();
@@ -63,7 +75,8 @@ pub(super) fn show(
                         true => mode_tile::show(ui, mode, keys(*index, mode).first().copied(), is_current, gallery),
                         false => row(ui, *index, mode, is_current),
                     };
-                    let response = response.on_hover_text(format!("{}\n\n--mode {}", mode.doc, mode.slug));
+                    let hint = "Ctrl+click shows it beside the others";
+                    let response = response.on_hover_text(format!("{}\n\n--mode {}\n{hint}", mode.doc, mode.slug));
                     if is_current && *scrolled_to != mode.slug {
                         scrolled_to.clone_from(&mode.slug);
                         response.scroll_to_me(None);
@@ -73,7 +86,7 @@ pub(super) fn show(
                         gallery.hover(&mode.slug);
                     }
                     if response.clicked() {
-                        chosen = Some(mode.slug.clone());
+                        *(if adds { &mut added } else { &mut chosen }) = Some(mode.slug.clone());
                     }
                 };
                 match is_gallery {
@@ -93,6 +106,8 @@ pub(super) fn show(
     if let Some(slug) = chosen {
         *current = slug;
     }
+    let added = added.and_then(|slug| shaders.modes.iter().find(|mode| mode.slug == slug));
+    added.is_some_and(|mode| mode.traces || mode.accumulate || !grid.toggle(&mode.slug, current))
 }
 
 /// Shows a mode with its keys at the right.

@@ -2,6 +2,8 @@
 //! column. The name of a changed setting has another color. A double click on it resets the setting; its menu copies the option of
 //! the command line.
 
+use std::cell::RefCell;
+
 use egui::{
     Button, Checkbox, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui, vec2,
 };
@@ -20,6 +22,8 @@ const INDENT: f32 = 10.0;
 const CONTROL: f32 = 150.0;
 /// Width of the number at the right of a slider, with its unit.
 const VALUE: f32 = 72.0;
+/// Seconds for which a row says why a text was refused.
+const REFUSAL_S: f64 = 4.0;
 /// A slider shorter than this is left out: the number is dragged instead.
 const SHORTEST: f32 = 36.0;
 
@@ -226,9 +230,18 @@ pub(super) fn edit_number(ui: &mut Ui, number: &mut f64, scale: &Scale) -> Respo
         return drag(ui, number, scale, width);
     };
     ui.spacing_mut().slider_width = rail;
-    let slider = Slider::new(number, low..=high).show_value(false).clamping(SliderClamping::Edits);
-    let slider = slider.logarithmic(scale.is_logarithmic).fixed_decimals(scale.decimals);
+    let (mut place, ends) = match scale.is_squared {
+        true => (number.max(0.0).sqrt(), low.max(0.0).sqrt()..=high.max(0.0).sqrt()),
+        false => (*number, low..=high),
+    };
+    let slider = Slider::new(&mut place, ends).show_value(false).clamping(SliderClamping::Edits);
+    let slider = slider.logarithmic(scale.is_logarithmic);
+    let slider = if scale.is_squared { slider } else { slider.fixed_decimals(scale.decimals) };
     let response = ui.add(slider);
+    if response.changed() {
+        let digits = 10_f64.powi(scale.decimals as i32);
+        *number = if scale.is_squared { (place * place * digits).round() / digits } else { place };
+    }
     response.union(drag(ui, number, scale, VALUE))
 }
 
@@ -239,8 +252,28 @@ pub(super) fn drag(ui: &mut Ui, number: &mut f64, scale: &Scale, width: f32) -> 
     let speed = scale.slider.map_or(0.01, |(low, high)| (high - low) / 200.0);
     let value = DragValue::new(number).range(low..=high).clamp_existing_to_range(false).speed(speed);
     let value = value.fixed_decimals(scale.decimals);
-    let value = value.custom_formatter(|number, _| scale.text(number)).custom_parser(|text| scale.parse(text).ok());
-    ui.add_sized(vec2(width, HEIGHT), value)
+    let refused = RefCell::new(None);
+    let parse = |text: &str| scale.parse(text).map_err(|message| refused.replace(Some(message))).ok();
+    let value = value.custom_formatter(|number, _| scale.text(number)).custom_parser(parse);
+    let response = ui.add_sized(vec2(width, HEIGHT), value);
+    refusal(&response, refused.take());
+    response
+}
+
+/// Says for a while, beside the number, why a text was refused.
+fn refusal(response: &Response, refused: Option<String>) {
+    let (egui, id) = (&response.ctx, response.id.with("refused"));
+    let now = egui.input(|input| input.time);
+    if let Some(message) = refused {
+        egui.data_mut(|data| data.insert_temp(id, (message, now + REFUSAL_S)));
+    }
+    let Some((message, end)) = egui.data(|data| data.get_temp::<(String, f64)>(id)) else { return };
+    if now < end {
+        response.show_tooltip_text(message);
+        egui.request_repaint_after(std::time::Duration::from_secs_f64(end - now));
+    } else {
+        egui.data_mut(|data| data.remove::<(String, f64)>(id));
+    }
 }
 
 /// A list of choices as wide as the rest of the row.

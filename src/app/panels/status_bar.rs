@@ -1,8 +1,8 @@
 //! The bar below the picture: the state of the shaders, the last reload, and the time of a frame.
 
-use egui::{Align, Color32, Label, Layout, RichText, Ui};
+use egui::{Align, Label, Layout, RichText, Ui};
 
-use super::theme::{EDGE, ERROR, GOOD, QUIET, WARNING};
+use super::theme::{EDGE, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
 use super::{plural, shaders};
 use crate::app::stages::StageRow;
 use crate::app::status::ShaderStatus;
@@ -28,7 +28,7 @@ pub(super) struct Status<'a> {
 }
 
 pub(super) fn show(ui: &mut Ui, status: &Status<'_>) {
-    let frame = egui::Frame::new().fill(EDGE).inner_margin(egui::Margin::symmetric(8, 2));
+    let frame = egui::Frame::new().fill(EDGE.color()).inner_margin(egui::Margin::symmetric(8, 2));
     let bar = egui::Panel::bottom("status").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -56,7 +56,7 @@ fn state(ui: &mut Ui, status: &Status<'_>) {
         (_, errors, _) => (ERROR, plural(errors, "error")),
     };
     dot(ui, color);
-    let color = if errors > 0 { ERROR } else { Color32::from_gray(210) };
+    let color = if errors > 0 { ERROR } else { TEXT };
     ui.label(RichText::new(text).small().color(color)).on_hover_text(&status.shader.tree);
     if let Some(row) = status.stage.filter(|_| ui.available_width() > ROOM_FOR_STAGE) {
         ui.scope(|ui| stage(ui, row));
@@ -77,7 +77,7 @@ fn stage(ui: &mut Ui, row: &StageRow) {
 }
 
 /// A round mark.
-fn dot(ui: &mut Ui, color: Color32) {
+fn dot(ui: &mut Ui, color: Tone) {
     let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
     ui.painter().circle_filled(rect.center(), 4.0, color);
 }

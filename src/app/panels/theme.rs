@@ -1,35 +1,96 @@
-//! Colors, fonts and spacing of the window.
+//! Colors, fonts and spacing of the window, dark and light: one accent, three grays of text, two sizes of type.
 
-use egui::{Color32, FontId, TextStyle};
+use std::cell::Cell;
+
+use egui::style::WidgetVisuals;
+use egui::{Color32, CornerRadius, FontDefinitions, FontId, Stroke, TextStyle, Theme};
+
+/// A color of the window, which depends on the theme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) struct Tone {
+    dark: Color32,
+    light: Color32,
+}
+
+impl Tone {
+    const fn new(dark: u32, light: u32) -> Self {
+        Self { dark: opaque(dark), light: opaque(light) }
+    }
+
+    /// The color in the present theme.
+    pub(in crate::app) fn color(self) -> Color32 {
+        self.of(if IS_LIGHT.get() { Theme::Light } else { Theme::Dark })
+    }
+
+    fn of(self, theme: Theme) -> Color32 {
+        if theme == Theme::Light { self.light } else { self.dark }
+    }
+}
+
+impl From<Tone> for Color32 {
+    fn from(tone: Tone) -> Self {
+        tone.color()
+    }
+}
+
+thread_local! {
+    /// The theme of the window that this thread draws, so that a color needs no context to be resolved.
+    static IS_LIGHT: Cell<bool> = const { Cell::new(false) };
+}
+
+const fn opaque(hex: u32) -> Color32 {
+    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
 
 /// Background of the panels.
-pub(in crate::app) const PANEL: Color32 = Color32::from_rgb(24, 25, 28);
+pub(in crate::app) const PANEL: Tone = Tone::new(0x18_1b_1f, 0xf5_f6_f8);
 /// Between the panels, and behind their tabs.
-pub(in crate::app) const EDGE: Color32 = Color32::from_rgb(15, 16, 18);
-/// Links, and what the user has set.
-pub(in crate::app) const ACCENT: Color32 = Color32::from_rgb(94, 182, 255);
+pub(in crate::app) const EDGE: Tone = Tone::new(0x12_14_17, 0xdf_e3_e8);
+/// Buttons, fields and what lies above a panel.
+pub(in crate::app) const RAISED: Tone = Tone::new(0x28_2d_33, 0xe3_e7_ec);
+/// The same under the mouse.
+const HOVERED: Tone = Tone::new(0x36_3d_45, 0xd3_d9_e0);
+/// Lines around fields and cards.
+pub(in crate::app) const LINE: Tone = Tone::new(0x36_3c_43, 0xc3_ca_d2);
+/// Behind text in cards over the picture.
+pub(in crate::app) const CARD: Tone = Tone::new(0x15_17_1a, 0xfb_fc_fd);
+/// Titles and what is chosen.
+pub(in crate::app) const STRONG: Tone = Tone::new(0xf4_f5_f7, 0x0e_10_12);
+/// Text.
+pub(in crate::app) const TEXT: Tone = Tone::new(0xd6_da_df, 0x24_28_2d);
+/// Explanations.
+pub(in crate::app) const QUIET: Tone = Tone::new(0x98_a0_aa, 0x56_5e_68);
+/// Links, what is chosen, and what the user has set.
+pub(in crate::app) const ACCENT: Tone = Tone::new(0xf0_a6_3c, 0x91_54_00);
 /// Behind what is chosen.
-const SELECTED: Color32 = Color32::from_rgb(35, 86, 134);
-/// Around what is selected in the picture. Orange stands out from skies, metals and the accent.
+const SELECTED: Tone = Tone::new(0x5a_41_1a, 0xf5_d9_ab);
+/// Around what is selected in the picture, in both themes.
 pub(in crate::app) const SELECTION: Color32 = Color32::from_rgb(255, 160, 48);
 /// Errors.
-pub(in crate::app) const ERROR: Color32 = Color32::from_rgb(255, 110, 100);
+pub(in crate::app) const ERROR: Tone = Tone::new(0xff_6e_62, 0xb0_22_1a);
 /// Warnings.
-pub(in crate::app) const WARNING: Color32 = Color32::from_rgb(255, 196, 92);
+pub(in crate::app) const WARNING: Tone = Tone::new(0xf5_cf_5a, 0x7a_5a_00);
 /// All is well.
-pub(in crate::app) const GOOD: Color32 = Color32::from_rgb(112, 201, 130);
-/// Explanations. 6.5:1 on a panel.
-pub(in crate::app) const QUIET: Color32 = Color32::from_rgb(150, 154, 162);
+pub(in crate::app) const GOOD: Tone = Tone::new(0x7e_cb_6f, 0x2a_73_2c);
 
-/// Sets colors, fonts and spacing.
+/// Icons of the Phosphor font.
+pub(in crate::app) mod icon {
+    pub(in crate::app) use egui_phosphor::regular::{
+        CHART_BAR, FOLDER_OPEN, GRID_FOUR, LAYOUT, LIST, MAGNIFYING_GLASS, MOON,
+        QUESTION, SQUARES_FOUR, SUN, X,
+    };
+}
+
+/// Sets fonts and spacing, and the colors of both themes. The dark one is shown.
 pub(in crate::app) fn apply(egui: &egui::Context) {
-    egui.set_theme(egui::Theme::Dark);
+    let mut fonts = FontDefinitions::default();
+    egui_phosphor::add_to_fonts(&mut fonts, egui_phosphor::Variant::Regular);
+    egui.set_fonts(fonts);
+    for theme in [Theme::Dark, Theme::Light] {
+        egui.style_mut_of(theme, |style| colors(style, theme));
+    }
     egui.all_styles_mut(|style| {
-        style.visuals.panel_fill = PANEL;
-        style.visuals.window_fill = PANEL;
-        style.visuals.extreme_bg_color = EDGE;
-        style.visuals.selection.bg_fill = SELECTED;
-        style.visuals.hyperlink_color = ACCENT;
+        style.text_styles.insert(TextStyle::Heading, FontId::proportional(13.0));
         style.text_styles.insert(TextStyle::Body, FontId::proportional(13.0));
         style.text_styles.insert(TextStyle::Button, FontId::proportional(13.0));
         style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.5));
@@ -39,4 +100,81 @@ pub(in crate::app) fn apply(egui: &egui::Context) {
         let scroll = &mut style.spacing.scroll;
         scroll.floating_allocated_width = scroll.bar_width + scroll.bar_inner_margin;
     });
+    choose(egui, false);
+}
+
+/// Shows the dark or the light theme.
+pub(in crate::app) fn choose(egui: &egui::Context, is_light: bool) {
+    IS_LIGHT.set(is_light);
+    egui.set_theme(if is_light { Theme::Light } else { Theme::Dark });
+}
+
+fn colors(style: &mut egui::Style, theme: Theme) {
+    let visuals = &mut style.visuals;
+    let of = |tone: Tone| tone.of(theme);
+    visuals.panel_fill = of(PANEL);
+    visuals.window_fill = of(PANEL);
+    visuals.window_stroke = Stroke::new(1.0, of(LINE));
+    visuals.extreme_bg_color = of(EDGE);
+    visuals.faint_bg_color = of(RAISED);
+    visuals.code_bg_color = of(RAISED);
+    visuals.selection.bg_fill = of(SELECTED);
+    visuals.selection.stroke = Stroke::new(1.0, of(STRONG));
+    visuals.hyperlink_color = of(ACCENT);
+    visuals.error_fg_color = of(ERROR);
+    visuals.warn_fg_color = of(WARNING);
+    visuals.weak_text_color = Some(of(QUIET));
+    let widget = |fill: Tone, line: Option<Tone>, text: Tone| WidgetVisuals {
+        bg_fill: of(fill),
+        weak_bg_fill: of(fill),
+        bg_stroke: line.map_or(Stroke::NONE, |line| Stroke::new(1.0, of(line))),
+        corner_radius: CornerRadius::same(4),
+        fg_stroke: Stroke::new(1.0, of(text)),
+        expansion: 0.0,
+    };
+    visuals.widgets.noninteractive = widget(PANEL, Some(LINE), TEXT);
+    visuals.widgets.inactive = widget(RAISED, None, TEXT);
+    visuals.widgets.hovered = widget(HOVERED, Some(LINE), STRONG);
+    visuals.widgets.active = widget(HOVERED, Some(ACCENT), STRONG);
+    visuals.widgets.open = widget(HOVERED, Some(LINE), STRONG);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The contrast of two colors (WCAG 2.1).
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let luminance = |color: Color32| {
+            let [r, g, b, _] = egui::Rgba::from(color).to_array();
+            0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        a.max(b) / a.min(b)
+    }
+
+    #[test]
+    fn text_has_contrast_in_both_themes() {
+        for theme in [Theme::Dark, Theme::Light] {
+            for text in [STRONG, TEXT, QUIET, ACCENT, ERROR, WARNING, GOOD] {
+                for back in [PANEL, EDGE, CARD] {
+                    let ratio = contrast(text.of(theme), back.of(theme));
+                    assert!(ratio >= 4.5, "{theme:?}: {text:?} on {back:?} {ratio}");
+                }
+            }
+            for back in [RAISED, HOVERED, SELECTED] {
+                assert!(contrast(STRONG.of(theme), back.of(theme)) >= 4.5, "{theme:?} {back:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_color_follows_the_theme() {
+        let egui = egui::Context::default();
+        apply(&egui);
+        assert_eq!(Color32::from(PANEL), PANEL.dark);
+        choose(&egui, true);
+        assert_eq!(Color32::from(PANEL), PANEL.light);
+        assert_eq!(egui.style_of(Theme::Light).visuals.panel_fill, PANEL.light);
+    }
 }

@@ -1,8 +1,8 @@
 //! The panel Timeline: the versions of the shaders, each with its picture, its times and what it changed.
 
-use egui::{Color32, Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
+use egui::{Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
-use super::theme::{ACCENT, GOOD, QUIET};
+use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT};
 use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
 use crate::app::difference::{Kind, Line};
@@ -151,7 +151,7 @@ impl Entry<'_> {
             egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::top_down(egui::Align::Min)),
             |ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
-                let quiet = if self.is_chosen() { Color32::WHITE } else { QUIET };
+                let quiet = if self.is_chosen() { STRONG } else { QUIET };
                 let now = if *number == self.newest { "  (now)" } else { "" };
                 let title = format!("{number}  {}{now}", self.version.title());
                 ui.add(Label::new(RichText::new(title).strong()).truncate().selectable(false));
@@ -207,7 +207,7 @@ fn hover(ui: &mut Ui, hint: &str, lines: &[Line]) {
             Kind::Place => ACCENT,
             Kind::Removed => ERROR,
             Kind::Added => GOOD,
-            Kind::Same => Color32::from_gray(200),
+            Kind::Same => TEXT,
         };
         ui.add(Label::new(monospace(text).color(color)).truncate());
     }

@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, Ui, vec2};
 
-use super::theme::{EDGE, QUIET};
+use super::theme::{EDGE, QUIET, icon};
 use super::{PanelState, theme};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
@@ -13,7 +13,7 @@ use crate::app::recent::Kind;
 pub(super) const HEIGHT: f32 = 30.0;
 
 pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
-    let frame = egui::Frame::new().fill(EDGE).inner_margin(egui::Margin::symmetric(8, 3));
+    let frame = egui::Frame::new().fill(EDGE.color()).inner_margin(egui::Margin::symmetric(8, 3));
     let bar = egui::Panel::top("bar").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
         ui.horizontal_centered(|ui| {
@@ -32,13 +32,19 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
                 state.layout.arrange_own();
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.button("?").on_hover_text("Keys (F1)").clicked() {
+                if ui.button(icon::QUESTION).on_hover_text("Keys (F1, ?)").clicked() {
                     state.show_keys ^= true;
+                }
+                let is_light = state.layout.is_light();
+                let (symbol, hint) = if is_light { (icon::MOON, "Dark theme") } else { (icon::SUN, "Light theme") };
+                if ui.button(symbol).on_hover_text(hint).clicked() {
+                    state.layout.set_light(!is_light);
                 }
                 let width = (ui.available_width() - 8.0).min(300.0);
                 if width > 120.0 {
-                    let text = RichText::new("Find a mode, setting or command   Ctrl+P").color(QUIET);
-                    let button = Button::new(text).min_size(vec2(width, 20.0)).truncate();
+                    let text = RichText::new(format!("{}  Find a mode, setting or command", icon::MAGNIFYING_GLASS)).color(QUIET);
+                    let keys = RichText::new("Ctrl+P").small().monospace().color(QUIET);
+                    let button = Button::new(text).right_text(keys).min_size(vec2(width, 20.0)).truncate();
                     if ui.add(button).on_hover_text("Command palette").clicked() {
                         state.palette.open();
                     }
@@ -51,7 +57,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
 /// The menu that opens files: by a dialog, or those that were open.
 fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
     let PanelState { recent, last_sessions, .. } = state;
-    let menu = ui.menu_button("Open", |ui| {
+    let menu = ui.menu_button(format!("{}  Open", icon::FOLDER_OPEN), |ui| {
         ui.set_min_width(180.0);
         let hint = "Built-in models and environments, with pictures";
         if ui.button("Gallery…").on_hover_text(hint).clicked() {
@@ -100,7 +106,7 @@ fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
 
 /// The menu that opens and closes panels.
 fn panels(ui: &mut Ui, layout: &mut Layout) {
-    ui.menu_button("Panels", |ui| {
+    ui.menu_button(format!("{}  Panels", icon::LAYOUT), |ui| {
         for (index, group) in Panel::GROUPS.into_iter().enumerate() {
             if index > 0 {
                 ui.separator();

@@ -103,6 +103,7 @@ impl Gallery {
         ui: &mut UiRenderer,
         (layouts, pixels_per_point): (&Arc<SetLayouts>, f32),
     ) -> Result<Option<Duration>, GpuError> {
+        self.collect(slot, viewer);
         if viewer.panels.gallery.visible.is_empty() || viewer.recorder.is_careful() {
             return Ok(None);
         }
@@ -127,6 +128,9 @@ impl Gallery {
         let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&viewer.gpu));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
         if stale.is_empty() {
+            if self.renderer.as_ref().is_some_and(Thumbnails::awaits) {
+                return Ok(Some(Duration::ZERO));
+            }
             if self.drawn > 0 {
                 emit(&viewer.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
             }
@@ -144,6 +148,16 @@ impl Gallery {
                 Ok(Some(Duration::ZERO))
             }
             drawn => drawn,
+        }
+    }
+
+    /// Reads the samples of thumbnails that this slot has drawn. Those whose range they change are drawn again.
+    fn collect(&mut self, slot: usize, viewer: &Viewer) {
+        let (Some(renderer), Some(shaders)) = (&mut self.renderer, &viewer.session.shaders) else { return };
+        let changed: Vec<u32> =
+            (0..DRAWS_PER_FRAME).flat_map(|index| renderer.collect(slot * DRAWS_PER_FRAME + index)).collect();
+        for mode in shaders.modes.iter().filter(|mode| changed.contains(&mode.id)) {
+            self.fresh.remove(&mode.slug);
         }
     }
 

@@ -37,6 +37,8 @@ impl Screen {
     fn end_others(&mut self, viewer: &mut Viewer) {
         self.gallery.stop();
         self.inspector.stop();
+        self.cells.clear();
+        viewer.panels.grid.end();
         viewer.end_comparison();
         if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
             viewer.versions.cut_short(number);

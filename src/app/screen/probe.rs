@@ -2,6 +2,8 @@
 
 use super::{FRAMES_IN_FLIGHT, Screen};
 use crate::app::viewer::{Viewer, value_text};
+use crate::app::panels::LegendOf;
+use crate::frame::FrameState;
 use crate::render::View;
 
 impl Screen {
@@ -18,7 +20,9 @@ impl Screen {
             (0..FRAMES_IN_FLIGHT).map(|age| (self.frames.current() + FRAMES_IN_FLIGHT - age) % FRAMES_IN_FLIGHT);
         let finished = newest_first.into_iter().find(|slot| self.frames.is_finished(*slot));
         if let Some(slot) = finished {
+            let cell = self.cells.iter().find(|cell| cell.view.probe.is_some());
             self.pixel = match &self.reference {
+                _ if cell.is_some() => cell.and_then(|cell| cell.view.pixel(slot)).map(|pixel| (pixel, false)),
                 Some(reference) if reference.view.probe.is_some() => {
                     reference.view.pixel(slot).map(|pixel| (pixel, true))
                 }
@@ -27,9 +31,24 @@ impl Screen {
         }
     }
 
+    /// Reads the samples of the newest finished frames, which decide automatic ranges and fill the histogram.
+    pub(super) fn read_survey(&mut self) {
+        for slot in (0..FRAMES_IN_FLIGHT).filter(|slot| self.frames.is_finished(*slot)) {
+            self.view.take_survey(slot);
+            self.cells.iter_mut().for_each(|cell| cell.view.take_survey(slot));
+            if let Some(reference) = &mut self.reference {
+                reference.view.take_survey(slot);
+            }
+        }
+    }
+
     /// Asks for the value under the mouse, from the picture or from the reference, whichever is there.
     pub(super) fn place_probe(&mut self) {
         let at = self.mouse.over.then(|| self.mouse_pixel()).flatten();
+        let cell = if self.mouse.over { self.mouse_cell() } else { None };
+        for (index, other) in self.cells.iter_mut().enumerate() {
+            other.view.probe = cell.filter(|(of, _)| *of == index).map(|(_, at)| at);
+        }
         let of_reference = at.is_some_and(|at| self.is_in_reference(at));
         self.view.probe = at.filter(|_| !of_reference);
         if let Some(reference) = &mut self.reference {
@@ -40,16 +59,37 @@ impl Screen {
     /// The text of the value under the mouse.
     pub(super) fn value_text(&self, viewer: &Viewer) -> Option<String> {
         let (pixel, is_of_reference) = self.pixel.filter(|_| self.mouse.over)?;
-        let reference = self.reference.as_ref().filter(|_| is_of_reference);
-        let state = reference.map_or_else(|| viewer.shown(), |reference| Some(&reference.frame.state))?;
+        let reference = self.reference.as_ref().filter(|_| is_of_reference).map(|reference| &*reference.frame.state);
+        let state = reference.or_else(|| self.pointed_at(viewer))?;
         value_text(state, &pixel)
+    }
+
+    /// The state of the picture under the mouse: that of a cell of the grid, or of the selected mode.
+    fn pointed_at<'a>(&'a self, viewer: &'a Viewer) -> Option<&'a FrameState> {
+        let cell = self.cells.iter().find(|cell| cell.view.probe.is_some());
+        let of_cell = cell.and_then(|cell| cell.shown.as_ref()).map(|shown| &*shown.frame().state);
+        of_cell.or_else(|| viewer.shown())
+    }
+
+    /// What the legend says about the picture under the mouse.
+    pub(super) fn legend(&self, viewer: &Viewer) -> Option<LegendOf> {
+        let state = self.pointed_at(viewer)?;
+        let view = self.cells.iter().find(|cell| cell.view.probe.is_some()).map_or(&self.view, |cell| &cell.view);
+        Some(LegendOf {
+            mode: state.mode()?.clone(),
+            limits: view.limits(),
+            survey: view.survey().cloned(),
+            colormap: state.display.colormap(),
+            exposure: state.exposure(),
+        })
     }
 
     /// Whether the value under the mouse does not belong to the current picture yet.
     pub(super) fn awaits_pixel(&self) -> bool {
         let of = |view: &View, is_reference| view.probe.map(|at| (at, view.picture(), is_reference));
         let of_reference = self.reference.as_ref().and_then(|reference| of(&reference.view, true));
-        let current = of_reference.or_else(|| of(&self.view, false));
+        let of_cell = self.cells.iter().find_map(|cell| of(&cell.view, false));
+        let current = of_reference.or(of_cell).or_else(|| of(&self.view, false));
         current.is_some() && self.pixel.map(|(pixel, of)| (pixel.at, pixel.picture, of)) != current
     }
 }

@@ -18,6 +18,7 @@ impl Screen {
         viewer: &mut Viewer,
     ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
         self.read_pixel();
+        self.read_survey();
         self.take_thumbnail(viewer);
         self.inspector.take(&self.frames, None, viewer);
         self.take_copies(viewer);
@@ -27,10 +28,14 @@ impl Screen {
             self.frames.wait_all()?;
             self.gallery.drop_texture(&mut self.ui, &mut viewer.panels.gallery);
         }
-        let readings = Readings { value: self.value_text(viewer), title: viewer.title(self.view.accumulated()) };
         self.take_times(viewer);
         let prepared = self.prepare_texture(viewer);
         self.survive(prepared)?;
+        let readings = Readings {
+            value: self.value_text(viewer),
+            title: viewer.title(self.view.accumulated()),
+            legend: self.legend(viewer),
+        };
         let input = self.input.take_egui_input(window);
         let begin = Instant::now();
         let (mut shown, mut commands) = (None, Vec::new());
@@ -42,9 +47,10 @@ impl Screen {
         viewer.history.record(&viewer.session.settings, is_held);
         self.input.handle_platform_output(window, output.platform_output);
         if let Some((swapchain, area)) = self.swapchain.as_ref().zip(shown) {
-            self.rect = pixels(area.rect, output.pixels_per_point, swapchain.extent());
+            self.whole = pixels(area.rect, output.pixels_per_point, swapchain.extent());
             self.free = area.free;
         }
+        self.arrange_grid(viewer);
         self.take_textures(output.textures_delta)?;
         let begin = Instant::now();
         let primitives = self.egui.tessellate(output.shapes, output.pixels_per_point);

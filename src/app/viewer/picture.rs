@@ -68,6 +68,37 @@ impl Viewer {
         Ok(interim)
     }
 
+    /// The picture of another mode, drawn beside the selected one. Until what it needs is there, it is `last` with the camera of now.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub(in crate::app) fn frame_of_mode(
+        &mut self,
+        mode: &str,
+        size: (u32, u32),
+        last: Option<LastComplete>,
+    ) -> Result<Option<LastComplete>, GpuError> {
+        let selected = std::mem::replace(&mut self.session.settings.mode, mode.to_owned());
+        let state = self.session.frame_state(self.clock, size, target(&self.gpu, &self.session.settings));
+        let settings = self.session.settings.clone();
+        self.session.settings.mode = selected;
+        let Some(state) = state.map(Arc::new) else { return Ok(last) };
+        if let Some(frame) = self.resources.bind(&state, false)? {
+            let (scene, revisions) = (state.scene.clone(), self.session.revisions);
+            return Ok(Some(LastComplete { settings, scene, revisions, frame }));
+        }
+        // The picture comes first.
+        if self.is_complete && !state.pipelines.needs_pending(&state.shaders)
+            && let Some(set) = self.resources.pipelines()
+        {
+            self.threads.worker.build(set, &state.pipelines);
+        }
+        Ok(last.map(|last| {
+            let frame = self.interim(&last, self.clock, size);
+            LastComplete { frame, ..last }
+        }))
+    }
+
     /// Adds the shaders on screen to the versions if they are new, and keeps the last picture of those before.
     fn keep_version(&mut self, last: Option<LastComplete>) {
         let generation = self.shown_generation();

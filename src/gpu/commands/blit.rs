@@ -45,6 +45,13 @@ impl Encoder {
         self.blit((from, 0), (to, 0), 0);
     }
 
+    /// Scales an image in [`Use::CopyFrom`] to one in [`Use::CopyTo`], whose texels are single texels of the first.
+    pub fn pick(&mut self, from: &Arc<Image>, to: &Arc<Image>) {
+        self.keep(from);
+        self.keep(to);
+        self.blit_with((from, 0), (to, 0), 0, vk::Filter::NEAREST);
+    }
+
     /// Sets all texels of an image in [`Use::CopyTo`] to 0.
     pub fn clear_image(&mut self, image: &Arc<Image>) {
         self.keep(image);
@@ -96,7 +103,18 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_copy_image(self.raw, from.raw, source, to.raw, target, &region) };
     }
 
-    fn blit(&mut self, (from, from_level): (&Image, u32), (to, to_level): (&Image, u32), to_layer: u32) {
+    fn blit(&mut self, from: (&Image, u32), to: (&Image, u32), to_layer: u32) {
+        let blends = self.gpu.blends_texels(from.0.desc().format);
+        self.blit_with(from, to, to_layer, if blends { vk::Filter::LINEAR } else { vk::Filter::NEAREST });
+    }
+
+    fn blit_with(
+        &mut self,
+        (from, from_level): (&Image, u32),
+        (to, to_level): (&Image, u32),
+        to_layer: u32,
+        filter: vk::Filter,
+    ) {
         let side = |pixels: u32, level: u32| (pixels >> level).max(1) as i32;
         let corner = |image: &Image, level: u32| vk::Offset3D {
             x: side(image.desc().width, level),
@@ -113,8 +131,6 @@ impl Encoder {
             .dst_subresource(layers(to_level, to_layer))
             .dst_offsets([vk::Offset3D::default(), corner(to, to_level)])];
         let (source, target) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
-        let blends = self.gpu.blends_texels(from.desc().format);
-        let filter = if blends { vk::Filter::LINEAR } else { vk::Filter::NEAREST };
         // SAFETY: this encoder records the command buffer; the caller keeps both images, and the regions lie within them.
         unsafe {
             self.gpu.device.cmd_blit_image(self.raw, from.raw, source, to.raw, target, &region, filter);

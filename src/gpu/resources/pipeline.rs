@@ -112,6 +112,8 @@ pub enum Raster {
     Replaced,
     /// As [`Raster::Solid`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
     Lines,
+    /// The edges of triangles, a little nearer than the surfaces that they lie on, without depth writes.
+    Edges,
     /// Additive blending without depth test; alpha becomes the maximum.
     Added,
     /// Linear interpolation from the target to the fragment, by the weight of [`crate::gpu::Encoder::set_weight`]; alpha
@@ -233,12 +235,15 @@ impl Pipeline {
             .patch_control_points(PATCH_VERTICES)
             .push_next(&mut origin);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let lines = desc.raster == Raster::Lines && gpu.wireframe;
+        let lines = matches!(desc.raster, Raster::Lines | Raster::Edges) && gpu.wireframe;
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).polygon_mode(if lines {
             vk::PolygonMode::LINE
         } else {
             vk::PolygonMode::FILL
         });
+        // Depth is reversed, so a positive bias is towards the eye.
+        let is_biased = desc.raster == Raster::Edges;
+        let raster = raster.depth_bias_enable(is_biased).depth_bias_constant_factor(64.0).depth_bias_slope_factor(1.5);
         let multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(desc.samples));
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
@@ -304,7 +309,7 @@ impl Pipeline {
 fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     let state = vk::PipelineColorBlendAttachmentState::default();
     match raster {
-        Raster::Solid | Raster::Replaced | Raster::Lines => state,
+        Raster::Solid | Raster::Replaced | Raster::Lines | Raster::Edges => state,
         Raster::Blended => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)

@@ -123,7 +123,7 @@ impl PixelReadback {
 }
 
 /// Decodes RGBA pixels of half or full floats.
-fn texels(bytes: &[u8], half: bool) -> impl Iterator<Item = [f32; 4]> + '_ {
+pub(super) fn texels(bytes: &[u8], half: bool) -> impl Iterator<Item = [f32; 4]> + '_ {
     let decode = move |texel: &[u8]| -> [f32; 4] {
         std::array::from_fn(|c| match half {
             true => half::f16::from_le_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32(),

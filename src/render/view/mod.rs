@@ -5,10 +5,12 @@ mod capture;
 mod declared;
 mod passes;
 mod pixel_modes;
+mod survey;
 mod targets;
 mod thumbnails;
 mod uniforms;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::Mat4;
@@ -17,13 +19,16 @@ use capture::PixelReadback;
 pub use capture::{Capture, Readback};
 pub use pixel_modes::PixelModes;
 use targets::{TargetDesc, Targets};
+pub use survey::Survey;
 pub use thumbnails::Thumbnails;
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
+
+use survey::SurveyReadback;
 
 use declared::{Blocks, DeclaredPasses, Drawn, Given};
 
 use super::bound_frame::BoundFrame;
-use crate::frame::TargetFormat;
+use crate::frame::{Display, Limits, TargetFormat};
 use crate::gpu::{
     DescriptorSet, Encoder, Gpu, GpuError, Image, ImageDesc, Rect, Sampler, SamplerDesc, SetLayouts, Swapchain, Use, vk,
 };
@@ -47,6 +52,8 @@ pub enum Redraw {
     IfChanged,
     /// Draws the model in any case. As ever, declared passes keep images that would be the same again.
     Always,
+    /// Draws the model only if the picture has changed. Otherwise a mean stays as it is, and only the tone map runs.
+    ToneMap,
     /// Draws the model, but shades only this pixel, counted from the upper left corner.
     Pixel(u32, u32),
 }
@@ -67,6 +74,7 @@ struct InFlight {
     uniforms: Uniforms,
     blocks: Blocks,
     pixel: PixelReadback,
+    survey: SurveyReadback,
 }
 
 /// Draws frames, and redraws only what has changed.
@@ -86,6 +94,20 @@ pub struct View {
     sample_index: u32,
     /// The pixel whose value each frame reports.
     pub probe: Option<(u32, u32)>,
+    /// Whether samples of each picture are wanted, although no range follows them.
+    pub surveys: bool,
+    /// The newest samples.
+    survey: Option<Arc<Survey>>,
+    /// The picture of which the last samples were copied.
+    surveyed: u64,
+    /// The limits between which almost all values of a picture lie.
+    measured: Option<(u64, Option<Limits>)>,
+    /// The value of `MODE`, and its first picture since it was chosen.
+    mode_since: Option<(u32, u64)>,
+    /// The limits of the last picture of each mode, by the value of `MODE`.
+    known_limits: HashMap<u32, Limits>,
+    /// The content of the display's constants in the last frame.
+    displayed: Option<(Display, Option<Limits>)>,
 }
 
 impl View {
@@ -100,7 +122,7 @@ impl View {
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, frames_in_flight: usize) -> Result<Self, GpuError> {
         let in_flight = || -> Result<_, GpuError> {
             let (uniforms, pixel) = (Uniforms::new(gpu)?, PixelReadback::new(gpu)?);
-            Ok(InFlight { uniforms, blocks: Blocks::default(), pixel })
+            Ok(InFlight { uniforms, blocks: Blocks::default(), pixel, survey: SurveyReadback::default() })
         };
         let (nearest, shared) = (Sampler::new(gpu, &SamplerDesc::NEAREST)?, SharedImages::new(gpu)?);
         Ok(Self {
@@ -115,6 +137,13 @@ impl View {
             picture: 0,
             sample_index: 0,
             probe: None,
+            surveys: false,
+            survey: None,
+            surveyed: 0,
+            measured: None,
+            mode_since: None,
+            known_limits: HashMap::new(),
+            displayed: None,
         })
     }
 
@@ -167,16 +196,20 @@ impl View {
         let only = match redraw {
             Redraw::Pixel(..) if !frame.state.pipelines.is_local() => None,
             Redraw::Pixel(x, y) => Some(Rect { x, y, width: 1, height: 1 }),
-            Redraw::IfChanged | Redraw::Always => None,
+            Redraw::IfChanged | Redraw::Always | Redraw::ToneMap => None,
         };
 
         let redrawn = self.begins_picture(frame, only, redraw);
+        let limits = self.limits_of(frame);
+        let is_shown_anew = self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
+        let surveys = (self.surveys || frame.state.display.is_measured()) && self.surveyed != self.picture;
         let Some(targets) = &self.targets else { return Ok(()) };
         let in_flight = &mut self.in_flight[slot];
 
         // Uniforms and set 0.
         let [_, before] = self.cameras.unwrap_or([frame.state.camera.clip_from_world(); 2]);
         let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), self.sample_index, before);
+        let constants = frame.state.display.constants(constants, limits);
         in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
         encoder.bind_set(&self.layouts, &set);
 
@@ -200,6 +233,10 @@ impl View {
         // The probed pixel, which `pixel` reads once the frame has finished.
         let picture = self.declared.picture().unwrap_or(targets.picture()).clone();
         in_flight.pixel.record(encoder, &picture, self.probe, self.picture);
+        if surveys {
+            in_flight.survey.record(&self.gpu, encoder, &picture, self.picture)?;
+            self.surveyed = self.picture;
+        }
 
         // The HDR picture to the display: exposure, tone map, sRGB.
         let given = Given { picture: Some(&picture), ..Given::default() };
@@ -212,7 +249,7 @@ impl View {
 
         // The display to the output, through the declared passes after the tone map.
         let tone_map = |encoder: &mut Encoder, display: &Arc<Image>| passes.tone_map(encoder, &sets, display, rect);
-        let display = self.declared.on_display(encoder, &drawn, redrawn, tone_map)?;
+        let display = self.declared.on_display(encoder, &drawn, redrawn || is_shown_anew, tone_map)?;
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
         if let Some(display) = display {
@@ -242,8 +279,8 @@ impl View {
         let drawn = self.drawn.as_ref().filter(|(_, part)| *part == only).map(|(drawn, _)| drawn);
         let unchanged = !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same(frame));
         let goes_on = accumulates && !self.is_moving(frame) && drawn.is_some_and(|drawn| drawn.is_same_model(frame));
-        let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED;
-        let redrawn = !unchanged || improves || redraw != Redraw::IfChanged;
+        let improves = accumulates && self.sample_index + 1 < Self::MOST_ACCUMULATED && redraw != Redraw::ToneMap;
+        let redrawn = !unchanged || improves || matches!(redraw, Redraw::Always | Redraw::Pixel(..));
         if redrawn {
             let now = frame.state.camera.clip_from_world();
             self.cameras = Some([now, self.cameras.map_or(now, |[last, _]| last)]);
@@ -251,6 +288,65 @@ impl View {
             self.sample_index = if goes_on { self.sample_index.saturating_add(1) } else { 0 };
         }
         redrawn
+    }
+
+    /// The limits of the values that the display shows of `frame`. Until samples of this mode are there, they are those of its last
+    /// picture.
+    fn limits_of(&mut self, frame: &BoundFrame) -> Option<Limits> {
+        let state = &frame.state;
+        let mode = state.pipelines.mode;
+        if self.mode_since.is_none_or(|(last, _)| last != mode) {
+            self.mode_since = Some((mode, self.picture));
+        }
+        let since = self.mode_since.map_or(0, |(_, since)| since);
+        let survey = self.survey.as_ref().filter(|survey| survey.picture >= since);
+        let values = match (survey, self.measured) {
+            (Some(survey), Some((picture, values))) if survey.picture == picture => values,
+            (Some(survey), _) if state.display.is_measured() => {
+                let values = survey.limits(state.mode().map_or(3, |mode| mode.components));
+                self.measured = Some((survey.picture, values));
+                values
+            }
+            _ => None,
+        };
+        let before = self.known_limits.get(&mode).copied();
+        if values.is_none() && state.display.is_measured() {
+            return before;
+        }
+        let limits = state.display.limits(values, before);
+        match limits {
+            Some(limits) => self.known_limits.insert(mode, limits),
+            None => self.known_limits.remove(&mode),
+        };
+        limits
+    }
+
+    /// The limits of the values that the last frame showed; `None` if it stored them as the mode says.
+    pub fn limits(&self) -> Option<Limits> {
+        self.displayed.and_then(|(_, limits)| limits)
+    }
+
+    /// Forgets the limits of earlier pictures, so that the next one depends on its own values alone.
+    pub fn forget_limits(&mut self) {
+        self.known_limits.clear();
+    }
+
+    /// Takes the samples of slot `slot`. SYNC: after the fence of its last frame.
+    pub fn take_survey(&mut self, slot: usize) {
+        let taken = self.in_flight.get_mut(slot).and_then(|in_flight| in_flight.survey.take());
+        if let Some(survey) = taken.filter(|taken| self.survey.as_ref().is_none_or(|old| old.picture < taken.picture)) {
+            self.survey = Some(Arc::new(survey));
+        }
+    }
+
+    /// The newest samples of the picture's values.
+    pub fn survey(&self) -> Option<&Arc<Survey>> {
+        self.survey.as_ref()
+    }
+
+    /// Whether samples of the picture are on their way, or have arrived since the last frame.
+    pub fn awaits_survey(&self) -> bool {
+        self.surveyed != 0 && self.survey.as_ref().map(|survey| survey.picture) != Some(self.surveyed)
     }
 
     /// Whether the picture shows how the camera has moved, so that the next one differs even if the camera rests.

@@ -131,6 +131,7 @@ impl Passes<'_> {
         self.background(encoder);
         self.draw(encoder, &sorted.blended, PipelineRequest::model_key);
         self.added(encoder, true);
+        self.edges(encoder);
         encoder.end_rendering();
         if let Some(depth) = targets.read_depth() {
             let before = if resolve_depth.is_some() { Use::DepthResolve } else { Use::Depth };
@@ -165,6 +166,13 @@ impl Passes<'_> {
             let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
             model.draw(encoder, &scene.draws, |material| Some(self.request().model_pass_key(pass, material)));
         }
+    }
+
+    /// Draws the edges of all triangles over the picture, if the settings say so.
+    fn edges(&self, encoder: &mut Encoder) {
+        let (Some(pass), Some(scene)) = (&self.request().edges, &self.frame.scene) else { return };
+        let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances: 1, pass };
+        model.draw(encoder, &scene.draws, |material| self.request().edges_key(material));
     }
 
     /// Draws what lies behind the model where nothing covers it.

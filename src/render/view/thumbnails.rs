@@ -1,10 +1,12 @@
 //! Thumbnails: small pictures of several modes, drawn at once and copied to their places in one image.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::declared::{Drawn, Given};
 use super::passes::{ColorTarget, Passes};
 use super::{BoundFrame, View};
+use crate::frame::{Display, Limits};
 use crate::gpu::{Encoder, Gpu, GpuError, Image, ImageDesc, Rect, SetLayouts, Use, vk};
 
 /// Draws thumbnails. It has targets of its own and shares nothing with the large picture but the resources of its frames.
@@ -14,6 +16,10 @@ pub struct Thumbnails {
     more: Vec<ColorTarget>,
     /// A thumbnail before it is copied to its place.
     output: Option<Arc<Image>>,
+    /// The modes of each slot whose samples have not been read, and what the display makes of them.
+    pending: HashMap<usize, Vec<(u32, u8, Display)>>,
+    /// The limits of the values of each mode, by the value of `MODE`.
+    limits: HashMap<u32, Limits>,
 }
 
 impl Thumbnails {
@@ -25,12 +31,38 @@ impl Thumbnails {
     /// # Errors
     /// Out of memory.
     pub fn new(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, in_flight: usize) -> Result<Self, GpuError> {
-        Ok(Self { view: View::new(gpu, layouts, in_flight)?, more: Vec::new(), output: None })
+        let view = View::new(gpu, layouts, in_flight * Self::MOST_AT_ONCE)?;
+        Ok(Self { view, more: Vec::new(), output: None, pending: HashMap::new(), limits: HashMap::new() })
     }
 
     /// The largest number of modes that a device draws at once: the size of a set in [`crate::frame::mode_sets`].
     pub fn most_at_once(gpu: &Gpu) -> usize {
         Self::MOST_AT_ONCE.min(gpu.max_color_targets() as usize)
+    }
+
+    /// Reads the samples of a slot's last draw. Returns the modes, by the value of `MODE`, whose limits they have changed: their
+    /// thumbnails are out of date. SYNC: after the fence of that draw.
+    pub fn collect(&mut self, slot: usize) -> Vec<u32> {
+        let mut changed = Vec::new();
+        for (index, (mode, components, display)) in self.pending.remove(&slot).unwrap_or_default().into_iter().enumerate() {
+            let in_flight = self.view.in_flight.get_mut(slot * Self::MOST_AT_ONCE + index);
+            let Some(survey) = in_flight.and_then(|in_flight| in_flight.survey.take()) else { continue };
+            let before = self.limits.get(&mode).copied();
+            let limits = display.limits(survey.limits(components), before);
+            if limits != before {
+                changed.push(mode);
+            }
+            match limits {
+                Some(limits) => self.limits.insert(mode, limits),
+                None => self.limits.remove(&mode),
+            };
+        }
+        changed
+    }
+
+    /// Whether samples have not been read.
+    pub fn awaits(&self) -> bool {
+        !self.pending.is_empty()
     }
 
     /// Draws the modes of `frame`, a state of [`crate::frame::FrameState::of_modes`], and copies the thumbnail of each to its corner in
@@ -48,18 +80,32 @@ impl Thumbnails {
     ) -> Result<(), GpuError> {
         self.prepare(frame)?;
         let view = &mut self.view;
-        let set = view.frame_set(slot, frame)?;
+        let first = slot * Self::MOST_AT_ONCE;
+        let set = view.frame_set(first, frame)?;
+        let tonemap_sets = (0..corners.len()).map(|index| view.frame_set(first + index, frame));
+        let tonemap_sets = tonemap_sets.collect::<Result<Vec<_>, _>>()?;
         let (Some(targets), Some(output)) = (&view.targets, &self.output) else { return Ok(()) };
-        let in_flight = &mut view.in_flight[slot];
+        let in_flight = &view.in_flight[first];
         let (width, height) = frame.state.size;
         let rect = Rect { x: 0, y: 0, width, height };
         let camera = frame.state.camera.clip_from_world();
         let constants = frame.state.constants(rect, frame.environment.scale_and_sun(), 0, camera);
-        in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
+        // Each mode has its own range and colors, and so its own constants.
+        for (index, in_flight) in view.in_flight[first..].iter().take(corners.len().max(1)).enumerate() {
+            let (mode, _, display) = frame.state.displays.get(index).copied().unwrap_or((0, 3, frame.state.display));
+            let limits = if display.is_measured() {
+                self.limits.get(&mode).copied()
+            } else {
+                display.limits(None, None)
+            };
+            let constants = crate::interface::Frame { mode, ..display.constants(constants, limits) };
+            in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
+        }
         encoder.bind_set(&view.layouts, &set);
 
-        let (depth, blocks) = (targets.read_depth(), &in_flight.blocks);
-        let drawn = Drawn { frame, frame_set: &set, blocks, constants: &constants, depth };
+        let depth = targets.read_depth();
+        let blocks = in_flight.blocks.clone();
+        let drawn = Drawn { frame, frame_set: &set, blocks: &blocks, constants: &constants, depth };
         view.declared.before_model(encoder, &drawn)?;
         let request = &frame.state.pipelines;
         let behind = targets.behind.as_ref().filter(|_| request.modes.is_empty());
@@ -73,8 +119,13 @@ impl Thumbnails {
         }
 
         let pictures = std::iter::once(&targets.color).chain(more.iter().map(|target| &target.color));
-        for ((picture, key), corner) in pictures.zip(request.tonemap_keys()).zip(corners) {
+        for (index, ((picture, key), corner)) in pictures.zip(request.tonemap_keys()).zip(corners).enumerate() {
             encoder.transition(picture, Use::Color, Use::Sampled);
+            if frame.state.displays.get(index).is_some_and(|(_, _, display)| display.is_measured()) {
+                view.in_flight[first + index].survey.record(&view.gpu, encoder, picture, 1)?;
+                self.pending.insert(slot, frame.state.displays.clone());
+            }
+            encoder.bind_set(&view.layouts, &tonemap_sets[index]);
             let given = Given { picture: Some(picture), ..Given::default() };
             let sets = view.declared.sets_of(&drawn, &given, std::iter::once(key.clone()))?;
             encoder.transition(output, Use::Undefined, Use::Color);
@@ -108,6 +159,7 @@ impl Thumbnails {
     /// Forgets what is drawn: the commands of a frame were not submitted.
     pub fn forget(&mut self) {
         self.view.forget();
+        self.pending.clear();
     }
 
     /// An image for `columns` x `rows` thumbnails of `size` pixels, which shaders can sample. They read linear values of what thumbnails

@@ -2,13 +2,17 @@
 
 use std::ops::Range;
 
+use clap::ValueEnum as _;
 use serde::Serialize;
 
 use super::cursor::Cursor;
+use super::value;
 use crate::interface;
-use crate::message::did_you_mean;
+use crate::message::{did_you_mean, either};
+use crate::settings::Colormap;
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::text::{Line, tokens};
+use crate::shader::spirv::reflect::Scalar;
 
 /// The keys that the window reserves.
 const WINDOW_KEYS: &str = "h r l q 0-9 [ ]";
@@ -56,7 +60,7 @@ const DEBUG_STAGE: &str = "debug.frag";
 pub const PATHS_STAGE: &str = "paths.frag";
 
 /// A debug mode.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Mode {
     /// Value of the specialization constant `MODE`.
     pub id: u32,
@@ -74,6 +78,12 @@ pub struct Mode {
     /// Unit of the value before exposure; empty for none.
     #[serde(skip)]
     pub unit: String,
+    /// The values that the picture shows as 0 and 1; `None` for those of the encoding.
+    #[serde(skip)]
+    pub range: Option<(f32, f32)>,
+    /// The colors that stand for its numbers.
+    #[serde(skip)]
+    pub colormap: Colormap,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
     /// Whether the view averages frames, each of which is a noisy estimate.
@@ -162,13 +172,30 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
         }
         "key" => mode.key = Some(window_key(cursor)?),
         "needs" => mode.needs = features(cursor)?,
+        "range" => {
+            let (bytes, text) = cursor.value(key)?;
+            let (low, high) = value::range(cursor, bytes, &text, Scalar::Float)?;
+            mode.range = Some((low as f32, high as f32));
+        }
+        "colormap" => mode.colormap = colormap(cursor)?,
         other => {
             let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, needs=, \
-                key= or doc=";
+                range=, colormap=, key= or doc=";
             return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
         }
     }
     Ok(())
+}
+
+/// Reads the value of `colormap=`: a name that `view.colormap` takes.
+fn colormap(cursor: &mut Cursor<'_>) -> Result<Colormap, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("colormap")?;
+    Colormap::from_str(&value, false).map_err(|_| {
+        let known = Colormap::value_variants().iter().filter_map(|map| Some(map.to_possible_value()?.get_name().to_owned()));
+        let known: Vec<String> = known.collect();
+        let hint = did_you_mean(&value, known.iter().map(String::as_str));
+        cursor.error(bytes, format!("expected a colormap after colormap=, found `{value}`.{hint} It can be {}", either(&known)))
+    })
 }
 
 /// Reads the value of `needs=`: names of `FEATURE_*` constants in small letters, with `-` for `_`.

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use egui::{Align2, Color32, Id, Rect, RichText, Ui};
+use egui::{Align2, Id, Rect, RichText, Ui};
 
 use super::{area, card};
 use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::panels::plural;
-use crate::app::panels::theme::{ERROR, QUIET, WARNING};
+use crate::app::panels::theme::{ERROR, QUIET, STRONG, TEXT, WARNING};
 use crate::shader::{Diagnostic, Severity};
 
 /// Whether the files of the diagnostics exist. The disk is asked once for each file, not in each frame.
@@ -96,8 +96,8 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic, is_file: bool, commands: &mut Vec<C
     // Skip the first two lines, message and position, which are shown above. Source lines fit, and notes behind a `=` wrap.
     let (notes, source): (Vec<&str>, Vec<&str>) =
         full.lines().skip(2).partition(|line| line.trim_start().starts_with("= "));
-    ui.label(RichText::new(&diagnostic.message).monospace().color(Color32::WHITE));
-    let text = |lines: Vec<&str>| RichText::new(lines.join("\n")).monospace().color(Color32::from_gray(215));
+    ui.label(RichText::new(&diagnostic.message).monospace().color(STRONG));
+    let text = |lines: Vec<&str>| RichText::new(lines.join("\n")).monospace().color(TEXT);
     if !source.is_empty() {
         ui.add(egui::Label::new(text(source)).extend());
     }

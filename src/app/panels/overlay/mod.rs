@@ -1,18 +1,21 @@
-//! The overlay: diagnostics, messages, loading state, the mode and the value under the mouse.
+//! The overlay: diagnostics, messages, loading state, the legend of the mode.
 
 pub(super) mod diagnostics;
 mod hint;
 mod restore;
+pub(in crate::app) mod legend;
 
 use std::sync::Arc;
 
 use egui::{Align2, Area, Color32, CornerRadius, FontId, Frame, Galley, Id, Margin, Order, Rect, RichText, Stroke};
 use egui::{TextStyle, Ui};
 
+use super::theme::{CARD, LINE};
 use super::{Readings, WARNING};
 use crate::app::command::Command;
 use crate::app::viewer::Viewer;
 use diagnostics::Shown;
+use legend::Legend;
 
 /// Maximum number of model warnings to show. The rest is counted.
 const MODEL_WARNINGS: usize = 4;
@@ -48,7 +51,7 @@ pub(super) fn show(
     warnings(egui, viewer, picture);
     notice(egui, viewer, picture, free);
     if viewer.panels.visible {
-        label(egui, readings, picture);
+        label(egui, viewer, readings, picture);
     }
 }
 
@@ -95,7 +98,7 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
         false => (Align2::CENTER_TOP, picture),
     };
     area(Id::new("notice"), corner, room).interactable(false).show(egui, |ui| {
-        card(Color32::from_gray(90)).show(ui, |ui| {
+        card(LINE.color()).show(ui, |ui| {
             let font = TextStyle::Body.resolve(ui.style());
             let color = ui.visuals().text_color();
             ui.label(wrapped(ui, text, font, color, room.width().min(620.0)));
@@ -103,30 +106,18 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
     });
 }
 
-/// The title with the mode, and the value under the mouse.
-fn label(egui: &egui::Context, readings: &Readings, picture: Rect) {
-    if readings.title.is_none() && readings.value.is_none() {
+/// The legend of the mode, and the value under the mouse.
+fn label(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: Rect) {
+    let Some(of) = &readings.legend else { return };
+    let legend = Legend { title: readings.title.as_deref(), of, value: readings.value.as_deref() };
+    let (view, state) = (&mut viewer.session.settings.view, &mut viewer.panels.legend);
+    if legend.value.is_none() && !legend.is_whole(view, state) {
         return;
     }
-    area(Id::new("mode"), Align2::LEFT_TOP, picture).interactable(false).show(egui, |ui| {
-        card(Color32::from_gray(60)).show(ui, |ui| {
-            let body = TextStyle::Body.resolve(ui.style());
-            let strong = ui.visuals().strong_text_color();
-            if let Some(title) = &readings.title {
-                ui.label(wrapped(ui, title, body.clone(), strong, picture.width()));
-            }
-            let mono = TextStyle::Monospace.resolve(ui.style());
-            let color = ui.visuals().text_color();
-            if let Some(value) = &readings.value {
-                let galley = wrapped(ui, value, mono.clone(), color, picture.width());
-                // The position of the pixel goes to the next line as a whole.
-                let galley = match galley.rows.len() {
-                    1 => galley,
-                    _ => wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, picture.width()),
-                };
-                ui.label(galley);
-            }
-        });
+    // An area keeps its first size: one with a histogram is another.
+    let id = Id::new(("mode", legend.is_whole(view, state), state.shows_histogram));
+    area(id, Align2::LEFT_TOP, picture).fade_in(false).show(egui, |ui| {
+        card(LINE.color()).show(ui, |ui| legend::show(ui, &legend, view, state, picture.width()));
     });
 }
 
@@ -142,9 +133,9 @@ fn area(id: Id, corner: Align2, picture: Rect) -> Area {
     Area::new(id).order(Order::Middle).pivot(corner).fixed_pos(at).constrain_to(picture)
 }
 
-fn card(edge: Color32) -> Frame {
+fn card(edge: impl Into<Color32>) -> Frame {
     Frame::new()
-        .fill(Color32::from_rgba_unmultiplied(16, 17, 20, 235))
+        .fill(CARD.color().gamma_multiply(0.93))
         .stroke(Stroke::new(1.0, edge))
         .corner_radius(CornerRadius::same(6))
         .inner_margin(Margin::symmetric(PADDING as i8, 8))

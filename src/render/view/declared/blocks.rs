@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Gpu, GpuError, Memory, vk};
 
 /// The uniform blocks of a frame's declared passes. Each frame slot has its own, so that the CPU never writes what a frame in
 /// flight reads.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(in crate::render::view) struct Blocks(BTreeMap<(usize, u32), Arc<Buffer>>);
 
 impl Blocks {

@@ -1,0 +1,105 @@
+//! Several modes side by side in the picture: which modes, and where each lies.
+
+use super::screen::PictureRect;
+
+/// Most modes at once.
+const MOST: usize = 9;
+/// Pixels between two modes.
+const GAP: u32 = 3;
+
+/// The modes that are shown side by side.
+#[derive(Default)]
+pub(super) struct Grid {
+    /// Their slugs, row by row. Fewer than two are no grid.
+    modes: Vec<String>,
+}
+
+impl Grid {
+    /// Whether several modes are shown.
+    pub(super) fn is_on(&self) -> bool {
+        self.modes.len() > 1
+    }
+
+    /// The slugs of the modes, row by row.
+    pub(super) fn modes(&self) -> &[String] {
+        &self.modes
+    }
+
+    /// Adds a mode beside the selected one, or takes it away. Returns whether there was room for it.
+    pub(super) fn toggle(&mut self, slug: &str, selected: &str) -> bool {
+        if self.modes.is_empty() {
+            self.modes.push(selected.to_owned());
+        }
+        if let Some(at) = self.modes.iter().position(|mode| mode == slug) {
+            // The selected mode stays.
+            if slug != selected {
+                self.modes.remove(at);
+            }
+        } else if self.modes.len() < MOST {
+            self.modes.push(slug.to_owned());
+        } else {
+            return false;
+        }
+        if self.modes.len() < 2 {
+            self.modes.clear();
+        }
+        true
+    }
+
+    /// Shows one mode alone.
+    pub(super) fn end(&mut self) {
+        self.modes.clear();
+    }
+
+    /// Ends when the selected mode is none of the grid's.
+    pub(super) fn follow(&mut self, selected: &str) {
+        if !self.modes.iter().any(|mode| mode == selected) {
+            self.end();
+        }
+    }
+}
+
+/// Where `count` pictures lie in `whole`, row by row, in pixels of the window.
+pub(super) fn cells(count: usize, whole: PictureRect) -> Vec<PictureRect> {
+    let columns = (1..=count).find(|columns| columns * columns >= count).unwrap_or(1) as u32;
+    let rows = (count as u32).div_ceil(columns).max(1);
+    let side = |length: u32, parts: u32| (length.saturating_sub(GAP * (parts - 1)) / parts).max(1);
+    let size = (side(whole.size.0, columns), side(whole.size.1, rows));
+    let place = |index: u32| PictureRect {
+        at: (whole.at.0 + index % columns * (size.0 + GAP), whole.at.1 + index / columns * (size.1 + GAP)),
+        size,
+    };
+    (0..count as u32).map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modes_come_and_go() {
+        let mut grid = Grid::default();
+        assert!(grid.toggle("d", "final") && grid.is_on());
+        assert!(grid.toggle("g", "final") && grid.toggle("d", "final"));
+        assert_eq!(grid.modes(), ["final", "g"]);
+        grid.follow("g");
+        assert!(grid.is_on());
+        grid.follow("v");
+        assert!(!grid.is_on());
+        (0..8).for_each(|index| assert!(grid.toggle(&index.to_string(), "final")));
+        assert!(!grid.toggle("one more", "final") && grid.modes().len() == 9);
+    }
+
+    #[test]
+    fn cells_fill_the_picture() {
+        let whole = PictureRect { at: (100, 50), size: (900, 600) };
+        for (count, columns) in [(1, 1), (2, 2), (4, 2), (5, 3), (9, 3)] {
+            let cells = cells(count, whole);
+            assert_eq!(cells.iter().filter(|cell| cell.at.1 == 50).count(), columns.min(count));
+            let inside = |cell: &PictureRect| {
+                cell.at.0 + cell.size.0 <= 1000 && cell.at.1 + cell.size.1 <= 650 && cell.at.0 >= 100 && cell.at.1 >= 50
+            };
+            assert!(cells.len() == count && cells.iter().all(inside));
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! The names of the modes that the picture shows side by side, and a frame around the selected one.
+
+use egui::{Align2, FontId, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
+
+use super::PanelState;
+use super::theme::{ACCENT, CARD, STRONG};
+use crate::app::grid::cells;
+use crate::app::screen::PictureRect;
+use crate::session::Session;
+
+/// Shows the names over the picture, below cards.
+pub(super) fn show(egui: &egui::Context, session: &Session, state: &PanelState, picture: Rect) {
+    let (grid, Some(shaders)) = (&state.grid, &session.shaders) else { return };
+    if !grid.is_on() {
+        return;
+    }
+    let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("grid"))).with_clip_rect(picture);
+    let scale = egui.pixels_per_point();
+    let pixel = |points: f32| (points * scale).round().max(0.0) as u32;
+    let whole = PictureRect {
+        at: (pixel(picture.min.x), pixel(picture.min.y)),
+        size: (pixel(picture.width()), pixel(picture.height())),
+    };
+    for (slug, cell) in grid.modes().iter().zip(cells(grid.modes().len(), whole)) {
+        let corner = pos2(cell.at.0 as f32, cell.at.1 as f32) / scale;
+        let rect = Rect::from_min_size(corner, vec2(cell.size.0 as f32, cell.size.1 as f32) / scale);
+        let name = shaders.modes.iter().find(|mode| mode.slug == *slug).map_or(slug.as_str(), |mode| &mode.name);
+        let is_selected = *slug == session.settings.mode;
+        let text = painter.layout_no_wrap(name.to_owned(), FontId::proportional(11.0), STRONG.color());
+        let card = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom() + vec2(6.0, -6.0), text.size() + vec2(14.0, 6.0));
+        painter.rect_filled(card, 4.0, CARD.color().gamma_multiply(0.9));
+        painter.galley(card.min + vec2(7.0, 3.0), text, STRONG.color());
+        if is_selected {
+            painter.rect_stroke(rect, 0.0, Stroke::new(1.5, ACCENT), StrokeKind::Inside);
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The names of the objects of a built-in chart, below each in the picture.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use egui::{Align2, FontId, Id, LayerId, Order, Painter, Pos2, Rect, pos2, vec2};
+
+use super::theme::{CARD, TEXT};
+use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
+use crate::settings::CameraSettings;
+
+/// Models with more objects than this are no charts.
+const MOST: usize = 40;
+/// A chart has at least this many objects with a number in their name.
+const FEWEST: usize = 4;
+
+/// Where each named object of a chart is. Empty for other models.
+#[derive(Default)]
+pub(super) struct Labels {
+    /// Address of the model.
+    of: usize,
+    /// Name and bounds in the world.
+    objects: Vec<(String, Bounds)>,
+}
+
+impl Labels {
+    fn update(&mut self, model: &Arc<Model>) {
+        let address = Arc::as_ptr(model) as usize;
+        if self.of != address {
+            *self = Self { of: address, objects: objects(model) };
+        }
+    }
+}
+
+/// The objects of a chart: nodes whose names say a number.
+fn objects(model: &Model) -> Vec<(String, Bounds)> {
+    if !BUILT_IN.contains(&model.name.as_str()) {
+        return Vec::new();
+    }
+    let mut nodes: BTreeMap<usize, (String, Bounds)> = BTreeMap::new();
+    for instance in &model.instances {
+        let is_named = instance.node_name.contains(|c: char| c.is_ascii_digit()) && instance.node_name.contains(' ');
+        if !is_named {
+            continue;
+        }
+        let Some(primitive) = model.primitives.get(instance.primitive) else { continue };
+        let entry = nodes.entry(instance.node).or_insert_with(|| (instance.node_name.clone(), Bounds::default()));
+        for corner in primitive.bounds.corners() {
+            entry.1.include(instance.world_from_object.transform_point3(corner));
+        }
+    }
+    let count = nodes.len();
+    if (FEWEST..=MOST).contains(&count) { nodes.into_values().collect() } else { Vec::new() }
+}
+
+/// Shows the names over the picture, below cards.
+pub(super) fn show(
+    egui: &egui::Context,
+    labels: &mut Labels,
+    model: &Arc<Model>,
+    camera: &CameraSettings,
+    picture: Rect,
+) {
+    labels.update(model);
+    if labels.objects.is_empty() {
+        return;
+    }
+    let camera = &frame(&model.bounds, &model.outline, camera, picture.aspect_ratio());
+    let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("labels"))).with_clip_rect(picture);
+    for (name, bounds) in &labels.objects {
+        let corners = bounds.corners().map(|corner| project(camera, corner, picture));
+        let Some(corners) = corners.into_iter().collect::<Option<Vec<Pos2>>>() else { continue };
+        let around = Rect::from_points(&corners);
+        // Names that are wider than what they name would cover each other.
+        if around.width() >= 30.0 {
+            label(&painter, name, around);
+        }
+    }
+}
+
+/// Where a point of the world is in the picture; `None` behind the eye.
+fn project(camera: &CameraView, point: glam::Vec3, picture: Rect) -> Option<Pos2> {
+    let clip = camera.clip_from_world() * point.extend(1.0);
+    let ndc = clip.truncate() / clip.w;
+    let at = vec2(0.5 + 0.5 * ndc.x, 0.5 + 0.5 * ndc.y) * picture.size();
+    (clip.w > 0.0).then(|| pos2(picture.min.x + at.x, picture.min.y + at.y))
+}
+
+/// Writes a name below an object, a line for each part of it.
+fn label(painter: &Painter, name: &str, around: Rect) {
+    let text = name.replace(", ", "\n");
+    let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), (around.width() * 1.05).max(48.0));
+    let room = Align2::CENTER_TOP.anchor_size(around.center_bottom() - vec2(0.0, 4.0), text.size() + vec2(8.0, 2.0));
+    painter.rect_filled(room, 3.0, CARD.color().gamma_multiply(0.72));
+    painter.galley(room.min + vec2(4.0, 1.0), text, TEXT.color());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+
+    #[test]
+    fn charts_have_names_and_other_models_none() {
+        for (name, count) in [("clearcoat", 12), ("sphere-grid", 35), ("shader-ball", 0), ("many-lights", 0)] {
+            let objects = objects(&built_in(name).unwrap().unwrap());
+            assert_eq!(objects.len(), count, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_name_lies_at_its_object() {
+        let model = built_in("clearcoat").unwrap().unwrap();
+        let camera = CameraSettings { azimuth: 0.0, elevation: 0.0, ..CameraSettings::default() };
+        let view = frame(&model.bounds, &model.outline, &camera, 1.5);
+        let picture = Rect::from_min_size(Pos2::ZERO, vec2(900.0, 600.0));
+        let places: Vec<Pos2> =
+            objects(&model).iter().map(|(_, bounds)| project(&view, bounds.center(), picture).unwrap()).collect();
+        assert!(places.iter().all(|place| picture.contains(*place)));
+        // The first row runs from left to right, above the second.
+        assert!(places[0].x < places[1].x && places[0].y < places[4].y);
+    }
+}

@@ -1,0 +1,302 @@
+//! The legend over the picture: the mode's name and unit, the range of values and the colors that stand for them, the channels, a
+//! histogram, and the value under the mouse.
+
+use clap::ValueEnum as _;
+use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
+
+use super::wrapped;
+use crate::app::panels::LegendOf;
+use crate::app::panels::rows::choice_name;
+use crate::app::panels::theme::{QUIET, icon};
+use crate::frame::Limits;
+use crate::interface::COLORMAP_STEPS;
+use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};
+use crate::shader::Encode;
+
+/// Size of the color bar in points.
+const BAR: egui::Vec2 = vec2(132.0, 9.0);
+/// Size of the histogram in points.
+const HISTOGRAM: egui::Vec2 = vec2(264.0, 44.0);
+/// Steps of the histogram.
+const BINS: usize = 88;
+/// Stops around middle gray in the histogram of light.
+const STOPS: f32 = 8.0;
+const MIDDLE_GRAY: f32 = 0.18;
+
+/// What the legend says about the picture on screen.
+pub(in crate::app) struct Legend<'a> {
+    pub(in crate::app) title: Option<&'a str>,
+    pub(in crate::app) of: &'a LegendOf,
+    /// The value under the mouse.
+    pub(in crate::app) value: Option<&'a str>,
+}
+
+/// State of the legend between frames.
+#[derive(Default)]
+pub(in crate::app) struct LegendState {
+    /// Whether the histogram is open.
+    pub(in crate::app) shows_histogram: bool,
+    /// The counts of a picture, with its number and what places its values.
+    counts: Option<(u64, Axis, [Vec<u32>; 3])>,
+}
+
+/// The horizontal axis of the histogram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Axis {
+    /// Values between two limits.
+    Linear(Limits),
+    /// Stops around middle gray, with this exposure.
+    Stops(f32),
+}
+
+impl Axis {
+    fn place(self, value: f32) -> f32 {
+        match self {
+            Self::Linear((low, high)) => (value - low) / (high - low),
+            Self::Stops(exposure) => {
+                let stops = (value * exposure / MIDDLE_GRAY).max(f32::MIN_POSITIVE).log2();
+                0.5 + 0.5 * stops / STOPS
+            }
+        }
+    }
+
+    /// The numbers at both ends.
+    fn ends(self) -> [String; 2] {
+        match self {
+            Self::Linear((low, high)) => [short(low), short(high)],
+            Self::Stops(_) => [format!("-{STOPS} EV"), format!("+{STOPS} EV")],
+        }
+    }
+}
+
+impl Legend<'_> {
+    /// Whether the legend has more to say than the value under the mouse.
+    pub(super) fn is_whole(&self, view: &ViewSettings, state: &LegendState) -> bool {
+        let is_plain = self.title.is_none() && view.channels == Channels::Rgb && self.of.limits.is_none();
+        !is_plain || state.shows_histogram
+    }
+
+    /// The range of values that the display shows; `None` for light, which exposure and tone map bring there.
+    fn shown(&self) -> Option<Limits> {
+        self.of.limits.or(match self.of.mode.encode {
+            _ if self.of.mode.tonemap => None,
+            Encode::Vector => Some((-1.0, 1.0)),
+            Encode::Color | Encode::Data => Some((0.0, 1.0)),
+        })
+    }
+}
+
+/// Shows the legend in a card as wide as `width` at most.
+pub(in crate::app) fn show(
+    ui: &mut Ui,
+    legend: &Legend<'_>,
+    view: &mut ViewSettings,
+    state: &mut LegendState,
+    width: f32,
+) {
+    if legend.is_whole(view, state) {
+        heading(ui, legend, width);
+        ui.horizontal(|ui| range(ui, legend, view));
+        ui.horizontal(|ui| channels(ui, legend, view, state));
+        if state.shows_histogram {
+            histogram(ui, legend, view, state);
+        }
+    }
+    if let Some(value) = legend.value {
+        let (mono, color) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
+        let galley = wrapped(ui, value, mono.clone(), color, width);
+        // The position of the pixel goes to the next line as a whole.
+        let galley = match galley.rows.len() {
+            1 => galley,
+            _ => wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, width),
+        };
+        ui.label(galley);
+    }
+}
+
+/// The name of the mode with its unit.
+fn heading(ui: &mut Ui, legend: &Legend<'_>, width: f32) {
+    let (body, strong) = (TextStyle::Body.resolve(ui.style()), ui.visuals().strong_text_color());
+    let title = legend.title.unwrap_or(&legend.of.mode.name);
+    let unit = if legend.of.mode.unit.is_empty() { String::new() } else { format!("  ·  {}", legend.of.mode.unit) };
+    let title = wrapped(ui, &format!("{title}{unit}"), body, strong, width);
+    ui.label(title).on_hover_text(&legend.of.mode.doc);
+}
+
+/// The color bar between its limits, and what decides them.
+fn range(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings) {
+    match legend.shown() {
+        Some((low, high)) => {
+            ui.label(RichText::new(short(low)).monospace().small());
+            bar(ui, legend);
+            ui.label(RichText::new(short(high)).monospace().small());
+        }
+        None => {
+            let text = format!("{:+.1} EV · {}", -view.ev, choice_name(&view.tonemap));
+            let label = ui.label(RichText::new(text).monospace().small());
+            label.on_hover_text("Exposure compensation and tone map of this light");
+        }
+    }
+    let (name, doc) = match (view.range, legend.of.limits) {
+        (ViewRange::Mode, _) => ("mode", "The range of the mode, as `render` stores it"),
+        (ViewRange::Auto, Some(_)) if legend.of.mode.range.is_none() => {
+            ("auto", "The range follows the picture: 1 % of its values lie below, 1 % above")
+        }
+        (ViewRange::Auto, _) => ("auto", "The range of the mode, which this picture fits"),
+        (ViewRange::Fit, _) => ("fit", "The range follows the picture, also in modes that have their own"),
+        (ViewRange::Fixed(..), _) => ("set", "The range that you set"),
+    };
+    let menu = ui.menu_button(RichText::new(name).small(), |ui| {
+        for (range, text, doc) in [
+            (ViewRange::Auto, "Automatic", "Follow the picture where values have a unit or leave 0 to 1"),
+            (ViewRange::Mode, "As the mode says", "0 to 1, vectors -1 to 1, light exposed: what `render` writes"),
+            (ViewRange::Fit, "Fit to this picture", "Follow the picture in every mode, light too"),
+        ] {
+            if ui.selectable_label(view.range == range, text).on_hover_text(doc).clicked() {
+                view.range = range;
+                ui.close();
+            }
+        }
+        if let Some((low, high)) = legend.of.limits {
+            let keep = ui.button(format!("Keep {} to {}", short(low), short(high)));
+            if keep.on_hover_text("Set this range, so that it stays when the picture changes").clicked() {
+                view.range = ViewRange::Fixed(low, high);
+                ui.close();
+            }
+        }
+    });
+    menu.response.on_hover_text(format!("{doc}\n--set view.range={}", view.range));
+}
+
+/// The colors that stand for the values.
+fn bar(ui: &mut Ui, legend: &Legend<'_>) {
+    let (rect, response) = ui.allocate_exact_size(BAR, Sense::hover());
+    let mut mesh = Mesh::default();
+    for (index, color) in legend.of.colormap.colors().into_iter().enumerate() {
+        let x = egui::lerp(rect.x_range(), index as f32 / (COLORMAP_STEPS - 1) as f32);
+        let color = Color32::from(egui::Rgba::from_rgb(color[0], color[1], color[2]));
+        mesh.colored_vertex(pos2(x, rect.min.y), color);
+        mesh.colored_vertex(pos2(x, rect.max.y), color);
+        if index > 0 {
+            let at = 2 * index as u32;
+            mesh.add_triangle(at - 2, at - 1, at);
+            mesh.add_triangle(at - 1, at, at + 1);
+        }
+    }
+    ui.painter().add(mesh);
+    response.on_hover_text("Colors of the values between both numbers. The value at the mouse stays raw");
+}
+
+/// Switches of the channels, the colormap and the histogram.
+fn channels(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings, state: &mut LegendState) {
+    ui.spacing_mut().item_spacing.x = 2.0;
+    for (channel, name, doc) in [
+        (Channels::Rgb, "RGB", "All channels"),
+        (Channels::R, "R", "The first channel: red, or x"),
+        (Channels::G, "G", "The second channel: green, or y"),
+        (Channels::B, "B", "The third channel: blue, or z"),
+        (Channels::A, "A", "Coverage: 1 where the model covers a pixel whole"),
+    ] {
+        let button = Button::selectable(view.channels == channel, RichText::new(name).small().monospace());
+        let response = ui.add(button);
+        if response.on_hover_text(format!("{doc}\n--set view.channels={}", choice_name(&channel))).clicked() {
+            view.channels = channel;
+        }
+    }
+    ui.add_space(4.0);
+    let is_number = legend.of.mode.components == 1 || view.channels != Channels::Rgb;
+    ui.add_enabled_ui(is_number, |ui| {
+        let menu = ui.menu_button(RichText::new(choice_name(&legend.of.colormap)).small(), |ui| {
+            for map in Colormap::value_variants() {
+                let name = if *map == Colormap::None { "none (as the mode)".to_owned() } else { choice_name(map) };
+                if ui.selectable_label(view.colormap == *map, name).clicked() {
+                    view.colormap = *map;
+                    ui.close();
+                }
+            }
+        });
+        let doc = "Colors that stand for a number: in modes with one component, and for a single channel";
+        menu.response.on_hover_text(doc).on_disabled_hover_text(format!("{doc}. Choose R, G or B first"));
+    });
+    let histogram = Button::selectable(state.shows_histogram, icon::CHART_BAR);
+    if ui.add(histogram).on_hover_text("How often each value occurs in the picture").clicked() {
+        state.shows_histogram ^= true;
+    }
+}
+
+/// How often each value occurs.
+fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut LegendState) {
+    let (rect, response) = ui.allocate_exact_size(HISTOGRAM, Sense::hover());
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+    let Some(survey) = &legend.of.survey else { return };
+    let axis = legend.shown().map_or(Axis::Stops(legend.of.exposure), Axis::Linear);
+    let is_known = |(picture, of, _): &&(u64, Axis, _)| *picture == survey.picture && *of == axis;
+    if state.counts.as_ref().filter(is_known).is_none() {
+        let counts = survey.histogram(BINS, |value| axis.place(value));
+        state.counts = Some((survey.picture, axis, counts));
+    }
+    let Some((.., counts)) = &state.counts else { return };
+    let shown: Vec<(usize, Color32)> = match (legend.of.mode.components, view.channels) {
+        (_, Channels::R) | (1, _) => vec![(0, Color32::from_gray(170))],
+        (_, Channels::G) => vec![(1, Color32::from_gray(170))],
+        (_, Channels::B) => vec![(2, Color32::from_gray(170))],
+        (components, _) => [0xe0_50_50, 0x50_c0_60, 0x50_80_f0_u32][..usize::from(components.clamp(1, 3))]
+            .iter()
+            .map(|hex| Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, *hex as u8))
+            .enumerate()
+            .collect(),
+    };
+    // Values at the ends are beyond them, and would leave no height to the others.
+    let most = shown.iter().flat_map(|(channel, _)| &counts[*channel][1..BINS - 1]).max().copied().unwrap_or(0).max(1);
+    for (channel, color) in &shown {
+        let color = color.gamma_multiply(if shown.len() > 1 { 0.6 } else { 1.0 });
+        for (bin, count) in counts[*channel].iter().enumerate().filter(|(_, count)| **count > 0) {
+            let height = (*count as f32 / most as f32).min(1.0).sqrt() * rect.height();
+            let x = egui::lerp(rect.x_range(), (bin as f32 + 0.5) / BINS as f32);
+            let width = rect.width() / BINS as f32;
+            let column = Rect::from_min_max(pos2(x - 0.5 * width, rect.max.y - height), pos2(x + 0.5 * width, rect.max.y));
+            painter.rect_filled(column, 0.0, color);
+        }
+    }
+    painter.rect_stroke(rect, 2.0, Stroke::new(1.0, Color32::from_gray(70)), egui::StrokeKind::Inside);
+    ui.horizontal(|ui| {
+        ui.set_width(HISTOGRAM.x);
+        let [low, high] = axis.ends();
+        ui.label(RichText::new(low).monospace().small().color(QUIET));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(RichText::new(high).monospace().small().color(QUIET));
+        });
+    });
+    let axis = if legend.shown().is_some() { "value" } else { "stops from middle gray after exposure" };
+    response.on_hover_text(format!("Horizontal: {axis}; the outer columns hold all beyond. Vertical: square root of the count"));
+}
+
+/// A number with four significant digits, or fewer.
+fn short(number: f32) -> String {
+    let magnitude = number.abs();
+    if magnitude != 0.0 && !(1e-3..1e5).contains(&magnitude) {
+        return format!("{number:.1e}");
+    }
+    let decimals = 3_usize.saturating_sub(magnitude.max(1.0).log10() as usize);
+    let text = format!("{number:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_the_legend_are_short() {
+        let numbers = [0.0, 1.0, -0.05, 4.9, 1234.5, 0.000_02, 1e7].map(short);
+        assert_eq!(numbers, ["0", "1", "-0.05", "4.9", "1234", "2.0e-5", "1.0e7"]);
+    }
+
+    #[test]
+    fn middle_gray_is_in_the_middle() {
+        let axis = Axis::Stops(1.0 / 1.2);
+        assert!((axis.place(0.18 * 1.2) - 0.5).abs() < 1e-6);
+        assert!(axis.place(0.0) < 0.0 && axis.place(1e9) > 1.0);
+    }
+}

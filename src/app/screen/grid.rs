@@ -1,0 +1,108 @@
+//! Draws further modes beside the picture, each with a view of its own, so that each has its range, its samples and its mean.
+
+use std::sync::Arc;
+
+use super::{FRAMES_IN_FLIGHT, PictureRect, Screen};
+use crate::app::grid::cells;
+use crate::app::viewer::{LastComplete, Viewer};
+use crate::gpu::{Encoder, GpuError, Image, Use};
+use crate::render::{Output, Redraw, View};
+
+/// A mode beside the picture.
+pub(super) struct Cell {
+    mode: String,
+    pub(super) rect: PictureRect,
+    pub(super) view: View,
+    image: Arc<Image>,
+    /// What it has drawn last; `None` until its pipelines are there.
+    pub(super) shown: Option<LastComplete>,
+}
+
+impl Screen {
+    /// Divides the picture's part of the window among the modes of the grid. The selected mode is drawn as ever, in its own place.
+    pub(super) fn arrange_grid(&mut self, viewer: &Viewer) {
+        let modes = viewer.panels.grid.modes();
+        let selected = &viewer.session.settings.mode;
+        let is_on = viewer.panels.grid.is_on() && !viewer.compare.is_on();
+        let place = modes.iter().position(|mode| mode == selected).filter(|_| is_on);
+        let Some(place) = place else {
+            self.rect = self.whole;
+            self.cells.clear();
+            return;
+        };
+        let rects = cells(modes.len(), self.whole);
+        self.rect = rects[place];
+        let others: Vec<_> = modes.iter().zip(&rects).filter(|(mode, _)| *mode != selected).collect();
+        self.cells.retain(|cell| others.iter().any(|(mode, _)| **mode == cell.mode));
+        for cell in &mut self.cells {
+            if let Some((_, rect)) = others.iter().find(|(mode, _)| **mode == cell.mode) {
+                cell.rect = **rect;
+            }
+        }
+        self.wanted = others.into_iter().map(|(mode, rect)| (mode.clone(), *rect)).collect();
+    }
+
+    /// Brings the cells up to date. Without memory, the grid ends.
+    pub(super) fn prepare_grid(&mut self, viewer: &mut Viewer) -> Result<(), GpuError> {
+        let wanted = std::mem::take(&mut self.wanted);
+        let prepared = wanted.into_iter().try_for_each(|(mode, rect)| self.prepare_cell(viewer, mode, rect));
+        if self.survive(prepared)?.is_none() {
+            self.cells.clear();
+            viewer.panels.grid.end();
+        }
+        Ok(())
+    }
+
+    fn prepare_cell(&mut self, viewer: &mut Viewer, mode: String, rect: PictureRect) -> Result<(), GpuError> {
+        let at = match self.cells.iter().position(|cell| cell.mode == mode) {
+            Some(at) => at,
+            None => {
+                let view = View::new(&viewer.gpu, viewer.resources.layouts(), FRAMES_IN_FLIGHT)?;
+                let image = view.output_image(rect.size)?;
+                self.cells.push(Cell { mode, rect, view, image, shown: None });
+                self.cells.len() - 1
+            }
+        };
+        let cell = &mut self.cells[at];
+        if (cell.image.desc().width, cell.image.desc().height) != rect.size {
+            cell.image = cell.view.output_image(rect.size)?;
+        }
+        cell.shown = viewer.frame_of_mode(&cell.mode, rect.size, cell.shown.take())?;
+        if let Some(shown) = &cell.shown {
+            cell.view.prepare(shown.frame())?;
+        }
+        Ok(())
+    }
+
+    /// Draws the cells over `target`, which is in [`Use::Color`] before and after.
+    pub(super) fn draw_grid(&mut self, encoder: &mut Encoder, slot: usize, target: &Arc<Image>) -> Result<(), GpuError> {
+        for cell in &mut self.cells {
+            let Some(shown) = &cell.shown else { continue };
+            let output = Output { image: &cell.image, before: Use::Undefined, at: (0, 0) };
+            let (view, frame) = (&mut cell.view, shown.frame());
+            encoder.untimed(|encoder| view.draw(encoder, slot, frame, &output, Redraw::IfChanged))?;
+            encoder.transition(&cell.image, Use::Color, Use::CopyFrom);
+            encoder.transition(target, Use::Color, Use::CopyTo);
+            encoder.copy_image_to(&cell.image, target, cell.rect.at);
+            encoder.transition(target, Use::CopyTo, Use::Color);
+        }
+        Ok(())
+    }
+
+    /// The cell under the mouse and the pixel of its picture.
+    pub(super) fn mouse_cell(&self) -> Option<(usize, (u32, u32))> {
+        self.cells.iter().enumerate().find_map(|(index, cell)| Some((index, pixel_in(cell.rect, self.mouse.at)?)))
+    }
+
+    /// The mode of the grid at a place of the window.
+    pub(in crate::app) fn grid_mode_at(&self, at: glam::Vec2) -> Option<String> {
+        self.cells.iter().find(|cell| pixel_in(cell.rect, at).is_some()).map(|cell| cell.mode.clone())
+    }
+}
+
+/// The pixel of a rectangle at a place of the window.
+fn pixel_in(rect: PictureRect, at: glam::Vec2) -> Option<(u32, u32)> {
+    let (x, y) = (at.x - rect.at.0 as f32, at.y - rect.at.1 as f32);
+    let (width, height) = rect.size;
+    (x >= 0.0 && y >= 0.0).then_some((x as u32, y as u32)).filter(|(x, y)| *x < width && *y < height)
+}

@@ -1,0 +1,168 @@
+//! How a picture's values become colors: range, channels, colormap and dither, from the settings and the mode.
+
+use crate::interface::Frame;
+use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};
+use crate::shader::{Encode, Mode};
+
+/// What the display makes of the values of a mode. It changes no value, and so needs no new picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Display {
+    range: Range,
+    channels: Channels,
+    colormap: Colormap,
+    dither: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Range {
+    /// As the mode stores its values.
+    #[default]
+    Encoded,
+    Fixed(f32, f32),
+    /// That of the picture's values.
+    Measured {
+        /// Whether 0 lies in the middle.
+        is_signed: bool,
+        /// Whether values that lie within 0..1 are stored as they are.
+        keeps_unit: bool,
+    },
+}
+
+/// The smallest and the largest value that the display shows.
+pub type Limits = (f32, f32);
+
+impl Display {
+    /// What `view` says about pictures of `mode`.
+    pub(crate) fn new(view: &ViewSettings, mode: Option<&Mode>) -> Self {
+        let Some(mode) = mode else { return Self::default() };
+        let is_signed = mode.encode == Encode::Vector;
+        let own = mode.range.map_or(Range::Encoded, |(low, high)| Range::Fixed(low, high));
+        // Vectors without a unit are directions, colors without a unit reflectances: both are bounded.
+        let may_leave = mode.encode == Encode::Data || mode.pass.is_some() || !mode.unit.is_empty();
+        let range = match view.range {
+            ViewRange::Fixed(low, high) => Range::Fixed(low, high),
+            ViewRange::Fit => Range::Measured { is_signed, keeps_unit: false },
+            ViewRange::Auto if !mode.tonemap && mode.range.is_none() && may_leave => {
+                Range::Measured { is_signed, keeps_unit: mode.unit.is_empty() }
+            }
+            ViewRange::Auto | ViewRange::Mode => own,
+        };
+        let is_number = mode.components == 1 || view.channels != Channels::Rgb;
+        let colormap = if view.colormap == Colormap::None { mode.colormap } else { view.colormap };
+        let colormap = if is_number { colormap } else { Colormap::None };
+        Self { range, channels: view.channels, colormap, dither: view.dither }
+    }
+
+    /// Whether the range follows the picture's values.
+    pub fn is_measured(&self) -> bool {
+        matches!(self.range, Range::Measured { .. })
+    }
+
+    /// The colors that stand for a number.
+    pub fn colormap(&self) -> Colormap {
+        self.colormap
+    }
+
+    /// The limits for a picture in which all but a hundredth of the values at each end lie in `values`. `before`: the limits of the
+    /// last picture, which stay while they fit, so that a moving picture does not flicker. `None`: values are stored as the mode says.
+    pub fn limits(&self, values: Option<Limits>, before: Option<Limits>) -> Option<Limits> {
+        match self.range {
+            Range::Encoded => None,
+            Range::Fixed(low, high) => Some((low, high)),
+            Range::Measured { is_signed, keeps_unit } => {
+                let (low, high) = values?;
+                if keeps_unit && low >= if is_signed { -1.0 } else { 0.0 } && high <= 1.0 {
+                    return None;
+                }
+                let most = low.abs().max(high.abs());
+                let (low, high) = if is_signed { (-most, most) } else { (low, high) };
+                before.filter(|before| still_fit(*before, (low, high))).or_else(|| Some(rounded(low, high)))
+            }
+        }
+    }
+
+    /// The same frame constants with these limits.
+    pub(crate) fn constants(&self, frame: Frame, limits: Option<Limits>) -> Frame {
+        let (low, scale) = limits.map_or((0.0, 0.0), |(low, high)| (low, 1.0 / (high - low).max(f32::MIN_POSITIVE)));
+        Frame {
+            range_low: low,
+            range_scale: scale,
+            channels: self.channels.id(),
+            has_colormap: u32::from(self.colormap != Colormap::None),
+            dither: f32::from(u8::from(self.dither)),
+            colormap: self.colormap.colors(),
+            ..frame
+        }
+    }
+}
+
+/// Whether limits show values from `low` to `high` well enough: at most a tenth is cut off, and at most a third is left empty.
+fn still_fit((before_low, before_high): Limits, (low, high): Limits) -> bool {
+    let span = before_high - before_low;
+    let fits = |gap: f32| (-0.1..=0.33).contains(&(gap / span));
+    fits(low - before_low) && fits(before_high - high)
+}
+
+/// Limits around the values that are round numbers, so that a legend can be read.
+fn rounded(low: f32, high: f32) -> Limits {
+    let span = (high - low).max(1e-3 * high.abs().max(low.abs())).max(1e-6);
+    // Two digits of the span: a step is a hundredth to a tenth of it.
+    let step = 10.0_f32.powf(span.log10().floor() - 1.0);
+    let (first, last) = ((low / step).floor() * step, (high / step).ceil() * step);
+    // Values near 0 begin there.
+    let first = if first > 0.0 && first < 0.1 * span { 0.0 } else { first };
+    (first, if last > first { last } else { first + step })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn display(mode: &Mode, range: ViewRange) -> Display {
+        Display::new(&ViewSettings { range, ..ViewSettings::default() }, Some(mode))
+    }
+
+    fn data(unit: &str) -> Mode {
+        Mode { encode: Encode::Data, components: 1, unit: unit.into(), ..Mode::default() }
+    }
+
+    #[test]
+    fn auto_leaves_what_fits_as_it_is() {
+        let roughness = display(&data(""), ViewRange::Auto);
+        assert_eq!(roughness.limits(Some((0.2, 0.9)), None), None);
+        assert_eq!(roughness.limits(Some((0.2, 4.0)), None), Some((0.2, 4.0)));
+        let depth = display(&data("m"), ViewRange::Auto);
+        assert_eq!(depth.limits(Some((0.2, 0.9)), None), Some((0.2, 0.9)));
+        assert_eq!(depth.limits(None, None), None, "nothing is measured yet");
+        let light = Mode { tonemap: true, unit: "cd/m^2".into(), ..Mode::default() };
+        assert_eq!(display(&light, ViewRange::Auto).limits(Some((0.0, 9.0)), None), None);
+        assert_eq!(display(&light, ViewRange::Fit).limits(Some((0.0, 9.0)), None), Some((0.0, 9.0)));
+        assert_eq!(display(&data("m"), ViewRange::Mode).limits(Some((3.0, 9.0)), None), None);
+    }
+
+    #[test]
+    fn errors_have_zero_in_the_middle() {
+        let error = Mode { encode: Encode::Vector, unit: "cd/m^2".into(), ..Mode::default() };
+        assert_eq!(display(&error, ViewRange::Auto).limits(Some((-0.02, 0.05)), None), Some((-0.05, 0.05)));
+    }
+
+    #[test]
+    fn limits_stay_while_the_values_move_a_little() {
+        let depth = display(&data("m"), ViewRange::Auto);
+        let first = depth.limits(Some((3.04, 4.91)), None).unwrap();
+        assert_eq!(first, (3.0, 5.0));
+        for values in [(2.9, 4.8), (3.2, 5.1), (3.1, 4.6)] {
+            assert_eq!(depth.limits(Some(values), Some(first)), Some(first), "{values:?}");
+        }
+        assert_ne!(depth.limits(Some((1.0, 2.0)), Some(first)), Some(first));
+        assert_ne!(depth.limits(Some((3.1, 3.3)), Some(first)), Some(first));
+    }
+
+    #[test]
+    fn equal_values_have_a_range() {
+        for value in [0.0, 1.0, -7.5, 1e6, 1e-12] {
+            let (low, high) = rounded(value, value);
+            assert!(low <= value && value <= high && high > low, "{value}: {low}..{high}");
+        }
+    }
+}
