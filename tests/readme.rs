@@ -88,7 +88,8 @@ fn the_parameters_and_constants_of_the_shader_readme() {
     ready(&session.save("user/params.glsl", &params));
     let hook = "void user_surface(inout Surface s) {";
     let user = session.tree.edited("user.glsl", hook, &format!("{}\n{hook}", snippet("PATTERN = 0u")));
-    let body = "if (INVERT) s.base_color = 1.0 - s.base_color;\n    s.emissive += float(PATTERN) * rim_width * rim_color;";
+    let body =
+        "if (INVERT) s.base_color = 1.0 - s.base_color;\n    s.emissive += float(PATTERN) * rim_width * rim_color;";
     ready(&session.save("user.glsl", &user.replace(hook, &format!("{hook}\n    {body}"))));
     assert_same(&before, &session.render(), "at their defaults they change nothing");
     session.set("INVERT=true");

@@ -188,7 +188,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     inspector::marker(ui.ctx(), &viewer.panels.inspector, picture.rect);
     gizmo::show(ui.ctx(), viewer, picture.rect);
     grid::show(ui.ctx(), &viewer.session, &viewer.panels, picture.rect);
-    if viewer.panels.visible && !viewer.panels.grid.is_on()
+    if viewer.panels.visible
+        && !viewer.panels.grid.is_on()
         && let Some(model) = viewer.session.model()
     {
         let (labels, camera) = (&mut viewer.panels.labels, &viewer.session.settings.camera);

@@ -74,7 +74,7 @@ fn cpu(ui: &mut Ui, viewer: &Viewer) {
             summary.p95,
             summary.max
         );
-        let color = if summary.p95 > UI_LIMIT_MS { WARNING } else { graph::UI };
+        let color = if summary.p95 > UI_LIMIT_MS { WARNING.color() } else { graph::UI };
         row(ui, ("Panels", color), &format!("{:.2} ms", last.ui_ms), &hint);
         let hint = "CPU time to record the commands of the last frame, without waiting for the device";
         row(ui, ("Recording", graph::RECORD), &format!("{:.2} ms", last.record_ms), hint);
@@ -102,7 +102,7 @@ fn counts(ui: &mut Ui, viewer: &Viewer) {
             ),
         ];
         for (name, value, hint) in all {
-            row(ui, (name, QUIET), &grouped(value as f64), hint);
+            row(ui, (name, QUIET.color()), &grouped(value as f64), hint);
         }
     });
 }
@@ -112,7 +112,7 @@ fn memory(ui: &mut Ui, (device, process): (&MemoryUse, Option<u64>)) {
     let mib = |bytes: u64| format!("{} MiB", grouped((bytes as f64 / f64::from(1 << 20)).round()));
     Grid::new("memory").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         let hint = "Memory of images and buffers, and of the blocks that Specula's allocator has reserved for them";
-        row(ui, ("Device memory", QUIET), &format!("{} of {}", mib(device.used), mib(device.reserved)), hint);
+        row(ui, ("Device memory", QUIET.color()), &format!("{} of {}", mib(device.used), mib(device.reserved)), hint);
         for heap in &device.heaps {
             let name = if heap.is_device { "Device heap" } else { "Host heap" };
             let (value, hint) = match heap.used_of {
@@ -122,12 +122,12 @@ fn memory(ui: &mut Ui, (device, process): (&MemoryUse, Option<u64>)) {
                 ),
                 None => (mib(heap.size), "Size of the heap. This driver does not tell how much is in use"),
             };
-            row(ui, (name, QUIET), &value, hint);
+            row(ui, (name, QUIET.color()), &value, hint);
         }
         if let Some(bytes) = process {
             row(
                 ui,
-                ("Process", QUIET),
+                ("Process", QUIET.color()),
                 &mib(bytes),
                 "Resident memory of Specula. On a software device this is device memory too",
             );

@@ -33,7 +33,7 @@ impl Viewer {
         };
         let material = selected.material(&scene).map(|material| model.material_key(material));
         emit(
-            self.events,
+            &self.events,
             &Event::Selected(SelectedEvent {
                 instance: instance.is_some().then_some(match selected {
                     Selected::Instance(index) => index,

@@ -189,9 +189,9 @@ fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, d
         painter.arrow(from, to - from, Stroke::new(1.2, color));
         note(painter, disk.direction(deg, 1.02 * disk.radius), Align2::CENTER_BOTTOM, name);
     };
-    arrow(-of.light_deg, WARNING, "light", true);
+    arrow(-of.light_deg, WARNING.color(), "light", true);
     let name = if directions.is_in_plane() { "eye" } else { "eye (aside)" };
-    arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT, name, false);
+    arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT.color(), name, false);
     response.on_hover_text(
         "The lobe in the plane of incidence: in each direction to the eye, f NoV in 1/sr as luminance. The light comes from the left. \
          The arrow of the eye has this pixel's angle; if the eye is aside, it lies outside of this plane",

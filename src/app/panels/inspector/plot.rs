@@ -32,7 +32,7 @@ impl Pen {
 
 /// A small text of a plot.
 pub(super) fn note(painter: &Painter, at: Pos2, anchor: Align2, text: &str) {
-    painter.text(at, anchor, text, FontId::proportional(FONT), QUIET);
+    painter.text(at, anchor, text, FontId::proportional(FONT), QUIET.color());
 }
 
 /// A number in few characters, for the scale of a plot.

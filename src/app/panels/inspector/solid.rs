@@ -61,8 +61,8 @@ pub(super) fn paint(painter: &Painter, rect: Rect, hemisphere: &Hemisphere, dire
         note(painter, view.place(1.05 * towards), Align2::CENTER_CENTER, name);
     };
     let arrows = [
-        (direction(directions.light_deg.min(90.0), 180.0), WARNING, "light", true),
-        (direction(directions.eye_deg.min(90.0), directions.azimuth_deg), ACCENT, "eye", false),
+        (direction(directions.light_deg.min(90.0), 180.0), WARNING.color(), "light", true),
+        (direction(directions.eye_deg.min(90.0), directions.azimuth_deg), ACCENT.color(), "eye", false),
     ];
     // The arrows that point away from the viewer lie behind the lobe.
     let (front, behind): (Vec<_>, Vec<_>) =

@@ -85,16 +85,16 @@ fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Respons
     paint_swatch(ui, swatch, mode, &value, reading.exposure);
     let is_old = reading.is_old(&mode.slug);
     let color = match () {
-        () if value.not_finite => ERROR,
-        () if is_old => QUIET,
+        () if value.not_finite => ERROR.color(),
+        () if is_old => QUIET.color(),
         () => ui.visuals().text_color(),
     };
-    let unit = ui.painter().layout_no_wrap(mode.unit.clone(), FontId::proportional(10.5), QUIET);
-    painter.galley(pos2(rect.max.x - UNIT + 4.0, middle - 0.5 * unit.size().y), unit, QUIET);
+    let unit = ui.painter().layout_no_wrap(mode.unit.clone(), FontId::proportional(10.5), QUIET.color());
+    painter.galley(pos2(rect.max.x - UNIT + 4.0, middle - 0.5 * unit.size().y), unit, QUIET.color());
     let numbers = painter.layout_no_wrap(text::numbers(mode, &value), FontId::monospace(11.0), color);
     let left_of_numbers = rect.max.x - UNIT - numbers.size().x;
     painter.galley(pos2(left_of_numbers, middle - 0.5 * numbers.size().y), numbers, color);
-    let name_color = if is_current { ACCENT } else { ui.visuals().text_color() };
+    let name_color = if is_current { ACCENT.color() } else { ui.visuals().text_color() };
     let mut job = LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(12.0), name_color);
     let left = rect.min.x + SWATCH + 7.0;
     job.wrap = TextWrapping::truncate_at_width((left_of_numbers - 6.0 - left).max(10.0));

@@ -5,7 +5,7 @@ use egui::{Color32, Frame, Label, Margin, RichText, Ui};
 use crate::app::command::Command;
 use crate::app::difference::Kind;
 use crate::app::learn::{LearnCommand, Learning, Measured};
-use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, WARNING};
+use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING};
 use crate::learn::{Exercise, Finding};
 
 /// Indent of a measurement below its goal, in points.
@@ -76,10 +76,13 @@ fn text(ui: &mut Ui, text: &str) {
         match block {
             Block::Paragraph(words) => _ = ui.add(Label::new(words).wrap()),
             Block::Formula(lines) => {
-                Frame::new().fill(EDGE).corner_radius(4).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
-                    ui.set_width(ui.available_width());
-                    ui.add(Label::new(RichText::new(lines).monospace().color(Color32::WHITE)).wrap());
-                });
+                Frame::new().fill(EDGE.color()).corner_radius(4).inner_margin(Margin::symmetric(10, 6)).show(
+                    ui,
+                    |ui| {
+                        ui.set_width(ui.available_width());
+                        ui.add(Label::new(RichText::new(lines).monospace().color(Color32::WHITE)).wrap());
+                    },
+                );
             }
         }
         ui.add_space(3.0);
@@ -159,16 +162,16 @@ fn solution(ui: &mut Ui, learning: &Learning) -> bool {
         ui.label(RichText::new("Your files are those of the solution.").color(GOOD));
         return false;
     }
-    Frame::new().fill(EDGE).corner_radius(4).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
+    Frame::new().fill(EDGE.color()).corner_radius(4).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         egui::ScrollArea::horizontal().id_salt("solution").show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
             for line in lines {
                 let color = match line.kind {
-                    Kind::Place => ACCENT,
-                    Kind::Removed => ERROR,
-                    Kind::Added => GOOD,
-                    Kind::Same => Color32::from_gray(200),
+                    Kind::Place => ACCENT.color(),
+                    Kind::Removed => ERROR.color(),
+                    Kind::Added => GOOD.color(),
+                    Kind::Same => TEXT.color(),
                 };
                 let text = RichText::new(&line.text).font(egui::FontId::monospace(11.0)).color(color);
                 ui.add(Label::new(text).extend());

@@ -255,7 +255,8 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
             let height = (*count as f32 / most as f32).min(1.0).sqrt() * rect.height();
             let x = egui::lerp(rect.x_range(), (bin as f32 + 0.5) / BINS as f32);
             let width = rect.width() / BINS as f32;
-            let column = Rect::from_min_max(pos2(x - 0.5 * width, rect.max.y - height), pos2(x + 0.5 * width, rect.max.y));
+            let column =
+                Rect::from_min_max(pos2(x - 0.5 * width, rect.max.y - height), pos2(x + 0.5 * width, rect.max.y));
             painter.rect_filled(column, 0.0, color);
         }
     }
@@ -269,7 +270,9 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
         });
     });
     let axis = if legend.shown().is_some() { "value" } else { "stops from middle gray after exposure" };
-    response.on_hover_text(format!("Horizontal: {axis}; the outer columns hold all beyond. Vertical: square root of the count"));
+    response.on_hover_text(format!(
+        "Horizontal: {axis}; the outer columns hold all beyond. Vertical: square root of the count"
+    ));
 }
 
 /// A number with four significant digits, or fewer.

@@ -2,8 +2,8 @@
 
 pub(super) mod diagnostics;
 mod hint;
-mod restore;
 pub(in crate::app) mod legend;
+mod restore;
 
 use std::sync::Arc;
 

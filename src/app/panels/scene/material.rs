@@ -127,6 +127,7 @@ fn scale(factor: Factor) -> Scale {
         suffix: info.unit.to_owned(),
         decimals: if slider.1 - slider.0 > 50.0 { 0 } else { 2 },
         is_logarithmic: false,
+        is_squared: false,
         is_signed: false,
     }
 }

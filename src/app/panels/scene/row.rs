@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, row: &Row, state: &State) -> Option<Action> {
     });
     let painter = ui.painter();
     if is_selected || response.hovered() {
-        painter.rect_filled(rect, 3.0, if is_selected { ui.visuals().selection.bg_fill } else { EDGE });
+        painter.rect_filled(rect, 3.0, if is_selected { ui.visuals().selection.bg_fill } else { EDGE.color() });
     }
     let settings_hide = row.key.as_ref().filter(|_| row.item.is_some());
     let mut x = rect.left() + 4.0 + if is_found { 0.0 } else { row.depth as f32 * INDENT };
@@ -51,7 +51,7 @@ pub(super) fn show(ui: &mut Ui, row: &Row, state: &State) -> Option<Action> {
     x += 12.0;
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
-    let quiet = if is_selected { Color32::WHITE } else { QUIET };
+    let quiet = if is_selected { STRONG.color() } else { QUIET.color() };
     let mut right = rect.right() - 4.0;
     let mut action = None;
     if let Some(key) = settings_hide {
@@ -68,9 +68,9 @@ pub(super) fn show(ui: &mut Ui, row: &Row, state: &State) -> Option<Action> {
     let painter = ui.painter();
     let detail = painter.text(pos2(right, middle), Align2::RIGHT_CENTER, &row.detail, small, quiet);
     let color = match (row.item, is_drawn, is_selected) {
-        (None, ..) => QUIET,
-        (_, false, _) => QUIET,
-        (.., true) => Color32::WHITE,
+        (None, ..) => QUIET.color(),
+        (_, false, _) => QUIET.color(),
+        (.., true) => STRONG.color(),
         _ => ui.visuals().text_color(),
     };
     let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), body, color);
@@ -114,7 +114,7 @@ fn arrow(painter: &egui::Painter, at: Pos2, is_folded: bool) {
 
 /// The switch: a dot if the part is drawn, a ring if it is not.
 fn dot(painter: &egui::Painter, at: Pos2, is_drawn: bool, response: &Response, color: Color32) {
-    let color = if response.hovered() { Color32::WHITE } else { color };
+    let color = if response.hovered() { STRONG.color() } else { color };
     match is_drawn {
         true => painter.circle_filled(at, 3.0, color),
         false => painter.circle_stroke(at, 3.0, Stroke::new(1.2, color)),

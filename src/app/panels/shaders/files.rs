@@ -126,10 +126,10 @@ enum Mark {
 impl Mark {
     fn words(self) -> (Color32, &'static str) {
         match self {
-            Self::Wrong => (ERROR, "Has an error"),
-            Self::Waiting => (WARNING, "Edited; the edit waits until the errors of other files are repaired"),
-            Self::Edited => (ACCENT, "Edited since the tree was opened"),
-            Self::None => (QUIET, "As it was when the tree was opened"),
+            Self::Wrong => (ERROR.color(), "Has an error"),
+            Self::Waiting => (WARNING.color(), "Edited; the edit waits until the errors of other files are repaired"),
+            Self::Edited => (ACCENT.color(), "Edited since the tree was opened"),
+            Self::None => (QUIET.color(), "As it was when the tree was opened"),
         }
     }
 }
@@ -172,7 +172,13 @@ fn show_row(
             arrow(ui, x, rect, *is_open);
             text(ui, x + INDENT, rect, name, ui.visuals().text_color(), response.hovered());
             let count = pos2(rect.right() - 4.0, rect.center().y);
-            ui.painter().text(count, Align2::RIGHT_CENTER, files.to_string(), FontId::proportional(11.0), QUIET);
+            ui.painter().text(
+                count,
+                Align2::RIGHT_CENTER,
+                files.to_string(),
+                FontId::proportional(11.0),
+                QUIET.color(),
+            );
             if response.on_hover_text(format!("{path}/: {files} files")).clicked() && !state.closed.remove(path) {
                 state.closed.insert(path.clone());
             }
@@ -203,7 +209,7 @@ fn show_row(
             let response = ui.interact(rect, ui.id().with(("include", row_id(row), rect.top() as i32)), Sense::click());
             let word = if *is_included { "includes" } else { "included by" };
             let words = format!("{word} {path}");
-            text(ui, x, rect, &words, QUIET, response.hovered());
+            text(ui, x, rect, &words, QUIET.color(), response.hovered());
             let mark = mark(viewer, state, path, &display);
             open_on_click(response, &display, commands, |ui| about(ui, shaders, &state.graph, path, mark));
         }

@@ -100,7 +100,7 @@ fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
 
 fn color(state: StageState) -> Color32 {
     match state {
-        StageState::Failed => ERROR,
+        StageState::Failed => ERROR.color(),
         StageState::OnScreen => GOOD,
         StageState::Pending => WARNING,
         StageState::Bakes | StageState::Off => QUIET,

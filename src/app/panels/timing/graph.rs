@@ -68,7 +68,7 @@ fn area(ui: &mut Ui, height: f32, top: f64) -> (Rect, Response, Painter) {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, EDGE);
     let text = format!("{top} ms");
-    painter.text(rect.left_top() + vec2(3.0, 1.0), Align2::LEFT_TOP, text, FontId::proportional(10.0), QUIET);
+    painter.text(rect.left_top() + vec2(3.0, 1.0), Align2::LEFT_TOP, text, FontId::proportional(10.0), QUIET.color());
     (rect, response, painter)
 }
 
@@ -102,7 +102,7 @@ pub(super) fn passes(ui: &mut Ui, timing: &Timing, names: &[String]) {
     edits(&painter, rect, timing);
     if pictures.is_empty() {
         let text = "no device times yet";
-        painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(11.0), QUIET);
+        painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(11.0), QUIET.color());
     }
     let at = hovered(&response, rect, pictures.len());
     let text = at.and_then(|index| pictures.get(index)).map(|sample| {
@@ -146,7 +146,7 @@ pub(super) fn cpu(ui: &mut Ui, timing: &Timing, limit: f64) {
     }
     painter.add(Shape::mesh(columns.mesh));
     let y = rect.bottom() - rect.height() * (limit / top) as f32;
-    painter.hline(rect.x_range(), y, Stroke::new(1.0, WARNING.gamma_multiply(0.6)));
+    painter.hline(rect.x_range(), y, Stroke::new(1.0, WARNING.color().gamma_multiply(0.6)));
     response.on_hover_text(format!("CPU time of the last frames: panels, and recording. The line is at {limit} ms"));
 }
 
