@@ -69,7 +69,7 @@ fn lambert() {
 
 #[test]
 fn fresnel() {
-    exercise("fresnel", &["F is "]);
+    exercise("fresnel", &["F is ", "F is "]);
 }
 
 #[test]
