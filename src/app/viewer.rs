@@ -424,6 +424,7 @@ impl Viewer {
             Command::OpenTree(path) => {
                 let source = Source::open(path);
                 self.source = source.clone();
+                self.settled = None;
                 // Versions of another tree must never be written into this one.
                 self.forget_all_references();
                 self.edits.forget_draft();

@@ -1,19 +1,19 @@
 //! Measures whether a tree reaches the goals of an exercise, beside the tree of the solution.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::goal::Check;
 use super::measured::{self, Verdict};
 use super::{Exercise, Finding, Goal, shown};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, GpuError};
 use crate::headless::{Headless, HeadlessError, Sequence};
 use crate::measure::Bench;
 use crate::pipeline::Outcome;
 use crate::render::Capture;
 use crate::scene;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, Diagnostic, Source};
+use crate::shader::{Change, Compiler, Diagnostic, ShaderSet, Source, TreePath};
 
 /// Size of the pictures that are compared.
 const SIZE: (u32, u32) = (192, 128);
@@ -46,6 +46,9 @@ impl From<HeadlessError> for LearnError {
     }
 }
 
+/// A bench, with the shaders and the settings that it is of.
+type Measuring = (Arc<ShaderSet>, Settings, Bench);
+
 /// A device that measures. It keeps what it has compiled, so the next measurement of the same exercise is faster.
 pub struct Lab {
     gpu: Arc<Gpu>,
@@ -54,6 +57,8 @@ pub struct Lab {
     exercise: String,
     own: Option<(Source, Headless)>,
     solved: Option<Headless>,
+    own_bench: Option<Measuring>,
+    solved_bench: Option<Measuring>,
     /// Pictures of the solution, by goal.
     pictures: BTreeMap<usize, Capture>,
 }
@@ -62,7 +67,8 @@ impl Lab {
     /// A lab on this device.
     pub fn new(gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Self {
         let (gpu, compiler) = (gpu.clone(), compiler.clone());
-        Self { gpu, compiler, exercise: String::new(), own: None, solved: None, pictures: BTreeMap::new() }
+        let (exercise, pictures) = (String::new(), BTreeMap::new());
+        Self { gpu, compiler, exercise, own: None, solved: None, own_bench: None, solved_bench: None, pictures }
     }
 
     /// Measures the tree of `source`, goal by goal. `superseded` returns whether the result is no longer wanted.
@@ -96,7 +102,10 @@ impl Lab {
     fn open(&mut self, exercise: &Exercise, source: &Source) -> Result<(), LearnError> {
         let is_same = |known: &Source| known.location().is_some() && known.location() == source.location();
         if let Some((_, headless)) = self.own.as_mut().filter(|(known, _)| is_same(known)) {
-            let reload = headless.update(Change::Paths(source.list().into_iter().collect()));
+            // Files that are gone count as changed, too.
+            let mut paths: BTreeSet<TreePath> = source.list().into_iter().collect();
+            paths.extend(headless.reloader().library().dependencies());
+            let reload = headless.update(Change::Paths(paths));
             return match reload.outcome {
                 Outcome::Failed(diagnostics) => Err(LearnError::Shaders(diagnostics)),
                 Outcome::Ready(_) | Outcome::Unchanged { .. } => Ok(()),
@@ -167,11 +176,12 @@ impl Lab {
     }
 
     fn measure(&mut self, exercise: &Exercise, check: &Check, settings: &Settings) -> Result<Verdict, LearnError> {
-        let gpu = self.gpu.clone();
-        let bench = |headless: &Headless| Bench::new(&gpu, &headless.shaders(), settings);
         let (own, solved) = self.both(exercise)?;
-        let own = bench(own).map_err(HeadlessError::from)?;
-        let verdict = measured::verdict(check, &own, |surface, grid| bench(solved)?.furnace(surface, grid));
+        let (own, solved) = (own.shaders(), solved.shaders());
+        let Self { gpu, own_bench, solved_bench, .. } = self;
+        let own = bench(own_bench, gpu, &own, settings).map_err(HeadlessError::from)?;
+        let of_solution = |surface, grid| bench(solved_bench, gpu, &solved, settings)?.furnace(surface, grid);
+        let verdict = measured::verdict(check, own, of_solution);
         let verdict = verdict.unwrap_or_else(|| Ok((false, "nothing was measured".to_owned())));
         verdict.map_err(|error| HeadlessError::from(error).into())
     }
@@ -224,6 +234,21 @@ impl Lab {
         let says = format!("`{name}` is {} at first", measured::number(found));
         Ok((is_good, measured::with_expected(says, is_good, default)))
     }
+}
+
+/// The bench of shaders, which is made again for others.
+fn bench<'a>(
+    made: &'a mut Option<Measuring>,
+    gpu: &Arc<Gpu>,
+    shaders: &Arc<ShaderSet>,
+    settings: &Settings,
+) -> Result<&'a Bench, GpuError> {
+    let is_same = |(known, of, _): &Measuring| Arc::ptr_eq(known, shaders) && of == settings;
+    let made = match made.take().filter(is_same) {
+        Some(known) => made.insert(known),
+        None => made.insert((shaders.clone(), settings.clone(), Bench::new(gpu, shaders, settings)?)),
+    };
+    Ok(&made.2)
 }
 
 /// Draws `frames` frames from the beginning, and reads the last one.

@@ -10,8 +10,6 @@ mod lab;
 mod measured;
 mod progress;
 mod shown;
-#[cfg(test)]
-mod tests;
 
 use std::sync::LazyLock;
 

@@ -71,7 +71,7 @@ impl Preset {
             Self::Learn => {
                 let below: [(&[Panel], f32); 2] =
                     [(&[Panel::Learn], 3.0), (&[Panel::Parameters, Panel::Modes, Panel::Shaders], 1.0)];
-                vec![(column(tiles, &below), LESSON), (picture, 1.0)]
+                vec![(picture, 1.0), (column(tiles, &below), LESSON)]
             }
         };
         let root = linear(tiles, LinearDir::Horizontal, columns);

@@ -7,6 +7,7 @@ use clap::ValueEnum as _;
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Panel, Preset};
+use crate::app::learn::LearnCommand;
 use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
 use crate::app::panels::expression::watch;
 use crate::app::panels::parameters::default_of;
@@ -14,6 +15,7 @@ use crate::app::panels::passes::{internal, is_of_pass, is_switch};
 use crate::app::panels::rows::choice_name;
 use crate::app::recent::Kind;
 use crate::app::viewer::Viewer;
+use crate::learn::exercises;
 use crate::scene::environment::BUILT_IN;
 use crate::settings::{LightSource, Settings, ShaderValue, Tonemap};
 use crate::shader::annotation::ParameterType;
@@ -146,6 +148,7 @@ pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
     let mut entries = commands();
     let settings = &viewer.session.settings;
     entries.extend(files(viewer));
+    entries.extend(lessons());
     let has_lights = viewer.session.model().is_some_and(|model| !model.lights.is_empty());
     let is_offered = |source: &&LightSource| has_lights || **source != LightSource::Model;
     entries.extend(
@@ -186,6 +189,15 @@ fn files(viewer: &Viewer) -> impl Iterator<Item = Entry> {
     let environments = built_in.chain(recent.of(Kind::Environment).iter().cloned()).map(environment);
     let models = crate::scene::BUILT_IN.into_iter().map(PathBuf::from).chain(recent.of(Kind::Model).iter().cloned());
     environments.chain(models.map(model)).chain(recent.of(Kind::Tree).iter().cloned().map(tree))
+}
+
+/// The exercises.
+fn lessons() -> impl Iterator<Item = Entry> {
+    exercises().iter().map(|exercise| {
+        let title = format!("Exercise {}: {}", exercise.number, exercise.title);
+        let entry = Entry::new("Learn", title, Action::Do(Command::Learn(LearnCommand::Open(exercise.number))));
+        Entry { words: format!("learn {} {}", exercise.slug(), exercise.idea), is_minor: true, ..entry }
+    })
 }
 
 /// What depends on what is on screen: comparisons, versions that can be written to the files, sides of the model.

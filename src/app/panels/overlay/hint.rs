@@ -15,6 +15,10 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
     if !viewer.panels.hint.is_shown() || picture.width() < 300.0 || picture.height() < 200.0 {
         return;
     }
+    // Which tree it is is known with the first shaders.
+    if viewer.shader.tree.is_empty() {
+        return;
+    }
     let tree = viewer.shader.location.clone();
     // An area keeps its first size, so another text is another area.
     let id = Id::new(("hint", tree.is_some(), picture.width() as u32));
