@@ -257,7 +257,7 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
         Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
         Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
         Key::Named(NamedKey::Escape) if viewer.panels.show_keys => viewer.panels.show_keys = false,
-        Key::Named(NamedKey::Escape) if viewer.panels.inspector.is_pinned() => viewer.panels.inspector.pin = None,
+        Key::Named(NamedKey::Escape) if viewer.panels.inspector.is_pinned() => viewer.panels.inspector.unpin(),
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {
