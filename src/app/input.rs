@@ -299,7 +299,6 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
         Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
         Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
         Key::Named(NamedKey::Escape) if viewer.panels.show_keys => viewer.panels.show_keys = false,
-        Key::Named(NamedKey::Escape) if viewer.panels.inspector.is_pinned() => viewer.panels.inspector.pin = None,
         Key::Named(NamedKey::Escape) if viewer.panels.open_gallery.is_open => {
             viewer.panels.open_gallery.is_open = false
         }
@@ -307,6 +306,7 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
             viewer.execute(Command::Select(Selected::Nothing));
         }
         Key::Named(NamedKey::Escape) if viewer.panels.grid.is_on() => viewer.panels.grid.end(),
+        Key::Named(NamedKey::Escape) if viewer.panels.inspector.is_pinned() => viewer.panels.inspector.unpin(),
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {

@@ -48,6 +48,14 @@ impl Inspector {
     pub(super) fn is_pinned(&self) -> bool {
         self.is_visible && self.pin.is_some()
     }
+
+    /// Unpins the pixel. Its values go, unless the pixel under the mouse takes its place.
+    pub(super) fn unpin(&mut self) {
+        self.pin = None;
+        if !self.follows {
+            (self.reading, self.asked, self.curves) = (None, None, None);
+        }
+    }
 }
 
 /// The values of a pixel.

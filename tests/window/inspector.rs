@@ -54,8 +54,9 @@ fn a_click_pins_a_pixel_whose_values_are_those_of_probe_and_follow_edits() {
     let broken = "else if (MODE == MODE_ROUGHNESS) value = vec3(sqrt(-1.0 - s.roughness));";
     assert!(surface.contains(line));
     viewer.tree.write("debug/surface.glsl", &surface.replace(line, broken));
-    let edited = viewer.running.event("inspected");
-    assert_eq!((&edited["modes"]["roughness"], &edited["generation"]), (&"NaN".into(), &2.into()));
+    let is_edited = |event: &Value| event["event"] == "inspected" && event["generation"] == 2;
+    let edited = viewer.running.until("the values of the edit", is_edited);
+    assert_eq!(edited["modes"]["roughness"], "NaN", "{edited}");
     assert_eq!(edited["modes"]["position"], found["modes"]["position"]);
 
     viewer.key("Escape");

@@ -63,7 +63,7 @@ fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
             None => drop(ui.label(RichText::new("no pixel").color(QUIET))),
         }
         if state.pin.is_some() && ui.small_button("Unpin").on_hover_text("Esc, or a click on the marker").clicked() {
-            state.pin = None;
+            state.unpin();
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             copy(ui, state, modes);

@@ -106,11 +106,15 @@ impl PixelReader {
             self.under_mouse = Some([x, y]);
         }
         let at = inspector.pin.or(self.under_mouse.filter(|_| inspector.follows));
-        let Some(at) = at.filter(|at| at[0] < size.0 && at[1] < size.1) else { return Ok(None) };
+        let Some(at) = at.filter(|at| at[0] < size.0 && at[1] < size.1) else {
+            self.shown = None;
+            return Ok(None);
+        };
+        let is_dropped = inspector.reading.is_none() && !self.drawn.is_empty();
         let Some((shaders, mut now)) = shown(viewer, size) else { return Ok(None) };
         now.target = TargetFormat::full(1);
         let now = (now, at);
-        if self.shown.as_ref() != Some(&now) {
+        if is_dropped || self.shown.as_ref() != Some(&now) {
             if self.shown.as_ref().is_none_or(|(before, _)| *before != now.0) {
                 self.asked.clear();
             }

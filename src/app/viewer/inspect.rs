@@ -21,7 +21,10 @@ impl Viewer {
             return;
         }
         let is_near = |pin: [u32; 2]| pin[0].abs_diff(at[0]) <= MARKER && pin[1].abs_diff(at[1]) <= MARKER;
-        inspector.pin = if inspector.pin.is_some_and(is_near) { None } else { Some(at) };
+        match inspector.pin.is_some_and(is_near) {
+            true => inspector.unpin(),
+            false => inspector.pin = Some(at),
+        }
     }
 
     /// Begins to read the values of a pixel: picture number `picture`, which `state` draws. Earlier values stay until newer ones come.

@@ -1,10 +1,10 @@
 //! The BRDF of the inspected pixel's material: its lobe in the plane of incidence and in space, and its albedo over the angle. The curves
 //! before the last edit are dashed.
 
-use egui::{Align2, Color32, Pos2, RichText, Sense, Stroke, Ui, vec2};
+use egui::{Color32, Pos2, RichText, Sense, Stroke, Ui, vec2};
 
 use super::super::theme::{ACCENT, ERROR, QUIET, WARNING};
-use super::plot::{Chart, HalfDisk, Pen, note};
+use super::plot::{self, Chart, HalfDisk, Pen};
 use super::solid;
 use crate::app::inspector::directions::Directions;
 use crate::app::inspector::{Asked, Reading, Shown};
@@ -101,14 +101,14 @@ fn why_not(reading: &Reading, light: u32) -> String {
 fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Reading) {
     let [r, g, b] = material.base_color;
     let Material { metallic, roughness, .. } = material;
-    let text = format!("base {r:.3} {g:.3} {b:.3}  metallic {metallic:.2}  roughness {roughness:.3}");
+    let text = format!("Base {r:.3} {g:.3} {b:.3}, metallic {metallic:.2}, roughness {roughness:.3}");
     let doc = "Base color (linear RGB), metallic and roughness of this pixel, which the curves are measured with";
-    ui.label(RichText::new(text).small().monospace()).on_hover_text(doc);
+    ui.label(RichText::new(text).small()).on_hover_text(doc);
     let Directions { light_deg, eye_deg, azimuth_deg } = directions;
-    let text = format!("light {light_deg:.1}°  eye {eye_deg:.1}°  azimuth {azimuth_deg:.0}°");
+    let text = format!("Light {light_deg:.1}°, eye {eye_deg:.1}°, azimuth of the eye {azimuth_deg:.0}°");
     let doc = "Angles from the shading normal to the light and to the eye, and the azimuth of the eye: 0° on the side where a mirror \
         would reflect the light, 180° on the side of the light";
-    ui.label(RichText::new(text).small().monospace()).on_hover_text(doc);
+    ui.label(RichText::new(text).small()).on_hover_text(doc);
     if *light_deg >= 90.0 {
         let text = "The light is below the horizon of this surface; the lobe is that of a light at 89°";
         ui.label(RichText::new(text).small().color(WARNING));
@@ -166,10 +166,10 @@ fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, d
     disk.axes(painter);
     for (curves, is_dashed) in before.into_iter().map(|before| (before, true)).chain([(curves, false)]) {
         let parts: [(Color32, fn(&Lobe) -> [f32; 3]); 4] = [
+            (SUM, sum),
             (DIFFUSE, |lobe| lobe.diffuse),
             (SPECULAR, |lobe| lobe.specular),
             (MULTIPLE, |lobe| lobe.multiple),
-            (SUM, sum),
         ];
         for (color, part) in parts {
             let count = curves.lobes.len().max(1) as f32;
@@ -183,15 +183,16 @@ fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, d
             Pen { color, is_dashed }.line(painter, &points);
         }
     }
-    let arrow = |deg: f32, color: Color32, name: &str, inwards: bool| {
+    // The names lie at different distances, since both directions may be on one side.
+    let arrow = |deg: f32, color: Color32, (name, at): (&str, f32), inwards: bool| {
         let (near, far) = (disk.direction(deg, 0.25 * disk.radius), disk.direction(deg, 0.92 * disk.radius));
         let (from, to) = if inwards { (far, near) } else { (near, far) };
-        painter.arrow(from, to - from, Stroke::new(1.2, color));
-        note(painter, disk.direction(deg, 1.02 * disk.radius), Align2::CENTER_BOTTOM, name);
+        plot::arrow(painter, from, to, color);
+        plot::name(painter, disk.direction(deg, at * disk.radius), name, color);
     };
-    arrow(-of.light_deg, WARNING.color(), "light", true);
+    arrow(-of.light_deg, WARNING.color(), ("light", 0.8), true);
     let name = if directions.is_in_plane() { "eye" } else { "eye (aside)" };
-    arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT.color(), name, false);
+    arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT.color(), (name, 0.5), false);
     response.on_hover_text(
         "The lobe in the plane of incidence: in each direction to the eye, f NoV in 1/sr as luminance. The light comes from the left. \
          The arrow of the eye has this pixel's angle; if the eye is aside, it lies outside of this plane",

@@ -35,6 +35,24 @@ pub(super) fn note(painter: &Painter, at: Pos2, anchor: Align2, text: &str) {
     painter.text(at, anchor, text, FontId::proportional(FONT), QUIET.color());
 }
 
+/// The name of an arrow, with its color, on a dark ground.
+pub(super) fn name(painter: &Painter, at: Pos2, text: &str, color: Color32) {
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(FONT), color);
+    let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
+    painter.rect_filled(rect.expand2(vec2(2.0, 0.0)), 2.0, Color32::from_black_alpha(140));
+    painter.galley(rect.min, galley, color);
+}
+
+/// An arrow with a small head.
+pub(super) fn arrow(painter: &Painter, from: Pos2, to: Pos2, color: Color32) {
+    let stroke = Stroke::new(1.2, color);
+    let back = (from - to).normalized() * 6.0;
+    let side = 0.5 * back.rot90();
+    painter.line_segment([from, to], stroke);
+    painter.line_segment([to + back + side, to], stroke);
+    painter.line_segment([to + back - side, to], stroke);
+}
+
 /// A number in few characters, for the scale of a plot.
 pub(super) fn short(number: f32) -> String {
     match number.abs() {

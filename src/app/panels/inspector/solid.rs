@@ -1,12 +1,12 @@
 //! The lobe in space: a surface whose distance from the origin is f NoV in that direction, drawn with egui's painter.
 
 use egui::epaint::{Mesh, Vertex};
-use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, pos2};
 use glam::Vec3;
 
 use super::super::theme::{ACCENT, WARNING};
 use super::lobe::luminance;
-use super::plot::{GRID, note};
+use super::plot::{self, GRID};
 use crate::app::inspector::directions::Directions;
 use crate::measure::Hemisphere;
 
@@ -57,8 +57,8 @@ pub(super) fn paint(painter: &Painter, rect: Rect, hemisphere: &Hemisphere, dire
     let arrow = |towards: Vec3, color: Color32, name: &str, inwards: bool| {
         let (near, far) = (view.place(0.15 * towards), view.place(0.98 * towards));
         let (from, to) = if inwards { (far, near) } else { (near, far) };
-        painter.arrow(from, to - from, Stroke::new(1.2, color));
-        note(painter, view.place(1.05 * towards), Align2::CENTER_CENTER, name);
+        plot::arrow(painter, from, to, color);
+        plot::name(painter, view.place(1.06 * towards), name, color);
     };
     let arrows = [
         (direction(directions.light_deg.min(90.0), 180.0), WARNING.color(), "light", true),

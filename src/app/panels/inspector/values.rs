@@ -25,8 +25,8 @@ pub(super) fn show(
 ) {
     let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let is_found = |mode: &Mode| {
-        let text = format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc).to_lowercase();
-        words.iter().all(|word| text.contains(word))
+        let text = || format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc).to_lowercase();
+        words.is_empty() || words.iter().all(|word| text().contains(word))
     };
     let has_feature = |mode: &Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
     let (read, unread): (Vec<&Mode>, Vec<&Mode>) =

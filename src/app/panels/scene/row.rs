@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::tree::Row;
+use crate::app::panels::theme::STRONG;
 use crate::app::panels::{EDGE, QUIET};
 use crate::app::selection::Selected;
 
