@@ -127,7 +127,7 @@ fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
             "FILE:LINE and a variable or an expression of the shaders. Enter shows its value over the model, as a mode. \
              `return` is what the line returns",
         );
-        let is_shown = is_on && state.field == settings.expression.at;
+        let is_shown = is_on && settings.mode == MODE && state.field == settings.expression.at;
         let (name, hint) = match is_shown {
             true => ("Stop", "Go back to the picture"),
             false => ("Watch", "Show the value over the model (Enter)"),
@@ -206,7 +206,7 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &Shown, state: &mut Expr
             }
         }
     });
-    if watched.is_some() {
+    ui.add_enabled_ui(watched.is_some(), |ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Evaluation").small());
             let value = &mut settings.expression.evaluation;
@@ -216,12 +216,11 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &Shown, state: &mut Expr
             };
             let parse = |text: &str| if text.trim() == "last" { Some(0.0) } else { text.trim().parse().ok() };
             let drag = DragValue::new(value).range(0..=100_000).speed(0.05).custom_formatter(text).custom_parser(parse);
-            ui.add(drag).on_hover_text(
-                "Which evaluation of the line in a pixel is shown, where it runs more than once: in a loop, or for each \
-                 light. `lights.chosen` selects one light",
-            );
+            let hint = "Which evaluation of the line in a pixel is shown, where it runs more than once: in a loop, or for each \
+                light. `lights.chosen` selects one light";
+            ui.add(drag).on_hover_text(hint).on_disabled_hover_text(hint);
         });
-    }
+    });
 }
 
 /// The numbers of the line as sliders.

@@ -173,8 +173,15 @@ impl Viewer {
 
 /// What was written, in a line.
 fn told(edits: &[Edit]) -> String {
-    let changes: Vec<String> =
-        edits.iter().map(|edit| format!("{} = {}", edit.name, edit.new.trim_start_matches([' ', '=']))).collect();
+    let change = |edit: &Edit| {
+        let new = edit.new.trim_start_matches([' ', '=']);
+        // A number has no name.
+        match edit.name == edit.old() {
+            true => format!("{new} for {} in line {}", edit.old(), edit.line),
+            false => format!("{} = {new}", edit.name),
+        }
+    };
+    let changes: Vec<String> = edits.iter().map(change).collect();
     let files: BTreeSet<&str> = edits.iter().map(|edit| edit.path.as_str()).collect();
     format!("Wrote {} to {}", changes.join(", "), files.into_iter().collect::<Vec<_>>().join(", "))
 }

@@ -15,7 +15,7 @@ use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
 use crate::scene::{BUILT_IN, environment};
 use crate::settings::{GROUND, LightSource, SceneSettings};
-use crate::shader::{Diagnostic, Severity, ShaderSet};
+use crate::shader::{Diagnostic, Severity, ShaderSet, expression};
 use crate::threads::baker::BakeMessage;
 use crate::threads::loader::Loaded;
 use crate::threads::worker::WorkerMessage;
@@ -183,7 +183,10 @@ impl Viewer {
         emit(&self.events, &Event::Reload(event.clone()));
         self.shader.log.finished(&event);
         self.stages_changed();
-        self.shader.last = Some(event);
+        // No file has changed if only another expression is watched.
+        let is_watch = event.changed.is_empty() && event.stages == [expression::STAGE];
+        let changed = if is_watch { vec![expression::MODE.to_owned()] } else { event.changed.clone() };
+        self.shader.last = Some(ReloadEvent { changed, ..event });
     }
 
     /// Reports settings and modes that the shaders lack. The settings stay, because the next edit may declare them.

@@ -1,24 +1,20 @@
 //! Finds a line again after an edit of its file.
 
+use similar::{Algorithm, DiffOp, capture_diff_slices};
+
 /// The number, from 1, of the line of `new` that was the line `number` of `old`. A line that was itself edited keeps its place
 /// among its neighbors.
 pub fn follow(old: &str, new: &str, number: u32) -> u32 {
     let (old, new): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
     let index = number.saturating_sub(1) as usize;
-    let before = old.iter().zip(&new).take_while(|(a, b)| a == b).count();
-    let most = old.len().min(new.len()) - before;
-    let after = old.iter().rev().zip(new.iter().rev()).take(most).take_while(|(a, b)| a == b).count();
-    let found = if index < before {
-        index
-    } else if index + after >= old.len() {
-        (index + new.len()).saturating_sub(old.len())
-    } else {
-        // Within the edit, the nearest line with the same text.
-        let edited = before..new.len() - after;
-        let same = edited.clone().filter(|at| old.get(index).is_some_and(|line| new[*at].trim() == line.trim()));
-        let last = edited.end.saturating_sub(1).max(before);
-        same.min_by_key(|at| at.abs_diff(index)).unwrap_or(index.min(last))
-    };
+    let trimmed = |lines: &[&str]| -> Vec<String> { lines.iter().map(|line| line.trim().to_owned()).collect() };
+    let operations = capture_diff_slices(Algorithm::Myers, &trimmed(&old), &trimmed(&new));
+    let holds = |operation: &&DiffOp| operation.old_range().contains(&index);
+    let found = operations.iter().find(holds).map_or(index, |operation| {
+        let (before, after) = (operation.old_range(), operation.new_range());
+        // Of lines that were replaced by fewer, the last ones share a place.
+        (after.start + index - before.start).min(after.end.saturating_sub(1).max(after.start))
+    });
     u32::try_from(found + 1).unwrap_or(number)
 }
 
@@ -36,6 +32,7 @@ mod tests {
             ("a\nb\nC\nd\ne\n", 3),
             ("A\nb\nc\nd\nE\n", 3),
             ("A\nx\nb\n  c\nd\nE\n", 4),
+            ("x\na\nb\nC\nd\ne\n", 4),
             ("a\ne\n", 2),
         ] {
             assert_eq!(follow(old, new, 3), expected, "{new:?}");

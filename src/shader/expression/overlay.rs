@@ -130,7 +130,9 @@ impl Overlay {
             } else {
                 format!("the line offers {}", self.names.join(", "))
             };
-            error = error.with_help(format!("{} {names}", hint.trim()).trim().to_owned());
+            let hint = hint.trim().trim_end_matches('?').replacen("Did", "did", 1);
+            let help = if hint.is_empty() { names } else { format!("{hint}? Else, {names}") };
+            error = error.with_help(help);
         } else if (&first.file, first.line) != (&error.file, error.line) {
             error = error.with_note(first.one_line());
         }
@@ -231,14 +233,15 @@ fn stage_text(
     }
     let call = outside.map(|expression| format!(" {FUNCTION}({expression});")).unwrap_or_default();
     let plain = |text: &str| text.replace(['"', '\\'], "");
+    let (file, watched) = (plain(&expression.file), plain(&expression.text));
+    let name = format!("{watched} at {}:{line}", file.rsplit('/').next().unwrap_or(&file));
+    let doc = format!("Value of {watched} in line {line} of {file}; a checkerboard where the line is not reached");
     stage += &format!(
         "\n\n//@pass {MODE} \"Watched expression\" draw=model to=picture instead=model doc=\"The value of an expression of the \
          shaders\"\n#include \"common/pixel.glsl\"\n#include \"debug/absent.glsl\"\n\
-         //@mode {MODE} \"Expression\" group=\"Picture\" encode=data stage=.expression doc=\"{}:{line}: {}\"\n\
+         //@mode {MODE} \"{name}\" group=\"Expression\" encode=data stage=.expression doc=\"{doc}\"\n\
          const uint MODE_EXPRESSION = {MODE_ID}u;\n\
-         void main() {{ watched_main();{call} {color} = hdr_pixel(if_present(watch_reached, watch_shown), 1.0, no_data); }}\n",
-        plain(&expression.file),
-        plain(&expression.text)
+         void main() {{ watched_main();{call} {color} = hdr_pixel(if_present(watch_reached, watch_shown), 1.0, no_data); }}\n"
     );
     let include = format!("#include \"{include}\"\n");
     let functions = library(expression.evaluation);

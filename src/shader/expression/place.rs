@@ -41,22 +41,27 @@ pub fn place(
     let at = at.or_else(|| tokens.iter().find(|token| token.bytes.start >= start).map(|token| token.bytes.start));
     let functions = functions(&tokens);
     let at = at.unwrap_or(start);
+    let no_return = || "there is no `return` on this line".to_owned();
     let in_head = |range: &Range<usize>| range.contains(&at);
     for function in &functions {
         if in_head(&function.head) {
+            if expression == "return" {
+                return Err(no_return());
+            }
             return Ok(Placed::Inside(vec![(function.body.bytes.start + 1, format!(" {}", call(expression)))]));
         }
         if function.body.bytes.contains(&at) {
             let statement = innermost(&function.body, at);
             let expression = match (expression, statement.kind) {
                 ("return", Kind::Jump) => returned(statement, &tokens)?,
-                ("return", _) => return Err("there is no `return` on this line".to_owned()),
+                ("return", _) => return Err(no_return()),
                 _ => expression.to_owned(),
             };
             return Ok(Placed::Inside(insert(statement, at, &tokens, &expression, &call(&expression))));
         }
     }
     match tokens.iter().any(|token| token.bytes.start >= start) || found.is_some() {
+        true if expression == "return" => Err(no_return()),
         true => Ok(Placed::Outside),
         false => Err("there is no code on this line".to_owned()),
     }
