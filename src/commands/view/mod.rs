@@ -35,7 +35,7 @@ pub struct Args {
 impl Args {
     /// The options of another command that opens the window.
     pub fn of(model: Option<PathBuf>, common: Common) -> Self {
-        Self { model, common }
+        Self { model, socket: None, common }
     }
 
     /// The model as given on the command line.

@@ -101,9 +101,9 @@ fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
 fn color(state: StageState) -> Color32 {
     match state {
         StageState::Failed => ERROR.color(),
-        StageState::OnScreen => GOOD,
-        StageState::Pending => WARNING,
-        StageState::Bakes | StageState::Off => QUIET,
+        StageState::OnScreen => GOOD.color(),
+        StageState::Pending => WARNING.color(),
+        StageState::Bakes | StageState::Off => QUIET.color(),
     }
 }
 
