@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::controls::{ACCENT, choose, is_about};
+use crate::NDF;
 use crate::support::Tree;
 use crate::support::process::run;
 use crate::support::window::Viewer;
@@ -11,6 +12,8 @@ use crate::support::window::Viewer;
 const AT: (u32, u32) = (420, 330);
 /// The mark in the picture covers this pixel of the window, right of the clicked one.
 const MARK: (u32, u32) = (AT.0 + 5, AT.1);
+/// The button that shows the page BRDF.
+const BRDF: (u32, u32) = (760, 108);
 
 fn numbers(value: &Value) -> Vec<f64> {
     value
@@ -48,13 +51,24 @@ fn a_click_pins_a_pixel_whose_values_are_those_of_probe_and_follow_edits() {
         assert!(is_close, "{slug}: the window {value:?}, probe {probed:?}");
     }
 
-    // NaN of an edit is told, and its repair too.
+    // The curves of its material, and those before an edit.
+    viewer.click(BRDF);
+    let curves = viewer.running.event("curves");
+    assert_eq!((&curves["before"], &curves["generation"]), (&false.into(), &1.into()), "{curves}");
+    let albedo = numbers(&curves["albedo"]);
+    let ndf = viewer.tree.read(NDF);
+    viewer.tree.write(NDF, &ndf.replace("float a2 = alpha * alpha;", "float a2 = 4.0 * alpha * alpha;"));
+    let curves = viewer.running.event("curves");
+    assert_eq!((&curves["before"], &curves["generation"]), (&true.into(), &2.into()), "{curves}");
+    assert_ne!(numbers(&curves["albedo"]), albedo);
+
+    // NaN of an edit is told.
     let surface = viewer.tree.read("debug/surface.glsl");
     let line = "else if (MODE == MODE_ROUGHNESS) value = vec3(s.roughness);";
     let broken = "else if (MODE == MODE_ROUGHNESS) value = vec3(sqrt(-1.0 - s.roughness));";
     assert!(surface.contains(line));
     viewer.tree.write("debug/surface.glsl", &surface.replace(line, broken));
-    let is_edited = |event: &Value| event["event"] == "inspected" && event["generation"] == 2;
+    let is_edited = |event: &Value| event["event"] == "inspected" && event["generation"] == 3;
     let edited = viewer.running.until("the values of the edit", is_edited);
     assert_eq!(edited["modes"]["roughness"], "NaN", "{edited}");
     assert_eq!(edited["modes"]["position"], found["modes"]["position"]);

@@ -144,7 +144,8 @@ impl PixelReader {
         }
         match self.draw_sets(encoder, slot, viewer, layouts, &shaders, stale) {
             Err(GpuError::OutOfMemory(_)) => {
-                self.stopped = true;
+                (self.renderer, self.stopped) = (None, true);
+                self.pending.clear();
                 Ok(Some(Duration::ZERO))
             }
             drawn => drawn,

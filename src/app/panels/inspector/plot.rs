@@ -21,13 +21,25 @@ impl Pen {
     pub(super) fn line(self, painter: &Painter, points: &[Pos2]) {
         let stroke = Stroke::new(if self.is_dashed { 1.2 } else { 1.6 }, self.color);
         let is_finite = |point: &Pos2| point.x.is_finite() && point.y.is_finite();
-        for part in points.split(|point| !is_finite(point)).filter(|part| part.len() > 1) {
+        for part in points.split(|point| !is_finite(point)) {
+            let part = thinned(part);
             match self.is_dashed {
-                true => painter.extend(Shape::dashed_line(part, stroke, 5.0, 4.0)),
-                false => drop(painter.add(Shape::line(part.to_vec(), stroke))),
+                true => painter.extend(Shape::dashed_line(&part, stroke, 5.0, 4.0)),
+                false => drop(painter.add(Shape::line(part, stroke))),
             }
         }
     }
+}
+
+/// The points without those that lie on the one before: most of a narrow lobe is at the origin.
+fn thinned(points: &[Pos2]) -> Vec<Pos2> {
+    let mut kept: Vec<Pos2> = Vec::new();
+    for point in points {
+        if kept.last().is_none_or(|last| last.distance(*point) > 0.4) {
+            kept.push(*point);
+        }
+    }
+    kept
 }
 
 /// A small text of a plot.
@@ -163,6 +175,12 @@ mod tests {
         let close = |a: Pos2, b: Pos2| a.distance(b) < 1e-3;
         assert!(close(disk.at(0.0, 2.0), pos2(100.0, 50.0)) && close(disk.at(90.0, 1.0), pos2(125.0, 100.0)));
         assert!(close(disk.at(-90.0, 2.0), pos2(50.0, 100.0)));
+    }
+
+    #[test]
+    fn points_on_top_of_each_other_are_one() {
+        let points = [pos2(0.0, 0.0), pos2(0.1, 0.0), pos2(5.0, 0.0), pos2(5.0, 0.2), pos2(0.0, 0.0)];
+        assert_eq!(thinned(&points), [pos2(0.0, 0.0), pos2(5.0, 0.0), pos2(0.0, 0.0)]);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, FontId, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
+use super::super::rows::option_text;
 use super::super::theme::{ACCENT, EDGE, ERROR, QUIET};
 use crate::app::inspector::{Reading, text};
 use crate::shader::{Mode, PixelValue};
@@ -91,11 +92,11 @@ fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Respons
     };
     let unit = ui.painter().layout_no_wrap(mode.unit.clone(), FontId::proportional(10.5), QUIET.color());
     painter.galley(pos2(rect.max.x - UNIT + 4.0, middle - 0.5 * unit.size().y), unit, QUIET.color());
-    let numbers = painter.layout_no_wrap(text::numbers(mode, &value), FontId::monospace(11.0), color);
+    let numbers = painter.layout_no_wrap(text::numbers(mode, &value), FontId::monospace(10.5), color);
     let left_of_numbers = rect.max.x - UNIT - numbers.size().x;
     painter.galley(pos2(left_of_numbers, middle - 0.5 * numbers.size().y), numbers, color);
     let name_color = if is_current { ACCENT.color() } else { ui.visuals().text_color() };
-    let mut job = LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(12.0), name_color);
+    let mut job = LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(11.5), name_color);
     let left = rect.min.x + SWATCH + 7.0;
     job.wrap = TextWrapping::truncate_at_width((left_of_numbers - 6.0 - left).max(10.0));
     let name = painter.layout_job(job);
@@ -112,7 +113,8 @@ fn about(ui: &mut Ui, mode: &Mode, value: &PixelValue) {
     if value.not_finite {
         ui.label(RichText::new("The shader has computed NaN or infinity here").color(ERROR));
     }
-    ui.label(RichText::new(format!("Click shows this mode: --mode {}", mode.slug)).small().color(QUIET));
+    ui.label(RichText::new("Click to show this mode").small().color(QUIET));
+    ui.label(option_text(&format!("--mode {}", mode.slug)).color(ACCENT));
 }
 
 fn paint_swatch(ui: &Ui, rect: Rect, mode: &Mode, value: &PixelValue, exposure: f32) {
