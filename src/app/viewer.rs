@@ -98,6 +98,8 @@ pub(super) struct Viewer {
     pub(super) history: History,
     /// What is selected in the scene.
     pub(super) selected: Selected,
+    /// The selected instances of a scene.
+    selected_cache: Option<(Selected, Scene, Arc<[bool]>)>,
     /// The pipelines of outlines and pictures of textures, once something has asked for them.
     tools: tools::ToolsState,
     /// Whether the user has not said which lights shine, so that a model with lights shines by its own.
@@ -165,6 +167,7 @@ impl Viewer {
             playback: Playback::default(),
             history: History::default(),
             selected: Selected::Nothing,
+            selected_cache: None,
             tools: tools::ToolsState::default(),
             follows_lights: options.follows_lights,
             followed_source: LightSource::default(),

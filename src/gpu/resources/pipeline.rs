@@ -84,6 +84,8 @@ pub enum Raster {
     Replaced,
     /// As [`Raster::Solid`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
     Lines,
+    /// As [`Raster::Blended`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
+    BlendedLines,
     /// Additive blending without depth test; alpha becomes the maximum.
     Added,
     /// Linear interpolation from the target to the fragment, by the weight of [`crate::gpu::Encoder::set_weight`]; alpha
@@ -178,7 +180,7 @@ impl Pipeline {
             .patch_control_points(PATCH_VERTICES)
             .push_next(&mut origin);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let lines = desc.raster == Raster::Lines && gpu.wireframe;
+        let lines = matches!(desc.raster, Raster::Lines | Raster::BlendedLines) && gpu.wireframe;
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).polygon_mode(if lines {
             vk::PolygonMode::LINE
         } else {
@@ -313,7 +315,7 @@ fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     let state = vk::PipelineColorBlendAttachmentState::default();
     match raster {
         Raster::Solid | Raster::Replaced | Raster::Lines => state,
-        Raster::Blended => state
+        Raster::Blended | Raster::BlendedLines => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)
             .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
