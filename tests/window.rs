@@ -19,6 +19,7 @@ mod window {
     mod panels;
     mod passes;
     mod pictures;
+    mod scene;
 }
 
 use std::time::{Duration, Instant};

@@ -62,13 +62,7 @@ impl Selected {
         match self {
             Self::Material(material) => Some(material),
             Self::Instance(index) => instances.get(index).map(|instance| scene.material_of(instance)),
-            Self::Node(_) => {
-                let selected = self.instances(scene);
-                let mut found =
-                    instances.iter().zip(selected).filter(|(_, is)| *is).map(|(one, _)| scene.material_of(one));
-                let first = found.next()?;
-                found.all(|other| other == first).then_some(first)
-            }
+            Self::Node(_) => common_material(scene, &self.instances(scene)),
             _ => None,
         }
     }
@@ -85,6 +79,14 @@ impl Selected {
             Self::Light(LightId::Model(light)) => light < model.lights.len(),
         }
     }
+}
+
+/// The material that all of these instances have.
+pub(super) fn common_material(scene: &Scene, instances: &[bool]) -> Option<usize> {
+    let selected = scene.model().instances.iter().zip(instances).filter(|(_, is)| **is);
+    let mut found = selected.map(|(instance, _)| scene.material_of(instance));
+    let first = found.next()?;
+    found.all(|other| other == first).then_some(first)
 }
 
 /// Names of a node, a camera or a light that may have none.
@@ -114,5 +116,6 @@ mod tests {
             assert!(selected.is_in(&model) && !selected.is_in(&Model::default()));
         }
         assert!(Selected::Nothing.instances(&scene).is_empty());
+        assert_eq!(common_material(&scene, &[]), None);
     }
 }

@@ -129,6 +129,8 @@ pub(super) struct Viewer {
     pub(super) learning: Learning,
     /// What is selected in the scene.
     pub(super) selected: Selected,
+    /// The selected instances of a scene.
+    selected_cache: Option<(Selected, Scene, Arc<[bool]>)>,
     /// The pipelines of outlines and pictures of textures, once something has asked for them.
     tools: tools::ToolsState,
     /// Whether the user has not said which lights shine, so that a model with lights shines by its own.
@@ -210,6 +212,7 @@ impl Viewer {
             history: History::default(),
             learning: Learning::restored(),
             selected: Selected::Nothing,
+            selected_cache: None,
             tools: tools::ToolsState::default(),
             follows_lights: options.follows_lights,
             followed_source: LightSource::default(),

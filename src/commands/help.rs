@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Command, CommandFactory as _};
 use specula::message::nearest;
 use specula::scene::BUILT_IN;
-use specula::settings::{Setting, catalog};
+use specula::settings::{Factor, FactorInfo, Setting, catalog, factor_path, told};
 use specula::shader::annotation::ParameterType;
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Change, Library, ShaderSet, Update};
@@ -84,6 +84,8 @@ fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
     out!("Several numbers are joined by commas, as --set lights.ambient_color=1,0.8,0.6.");
     out!("In a look file, view.ev is the line `ev = 1` below `[view]`.\n");
     print_rows(&catalog());
+    out!("\nFactors of one material of the model, as --set materials.NAME.FACTOR=VALUE\n");
+    print_rows(&factors());
     let source = source(tree)?;
     let name = source.name();
     match Library::new(source, compiler()?, &specula::frame::stages::stages()).update(&Change::All) {
@@ -94,6 +96,22 @@ fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
         _ => out!("\nThe shader tree {name} does not compile, so its own settings are unknown: see `specula check`."),
     }
     Ok(())
+}
+
+/// The factors of a material.
+fn factors() -> Vec<Setting> {
+    let row = |factor: &Factor| {
+        let FactorInfo { unit, limits, is_color, doc, .. } = factor.info();
+        Setting {
+            path: factor_path("NAME", *factor),
+            takes: if is_color { "3 numbers" } else { "number" },
+            default: String::new(),
+            range: told(&limits),
+            unit: unit.trim(),
+            doc: doc.to_owned(),
+        }
+    };
+    Factor::ALL.iter().map(row).collect()
 }
 
 /// The constants, parameters and passes of a tree.

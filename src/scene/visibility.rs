@@ -39,12 +39,25 @@ impl Model {
     /// The name by which settings find a node and no other: its own, or its number.
     pub fn node_key(&self, at: usize) -> String {
         let Some(node) = self.nodes.get(at) else { return String::new() };
-        let is_plain = !node.name.is_empty() && !node.name.contains(',') && !node.name.starts_with('#');
         let has = |other: &Node| other.name == node.name;
-        let is_unique = is_plain
+        let is_unique = is_plain(&node.name)
             && self.nodes.iter().filter(|other| has(other)).count() == 1
             && self.primitives.iter().all(|primitive| primitive.name != node.name);
         if is_unique { node.name.clone() } else { number(node) }
+    }
+
+    /// [`Model::node_key`] of all nodes.
+    pub fn node_keys(&self) -> Vec<String> {
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        let primitives = self.primitives.iter().map(|primitive| primitive.name.as_str());
+        for name in self.nodes.iter().map(|node| node.name.as_str()).chain(primitives) {
+            *counts.entry(name).or_default() += 1;
+        }
+        let key = |node: &Node| {
+            let is_unique = is_plain(&node.name) && counts.get(node.name.as_str()) == Some(&1);
+            if is_unique { node.name.clone() } else { number(node) }
+        };
+        self.nodes.iter().map(key).collect()
     }
 
     /// The index in `nodes` of the node of an instance.
@@ -89,6 +102,11 @@ impl Model {
     }
 }
 
+/// Whether a name can stand in a list of names.
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && !name.contains(',') && !name.starts_with('#')
+}
+
 /// `#` and the index in the file.
 fn number(node: &Node) -> String {
     format!("#{}", node.index)
@@ -107,6 +125,8 @@ mod tests {
     fn nodes_hide_what_is_below_them() {
         let model = model();
         let all = model.instances.len();
+        let keys: Vec<String> = (0..model.nodes.len()).map(|at| model.node_key(at)).collect();
+        assert_eq!(model.node_keys(), keys);
         assert_eq!(model.visible(&SceneSettings::default()), None);
         for at in 0..model.nodes.len() {
             let key = model.node_key(at);

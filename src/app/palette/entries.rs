@@ -14,6 +14,7 @@ use crate::app::panels::parameters::default_of;
 use crate::app::panels::passes::{internal, is_of_pass, is_switch};
 use crate::app::panels::rows::choice_name;
 use crate::app::recent::Kind;
+use crate::app::selection::{LightId, Selected, name_or};
 use crate::app::viewer::Viewer;
 use crate::learn::exercises;
 use crate::scene::environment::BUILT_IN;
@@ -222,9 +223,35 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
         let entry = Entry::new("Camera", format!("View from the {name}"), Action::Do(Command::ViewFrom(side)));
         Entry { key: key.to_owned(), ..entry }
     }));
+    entries.extend(of_scene(viewer));
     if viewer.panels.layout.has_own() {
         entries.push(Entry::new("Layout", "Layout: Own".to_owned(), Action::ArrangeOwn));
     }
+    entries
+}
+
+/// Most nodes that the palette lists; the panel Scene has a search of its own.
+const MOST_NODES: usize = 300;
+
+/// Nodes, materials and cameras of the model, and lights with a handle.
+fn of_scene(viewer: &Viewer) -> Vec<Entry> {
+    let Some(model) = viewer.session.model() else { return Vec::new() };
+    let select = |title: String, selected| Entry::new("Scene", title, Action::Do(Command::Select(selected)));
+    let nodes = model.nodes.iter().enumerate().filter(|(_, node)| !node.name.is_empty()).take(MOST_NODES);
+    let mut entries: Vec<Entry> =
+        nodes.map(|(at, node)| select(format!("Select node {}", node.name), Selected::Node(at))).collect();
+    entries.extend(
+        (1..model.materials.len())
+            .take(MOST_NODES)
+            .map(|index| select(format!("Select material {}", model.material_key(index)), Selected::Material(index))),
+    );
+    entries.extend((0..viewer.session.settings.lights.orbit.len()).map(|light| {
+        select(format!("Move light {} in the picture", light + 1), Selected::Light(LightId::Orbit(light)))
+    }));
+    entries.extend(model.cameras.iter().enumerate().map(|(index, camera)| {
+        let name = name_or(&camera.name, || index.to_string());
+        Entry::new("Camera", format!("Look through camera {name}"), Action::Do(Command::LookThrough(index)))
+    }));
     entries
 }
 
@@ -244,6 +271,11 @@ pub(super) fn commands() -> Vec<Entry> {
         ("Screenshot", "capture PNG", "F12", Action::Do(Command::Screenshot)),
         ("Keys", "shortcuts help", "F1", Action::ShowKeys),
         ("Hide or show the panels", "", "H", Action::TogglePanels),
+        ("Hide the selection", "scene node primitive", "Ctrl+H", Action::Do(Command::HideSelected)),
+        ("Isolate the selection", "scene node solo local view", "/", Action::Do(Command::IsolateSelected)),
+        ("Show everything", "scene hidden unhide reveal", "Alt+H", Action::Do(Command::ShowAll)),
+        ("Select nothing", "scene deselect", "Esc", Action::Do(Command::Select(Selected::Nothing))),
+        ("Place the rectangular light", "area light handle gizmo", "", Action::Do(Command::PlaceRectangle)),
         ("Quit", "close", "Ctrl+Q", Action::Do(Command::Quit)),
     ];
     let command = |(title, words, key, action): (&str, &str, &str, Action)| {

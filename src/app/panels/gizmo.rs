@@ -14,8 +14,10 @@ use crate::settings::{LightSettings, LightSource};
 
 /// Radius of a handle, points.
 const HANDLE: f32 = 8.0;
-/// Radius of the sphere on which a light is shown that the picture does not have in it, in radii of the model.
-const NEAR: f32 = 1.3;
+/// Points between a handle and the edge of the picture.
+const MARGIN: f32 = 16.0;
+/// Radius of the smallest sphere that a handle moves on, in radii of the model.
+const SMALLEST: f32 = 0.3;
 /// Points of a drag that double the distance.
 const DOUBLE: f32 = 120.0;
 
@@ -72,6 +74,22 @@ impl Frame {
         let clip = self.view.clip_from_world() * point.extend(1.0);
         let (x, y) = (clip.x / clip.w * 0.5 + 0.5, clip.y / clip.w * 0.5 + 0.5);
         (clip.w > 0.0).then(|| self.rect.min + vec2(x, y) * self.rect.size())
+    }
+
+    /// The distance of a light's handle from the model's center: that of the light, `own`, or the largest one that the picture shows.
+    fn visible_radius(&self, direction: Vec3, own: f32) -> f32 {
+        let inside = self.rect.shrink(MARGIN);
+        let point = |radius: f32| self.bounds.center() + direction * radius;
+        let is_seen = |radius: f32| self.project(point(radius)).is_some_and(|at| inside.contains(at));
+        let (mut seen, mut hidden) = (SMALLEST * self.bounds.radius(), own);
+        if is_seen(own) || seen > own {
+            return own;
+        }
+        for _ in 0..12 {
+            let middle = 0.5 * (seen + hidden);
+            *(if is_seen(middle) { &mut seen } else { &mut hidden }) = middle;
+        }
+        seen
     }
 
     /// The direction from the model's center to the point of a sphere around it that a point of the window shows. Beside the sphere it
@@ -143,8 +161,7 @@ fn handle(
     let direction = light_direction(*place.azimuth, *place.polar);
     let drag = gizmo.drag.take_if(|drag| drag.light == light);
     let own = model_radius * *place.distance;
-    let is_seen = |radius: f32| frame.project(center + direction * radius).is_some_and(|at| frame.rect.contains(at));
-    let radius = drag.as_ref().map_or(if is_seen(own) { own } else { NEAR * model_radius }, |drag| drag.radius);
+    let radius = drag.as_ref().map_or_else(|| frame.visible_radius(direction, own), |drag| drag.radius);
     let (Some(at), Some(middle)) = (frame.project(center + direction * radius), frame.project(center)) else {
         return false;
     };
@@ -237,6 +254,12 @@ mod tests {
             let found = frame.direction_at(at, radius, is_near);
             assert!(found.distance(direction) < 0.02, "{azimuth} {polar}: {found} instead of {direction}");
         }
+        // A handle that would be outside comes nearer.
+        let left = Vec3::NEG_X;
+        let radius = frame.visible_radius(left, 50.0);
+        let at = frame.project(left * radius).unwrap();
+        assert!(radius < 50.0 && (at.x - rect.min.x - MARGIN).abs() < 1.0, "{radius} {at:?}");
+        assert_eq!(frame.visible_radius(left, 1.0), 1.0);
         // Beside the sphere, its edge.
         let edge = frame.direction_at(pos2(101.0, 51.0), 0.5, true);
         assert!((edge.length() - 1.0).abs() < 1e-4);

@@ -5,16 +5,20 @@ use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in the order of the README.
-const KEYS: [(&str, &str); 27] = [
+const KEYS: &[(&str, &str)] = &[
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),
     ("letters", "the mode with this letter in the list; the same letter again goes back"),
-    ("Esc", "close this list, or show one mode alone; otherwise the final picture"),
+    ("Esc", "close this list, unpin the pixel, select nothing, or show one mode alone; otherwise the final picture"),
     ("drag", "orbit"),
     ("Shift+drag, middle drag", "pan"),
     ("Alt+drag", "turn the environment"),
     ("wheel", "zoom"),
     ("right button + W A S D Q E", "look around and fly"),
+    ("click", "select what is there; its outline shows in the window only"),
+    ("Ctrl+H, Alt+H", "hide the selection; draw everything again"),
+    ("/", "draw the selection alone; again draws everything"),
+    ("Ctrl+drag on a light", "change the distance of the light; a plain drag turns it around the model"),
     ("double click", "look at this point and orbit around it"),
     ("hold Space", "the picture before the last edit, or the one that you compare with"),
     ("Ctrl+K", "keep this picture and compare with it; again ends the comparison"),

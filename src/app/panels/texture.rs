@@ -105,7 +105,9 @@ fn controls(ui: &mut Ui, state: &mut TextureState, levels: u32) {
         for ((name, doc), channels) in CHANNELS.into_iter().zip(0..) {
             ui.selectable_value(&mut state.channels, channels, name).on_hover_text(doc);
         }
-        ui.add_space(6.0);
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
         let shown = state.level.map_or_else(|| "auto".to_owned(), |level| level.to_string());
         let list = egui::ComboBox::from_id_salt("level").selected_text(format!("level {shown}")).width(74.0);
         let list = list.show_ui(ui, |ui| {

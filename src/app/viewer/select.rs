@@ -1,5 +1,7 @@
 //! What the user selects, hides and looks through.
 
+use std::sync::Arc;
+
 use super::Viewer;
 use crate::app::selection::{LightId, Selected, name_or};
 use crate::events::{Event, SelectedEvent, emit};
@@ -47,14 +49,22 @@ impl Viewer {
     }
 
     /// Whether each instance of the scene on screen is selected; empty if none is.
-    pub(in crate::app) fn selected_instances(&self) -> Vec<bool> {
-        if self.selected == Selected::Nothing {
-            return Vec::new();
+    pub(in crate::app) fn selected_instances(&mut self) -> Arc<[bool]> {
+        let scene = self.shown().and_then(|state| state.scene.clone());
+        let (Some(scene), true) = (scene, self.selected != Selected::Nothing) else {
+            self.selected_cache = None;
+            return Arc::default();
+        };
+        if let Some((selected, of, instances)) = &self.selected_cache
+            && (*selected, of) == (self.selected, &scene)
+        {
+            return instances.clone();
         }
-        let scene = self.shown().and_then(|state| state.scene.as_ref());
-        let instances =
-            scene.filter(|scene| self.selected.is_in(scene.model())).map(|scene| self.selected.instances(scene));
-        instances.filter(|instances| instances.contains(&true)).unwrap_or_default()
+        let is_in = self.selected.is_in(scene.model());
+        let instances = if is_in { self.selected.instances(&scene) } else { Vec::new() };
+        let instances: Arc<[bool]> = if instances.contains(&true) { instances.into() } else { Arc::default() };
+        self.selected_cache = Some((self.selected, scene, instances.clone()));
+        instances
     }
 
     /// The name of what is selected, for the settings that hide and isolate. Says what to do if there is none.

@@ -114,6 +114,8 @@ pub enum Raster {
     Lines,
     /// The edges of triangles, a little nearer than the surfaces that they lie on, without depth writes.
     Edges,
+    /// As [`Raster::Blended`], but only the edges of triangles are drawn, if the device supports `fillModeNonSolid`.
+    BlendedLines,
     /// Additive blending without depth test; alpha becomes the maximum.
     Added,
     /// Linear interpolation from the target to the fragment, by the weight of [`crate::gpu::Encoder::set_weight`]; alpha
@@ -235,7 +237,8 @@ impl Pipeline {
             .patch_control_points(PATCH_VERTICES)
             .push_next(&mut origin);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let lines = matches!(desc.raster, Raster::Lines | Raster::Edges) && gpu.wireframe;
+        let lines =
+            matches!(desc.raster, Raster::Lines | Raster::Edges | Raster::BlendedLines) && gpu.wireframe;
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).polygon_mode(if lines {
             vk::PolygonMode::LINE
         } else {
@@ -310,7 +313,7 @@ fn blending(raster: Raster) -> vk::PipelineColorBlendAttachmentState {
     let state = vk::PipelineColorBlendAttachmentState::default();
     match raster {
         Raster::Solid | Raster::Replaced | Raster::Lines | Raster::Edges => state,
-        Raster::Blended => state
+        Raster::Blended | Raster::BlendedLines => state
             .blend_enable(true)
             .src_color_blend_factor(vk::BlendFactor::ONE)
             .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)

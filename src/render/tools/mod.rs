@@ -89,7 +89,7 @@ impl Tools {
                 mask_samples,
                 outline: pipeline(&screen, &line, Swapchain::FORMAT, Raster::Blended, 1, &one_texture)?,
                 texture: pipeline(&screen, &shown, PREVIEW_FORMAT, Raster::Solid, 1, &one_texture)?,
-                uv: pipeline(&uv_place, &uv_color, PREVIEW_FORMAT, Raster::Lines, 1, &no_texture)?,
+                uv: pipeline(&uv_place, &uv_color, PREVIEW_FORMAT, Raster::BlendedLines, 1, &no_texture)?,
                 gpu: gpu.clone(),
                 layouts: layouts.clone(),
                 one_texture,

@@ -8,24 +8,31 @@ use crate::app::command::Command;
 use crate::app::layout::Panel;
 use crate::app::panels::rows::heading;
 use crate::app::panels::{ACCENT, QUIET, lights, plural};
-use crate::app::selection::{LightId, Selected, name_or};
+use crate::app::selection::{LightId, Selected, common_material, name_or};
 use crate::app::viewer::Viewer;
 use crate::frame::Scene;
 use crate::scene::{Bounds, Model};
 
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, selected: Selected, commands: &mut Vec<Command>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    viewer: &mut Viewer,
+    scene: &Scene,
+    selected: Selected,
+    kept: &mut Counts,
+    commands: &mut Vec<Command>,
+) {
     let model = scene.model();
     match selected {
         Selected::Nothing => {}
         Selected::Node(node) => {
             let Some(of) = model.nodes.get(node) else { return };
             title(ui, "Node", &name_or(&of.name, || format!("#{}", of.index)));
-            parts(ui, viewer, scene, selected, commands);
+            parts(ui, viewer, scene, selected, kept, commands);
         }
         Selected::Instance(index) => {
             let Some(instance) = model.instances.get(index) else { return };
             title(ui, "Primitive", &model.primitives[instance.primitive].name);
-            parts(ui, viewer, scene, selected, commands);
+            parts(ui, viewer, scene, selected, kept, commands);
         }
         Selected::Material(index) => material::show(ui, viewer, scene, index, commands),
         Selected::Texture(source) => {
@@ -54,11 +61,18 @@ pub(super) fn title(ui: &mut Ui, kind: &str, name: &str) {
     });
 }
 
-/// The counts of the selected primitives, what is done with them, and their material.
-fn parts(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, selected: Selected, commands: &mut Vec<Command>) {
+/// The counts of a selection, kept while it is the same.
+pub(super) type Counts = Option<(Selected, Scene, String, Option<usize>)>;
+
+/// The counts and the size of the selected primitives, and their material if it is one.
+fn counts(kept: &mut Counts, scene: &Scene, selected: Selected, instances: &[bool]) -> (String, Option<usize>) {
+    if let Some((of, in_scene, text, material)) = kept
+        && (*of, &*in_scene) == (selected, scene)
+    {
+        return (text.clone(), *material);
+    }
     let model = scene.model();
-    let instances = selected.instances(scene);
-    let of = || model.instances.iter().zip(&instances).filter(|(_, is)| **is).map(|(instance, _)| instance);
+    let of = || model.instances.iter().zip(instances).filter(|(_, is)| **is).map(|(instance, _)| instance);
     let (mut bounds, mut vertices, mut triangles) = (Bounds::default(), 0, 0);
     for instance in of() {
         let primitive = &model.primitives[instance.primitive];
@@ -69,16 +83,34 @@ fn parts(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, selected: Selected, co
         }
     }
     let size = if bounds.is_empty() { glam::Vec3::ZERO } else { bounds.max - bounds.min };
-    let counts = format!(
-        "{}, {}, {}\n{:.3} × {:.3} × {:.3} m",
+    let text = format!(
+        "{}, {triangles} triangles, {vertices} vertices\n{:.3} × {:.3} × {:.3} m",
         plural(of().count(), "primitive"),
-        plural(triangles, "triangle"),
-        if vertices == 1 { "1 vertex".to_owned() } else { format!("{vertices} vertices") },
         size.x,
         size.y,
         size.z
     );
-    ui.add(Label::new(RichText::new(counts).small().color(QUIET)).selectable(true));
+    let material = common_material(scene, instances);
+    // The scene on screen may still be the one before.
+    if of().next().is_some() {
+        *kept = Some((selected, scene.clone(), text.clone(), material));
+    }
+    (text, material)
+}
+
+/// The counts of the selected primitives, what is done with them, and their material.
+fn parts(
+    ui: &mut Ui,
+    viewer: &mut Viewer,
+    scene: &Scene,
+    selected: Selected,
+    kept: &mut Counts,
+    commands: &mut Vec<Command>,
+) {
+    let model = scene.model();
+    let instances = viewer.selected_instances();
+    let (text, material) = counts(kept, scene, selected, &instances);
+    ui.add(Label::new(RichText::new(text).small().color(QUIET)).selectable(true));
     ui.horizontal_wrapped(|ui| {
         let is_isolated = !viewer.session.settings.scene.isolated.is_empty();
         if ui.button("Hide").on_hover_text("Do not draw it (Ctrl+H). Alt+H draws everything again").clicked() {
@@ -95,12 +127,13 @@ fn parts(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, selected: Selected, co
             commands.push(Command::Select(Selected::Nothing));
         }
     });
-    if let Some(index) = selected.material(scene) {
+    if let Some(index) = material {
         ui.add_space(4.0);
         material::show(ui, viewer, scene, index, commands);
     } else {
         heading(ui, "Materials");
-        let mut used: Vec<usize> = of().map(|instance| scene.material_of(instance)).collect();
+        let of = model.instances.iter().zip(instances.iter()).filter(|(_, is)| **is);
+        let mut used: Vec<usize> = of.map(|(instance, _)| scene.material_of(instance)).collect();
         used.sort_unstable();
         used.dedup();
         for index in used {

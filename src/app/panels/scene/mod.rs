@@ -22,6 +22,7 @@ const DETAILS: f32 = 300.0;
 pub(in crate::app) struct SceneState {
     search: String,
     tree: Tree,
+    counts: details::Counts,
     /// Whether the list must scroll to the selection, which was made elsewhere.
     follows: bool,
 }
@@ -44,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
             egui::Panel::bottom("selection").resizable(true).default_size(DETAILS.min(0.6 * ui.available_height()));
         below.frame(egui::Frame::new().inner_margin(egui::Margin { top: 6, ..Default::default() })).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                details::show(ui, viewer, &scene, selected, commands);
+                details::show(ui, viewer, &scene, selected, &mut state.counts, commands);
             });
         });
     }

@@ -244,7 +244,7 @@ fn nodes(model: &Model, rows: &mut Vec<Row>) {
     for (index, instance) in model.instances.iter().enumerate() {
         of_node.entry(instance.node).or_default().push(index);
     }
-    let group = Group::Nodes;
+    let (group, keys) = (Group::Nodes, model.node_keys());
     rows.push(title_of(group, "Nodes", model.nodes.len()));
     let mut depths = Vec::with_capacity(model.nodes.len());
     for (at, node) in model.nodes.iter().enumerate() {
@@ -265,7 +265,7 @@ fn nodes(model: &Model, rows: &mut Vec<Row>) {
             node.mesh.clone().filter(|mesh| !mesh.is_empty()).unwrap_or_else(|| format!("node {}", node.index))
         });
         let is_folded = (has_children || instances.len() > 1).then_some(false);
-        rows.push(Row { depth, name, detail, item, group, is_folded, key: Some(model.node_key(at)) });
+        rows.push(Row { depth, name, detail, item, group, is_folded, key: keys.get(at).cloned() });
         for instance in instances.iter().filter(|_| instances.len() > 1) {
             let primitive = &model.primitives[model.instances[*instance].primitive];
             rows.push(Row {
