@@ -3,6 +3,7 @@
 mod cli {
     mod passes;
     mod progress;
+    mod stages;
     mod terminal;
     mod usage;
 }

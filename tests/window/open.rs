@@ -34,6 +34,9 @@ fn a_dropped_model_opens_and_any_other_file_changes_nothing() {
 /// Ends a window, and returns its folder.
 fn end(mut viewer: Viewer) -> Tree {
     viewer.key("ctrl+q");
+    // What the panels took is told at the end.
+    let closed = viewer.running.event("closed");
+    assert!(closed["frames"].as_u64() > Some(1) && closed["ui_ms"]["median"].as_f64() > Some(0.0), "{closed}");
     assert!(viewer.running.end().success());
     viewer.tree
 }
