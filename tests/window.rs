@@ -8,6 +8,7 @@ mod window {
     mod endurance;
     mod faults;
     mod gallery;
+    mod grid;
     mod keys;
     mod layout;
     mod losses;

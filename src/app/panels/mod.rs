@@ -15,9 +15,12 @@ mod output;
 mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
+mod range;
 pub(super) mod rows;
 mod shaders;
 mod status_bar;
+#[cfg(test)]
+mod tests;
 pub(super) mod theme;
 pub(super) mod timeline;
 mod timing;
