@@ -11,6 +11,7 @@ mod window {
     mod faults;
     mod gallery;
     mod inspector;
+    mod grid;
     mod keys;
     mod layout;
     mod learn;

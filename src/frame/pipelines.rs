@@ -65,6 +65,8 @@ pub struct PipelineRequest {
     pub shown_pass: Option<String>,
     /// The pass that draws the edges of triangles over the picture; `None` if they are not shown.
     pub edges: Option<Arc<GraphPass>>,
+    /// The stage of that pass, which may be still to be compiled; empty if edges are not shown.
+    pub edges_stage: String,
     /// The modes that are drawn at once, each to a target of its own: see `frame::mode_sets`. Empty for a picture of `mode` alone.
     pub modes: Vec<SharedMode>,
 }
@@ -161,6 +163,7 @@ impl PipelineRequest {
             passes,
             draws_model,
             edges: edges(settings, shaders),
+            edges_stage: edges_stage(settings, shaders).unwrap_or_default(),
             shown_pass,
             modes: Vec::new(),
         }
@@ -387,7 +390,8 @@ impl PipelineRequest {
         let model = self.draws_model.then(|| self.stage.clone());
         let all = self.passes.iter().chain(&self.edges);
         let passes = all.flat_map(|pass| pass.stages()).map(str::to_owned);
-        passes.chain(model).collect()
+        let edges = Some(self.edges_stage.clone()).filter(|stage| !stage.is_empty());
+        passes.chain(model).chain(edges).collect()
     }
 
     /// Whether a picture needs stages that are still to be compiled.
@@ -432,9 +436,14 @@ pub(crate) fn shared_features(settings: &Settings) -> u32 {
 
 /// The pass whose stage draws the edges of triangles: that of the mode which draws lines.
 fn edges(settings: &Settings, shaders: &ShaderSet) -> Option<Arc<GraphPass>> {
-    let lines = shaders.modes.iter().find(|mode| mode.draw == DrawAs::Lines).filter(|_| settings.view.wireframe)?;
-    let draws = |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.stage == lines.stage;
+    let stage = edges_stage(settings, shaders)?;
+    let draws = |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.stage == stage;
     shaders.graph.passes.iter().find(draws).cloned()
+}
+
+fn edges_stage(settings: &Settings, shaders: &ShaderSet) -> Option<String> {
+    let lines = shaders.modes.iter().find(|mode| mode.draw == DrawAs::Lines)?;
+    settings.view.wireframe.then(|| lines.stage.clone())
 }
 
 /// Whether the constant is set that the annotation of the pass names.

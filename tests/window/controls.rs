@@ -7,7 +7,7 @@ use crate::support::window::Viewer;
 /// Text and frames of errors, as `src/app/panels/theme.rs` has them.
 pub(super) const ERROR: [u8; 3] = [255, 110, 100];
 /// Links and marked letters.
-pub(super) const ACCENT: [u8; 3] = [94, 182, 255];
+pub(super) const ACCENT: [u8; 3] = [240, 166, 60];
 /// Text and frames of warnings.
 pub(super) const WARNING: [u8; 3] = [255, 196, 92];
 

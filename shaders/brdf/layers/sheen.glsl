@@ -12,7 +12,7 @@
 // ZeltnerLTC  a fit to all orders of scattering in a layer of fibers. Its albedo is at most 0.75. Not reciprocal.
 const uint CHARLIE = 0u;
 const uint ZELTNER_LTC = 1u;
-//@ui "Sheen" choice Charlie=0 ZeltnerLTC=1 group="BRDF" doc="The lobe of fibers: Charlie is glTF's (Estevez & Kulla 2017), Zeltner et al. 2022 conserves energy"
+//@ui "Sheen" choice Charlie=0 "glTF's lobe of fibers (Estevez & Kulla 2017)" ZeltnerLTC=1 "A transformed cosine fitted to layers of fibers, which conserves energy (Zeltner et al. 2022)" group="BRDF" doc="The lobe of fibers: Charlie is glTF's (Estevez & Kulla 2017), Zeltner et al. 2022 conserves energy"
 layout(constant_id = USER_CONSTANTS + 8) const uint SHEEN = CHARLIE;
 
 // Charlie (Estevez & Kulla 2017, "Production friendly microfacet sheen BRDF").

@@ -12,7 +12,7 @@
 const uint NO_SHADOWS = 0u;
 const uint HARD_SHADOWS = 1u;
 const uint SOFT_SHADOWS = 2u;
-//@ui "Shadows" choice Off=0 Hard=1 Soft=2 doc="Shadows of lamps: hard, or soft with a penumbra that grows with the distance (shadow maps; Fernando 2005)"
+//@ui "Shadows" choice Off=0 "Lamps shine through the model" Hard=1 "One shadow map for each lamp, with a sharp border (Williams 1978)" Soft=2 "A penumbra that grows with the distance from what casts it (Fernando 2005)" doc="Shadows of lamps: hard, or soft with a penumbra that grows with the distance (shadow maps; Fernando 2005)"
 layout(constant_id = USER_CONSTANTS + 10) const uint SHADOWS = NO_SHADOWS;
 
 // Reversed depth of what is nearest to each light. 0: nothing, as where the pass is off.

@@ -67,14 +67,6 @@ impl Behavior<Panel> for Dock<'_> {
         if *panel == Panel::Viewport {
             return tab;
         }
-        let is_front = tiles
-            .parent_of(id)
-            .and_then(|parent| tiles.get_container(parent))
-            .is_some_and(|container| matches!(container, egui_tiles::Container::Tabs(tabs) if tabs.active == Some(id)));
-        if is_front {
-            let line = tab.rect.with_min_y(tab.rect.max.y - 2.0);
-            tab.ctx.layer_painter(tab.layer_id).rect_filled(line, 0.0, ACCENT);
-        }
         let mut closes = tab.middle_clicked();
         tab.context_menu(|ui| {
             if ui.button("Close").clicked() {

@@ -87,7 +87,7 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
 /// The rows that have all words of the filter.
 fn found(filter: &str) -> impl Iterator<Item = (&'static str, &'static str)> {
     let filter = filter.to_lowercase();
-    KEYS.into_iter().filter(move |(keys, meaning)| {
+    KEYS.iter().copied().filter(move |(keys, meaning)| {
         let text = format!("{keys} {meaning}").to_lowercase();
         filter.split_whitespace().all(|word| text.contains(word))
     })

@@ -22,10 +22,13 @@ mod output;
 mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
+mod range;
 pub(super) mod rows;
 pub(super) mod scene;
 mod shaders;
 mod status_bar;
+#[cfg(test)]
+mod tests;
 pub(super) mod texture;
 pub(super) mod theme;
 pub(super) mod timeline;

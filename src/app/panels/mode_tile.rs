@@ -70,7 +70,7 @@ pub(super) fn show(
     }
     let visuals = ui.visuals();
     let color = if is_current { ACCENT.color() } else { visuals.text_color() };
-    let mut job = egui::text::LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(11.5), color);
+    let mut job = egui::text::LayoutJob::simple_singleline(mode.name.clone(), FontId::proportional(11.0), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(size.x);
     let name = ui.painter().layout_job(job);
     let left = picture.center().x - 0.5 * name.size().x;

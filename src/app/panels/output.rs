@@ -4,6 +4,7 @@ use clap::ValueEnum as _;
 use egui::{RichText, Ui};
 
 use super::QUIET;
+use super::range;
 use super::rows::{choice_name, choose, number, setting};
 use crate::app::command::Command;
 use crate::app::numbers::EXPOSURE;
@@ -21,6 +22,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Comm
         })
     });
     background(ui, view);
+    range::show(ui, view);
     let doc = "Multisampling: samples of each pixel";
     setting(ui, ("Samples", doc, "view.msaa"), &mut view.msaa, ViewSettings::default().msaa, |ui, samples| {
         ui.selectable_value(samples, 1, "1×").union(ui.selectable_value(samples, 4, "4×"))

@@ -2,17 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Response, Ui};
+use egui::{Response, RichText, Ui};
 
-use super::defaults;
+use super::{QUIET, defaults};
 use super::passes::is_of_pass;
 use super::rows::{self, Row, edit_number, heading, set_option, short};
+use super::theme::icon;
 use crate::app::numbers::{component, of_constant, of_parameter};
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
 use crate::shader::{Constant, Parameter, ShaderSet};
+
+/// Up to this many rows need no search.
+const FEW: usize = 10;
 
 /// Values of constants and parameters that were set, by name.
 pub(super) type Values = BTreeMap<String, ShaderValue>;
@@ -28,6 +32,20 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     let constants: Vec<&Constant> = shaders.constants.iter().filter(|c| !switches.contains(&c.id)).collect();
     if constants.is_empty() && parameters.is_empty() {
         return;
+    }
+    let all: Vec<&String> = parameters.iter().map(|p| &p.name).chain(constants.iter().map(|c| &c.name)).collect();
+    let set: Vec<String> = all.iter().filter(|name| values.contains_key(**name)).map(|name| (*name).clone()).collect();
+    let words = if all.len() > FEW { search(ui) } else { Vec::new() };
+    let is_found = |texts: [&str; 4]| {
+        let text = texts.join(" ").to_lowercase();
+        words.iter().all(|word| text.contains(word))
+    };
+    let parameters: Vec<&Parameter> =
+        parameters.into_iter().filter(|p| is_found([&p.label, &p.name, &p.group, &p.doc])).collect();
+    let constants: Vec<&Constant> =
+        constants.into_iter().filter(|c| is_found([&c.label, &c.name, &c.group, &c.doc])).collect();
+    if constants.is_empty() && parameters.is_empty() {
+        ui.label(RichText::new("No parameter has these words").small().color(QUIET));
     }
     // Without a group first, then group by group in the order in which the tree names them.
     let mut groups = vec![""];
@@ -48,14 +66,24 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
             show_constant(ui, constant, values);
         }
     }
-    let names = parameters.iter().map(|p| &p.name).chain(constants.iter().map(|c| &c.name));
-    let set: Vec<&String> = names.filter(|name| values.contains_key(*name)).collect();
     let button = ui.add_enabled(!set.is_empty(), egui::Button::new("Defaults"));
     let resets = button.on_hover_text("Reset all parameters above to the values in the shader files").clicked();
     defaults::button(ui, !set.is_empty());
     if resets {
-        set.into_iter().for_each(|name| drop(values.remove(name)));
+        set.iter().for_each(|name| drop(values.remove(name)));
     }
+}
+
+/// Shows the search above the rows. Returns its words, in small letters.
+fn search(ui: &mut Ui) -> Vec<String> {
+    let id = ui.id().with("search");
+    let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
+    let hint = format!("{}  Search parameters", icon::MAGNIFYING_GLASS);
+    let field = egui::TextEdit::singleline(&mut text).hint_text(hint).desired_width(f32::INFINITY);
+    ui.add(field).on_hover_text("Words of a name, a group or a description");
+    let words = text.to_lowercase().split_whitespace().map(str::to_owned).collect();
+    ui.data_mut(|data| data.insert_temp(id, text));
+    words
 }
 
 /// Shows the row of a constant.
@@ -149,7 +177,7 @@ pub(super) fn is_true(constant: &Constant, values: &Values) -> bool {
 }
 
 fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue>) -> (Option<ShaderValue>, Response) {
-    let Parameter { name, choices, .. } = parameter;
+    let Parameter { name, choices, choice_docs, .. } = parameter;
     let mut numbers = match value {
         Some(ShaderValue::Vector(numbers)) if numbers.len() == parameter.default.len() => numbers.clone(),
         Some(value) => number(value, choices).map_or_else(|| parameter.default.clone(), |n| vec![n]),
@@ -160,7 +188,7 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
     let scale = of_parameter(parameter);
     let response = match (parameter.kind, numbers.as_mut_slice()) {
         (ParameterType::Bool, [number]) => check(ui, number),
-        (_, [number]) if !choices.is_empty() => choose(ui, name, choices, number),
+        (_, [number]) if !choices.is_empty() => choose(ui, name, (choices, choice_docs), number),
         (_, [number]) => edit_number(ui, number, &scale.unwrap_or_else(|| component(parameter))),
         (ParameterType::Vec3, [r, g, b]) if parameter.color => {
             let mut linear = [*r as f32, *g as f32, *b as f32];
@@ -197,12 +225,12 @@ fn edit_vector(ui: &mut Ui, parameter: &Parameter, numbers: &mut [f64]) -> Respo
 }
 
 fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) -> (Option<ShaderValue>, Response) {
-    let Constant { name, choices, .. } = constant;
+    let Constant { name, choices, choice_docs, .. } = constant;
     let default = default_of(constant);
     let before = value.and_then(|value| number(value, choices)).unwrap_or(default);
     let mut now = before;
     let response = match of_constant(constant) {
-        _ if !choices.is_empty() => choose(ui, name, choices, &mut now),
+        _ if !choices.is_empty() => choose(ui, name, (choices, choice_docs), &mut now),
         Some(scale) => edit_number(ui, &mut now, &scale),
         None => check(ui, &mut now),
     };
@@ -230,14 +258,22 @@ fn check(ui: &mut Ui, number: &mut f64) -> Response {
     response
 }
 
-fn choose(ui: &mut Ui, id: &str, choices: &[(String, i64)], number: &mut f64) -> Response {
-    let current = choices.iter().find(|(_, value)| *value as f64 == *number);
-    let text = current.map_or_else(|| number.to_string(), |(name, _)| name.clone());
-    rows::choose(ui, id, text, |ui| {
-        for (name, value) in choices {
-            ui.selectable_value(number, *value as f64, name);
+fn choose(ui: &mut Ui, id: &str, (choices, docs): (&[(String, i64)], &[String]), number: &mut f64) -> Response {
+    let current = choices.iter().position(|(_, value)| *value as f64 == *number);
+    let text = current.map_or_else(|| number.to_string(), |at| choices[at].0.clone());
+    let doc = |at: usize| docs.get(at).filter(|doc| !doc.is_empty());
+    let response = rows::choose(ui, id, text, |ui| {
+        for (at, (name, value)) in choices.iter().enumerate() {
+            let choice = ui.selectable_value(number, *value as f64, name);
+            if let Some(doc) = doc(at) {
+                choice.on_hover_text(doc);
+            }
         }
-    })
+    });
+    match current.and_then(doc) {
+        Some(doc) => response.on_hover_text(doc),
+        None => response,
+    }
 }
 
 #[cfg(test)]

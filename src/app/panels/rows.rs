@@ -55,7 +55,8 @@ impl Row<'_> {
     ) -> bool {
         ui.horizontal(|ui| {
             let title = self.title(ui);
-            let response = control(ui);
+            // So that the control can be read aloud.
+            let response = control(ui).labelled_by(title.id);
             response.on_hover_ui(|ui| self.about(ui));
             let mut resets = self.is_changed && title.double_clicked();
             if !self.option.is_empty() {
@@ -237,7 +238,12 @@ pub(super) fn edit_number(ui: &mut Ui, number: &mut f64, scale: &Scale) -> Respo
     let slider = Slider::new(&mut place, ends).show_value(false).clamping(SliderClamping::Edits);
     let slider = slider.logarithmic(scale.is_logarithmic);
     let slider = if scale.is_squared { slider } else { slider.fixed_decimals(scale.decimals) };
-    let response = ui.add(slider);
+    let response = ui.scope(|ui| {
+        // The fill of the rail has no color of its own.
+        ui.visuals_mut().selection.bg_fill = ACCENT.color();
+        ui.add(slider.trailing_fill(true))
+    });
+    let response = response.inner;
     if response.changed() {
         let digits = 10_f64.powi(scale.decimals as i32);
         *number = if scale.is_squared { (place * place * digits).round() / digits } else { place };

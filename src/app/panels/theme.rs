@@ -67,11 +67,11 @@ const SELECTED: Tone = Tone::new(0x5a_41_1a, 0xf5_d9_ab);
 /// Around what is selected in the picture, in both themes.
 pub(in crate::app) const SELECTION: Color32 = Color32::from_rgb(255, 160, 48);
 /// Errors.
-pub(in crate::app) const ERROR: Tone = Tone::new(0xff_6e_62, 0xb0_22_1a);
+pub(in crate::app) const ERROR: Tone = Tone::new(0xff_6e_64, 0xb0_22_1a);
 /// Warnings.
-pub(in crate::app) const WARNING: Tone = Tone::new(0xf5_cf_5a, 0x7a_5a_00);
+pub(in crate::app) const WARNING: Tone = Tone::new(0xff_c4_5c, 0x7a_5a_00);
 /// All is well.
-pub(in crate::app) const GOOD: Tone = Tone::new(0x7e_cb_6f, 0x2a_73_2c);
+pub(in crate::app) const GOOD: Tone = Tone::new(0x70_c9_82, 0x2a_73_2c);
 
 /// Icons of the Phosphor font.
 pub(in crate::app) mod icon {
@@ -123,6 +123,7 @@ fn colors(style: &mut egui::Style, theme: Theme) {
     visuals.error_fg_color = of(ERROR);
     visuals.warn_fg_color = of(WARNING);
     visuals.weak_text_color = Some(of(QUIET));
+    visuals.handle_shape = egui::style::HandleShape::Circle;
     let widget = |fill: Tone, line: Option<Tone>, text: Tone| WidgetVisuals {
         bg_fill: of(fill),
         weak_bg_fill: of(fill),

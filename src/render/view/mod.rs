@@ -359,6 +359,7 @@ impl View {
     /// undefined.
     pub fn forget(&mut self) {
         (self.drawn, self.cameras) = (None, None);
+        self.surveyed = 0;
         self.declared.forget();
     }
 

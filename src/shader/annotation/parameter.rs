@@ -22,6 +22,9 @@ pub struct Constant {
     pub range: Option<(f64, f64)>,
     /// Named values; empty if all values are allowed.
     pub choices: Vec<(String, i64)>,
+    /// What each choice does, with the source; may be empty.
+    #[serde(skip)]
+    pub choice_docs: Vec<String>,
     /// Choices that claim never to reflect more light than arrives. `None` if the constant does not affect that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conserves: Option<Vec<String>>,
@@ -108,6 +111,9 @@ pub struct Parameter {
     pub color: bool,
     /// Named values; empty for free choice.
     pub choices: Vec<(String, i64)>,
+    /// What each choice does, with the source; may be empty.
+    #[serde(skip)]
+    pub choice_docs: Vec<String>,
     /// The constant without which it changes nothing: the window shows it only while that is not 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub when: Option<String>,

@@ -28,6 +28,8 @@ pub struct Ui {
     pub range: Option<(f64, f64)>,
     /// `choice A=0 B=1`
     pub choices: Vec<(String, i64)>,
+    /// What each choice does: the text in quotes behind it, or empty.
+    pub choice_docs: Vec<String>,
     /// `conserves="A"`
     pub conserves: Option<Vec<String>>,
     /// `reciprocal="A B"`
@@ -61,6 +63,7 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
         label,
         range: None,
         choices: Vec::new(),
+        choice_docs: Vec::new(),
         conserves: None,
         reciprocal: None,
         color: false,
@@ -114,7 +117,7 @@ pub(super) fn ui(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Res
             "choice" if matches!(scalar, Scalar::Bool | Scalar::Float) => {
                 return Err(cursor.error(bytes, "a choice must be int or uint"));
             }
-            "choice" => ui.choices = choices(cursor, scalar)?,
+            "choice" => (ui.choices, ui.choice_docs) = choices(cursor, scalar)?,
             word if word.contains("..") && scalar == Scalar::Bool => {
                 return Err(cursor.error(bytes, "a bool has no range"));
             }

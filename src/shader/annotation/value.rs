@@ -86,9 +86,12 @@ pub fn text_key(cursor: &mut Cursor<'_>) -> Option<&'static str> {
     ["group=", "doc=", "unit="].into_iter().find(|key| cursor.peek_text(key)).map(|key| key.trim_end_matches('='))
 }
 
-/// Parses `A=0 B=1` and so on, with values of the type.
-pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Vec<(String, i64)>, Box<Diagnostic>> {
-    let mut out: Vec<(String, i64)> = Vec::new();
+/// Names and values of choices, and what each does, which may be empty.
+pub type Choices = (Vec<(String, i64)>, Vec<String>);
+
+/// Parses `A=0 B=1 "What B does"` and so on, with values of the type.
+pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Choices, Box<Diagnostic>> {
+    let (mut out, mut docs): Choices = (Vec::new(), Vec::new());
     while !cursor.at_end() && !cursor.peek('=') && claim(cursor).or_else(|| text_key(cursor)).is_none() {
         let (bytes, word) = cursor.word();
         let choice = word.split_once('=').and_then(|(name, value)| Some((name, value.parse::<i64>().ok()?)));
@@ -101,8 +104,9 @@ pub fn choices(cursor: &mut Cursor<'_>, scalar: Scalar) -> Result<Vec<(String, i
         // All values of the type are exact in f64, and rounding never moves another value into its range.
         check(cursor, &bytes, scalar, value as f64)?;
         out.push((name.to_owned(), value));
+        docs.push(cursor.string()?.unwrap_or_default());
     }
-    if out.is_empty() { Err(cursor.expected("NAME=NUMBER after `choice`")) } else { Ok(out) }
+    if out.is_empty() { Err(cursor.expected("NAME=NUMBER after `choice`")) } else { Ok((out, docs)) }
 }
 
 /// Parses `lo..hi` in `word`. The type must be able to hold both ends.

@@ -117,7 +117,8 @@ pub(in crate::app) fn show(
 /// The name of the mode with its unit.
 fn heading(ui: &mut Ui, legend: &Legend<'_>, width: f32) {
     let (body, strong) = (TextStyle::Body.resolve(ui.style()), ui.visuals().strong_text_color());
-    let title = legend.title.unwrap_or(&legend.of.mode.name);
+    // The mouse may be on another mode of the grid.
+    let title = legend.title.filter(|title| title.starts_with(&legend.of.mode.name)).unwrap_or(&legend.of.mode.name);
     let unit = if legend.of.mode.unit.is_empty() { String::new() } else { format!("  ·  {}", legend.of.mode.unit) };
     let title = wrapped(ui, &format!("{title}{unit}"), body, strong, width);
     ui.label(title).on_hover_text(&legend.of.mode.doc);

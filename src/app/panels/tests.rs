@@ -1,0 +1,85 @@
+//! The panels as a screen reader finds them: roles, names, and the keyboard.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::LegendOf;
+use super::overlay::legend::{self, Legend, LegendState};
+use super::{camera, range, rows, theme};
+use crate::app::command::Command;
+use crate::app::numbers::EXPOSURE;
+use crate::scene::Model;
+use crate::settings::{Channels, Colormap, Settings, ViewRange};
+use crate::shader::{Encode, Mode};
+
+fn harness<'a, T: 'a>(state: T, mut show: impl FnMut(&mut egui::Ui, &mut T) + 'a) -> Harness<'a, T> {
+    let mut has_theme = false;
+    let show = move |ui: &mut egui::Ui, state: &mut T| {
+        if !std::mem::replace(&mut has_theme, true) {
+            theme::apply(ui.ctx());
+        }
+        show(ui, state);
+    };
+    let mut harness = Harness::new_ui_state(show, state);
+    harness.run();
+    harness
+}
+
+#[test]
+fn the_legend_names_the_mode_and_its_switches() {
+    let mode = Mode { name: "Depth".into(), unit: "m".into(), encode: Encode::Data, components: 1, ..Mode::default() };
+    let of = LegendOf { mode, limits: Some((2.9, 4.2)), survey: None, colormap: Colormap::None, exposure: 1.0 };
+    let state = (Settings::of_window().view, LegendState::default());
+    let mut harness = harness(state, move |ui, (view, state)| {
+        let legend = Legend { title: Some("Depth"), of: &of, value: Some("3.01758 m") };
+        legend::show(ui, &legend, view, state, 600.0);
+    });
+    for text in ["Depth  ·  m", "2.9", "4.2", "3.01758 m"] {
+        harness.get_by_label(text);
+    }
+    harness.get_by_role_and_label(Role::Button, "auto");
+    harness.get_by_role_and_label(Role::Button, "R").click();
+    harness.run();
+    assert_eq!(harness.state().0.channels, Channels::R);
+    harness.get_by_role_and_label(Role::Button, theme::icon::CHART_BAR).click();
+    harness.run();
+    assert!(harness.state().1.shows_histogram);
+}
+
+#[test]
+fn rows_are_named_and_follow_the_keyboard() {
+    let mut harness = harness(Settings::of_window(), |ui, settings| {
+        rows::number(ui, settings, &EXPOSURE);
+        range::show(ui, &mut settings.view);
+    });
+    for name in ["Exposure", "Range", "Channels", "Colormap", "Wireframe", "Dither"] {
+        assert!(harness.query_all_by_label(name).next().is_some(), "{name}");
+    }
+    harness.get_by_role_and_label(Role::Slider, "Exposure").focus();
+    harness.run();
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run();
+    assert!(harness.state().view.ev < 0.0, "one step brighter");
+    harness.get_by_role_and_label(Role::CheckBox, "Wireframe").click();
+    harness.run();
+    assert!(harness.state().view.wireframe);
+    assert_eq!(harness.state().view.range, ViewRange::Auto);
+}
+
+#[test]
+fn cameras_are_kept_and_found_by_their_number() {
+    let state = (Settings::default(), Vec::<Command>::new());
+    let mut harness = harness(state, |ui, (settings, commands)| {
+        camera::show(ui, settings, &Model::default(), commands);
+    });
+    harness.get_by_role_and_label(Role::Button, "3").click();
+    harness.run();
+    assert_eq!(harness.state().1, [Command::KeepCamera(3)]);
+    let settings = &mut harness.state_mut().0;
+    settings.bookmarks.insert("3".into(), settings.camera.clone());
+    harness.run();
+    harness.get_by_role_and_label(Role::Button, "3").click();
+    harness.run();
+    assert_eq!(harness.state().1.last(), Some(&Command::RecallCamera(3)));
+}
