@@ -152,6 +152,8 @@ impl Early {
         });
         let compiler = options.compiler.clone();
         std::thread::spawn(move || compiler.warm());
+        // Reading them takes some milliseconds.
+        std::thread::spawn(crate::learn::exercises);
         let reading = loader::read(options.model.clone(), LoadOptions { allow_outside: options.allow_outside });
         Self { watcher, reading, events: events.clone() }
     }

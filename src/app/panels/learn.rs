@@ -9,7 +9,7 @@ use crate::app::command::Command;
 use crate::app::learn::{LearnCommand, Learning};
 use crate::shader::{Diagnostic, Severity};
 
-use super::theme::{ACCENT, QUIET};
+use super::theme::{ACCENT, ERROR, GOOD, QUIET};
 use crate::learn::exercises;
 
 /// Shows the panel.
@@ -47,8 +47,8 @@ fn bar(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
             let (before, after) = (number.map(|n| n - 1), number.map(|n| n + 1));
             let exists = |n: &usize| (1..=all.len()).contains(n);
             if number.is_some() {
-                let next = button(ui, "Next ▶", "Open the next exercise", after.filter(exists));
-                let previous = button(ui, "◀ Previous", "Open the exercise before", before.filter(exists));
+                let next = button(ui, "Next", "Open the next exercise", after.filter(exists));
+                let previous = button(ui, "Previous", "Open the exercise before", before.filter(exists));
                 next.or(previous).into_iter().for_each(|number| ask(LearnCommand::Open(number)));
             }
             let is_toggle = learning.exercise.is_some();
@@ -62,6 +62,24 @@ fn bar(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
     ui.separator();
 }
 
+/// A mark before a goal or an exercise: a ring, a check in green or a cross in red.
+fn mark(ui: &mut Ui, state: Option<bool>) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, 18.0), egui::Sense::hover());
+    let (center, painter) = (rect.center(), ui.painter());
+    let line = |points: &[(f32, f32)], color| {
+        let points = points.iter().map(|(x, y)| center + egui::vec2(*x, *y)).collect();
+        painter.add(egui::Shape::line(points, egui::Stroke::new(2.0, color)));
+    };
+    match state {
+        None => _ = painter.circle_stroke(center, 4.5, egui::Stroke::new(1.5, QUIET)),
+        Some(true) => line(&[(-5.0, 0.5), (-1.5, 4.0), (5.0, -4.0)], GOOD),
+        Some(false) => {
+            line(&[(-4.0, -4.0), (4.0, 4.0)], ERROR);
+            line(&[(-4.0, 4.0), (4.0, -4.0)], ERROR);
+        }
+    }
+}
+
 /// A dot for each exercise: filled when it is solved. A click opens it.
 fn dots(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
@@ -70,7 +88,7 @@ fn dots(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
             let is_open = learning.exercise.is_some_and(|open| open.number == exercise.number);
             let (rect, response) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::click());
             let record = learning.progress.of(exercise);
-            let color = if record.solved { super::theme::GOOD } else { QUIET };
+            let color = if record.solved { GOOD } else { QUIET };
             let (center, radius) = (rect.center(), if is_open { 6.0 } else { 4.5 });
             match record.solved {
                 true => _ = ui.painter().circle_filled(center, radius, color),

@@ -19,6 +19,7 @@ use crate::threads::checker::Checked;
 impl Viewer {
     pub(super) fn learn(&mut self, command: LearnCommand) {
         let learning = &mut self.learning;
+        learning.asks &= command == LearnCommand::StartOver;
         match (command, learning.exercise) {
             (LearnCommand::Open(number), _) => self.prepare_exercise(number),
             (LearnCommand::List, _) if self.panels.layout.is_in_sight(Panel::Learn) => learning.shows_list ^= true,

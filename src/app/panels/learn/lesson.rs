@@ -2,14 +2,12 @@
 
 use egui::{Color32, Frame, Label, Margin, RichText, Ui};
 
+use super::mark;
 use crate::app::command::Command;
 use crate::app::difference::Kind;
 use crate::app::learn::{LearnCommand, Learning, Measured};
 use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING};
 use crate::learn::{Exercise, Finding};
-
-/// Indent of a measurement below its goal, in points.
-const INDENT: f32 = 22.0;
 
 /// Shows the exercise. `is_broken`: the newest edit does not compile.
 pub(super) fn show(
@@ -130,13 +128,10 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool)
     });
     for (index, goal) in exercise.goals.iter().enumerate() {
         let finding = findings.get(index).filter(|_| !is_broken);
-        let (mark, color) = match finding {
-            Some(finding) if finding.passed => ("✔", GOOD),
-            Some(_) => ("✖", ERROR),
-            None => ("○", QUIET),
-        };
+        let state = finding.map(|finding| finding.passed);
+        let color = if state == Some(true) { GOOD } else { ERROR };
         ui.horizontal_top(|ui| {
-            ui.add_sized([INDENT - 8.0, 16.0], Label::new(RichText::new(mark).color(color)));
+            mark(ui, state);
             ui.vertical(|ui| {
                 ui.add(Label::new(&goal.says).wrap());
                 if let Some(finding) = finding {

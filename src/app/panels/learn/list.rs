@@ -2,9 +2,10 @@
 
 use egui::{Button, RichText, Ui};
 
+use super::mark;
 use crate::app::command::Command;
 use crate::app::learn::{LearnCommand, Learning};
-use crate::app::panels::theme::{ACCENT, GOOD, QUIET};
+use crate::app::panels::theme::{ACCENT, QUIET};
 use crate::learn::{Level, exercises};
 
 /// Shows the list.
@@ -20,8 +21,7 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
         let record = learning.progress.of(exercise);
         let mut open = false;
         ui.horizontal(|ui| {
-            let (mark, color) = if record.solved { ("✔", GOOD) } else { ("○", QUIET) };
-            ui.add_sized([16.0, 18.0], egui::Label::new(RichText::new(mark).color(color)));
+            mark(ui, record.solved.then_some(true));
             let title = RichText::new(format!("{}  {}", exercise.number, exercise.title));
             let title = if next == Some(exercise.number) { title.color(ACCENT).strong() } else { title };
             let button = Button::new(title).frame(false);
