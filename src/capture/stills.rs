@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::label::Labels;
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
 use crate::frame::{Clock, FrameState};
 use crate::gpu::{Frames, Gpu, GpuError, Image, Use};
@@ -29,6 +30,8 @@ pub struct Stills {
 /// A version of the shaders, for a picture of it.
 pub(crate) struct VersionPicture {
     pub(crate) set: Arc<PipelineSet>,
+    /// What is written in its picture.
+    pub(crate) label: String,
     /// A frame with its shaders, if there was one: its light is the version's own.
     pub(crate) like: Option<BoundFrame>,
 }
@@ -91,6 +94,7 @@ impl Stills {
         progress: Tell<'_>,
     ) -> Result<(), CaptureError> {
         self.check_size(size)?;
+        let labels = Labels::new().map_err(CaptureError::Write)?;
         for (index, version) in versions.iter().enumerate() {
             tell(progress, index, versions.len())?;
             let target = self.target()?;
@@ -99,7 +103,13 @@ impl Stills {
             let bound = self.resources.bind_older(&version.set, &state, version.like.as_ref());
             // Its light is gone, if another environment was chosen since.
             let Some(frame) = bound.map_err(HeadlessError::from)? else { continue };
-            animation.add(image_of(self.picture(&frame)?)?)?;
+            let mut picture = image_of(self.picture(&frame)?)?;
+            let (x, y, width) = (12, size.1.saturating_sub(30), size.0 as f32 - 24.0);
+            // Legible on any picture: light over dark.
+            for (at, color) in [((x + 1, y + 1), [0; 3]), ((x, y), [235; 3])] {
+                labels.write(&mut picture, at, (18.0, width), color, &version.label);
+            }
+            animation.add(picture)?;
         }
         tell(progress, versions.len(), versions.len())?;
         animation.finish()

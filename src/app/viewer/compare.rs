@@ -204,7 +204,8 @@ impl Viewer {
             self.versions.iter().filter(|version| version.number == newest || self.versions.can_show(version, newest));
         let of = |version: &Version| {
             let picture = version.picture.as_ref().or(self.shown.as_ref().filter(|_| version.number == newest));
-            VersionPicture { set: version.set.clone(), like: picture.map(|picture| picture.frame.clone()) }
+            let label = format!("{}   {}", version.number, version.title());
+            VersionPicture { set: version.set.clone(), label, like: picture.map(|picture| picture.frame.clone()) }
         };
         versions.map(of).collect()
     }
