@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ExpressionSettings {
-    /// `FILE:LINE:NAME`, as `brdf/ndf.glsl:24:a2`; empty for none.
+    /// `FILE:LINE:NAME`, as `brdf/ndf.glsl:20:a2`; empty for none.
     pub at: String,
     /// Which evaluation in a pixel counts, from 1, for code in loops and in functions that run once for each light; 0 is the last.
     pub evaluation: u32,

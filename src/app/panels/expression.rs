@@ -118,7 +118,7 @@ fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
     ui.horizontal(|ui| {
         let room = ui.available_width() - 62.0;
         let edit = TextEdit::singleline(&mut state.field).desired_width(room).font(egui::TextStyle::Monospace);
-        let edit = ui.add(edit.hint_text("brdf/ndf.glsl:24 a2"));
+        let edit = ui.add(edit.hint_text("brdf/ndf.glsl:20 a2"));
         if std::mem::take(&mut state.takes_focus) {
             edit.request_focus();
         }

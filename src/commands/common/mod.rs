@@ -66,7 +66,7 @@ pub struct Common {
     /// Debug mode; `specula modes` lists them
     #[arg(long, value_name = "NAME")]
     pub mode: Vec<String>,
-    /// Watch an expression of the shaders, as brdf/ndf.glsl:24:a2: the mode `expression` shows its value. A column may stand before the name
+    /// Watch an expression of the shaders, as brdf/ndf.glsl:20:a2: the mode `expression` shows its value. A column may stand before the name
     #[arg(long, value_name = "FILE:LINE:NAME")]
     watch_expr: Option<String>,
     /// Change any setting, as view.msaa=1, or a shader parameter, as NDF=Beckmann; may repeat. `specula help set` lists all

@@ -49,7 +49,7 @@ impl Expression {
     /// # Errors
     /// A message with what was expected.
     pub fn parse(text: &str, evaluation: u32) -> Result<Self, String> {
-        let wrong = |what: &str| format!("`{text}`: {what}; expected FILE:LINE:NAME, as brdf/ndf.glsl:24:a2");
+        let wrong = |what: &str| format!("`{text}`: {what}; expected FILE:LINE:NAME, as brdf/ndf.glsl:20:a2");
         let separators = [':', ' '];
         let (file, rest) = text.trim().split_once(separators).ok_or_else(|| wrong("there is no line"))?;
         let (line, rest) = rest.trim_start().split_once(separators).ok_or_else(|| wrong("there is no expression"))?;
@@ -123,8 +123,8 @@ mod tests {
     #[test]
     fn expressions_are_parsed() {
         let parse = |text| Expression::parse(text, 0).map(|e| (e.to_string(), e.column, e.text));
-        let plain = ("brdf/ndf.glsl:24:a2".to_owned(), None, "a2".to_owned());
-        assert_eq!(parse("brdf/ndf.glsl:24:a2"), Ok(plain.clone()));
+        let plain = ("brdf/ndf.glsl:20:a2".to_owned(), None, "a2".to_owned());
+        assert_eq!(parse("brdf/ndf.glsl:20:a2"), Ok(plain.clone()));
         assert_eq!(parse(" brdf/ndf.glsl 24 a2 "), Ok(plain));
         assert_eq!(parse("a.glsl:3:9:x == 1 ? y : z").unwrap().1, Some(9));
         assert_eq!(parse("a.glsl:3:x <= 1.0 ? y : z").unwrap().2, "x <= 1.0 ? y : z");

@@ -353,7 +353,7 @@ mod tests {
     fn errors_say_where_expressions_can_be_watched() {
         let message = |expression: &str| overlay(expression).error.map(|error| error.one_line()).unwrap_or_default();
         assert!(message("b.glsl:1:x").contains("no part of the picture's stage"));
-        assert!(message("aa.glsl:1:x").contains("did you mean"), "{}", message("aa.glsl:1:x"));
+        assert!(message("aa.glsl:1:x").contains("Did you mean"), "{}", message("aa.glsl:1:x"));
         assert!(message("a.glsl:9:x").contains("no line 9"));
         assert!(message("pbr.frag:2:x").contains("directive"));
         assert_eq!(message("pbr.frag:6:color"), "");
