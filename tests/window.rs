@@ -10,8 +10,8 @@ mod window {
     mod expressions;
     mod faults;
     mod gallery;
-    mod inspector;
     mod grid;
+    mod inspector;
     mod keys;
     mod layout;
     mod learn;

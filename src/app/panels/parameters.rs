@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use egui::{Response, RichText, Ui};
 
-use super::{QUIET, defaults};
 use super::passes::is_of_pass;
 use super::rows::{self, Row, edit_number, heading, set_option, short};
 use super::theme::icon;
+use super::{QUIET, defaults};
 use crate::app::numbers::{component, of_constant, of_parameter};
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;

@@ -237,8 +237,7 @@ impl Pipeline {
             .patch_control_points(PATCH_VERTICES)
             .push_next(&mut origin);
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let lines =
-            matches!(desc.raster, Raster::Lines | Raster::Edges | Raster::BlendedLines) && gpu.wireframe;
+        let lines = matches!(desc.raster, Raster::Lines | Raster::Edges | Raster::BlendedLines) && gpu.wireframe;
         let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0).polygon_mode(if lines {
             vk::PolygonMode::LINE
         } else {
