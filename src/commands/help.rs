@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Command, CommandFactory as _};
+use specula::control::{COMMANDS, Described};
 use specula::message::nearest;
 use specula::scene::BUILT_IN;
 use specula::settings::{Factor, FactorInfo, Setting, catalog, factor_path, told};
@@ -14,15 +15,17 @@ use super::common::names::is_word;
 use super::common::{compiler, source};
 use super::{Cli, Failure, print};
 
-/// Topic that is not a command.
+/// Topics that are not commands.
 const SETTINGS: &str = "set";
+const CONTROL: &str = "commands";
 /// Width of the last column of the list of settings.
 const MEANING: usize = 60;
 
 /// Options of `help`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A command, as `render` or `brdf plot`; or `set`, for the list of all settings
+    /// A command, as `render` or `brdf plot`; `set`, for the list of all settings; or `commands`, for what a window takes on stdin and on
+    /// its socket
     topic: Vec<String>,
     /// For `set`: also list the settings of the shader tree in this folder [default: ./shaders if it is one]
     #[arg(long, value_name = "DIR|FILE")]
@@ -34,10 +37,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.topic == [SETTINGS] {
         return print_settings(args.shaders.as_deref());
     }
+    if args.topic == [CONTROL] {
+        print_commands();
+        return Ok(());
+    }
     let mut command = Cli::command();
     command.build();
     for name in &args.topic {
-        let names: Vec<String> = names(&command).chain([SETTINGS.to_owned()]).collect();
+        let names: Vec<String> = names(&command).chain([SETTINGS, CONTROL].map(str::to_owned)).collect();
         command = command.find_subcommand(name).cloned().ok_or_else(|| {
             let known = names.iter().map(String::as_str);
             let hint = nearest(name, known).map(|name| format!(" Did you mean '{name}'?")).unwrap_or_default();
@@ -96,6 +103,16 @@ fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
         _ => out!("\nThe shader tree {name} does not compile, so its own settings are unknown: see `specula check`."),
     }
     Ok(())
+}
+
+fn print_commands() {
+    out!("Commands to a window: one JSON object a line, on stdin (`specula view --events json`) or on a local socket (--socket NAME).");
+    out!("Each is answered by a line: {{\"event\": \"done\", \"id\", \"command\", \"result\"}} or \"error\" with a \"message\". `id` is whatever you send.");
+    out!("A field with a ? may be left out.\n");
+    for Described { command, takes, doc } in COMMANDS {
+        let fields = if takes.is_empty() { String::new() } else { format!(", {takes}") };
+        out!("{{\"command\": \"{command}\"{fields}}}\n    {doc}");
+    }
 }
 
 /// The factors of a material.

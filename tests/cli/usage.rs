@@ -257,3 +257,13 @@ fn help_set_lists_every_setting() {
     assert!(run(directory.path(), &["help"]).expect(0, &[]).stdout.contains("Commands:"));
     run(directory.path(), &["help", "rendr"]).expect(2, &["'rendr'", "Did you mean 'render'?"]);
 }
+
+#[test]
+fn help_commands_lists_what_a_window_takes() {
+    let directory = tempfile::tempdir().unwrap();
+    let help = run(directory.path(), &["help", "commands"]);
+    help.expect(0, &[]);
+    for command in specula::control::COMMANDS {
+        assert!(help.stdout.contains(&format!("\"command\": \"{}\"", command.command)), "{help:#?}");
+    }
+}
