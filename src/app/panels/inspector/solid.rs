@@ -32,8 +32,10 @@ impl View {
         let (sin, cos) = azimuth.sin_cos();
         let towards = Vec3::new(cos * elevation.cos(), sin * elevation.cos(), elevation.sin());
         let right = Vec3::new(-sin, cos, 0.0);
-        let scale = (0.46 * rect.width()).min(0.82 * rect.height());
-        let center = pos2(rect.center().x, rect.min.y + 0.88 * rect.height() - 0.12 * scale * elevation.sin());
+        // The half of the horizon in front lies below the center; above it are the other half and the normal.
+        let (below, above) = (elevation.sin(), elevation.sin().max(elevation.cos()));
+        let scale = (0.44 * rect.width()).min(0.9 * rect.height() / (below + above));
+        let center = pos2(rect.center().x, rect.max.y - 0.05 * rect.height() - scale * below);
         Self { center, scale, right, up: towards.cross(right), towards }
     }
 
@@ -128,6 +130,17 @@ mod tests {
         let (origin, normal) = (view.place(Vec3::ZERO), view.place(Vec3::Z));
         assert!(normal.y < origin.y && (normal.x - origin.x).abs() < 1e-3, "{origin} {normal}");
         assert!(view.right.cross(view.up).distance(view.towards) < 1e-5);
+    }
+
+    #[test]
+    fn horizon_and_normal_fit_the_plot() {
+        let rect = Rect::from_min_size(Pos2::ZERO, egui::vec2(200.0, 150.0));
+        for eye_deg in [0.0, 45.0, 89.0] {
+            let view = view(&Directions { light_deg: 40.0, eye_deg, azimuth_deg: 0.0 });
+            let horizon = (0..36).map(|step| view.place(direction(90.0, 10.0 * step as f32)));
+            let places: Vec<Pos2> = horizon.chain([view.place(Vec3::Z)]).collect();
+            assert!(places.iter().all(|place| rect.contains(*place)), "{eye_deg}: {places:?}");
+        }
     }
 
     #[test]

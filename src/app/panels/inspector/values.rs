@@ -40,7 +40,7 @@ pub(super) fn show(
         }
         ui.spacing_mut().item_spacing.y = 0.0;
         for modes in found.chunk_by(|a, b| a.group == b.group) {
-            let has_data = |mode: &&Mode| reading.value(&mode.slug).is_some_and(|value| !value.no_data);
+            let has_data = |mode: &&Mode| reading.value(&mode.slug).is_some_and(|value| has_data(&value));
             let (shown, folded): (Vec<&Mode>, Vec<&Mode>) = modes.iter().copied().partition(has_data);
             ui.add_space(6.0);
             let group = &modes[0].group;
@@ -71,6 +71,11 @@ pub(super) fn show(
             ui.label(RichText::new(text).small().color(QUIET)).on_hover_text(doc);
         }
     });
+}
+
+/// Whether a value says anything: the mode has data here, and something covers the pixel.
+fn has_data(value: &PixelValue) -> bool {
+    value.not_finite || (!value.no_data && value.value[3] > 0.0)
 }
 
 /// A row: swatch, name, numbers and unit.
@@ -138,4 +143,17 @@ fn paint_swatch(ui: &Ui, rect: Rect, mode: &Mode, value: &PixelValue, exposure: 
     };
     painter.rect_filled(rect, 2.0, color);
     painter.rect_stroke(rect, 2.0, Stroke::new(1.0, Color32::from_gray(70)), StrokeKind::Inside);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_that_nothing_covers_has_no_data() {
+        let covered = PixelValue { value: [0.0, 0.0, 0.0, 1.0], ..PixelValue::default() };
+        assert!(has_data(&covered) && !has_data(&PixelValue::default()));
+        assert!(!has_data(&PixelValue { no_data: true, ..covered }));
+        assert!(has_data(&PixelValue { not_finite: true, ..PixelValue::default() }));
+    }
 }
