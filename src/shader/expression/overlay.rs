@@ -49,6 +49,8 @@ pub struct Overlay {
     text: String,
     /// The names that the line offers.
     names: Vec<String>,
+    /// Whether the line is outside of every function.
+    is_outside: bool,
 }
 
 impl Overlay {
@@ -64,9 +66,11 @@ impl Overlay {
             host: host.clone(),
             text: expression.text.clone(),
             names: Vec::new(),
+            is_outside: false,
         };
         let placed = overlay.place(expression, line, &closure, snapshot);
         let placed = placed.map_err(|error| overlay.error = Some(error)).ok();
+        overlay.is_outside = placed == Some(Placed::Outside);
         let outside = placed.filter(|placed| *placed == Placed::Outside).map(|_| expression.text.as_str());
         match stage_text(expression, line, host, &closure, snapshot, outside) {
             Ok(files) => overlay.files = files,
@@ -125,10 +129,14 @@ impl Overlay {
         let unknown = first.message.strip_prefix('\'').and_then(|rest| rest.split_once("' : undeclared identifier"));
         if let Some((unknown, _)) = unknown {
             let hint = did_you_mean(unknown, self.names.iter().map(String::as_str));
-            let names = if self.names.is_empty() {
-                "this line is outside of every function, so it offers only what is declared outside too".to_owned()
-            } else {
-                format!("the line offers {}", self.names.join(", "))
+            let names = match self.names.as_slice() {
+                _ if self.is_outside => {
+                    "this line is outside of every function, so it offers only what is declared outside too".to_owned()
+                }
+                [] => {
+                    "the line declares no number or vector; a member of a struct is watched as `s.roughness`".to_owned()
+                }
+                names => format!("the line offers {}", names.join(", ")),
             };
             let hint = hint.trim().trim_end_matches('?').replacen("Did", "did", 1);
             let help = if hint.is_empty() { names } else { format!("{hint}? Else, {names}") };
@@ -357,5 +365,12 @@ mod tests {
         assert!(message("a.glsl:9:x").contains("no line 9"));
         assert!(message("pbr.frag:2:x").contains("directive"));
         assert_eq!(message("pbr.frag:6:color"), "");
+        let unknown = |expression: &str| {
+            let said = Diagnostic::error("a.glsl", "'y' : undeclared identifier");
+            overlay(expression).explained(&[said])[0].help.clone().unwrap_or_default()
+        };
+        assert!(unknown("a.glsl:2:y").contains("the line offers x"));
+        assert!(unknown("pbr.frag:6:y").contains("declares no number or vector"));
+        assert!(unknown("pbr.frag:5:y").contains("outside of every function"));
     }
 }
