@@ -236,7 +236,10 @@ const MOST_NODES: usize = 300;
 /// Nodes, materials and cameras of the model, and lights with a handle.
 fn of_scene(viewer: &Viewer) -> Vec<Entry> {
     let Some(model) = viewer.session.model() else { return Vec::new() };
-    let select = |title: String, selected| Entry::new("Scene", title, Action::Do(Command::Select(selected)));
+    let select = |title: String, selected| {
+        let entry = Entry::new("Scene", title, Action::Do(Command::Select(selected)));
+        Entry { is_minor: true, ..entry }
+    };
     let nodes = model.nodes.iter().enumerate().filter(|(_, node)| !node.name.is_empty()).take(MOST_NODES);
     let mut entries: Vec<Entry> =
         nodes.map(|(at, node)| select(format!("Select node {}", node.name), Selected::Node(at))).collect();

@@ -146,9 +146,7 @@ impl Viewer {
             } else {
                 format!("{count} lights of its file shine")
             };
-            self.say(format!(
-                "The {lights} instead of the orbiting lights. Lights > Source changes that, Ctrl+Z takes it back"
-            ));
+            self.say(format!("The {lights} instead of the orbiting lights. Lights > Source changes that"));
         }
     }
 

@@ -12,6 +12,7 @@ use crate::app::selection::{LightId, Selected, common_material, name_or};
 use crate::app::viewer::Viewer;
 use crate::frame::Scene;
 use crate::scene::{Bounds, Model};
+use crate::settings::LightSource;
 
 pub(super) fn show(
     ui: &mut Ui,
@@ -146,10 +147,19 @@ fn parts(
     }
 }
 
+/// Offers lights that do not shine.
+fn use_source(ui: &mut Ui, viewer: &mut Viewer, source: LightSource, text: &str) {
+    let now = &mut viewer.session.settings.lights.source;
+    if *now != source && ui.button(text).on_hover_text("This light does not shine now").clicked() {
+        *now = source;
+    }
+}
+
 fn show_light(ui: &mut Ui, viewer: &mut Viewer, model: &Model, light: LightId) {
     match light {
         LightId::Orbit(index) => {
             title(ui, "Orbiting light", &format!("Light {}", index + 1));
+            use_source(ui, viewer, LightSource::Orbit, "Use the orbiting lights");
             lights::orbit(ui, &mut viewer.session.settings, index);
         }
         LightId::Rectangle => {
@@ -159,6 +169,7 @@ fn show_light(ui: &mut Ui, viewer: &mut Viewer, model: &Model, light: LightId) {
         LightId::Model(index) => {
             let Some(light) = model.lights.get(index) else { return };
             title(ui, kind(light.kind), &name_or(&light.name, || format!("light {index} of the file")));
+            use_source(ui, viewer, LightSource::Model, "Use the lights of the file");
             let unit = if kind(light.kind) == "directional" { "lx" } else { "cd" };
             let [r, g, b] = light.intensity.to_array();
             let [x, y, z] = light.position.to_array();

@@ -179,3 +179,36 @@ pub(in crate::app::panels) fn slot_name(slot: usize) -> String {
     let name = TEXTURES.get(slot).map_or("", |texture| texture.name);
     name.trim_start_matches("TEXTURE_").to_lowercase().replace('_', " ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_nobody_edits_set_nothing() {
+        let egui = egui::Context::default();
+        let mut settings = Settings::default();
+        for _ in 0..3 {
+            let _ = egui.run_ui(egui::RawInput::default(), |ui| {
+                for factor in Factor::ALL {
+                    row(ui, &mut settings, "Paint", &Material::default(), *factor);
+                }
+            });
+        }
+        assert!(settings.materials.is_empty(), "{:?}", settings.materials);
+        // Nor do they change what was set.
+        settings.materials.entry("Paint".into()).or_default().insert(Factor::Roughness, FactorValue::Number(0.3));
+        let before = settings.clone();
+        let _ = egui.run_ui(egui::RawInput::default(), |ui| {
+            row(ui, &mut settings, "Paint", &Material::default(), Factor::Roughness);
+        });
+        assert_eq!(settings, before);
+    }
+
+    #[test]
+    fn slots_have_names() {
+        assert_eq!(slot_name(0), "base color");
+        assert_eq!(slot_name(1), "metallic roughness");
+        assert!((0..TEXTURES.len()).all(|slot| !slot_name(slot).is_empty()));
+    }
+}

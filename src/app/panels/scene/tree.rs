@@ -183,7 +183,7 @@ fn rows(model: &Model) -> Vec<Row> {
         (model.material_key(index), plural(used, "primitive"), Selected::Material(index))
     });
     group(&mut rows, Group::Materials, "Materials", materials.collect());
-    let textures = textures(model).into_iter().map(|(source, _)| {
+    let textures = textures(model).into_keys().map(|source| {
         let image = source.image(model);
         let (name, size) = image
             .map_or_else(Default::default, |image| (image.name.clone(), format!("{} × {}", image.width, image.height)));
