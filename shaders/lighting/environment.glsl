@@ -74,7 +74,8 @@ vec3 prefiltered_sky(vec3 d, float level) {
 // (Karis 2013), without the sun. But level 0 shows the sun itself.
 vec3 prefiltered_without_sun(vec3 r, float roughness) {
     if (!HAS_ENVIRONMENT) return frame.ambient;
-    return frame.environment_intensity * prefiltered_sky(map_from_world(r), specular_level(roughness));
+    vec3 sky = prefiltered_sky(map_from_world(r), specular_level(roughness));
+    return frame.environment_intensity * sky;
 }
 
 // How much of the sun prefiltered_without_sun lacks at this roughness, 0..1, and the environment's intensity.
