@@ -106,8 +106,12 @@ fn print_settings(tree: Option<&Path>) -> Result<(), Failure> {
 }
 
 fn print_commands() {
-    out!("Commands to a window: one JSON object a line, on stdin (`specula view --events json`) or on a local socket (--socket NAME).");
-    out!("Each is answered by a line: {{\"event\": \"done\", \"id\", \"command\", \"result\"}} or \"error\" with a \"message\". `id` is whatever you send.");
+    out!(
+        "Commands to a window: one JSON object a line, on stdin (`specula view --events json`) or on a local socket (--socket NAME)."
+    );
+    out!(
+        "Each is answered by a line: {{\"event\": \"done\", \"id\", \"command\", \"result\"}} or \"error\" with a \"message\". `id` is whatever you send."
+    );
     out!("A field with a ? may be left out.\n");
     for Described { command, takes, doc } in COMMANDS {
         let fields = if takes.is_empty() { String::new() } else { format!(", {takes}") };

@@ -16,9 +16,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 pub use client::{Client, Clients};
 pub(crate) use reply::Reply;
 pub use request::{COMMANDS, Described};
-pub(crate) use request::{
-    COMMANDS, Camera, Capture, Compare, Open, Playback, Probe, Request, Run, Sheet, Timeline, Turntable,
-};
+pub(crate) use request::{Camera, Capture, Compare, Open, Playback, Probe, Request, Run, Sheet, Timeline, Turntable};
 pub use socket::{Socket, socket_path};
 
 /// A command, and who waits for its answer.
