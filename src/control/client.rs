@@ -210,7 +210,9 @@ mod tests {
     #[test]
     fn a_reader_that_does_not_read_holds_nobody_up() {
         let (told, hung_up) = channel();
-        let hang_up: HangUp = Box::new(move || drop(told.send(())));
+        let hang_up: HangUp = Box::new(move || {
+            let _ = told.send(());
+        });
         let (lazy, _permit, _) = slow(Some(hang_up));
         let (stdout, permits, written) = slow(None);
         let clients = Clients::default();
@@ -220,7 +222,9 @@ mod tests {
         (0..8).for_each(|_| clients.send(&long));
         assert!(lazy.is_closed() && hung_up.recv().is_ok());
         assert!(!stdout.is_closed(), "stdout only misses lines");
-        (0..100).for_each(|_| drop(permits.send(())));
+        (0..100).for_each(|_| {
+            let _ = permits.send(());
+        });
         clients.flush(Duration::from_secs(60));
         assert_eq!(written.lock().unwrap().len(), 4 * (long.len() + 1));
         clients.send("next");

@@ -37,7 +37,10 @@ x11rb::atom_manager! {
 pub fn drop_file(display: &str, window: u32, at: (u32, u32), file: &Path) {
     let (display, uri) = (display.to_owned(), format!("file://{}\r\n", file.display()));
     let (sender, done) = channel();
-    std::thread::spawn(move || sender.send(Source::new(&display, window, uri).drop_at(at)));
+    std::thread::spawn(move || {
+        Source::new(&display, window, uri).drop_at(at);
+        let _ = sender.send(());
+    });
     done.recv_timeout(PATIENCE).expect("the window finishes the drop");
 }
 

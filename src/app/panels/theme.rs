@@ -43,35 +43,35 @@ const fn opaque(hex: u32) -> Color32 {
 }
 
 /// Background of the panels.
-pub(in crate::app) const PANEL: Tone = Tone::new(0x18_1b_1f, 0xf5_f6_f8);
+pub(in crate::app) const PANEL: Tone = Tone::new(0x181b1f, 0xf5f6f8);
 /// Between the panels, and behind their tabs.
-pub(in crate::app) const EDGE: Tone = Tone::new(0x12_14_17, 0xdf_e3_e8);
+pub(in crate::app) const EDGE: Tone = Tone::new(0x121417, 0xdfe3e8);
 /// Buttons, fields and what lies above a panel.
-pub(in crate::app) const RAISED: Tone = Tone::new(0x28_2d_33, 0xe3_e7_ec);
+pub(in crate::app) const RAISED: Tone = Tone::new(0x282d33, 0xe3e7ec);
 /// The same under the mouse.
-const HOVERED: Tone = Tone::new(0x36_3d_45, 0xd3_d9_e0);
+const HOVERED: Tone = Tone::new(0x363d45, 0xd3d9e0);
 /// Lines around fields and cards.
-pub(in crate::app) const LINE: Tone = Tone::new(0x36_3c_43, 0xc3_ca_d2);
+pub(in crate::app) const LINE: Tone = Tone::new(0x363c43, 0xc3cad2);
 /// Behind text in cards over the picture.
-pub(in crate::app) const CARD: Tone = Tone::new(0x15_17_1a, 0xfb_fc_fd);
+pub(in crate::app) const CARD: Tone = Tone::new(0x15171a, 0xfbfcfd);
 /// Titles and what is chosen.
-pub(in crate::app) const STRONG: Tone = Tone::new(0xf4_f5_f7, 0x0e_10_12);
+pub(in crate::app) const STRONG: Tone = Tone::new(0xf4f5f7, 0x0e1012);
 /// Text.
-pub(in crate::app) const TEXT: Tone = Tone::new(0xd6_da_df, 0x24_28_2d);
+pub(in crate::app) const TEXT: Tone = Tone::new(0xd6dadf, 0x24282d);
 /// Explanations.
-pub(in crate::app) const QUIET: Tone = Tone::new(0x98_a0_aa, 0x56_5e_68);
+pub(in crate::app) const QUIET: Tone = Tone::new(0x98a0aa, 0x565e68);
 /// Links, what is chosen, and what the user has set.
-pub(in crate::app) const ACCENT: Tone = Tone::new(0xf0_a6_3c, 0x91_54_00);
+pub(in crate::app) const ACCENT: Tone = Tone::new(0xf0a63c, 0x915400);
 /// Behind what is chosen.
-const SELECTED: Tone = Tone::new(0x5a_41_1a, 0xf5_d9_ab);
+const SELECTED: Tone = Tone::new(0x5a411a, 0xf5d9ab);
 /// Around what is selected in the picture, in both themes.
 pub(in crate::app) const SELECTION: Color32 = Color32::from_rgb(255, 160, 48);
 /// Errors.
-pub(in crate::app) const ERROR: Tone = Tone::new(0xff_6e_64, 0xb0_22_1a);
+pub(in crate::app) const ERROR: Tone = Tone::new(0xff6e64, 0xb0221a);
 /// Warnings.
-pub(in crate::app) const WARNING: Tone = Tone::new(0xff_c4_5c, 0x7a_5a_00);
+pub(in crate::app) const WARNING: Tone = Tone::new(0xffc45c, 0x7a5a00);
 /// All is well.
-pub(in crate::app) const GOOD: Tone = Tone::new(0x70_c9_82, 0x2a_73_2c);
+pub(in crate::app) const GOOD: Tone = Tone::new(0x70c982, 0x2a732c);
 
 /// Icons of the Phosphor font.
 pub(in crate::app) mod icon {

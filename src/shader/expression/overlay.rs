@@ -69,7 +69,7 @@ impl Overlay {
             is_outside: false,
         };
         let placed = overlay.place(expression, line, &closure, snapshot);
-        let placed = placed.map_err(|error| overlay.error = Some(error)).ok();
+        let placed = placed.map_err(|error| overlay.error = Some(*error)).ok();
         overlay.is_outside = placed == Some(Placed::Outside);
         let outside = placed.filter(|placed| *placed == Placed::Outside).map(|_| expression.text.as_str());
         match stage_text(expression, line, host, &closure, snapshot, outside) {
@@ -89,12 +89,13 @@ impl Overlay {
         line: u32,
         closure: &BTreeSet<TreePath>,
         snapshot: &Snapshot<'_>,
-    ) -> Result<Placed, Diagnostic> {
+    ) -> Result<Placed, Box<Diagnostic>> {
         let path = find(&expression.file, closure, snapshot)?;
         let file = snapshot.display_path(&path);
         self.at = Diagnostic::error(&file, String::new());
         self.file = Some(path.clone());
-        let text = snapshot.read(&path).map_err(|error| Diagnostic::error(&file, format!("{file} {error}")))?;
+        let text =
+            snapshot.read(&path).map_err(|error| Box::new(Diagnostic::error(&file, format!("{file} {error}"))))?;
         let code = Code::new(&text);
         let column = expression.column.and_then(|column| (column as usize).checked_sub(1));
         if let Some(found) = code.line(line) {
@@ -105,7 +106,7 @@ impl Overlay {
         self.names = variables(&text, line).into_iter().map(|(name, _)| name).collect();
         let call = |expression: &str| format!("{FUNCTION}({expression});");
         let placed = place(&code, line, column, &expression.text, call);
-        let placed = placed.map_err(|message| self.diagnostic(&message))?;
+        let placed = placed.map_err(|message| Box::new(self.diagnostic(&message)))?;
         if let Placed::Inside(insertions) = &placed {
             self.edited = Some((path, inserted(&text, insertions).into()));
         }
@@ -157,7 +158,7 @@ impl Overlay {
 }
 
 /// The file of the picture that the user means.
-fn find(given: &str, closure: &BTreeSet<TreePath>, snapshot: &Snapshot<'_>) -> Result<TreePath, Diagnostic> {
+fn find(given: &str, closure: &BTreeSet<TreePath>, snapshot: &Snapshot<'_>) -> Result<TreePath, Box<Diagnostic>> {
     let plain = given.trim_start_matches("./");
     let exact = closure.iter().find(|path| path.as_str() == plain || snapshot.display_path(path) == given);
     if let Some(path) = exact {
@@ -172,7 +173,7 @@ fn find(given: &str, closure: &BTreeSet<TreePath>, snapshot: &Snapshot<'_>) -> R
         (None, [only]) => return Ok((*only).clone()),
         (None, [first, second, ..]) => {
             let message = format!("`{given}` can be {first} or {second}; give more of the path");
-            return Err(Diagnostic::error(given, message));
+            return Err(Box::new(Diagnostic::error(given, message)));
         }
         (None, []) => {}
     }
@@ -186,7 +187,7 @@ fn find(given: &str, closure: &BTreeSet<TreePath>, snapshot: &Snapshot<'_>) -> R
         let hint = did_you_mean(plain, closure.iter().map(TreePath::as_str));
         format!("the picture's stage includes no file `{given}`.{hint}")
     };
-    Err(Diagnostic::error(given, message))
+    Err(Box::new(Diagnostic::error(given, message)))
 }
 
 /// The texts of the stage and its library.

@@ -181,14 +181,16 @@ impl Parser<'_, '_> {
     }
 
     /// Passes over everything up to and with a `;`.
-    fn to_semicolon(&mut self) -> Option<()> {
+    fn skip_statement(&mut self) -> Option<()> {
         loop {
             match self.text() {
                 ";" => {
                     self.at += 1;
                     return Some(());
                 }
-                "(" | "[" | "{" => drop(self.brackets()?),
+                "(" | "[" | "{" => {
+                    self.brackets()?;
+                }
                 "" | ")" | "]" | "}" => return None,
                 _ => self.at += 1,
             }
@@ -242,16 +244,16 @@ impl Parser<'_, '_> {
                 self.at += 1;
                 parts.push(self.statement(false)?);
                 let from = self.start();
-                self.to_semicolon()?;
+                self.skip_statement()?;
                 header = from..self.end();
                 Kind::DoLoop
             }
             "return" | "discard" | "break" | "continue" => {
-                self.to_semicolon()?;
+                self.skip_statement()?;
                 Kind::Jump
             }
             _ => {
-                self.to_semicolon()?;
+                self.skip_statement()?;
                 Kind::Simple
             }
         };

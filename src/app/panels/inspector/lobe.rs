@@ -153,6 +153,9 @@ fn legend(ui: &mut Ui, has_before: bool) {
     });
 }
 
+/// One of the parts of a lobe.
+type Part = fn(&Lobe) -> [f32; 3];
+
 /// The lobe in the plane of incidence, with the directions to the light and to the eye.
 fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, directions: &Directions) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TALL), Sense::hover());
@@ -165,7 +168,7 @@ fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, d
     let disk = HalfDisk::within(rect, if most > 0.0 { 1.1 * most } else { 1.0 });
     disk.axes(painter);
     for (curves, is_dashed) in before.into_iter().map(|before| (before, true)).chain([(curves, false)]) {
-        let parts: [(Color32, fn(&Lobe) -> [f32; 3]); 4] = [
+        let parts: [(Color32, Part); 4] = [
             (SUM, sum),
             (DIFFUSE, |lobe| lobe.diffuse),
             (SPECULAR, |lobe| lobe.specular),

