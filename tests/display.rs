@@ -113,7 +113,7 @@ fn dither_is_half_a_step_and_only_where_it_is_asked_for() {
     let (plain, dithered) = (picture("final", &[]), picture("final", &["view.dither=true"]));
     let differences: Vec<u8> = plain.rgba8.iter().zip(&dithered.rgba8).map(|(a, b)| a.abs_diff(*b)).collect();
     assert!(differences.iter().all(|difference| *difference <= 1));
-    assert!(differences.iter().any(|difference| *difference == 1));
+    assert!(differences.contains(&1));
     assert!(plain.raw == dithered.raw);
     let data = picture("roughness", &["view.dither=true"]);
     assert!(data.rgba8 == picture("roughness", &[]).rgba8, "data are stored as they are");
