@@ -40,7 +40,8 @@ fn a_range_spreads_its_values_from_black_to_white() {
 fn an_automatic_range_is_that_of_the_picture() {
     for (slug, assignment) in [("depth", "view.range=auto"), ("d", "view.range=auto"), ("final", "view.range=fit")] {
         let pixels = covered(&picture(slug, &[assignment]));
-        let (least, most) = (pixels.iter().map(|(b, _)| b[1]).min().unwrap(), pixels.iter().map(|(b, _)| b[1]).max().unwrap());
+        let (least, most) =
+            (pixels.iter().map(|(b, _)| b[1]).min().unwrap(), pixels.iter().map(|(b, _)| b[1]).max().unwrap());
         assert!(least < 40 && most > 200, "{slug}: {least} to {most}");
         // Values keep their order.
         let mut greens: Vec<(f32, u8)> = pixels.iter().map(|(bytes, raw)| (raw[1], bytes[1])).collect();
@@ -84,7 +85,8 @@ fn colors_stand_for_numbers() {
             let at = raw[0].clamp(0.0, 1.0) * 16.0;
             let low = (at as usize).min(15);
             for channel in 0..3 {
-                let linear = colors[low][channel] + (colors[low + 1][channel] - colors[low][channel]) * (at - low as f32);
+                let linear =
+                    colors[low][channel] + (colors[low + 1][channel] - colors[low][channel]) * (at - low as f32);
                 let expected = 255.0 * srgb(linear);
                 assert!((f32::from(bytes[channel]) - expected).abs() <= 1.5, "{name}: {bytes:?} for {raw:?}");
             }
@@ -131,7 +133,9 @@ fn edges_lie_over_every_mode() {
 
 #[test]
 fn a_range_that_is_none_is_refused() {
-    for (assignment, words) in [("view.range=wide", "mode, auto, fit"), ("view.range=3..1", "not below"), ("view.channels=x", "rgb, r, g")] {
+    for (assignment, words) in
+        [("view.range=wide", "mode, auto, fit"), ("view.range=3..1", "not below"), ("view.channels=x", "rgb, r, g")]
+    {
         let error = specula::settings::Settings::default().assign(assignment).unwrap_err();
         assert!(error.contains(words), "{assignment}: {error}");
     }

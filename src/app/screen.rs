@@ -261,7 +261,8 @@ impl Screen {
         let next_thumbnails = self.gallery.draw(&mut encoder, slot, viewer, &mut self.ui, context)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         encoder.transition(&acquired.image, Use::Color, Use::Present);
-        self.has_others[slot] |= self.reference.is_some() || !self.cells.is_empty() || self.thumbnail.is_some() || next_thumbnails.is_some();
+        self.has_others[slot] |=
+            self.reference.is_some() || !self.cells.is_empty() || self.thumbnail.is_some() || next_thumbnails.is_some();
         self.attempts[slot] = viewer.record(window);
         self.frames.submit(encoder, acquired.submission)?;
         self.unchecked[slot] = frame.as_ref().map(|frame| frame.state.clone());

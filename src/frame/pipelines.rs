@@ -8,8 +8,8 @@ use super::pipeline_key::{KeyPass, PipelineKey};
 use super::{Scene, SharedMode};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
-    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF,
-    UNROLLED_LIGHTS,
+    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP,
+    TONEMAP_OFF, UNROLLED_LIGHTS,
 };
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings};
@@ -237,7 +237,8 @@ impl PipelineRequest {
         }
         let key = self.key_with_model(pass, material, Raster::Edges);
         let own = [(SPEC_TONEMAP, self.tonemap)];
-        let rest = key.specialization.iter().map(|(id, value)| (*id, if *id == SPEC_MODE { EDGES_MODE } else { *value }));
+        let rest =
+            key.specialization.iter().map(|(id, value)| (*id, if *id == SPEC_MODE { EDGES_MODE } else { *value }));
         Some(PipelineKey { specialization: own.into_iter().chain(rest).collect(), modes: Vec::new(), ..key })
     }
 

@@ -66,7 +66,11 @@ const DESCRIBED: [(&str, &str, &str); 42] = [
     ("view.ev", "EV100", "Exposure: 1 / (1.2 * 2^EV100)"),
     ("view.channels", "", "Channels that the picture shows; a is coverage"),
     ("view.colormap", "", "Colors that stand for a number, in modes with one component and for a single channel"),
-    ("view.dither", "", "Noise of half a step of 8 bits, which hides bands in light; the window has it, `render` does not"),
+    (
+        "view.dither",
+        "",
+        "Noise of half a step of 8 bits, which hides bands in light; the window has it, `render` does not",
+    ),
     ("view.wireframe", "", "Edges of the triangles over the picture"),
 ];
 

@@ -108,7 +108,6 @@ pub enum Colormap {
     Heat,
 }
 
-
 use crate::interface::COLORMAP_STEPS;
 
 /// Samples of each colormap, sRGB.
@@ -161,7 +160,9 @@ mod tests {
         for text in ["mode", "auto", "fit", "0..1", "-2.5..7", "0.001..0.002"] {
             assert_eq!(text.parse::<ViewRange>().unwrap().to_string(), text);
         }
-        for (text, words) in [("0..0", "not below"), ("5..1", "not below"), ("x", "mode, auto, fit"), ("0..inf", "0..5")] {
+        for (text, words) in
+            [("0..0", "not below"), ("5..1", "not below"), ("x", "mode, auto, fit"), ("0..inf", "0..5")]
+        {
             assert!(text.parse::<ViewRange>().unwrap_err().contains(words), "{text}");
         }
     }

@@ -179,7 +179,9 @@ mod tests {
 
     #[test]
     fn some_units_are_read_as_words() {
-        let of = |unit: &str, number: f32| PixelValue { value: [number; 4], ..PixelValue::default() }.text(&mode(1, unit, false));
+        let of = |unit: &str, number: f32| {
+            PixelValue { value: [number; 4], ..PixelValue::default() }.text(&mode(1, unit, false))
+        };
         assert_eq!(of("EV", -2.12).trim(), "-2.1 EV");
         assert_eq!(of("level", 0.01).trim(), "level 0");
         assert_eq!(of("level", 1.34).trim(), "level 1.3");

@@ -32,7 +32,9 @@ fn modes_lie_side_by_side_and_one_is_kept() {
 
     // An edit of clay reaches the right half.
     let light = viewer.tree.read("debug/light.glsl");
-    viewer.tree.write("debug/light.glsl", &light.replace("s.base_color = vec3(0.5);", "s.base_color = vec3(0.0, 0.5, 0.0);"));
+    viewer
+        .tree
+        .write("debug/light.glsl", &light.replace("s.base_color = vec3(0.5);", "s.base_color = vec3(0.0, 0.5, 0.0);"));
     viewer.until_screen("green clay", |screen| right(screen) != right(&beside));
     viewer.tree.write("debug/light.glsl", &light);
     viewer.until_screen("gray clay", |screen| right(screen) == right(&beside));

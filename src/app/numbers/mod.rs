@@ -118,7 +118,8 @@ impl Number {
         doc: &'static str,
         place: fn(&mut Settings, usize) -> &mut f32,
     ) -> Self {
-        let (is_logarithmic, is_squared, is_negated, is_used) = (false, false, false, (|_| true) as fn(&Settings) -> bool);
+        let (is_logarithmic, is_squared, is_negated, is_used) =
+            (false, false, false, (|_| true) as fn(&Settings) -> bool);
         let light = 0;
         Self { path, light, name, unit, slider, decimals, is_logarithmic, is_squared, is_negated, doc, place, is_used }
     }

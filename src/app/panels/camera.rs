@@ -2,8 +2,8 @@
 
 use egui::{Button, Label, RichText, Ui};
 
-use super::{ACCENT, QUIET};
 use super::rows::{heading, number, option_text};
+use super::{ACCENT, QUIET};
 use crate::app::command::Command;
 use crate::app::numbers::FIELD_OF_VIEW;
 use crate::scene::{CameraView, Model};
@@ -47,7 +47,9 @@ fn bookmarks(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) 
             let text = RichText::new(number.to_string()).monospace();
             let button = ui.add(Button::new(if is_kept { text.color(ACCENT) } else { text.color(QUIET) }));
             let hint = match is_kept {
-                true => format!("Return to this camera (Ctrl+{number}). Shift+click keeps the present one in its place"),
+                true => {
+                    format!("Return to this camera (Ctrl+{number}). Shift+click keeps the present one in its place")
+                }
                 false => format!("Keep this camera as {number} (Ctrl+Shift+{number})"),
             };
             if button.on_hover_text(hint).clicked() {

@@ -152,7 +152,9 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     };
     compare::show(ui.ctx(), viewer, picture.rect);
     grid::show(ui.ctx(), &viewer.session, &viewer.panels, picture.rect);
-    if viewer.panels.visible && !viewer.panels.grid.is_on()
+    if viewer.panels.visible
+        && readings.legend.is_some()
+        && !viewer.panels.grid.is_on()
         && let Some(model) = viewer.session.model()
     {
         let (labels, camera) = (&mut viewer.panels.labels, &viewer.session.settings.camera);

@@ -27,7 +27,11 @@ pub(super) fn show(
     let PanelState { search, scrolled_to, gallery, grid, .. } = state;
     ui.horizontal(|ui| {
         let width = ui.available_width() - TOGGLE - if search.is_empty() { 0.0 } else { 24.0 };
-        ui.add(egui::TextEdit::singleline(search).hint_text(format!("{}  Search {} modes", icon::MAGNIFYING_GLASS, shaders.modes.len())).desired_width(width));
+        ui.add(
+            egui::TextEdit::singleline(search)
+                .hint_text(format!("{}  Search {} modes", icon::MAGNIFYING_GLASS, shaders.modes.len()))
+                .desired_width(width),
+        );
         if !search.is_empty() && ui.small_button(icon::X).on_hover_text("Show all modes").clicked() {
             search.clear();
         }

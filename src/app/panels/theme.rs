@@ -74,8 +74,7 @@ pub(in crate::app) const GOOD: Tone = Tone::new(0x70_c9_82, 0x2a_73_2c);
 /// Icons of the Phosphor font.
 pub(in crate::app) mod icon {
     pub(in crate::app) use egui_phosphor::regular::{
-        CHART_BAR, FOLDER_OPEN, GRID_FOUR, LAYOUT, LIST, MAGNIFYING_GLASS, MOON,
-        QUESTION, SQUARES_FOUR, SUN, X,
+        CHART_BAR, FOLDER_OPEN, GRID_FOUR, LAYOUT, LIST, MAGNIFYING_GLASS, MOON, QUESTION, SQUARES_FOUR, SUN, X,
     };
 }
 

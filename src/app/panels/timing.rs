@@ -51,7 +51,7 @@ mod tests {
 
     fn readings(names: &[&str], ms: f64) -> Readings {
         let passes = names.iter().map(|name| PassTime { name: (*name).to_owned(), ms, kept: false }).collect();
-        Readings { device_ms: Some(ms), passes, value: None, title: None }
+        Readings { device_ms: Some(ms), passes, value: None, title: None, legend: None }
     }
 
     #[test]

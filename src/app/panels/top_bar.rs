@@ -42,7 +42,8 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
                 }
                 let width = (ui.available_width() - 8.0).min(300.0);
                 if width > 120.0 {
-                    let text = RichText::new(format!("{}  Find a mode, setting or command", icon::MAGNIFYING_GLASS)).color(QUIET);
+                    let text = RichText::new(format!("{}  Find a mode, setting or command", icon::MAGNIFYING_GLASS))
+                        .color(QUIET);
                     let keys = RichText::new("Ctrl+P").small().monospace().color(QUIET);
                     let button = Button::new(text).right_text(keys).min_size(vec2(width, 20.0)).truncate();
                     if ui.add(button).on_hover_text("Command palette").clicked() {

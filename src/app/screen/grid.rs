@@ -75,7 +75,12 @@ impl Screen {
     }
 
     /// Draws the cells over `target`, which is in [`Use::Color`] before and after.
-    pub(super) fn draw_grid(&mut self, encoder: &mut Encoder, slot: usize, target: &Arc<Image>) -> Result<(), GpuError> {
+    pub(super) fn draw_grid(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        target: &Arc<Image>,
+    ) -> Result<(), GpuError> {
         for cell in &mut self.cells {
             let Some(shown) = &cell.shown else { continue };
             let output = Output { image: &cell.image, before: Use::Undefined, at: (0, 0) };

@@ -1,8 +1,8 @@
 //! The value of the pixel under the mouse.
 
 use super::{FRAMES_IN_FLIGHT, Screen};
-use crate::app::viewer::{Viewer, value_text};
 use crate::app::panels::LegendOf;
+use crate::app::viewer::{Viewer, value_text};
 use crate::frame::FrameState;
 use crate::render::View;
 

@@ -85,7 +85,8 @@ impl Viewer {
             return Ok(Some(LastComplete { settings, scene, revisions, frame }));
         }
         // The picture comes first.
-        if self.is_complete && !state.pipelines.needs_pending(&state.shaders)
+        if self.is_complete
+            && !state.pipelines.needs_pending(&state.shaders)
             && let Some(set) = self.resources.pipelines()
         {
             self.threads.worker.build(set, &state.pipelines);

@@ -16,8 +16,8 @@ use glam::Mat4;
 
 use capture::PixelReadback;
 pub use capture::{Capture, Readback};
-use targets::{TargetDesc, Targets};
 pub use survey::Survey;
+use targets::{TargetDesc, Targets};
 pub use thumbnails::Thumbnails;
 pub(crate) use uniforms::{SharedImages, Sources, Uniforms};
 
@@ -199,7 +199,8 @@ impl View {
 
         let redrawn = self.begins_picture(frame, only, redraw);
         let limits = self.limits_of(frame);
-        let is_shown_anew = self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
+        let is_shown_anew =
+            self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
         let surveys = (self.surveys || frame.state.display.is_measured()) && self.surveyed != self.picture;
         let Some(targets) = &self.targets else { return Ok(()) };
         let in_flight = &mut self.in_flight[slot];

@@ -84,7 +84,8 @@ impl SurveyReadback {
         let (width, height, format) = (hdr.desc().width, hdr.desc().height, hdr.desc().format);
         let step = (width * height).div_ceil(SAMPLES).max(1).isqrt() + 1;
         let size = (width.div_ceil(step), height.div_ceil(step));
-        let fits = |image: &Image| (image.desc().width, image.desc().height, image.desc().format) == (size.0, size.1, format);
+        let fits =
+            |image: &Image| (image.desc().width, image.desc().height, image.desc().format) == (size.0, size.1, format);
         if let Some((image, buffer)) = self.image.as_ref().filter(|(image, _)| fits(image)) {
             return Ok((image.clone(), buffer.clone()));
         }
@@ -102,7 +103,8 @@ impl SurveyReadback {
         let (image, buffer) = self.image.as_ref()?;
         let decoded = texels(buffer.content(), is_half(image.desc().format)).map(PixelValue::decode);
         let known = decoded.filter(|pixel| !pixel.no_data && !pixel.not_finite && pixel.value[3] > 0.5);
-        let values = known.map(|PixelValue { value: [r, g, b, coverage], .. }| [r, g, b].map(|c| c / coverage)).collect();
+        let values =
+            known.map(|PixelValue { value: [r, g, b, coverage], .. }| [r, g, b].map(|c| c / coverage)).collect();
         Some(Survey { picture, values })
     }
 }

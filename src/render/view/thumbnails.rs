@@ -44,7 +44,9 @@ impl Thumbnails {
     /// thumbnails are out of date. SYNC: after the fence of that draw.
     pub fn collect(&mut self, slot: usize) -> Vec<u32> {
         let mut changed = Vec::new();
-        for (index, (mode, components, display)) in self.pending.remove(&slot).unwrap_or_default().into_iter().enumerate() {
+        for (index, (mode, components, display)) in
+            self.pending.remove(&slot).unwrap_or_default().into_iter().enumerate()
+        {
             let in_flight = self.view.in_flight.get_mut(slot * Self::MOST_AT_ONCE + index);
             let Some(survey) = in_flight.and_then(|in_flight| in_flight.survey.take()) else { continue };
             let before = self.limits.get(&mode).copied();
@@ -93,11 +95,8 @@ impl Thumbnails {
         // Each mode has its own range and colors, and so its own constants.
         for (index, in_flight) in view.in_flight[first..].iter().take(corners.len().max(1)).enumerate() {
             let (mode, _, display) = frame.state.displays.get(index).copied().unwrap_or((0, 3, frame.state.display));
-            let limits = if display.is_measured() {
-                self.limits.get(&mode).copied()
-            } else {
-                display.limits(None, None)
-            };
+            let limits =
+                if display.is_measured() { self.limits.get(&mode).copied() } else { display.limits(None, None) };
             let constants = crate::interface::Frame { mode, ..display.constants(constants, limits) };
             in_flight.uniforms.write(&constants, &frame.state.lights, frame.state.params());
         }

@@ -191,10 +191,14 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
 fn colormap(cursor: &mut Cursor<'_>) -> Result<Colormap, Box<Diagnostic>> {
     let (bytes, value) = cursor.value("colormap")?;
     Colormap::from_str(&value, false).map_err(|_| {
-        let known = Colormap::value_variants().iter().filter_map(|map| Some(map.to_possible_value()?.get_name().to_owned()));
+        let known =
+            Colormap::value_variants().iter().filter_map(|map| Some(map.to_possible_value()?.get_name().to_owned()));
         let known: Vec<String> = known.collect();
         let hint = did_you_mean(&value, known.iter().map(String::as_str));
-        cursor.error(bytes, format!("expected a colormap after colormap=, found `{value}`.{hint} It can be {}", either(&known)))
+        cursor.error(
+            bytes,
+            format!("expected a colormap after colormap=, found `{value}`.{hint} It can be {}", either(&known)),
+        )
     })
 }
 

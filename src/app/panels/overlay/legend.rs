@@ -72,7 +72,8 @@ impl Axis {
 impl Legend<'_> {
     /// Whether the legend has more to say than the value under the mouse.
     pub(super) fn is_whole(&self, view: &ViewSettings, state: &LegendState) -> bool {
-        let is_plain = self.title.is_none() && view.channels == Channels::Rgb && self.of.limits.is_none();
+        // The final picture needs no explanation.
+        let is_plain = self.of.mode.slug == "final" && view.channels == Channels::Rgb && self.of.limits.is_none();
         !is_plain || state.shows_histogram
     }
 
@@ -256,7 +257,8 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
             let height = (*count as f32 / most as f32).min(1.0).sqrt() * rect.height();
             let x = egui::lerp(rect.x_range(), (bin as f32 + 0.5) / BINS as f32);
             let width = rect.width() / BINS as f32;
-            let column = Rect::from_min_max(pos2(x - 0.5 * width, rect.max.y - height), pos2(x + 0.5 * width, rect.max.y));
+            let column =
+                Rect::from_min_max(pos2(x - 0.5 * width, rect.max.y - height), pos2(x + 0.5 * width, rect.max.y));
             painter.rect_filled(column, 0.0, color);
         }
     }
@@ -270,7 +272,9 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
         });
     });
     let axis = if legend.shown().is_some() { "value" } else { "stops from middle gray after exposure" };
-    response.on_hover_text(format!("Horizontal: {axis}; the outer columns hold all beyond. Vertical: square root of the count"));
+    response.on_hover_text(format!(
+        "Horizontal: {axis}; the outer columns hold all beyond. Vertical: square root of the count"
+    ));
 }
 
 /// A number with four significant digits, or fewer.
