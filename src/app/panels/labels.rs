@@ -32,15 +32,14 @@ impl Labels {
     }
 }
 
-/// The objects of a chart: nodes whose names say a number.
+/// The objects of a chart: nodes with a name of several words.
 fn objects(model: &Model) -> Vec<(String, Bounds)> {
     if !BUILT_IN.contains(&model.name.as_str()) {
         return Vec::new();
     }
     let mut nodes: BTreeMap<usize, (String, Bounds)> = BTreeMap::new();
     for instance in &model.instances {
-        let is_named = instance.node_name.contains(|c: char| c.is_ascii_digit()) && instance.node_name.contains(' ');
-        if !is_named {
+        if !instance.node_name.contains(' ') {
             continue;
         }
         let Some(primitive) = model.primitives.get(instance.primitive) else { continue };
@@ -49,8 +48,9 @@ fn objects(model: &Model) -> Vec<(String, Bounds)> {
             entry.1.include(instance.world_from_object.transform_point3(corner));
         }
     }
-    let count = nodes.len();
-    if (FEWEST..=MOST).contains(&count) { nodes.into_values().collect() } else { Vec::new() }
+    let with_number = nodes.values().filter(|(name, _)| name.contains(|c: char| c.is_ascii_digit())).count();
+    let is_chart = with_number >= FEWEST && nodes.len() <= MOST;
+    if is_chart { nodes.into_values().collect() } else { Vec::new() }
 }
 
 /// Shows the names over the picture, below cards.
@@ -71,9 +71,11 @@ pub(super) fn show(
         let corners = bounds.corners().map(|corner| project(camera, corner, picture));
         let Some(corners) = corners.into_iter().collect::<Option<Vec<Pos2>>>() else { continue };
         let around = Rect::from_points(&corners);
+        let (center, low) = (bounds.center(), bounds.min.y);
+        let Some(foot) = project(camera, glam::Vec3::new(center.x, low, center.z), picture) else { continue };
         // Names that are wider than what they name would cover each other.
         if around.width() >= 30.0 {
-            label(&painter, name, around);
+            label(&painter, name, foot, around.width());
         }
     }
 }
@@ -86,11 +88,11 @@ fn project(camera: &CameraView, point: glam::Vec3, picture: Rect) -> Option<Pos2
     (clip.w > 0.0).then(|| pos2(picture.min.x + at.x, picture.min.y + at.y))
 }
 
-/// Writes a name below an object, a line for each part of it.
-fn label(painter: &Painter, name: &str, around: Rect) {
+/// Writes a name at the foot of an object, a line for each part of it.
+fn label(painter: &Painter, name: &str, foot: Pos2, width: f32) {
     let text = name.replace(", ", "\n");
-    let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), (around.width() * 1.05).max(48.0));
-    let room = Align2::CENTER_TOP.anchor_size(around.center_bottom() - vec2(0.0, 4.0), text.size() + vec2(8.0, 2.0));
+    let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), width.max(48.0));
+    let room = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
     painter.rect_filled(room, 3.0, CARD.color().gamma_multiply(0.72));
     painter.galley(room.min + vec2(4.0, 1.0), text, TEXT.color());
 }

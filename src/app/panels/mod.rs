@@ -192,6 +192,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     gizmo::show(ui.ctx(), viewer, picture.rect);
     grid::show(ui.ctx(), &viewer.session, &viewer.panels, picture.rect);
     if viewer.panels.visible
+        && readings.legend.is_some()
         && !viewer.panels.grid.is_on()
         && let Some(model) = viewer.session.model()
     {

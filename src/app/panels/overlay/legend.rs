@@ -72,7 +72,8 @@ impl Axis {
 impl Legend<'_> {
     /// Whether the legend has more to say than the value under the mouse.
     pub(super) fn is_whole(&self, view: &ViewSettings, state: &LegendState) -> bool {
-        let is_plain = self.title.is_none() && view.channels == Channels::Rgb && self.of.limits.is_none();
+        // The final picture needs no explanation.
+        let is_plain = self.of.mode.slug == "final" && view.channels == Channels::Rgb && self.of.limits.is_none();
         !is_plain || state.shows_histogram
     }
 
