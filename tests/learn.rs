@@ -75,7 +75,7 @@ fn fresnel() {
 
 #[test]
 fn srgb() {
-    exercise("srgb", &[" of 255 "]);
+    exercise("srgb", &[" of 255 ", " of 255 "]);
 }
 
 #[test]

@@ -83,7 +83,7 @@ fn place(capture: &Capture, index: usize) -> String {
     let (x, y) = (index as u32 % capture.width.max(1), index as u32 / capture.width.max(1));
     let percent = |at: u32, size: u32| 100 * at / size.max(1);
     format!(
-        "{} % from the left and {} % from the top of the picture",
+        "at {} % from the left and {} % from the top of the picture",
         percent(x, capture.width),
         percent(y, capture.height)
     )
