@@ -12,7 +12,11 @@ use crate::shader::Mode;
 pub fn modes_of(session: &Session, names: &[String]) -> Result<Vec<Mode>, String> {
     let shaders = session.shaders.clone().unwrap_or_default();
     let features = session.features();
-    let has_data = |mode: &Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
+    let is_measured = !session.settings.measured.is_empty();
+    let has_data = |mode: &Mode| {
+        let has_feature = mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
+        has_feature && (is_measured || !mode.slug.starts_with("measured"))
+    };
     let is_plain = |mode: &Mode| !mode.accumulate && !mode.traces && mode.pass.is_none() && has_data(mode);
     let (wants_plain, wants_all) = (names.iter().any(|name| name == "modes"), names.iter().any(|name| name == "all"));
     let slugs = || shaders.modes.iter().map(|mode| mode.slug.as_str());

@@ -12,6 +12,7 @@ use crate::capture::modes_of;
 use crate::control::{COMMANDS, Camera, Capture, Compare, Open, Playback, Probe, Request, Run};
 use crate::message::did_you_mean;
 use crate::picture;
+use crate::scene::BUILT_IN;
 use crate::settings::{Settings, catalog};
 use crate::shader::{Source, is_specula_tree};
 
@@ -163,7 +164,17 @@ impl Viewer {
     fn open(&mut self, open: Open) -> Result<Until, String> {
         let command = match open {
             Open::File(path) => open_as(path)?,
-            Open::Model(path) => Command::OpenModel(path),
+            Open::Model(path) => {
+                let is_built_in = BUILT_IN.iter().any(|name| std::path::Path::new(name) == path);
+                if !is_built_in && !path.exists() {
+                    let hint = did_you_mean(&path.to_string_lossy(), BUILT_IN);
+                    return Err(format!(
+                        "{}: there is no such file, and no built-in model of this name.{hint}",
+                        path.display()
+                    ));
+                }
+                Command::OpenModel(path)
+            }
             Open::Environment(path) => Command::OpenEnvironment(path),
             Open::Tree(path) if is_specula_tree(&path) || (Source::is_file(&path) && path.exists()) => {
                 Command::OpenTree(path)

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::{Button, ComboBox, DragValue, ProgressBar, Response, RichText, Ui};
+use egui::{Align, Button, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
 
 use super::QUIET;
 use super::rows::{Row, heading};
@@ -59,6 +59,7 @@ pub(super) fn show(
     (shown, versions): ((u32, u32), usize),
     commands: &mut Vec<Command>,
 ) {
+    progress(ui, captures, commands);
     let mut ask = |request: Request| commands.push(Command::Ask(Box::new(request)));
     heading(ui, "Picture");
     row(
@@ -160,40 +161,37 @@ pub(super) fn show(
         let file = animation_file("specula-timeline", state.animation);
         ask(Request::Timeline(Timeline { file, fps: None, size: state.size }));
     }
-    progress(ui, captures, commands);
 }
 
-/// Shows what is under way.
+/// Shows what is under way, in a line that is always there, so that nothing below it moves when a capture begins or ends.
 fn progress(ui: &mut Ui, captures: &Captures, commands: &mut Vec<Command>) {
-    let mut is_busy = false;
+    let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let center = Layout::left_to_right(Align::Center);
+    if captures.iter().next().is_none() {
+        let about = RichText::new("Files go to the working directory").small().color(QUIET);
+        ui.allocate_ui_with_layout(size, center, |ui| {
+            ui.set_min_height(size.y);
+            ui.label(about)
+        });
+    }
     for running in captures.iter() {
-        if !is_busy {
-            heading(ui, "Under way");
-        }
-        is_busy = true;
         let part = if running.of > 0 { running.done as f32 / running.of as f32 } else { 0.0 };
         let text = match (running.is_canceled(), running.of) {
-            (true, _) => format!("{}: ends after this picture", running.title),
+            (true, _) => format!("{}: ends", running.title),
             (false, 0) => format!("{}: waits", running.title),
             (false, of) => format!("{}: {} of {of}", running.title, running.done),
         };
-        ui.horizontal(|ui| {
-            let width = (ui.available_width() - 60.0).max(40.0);
-            ui.add(ProgressBar::new(part).desired_width(width).text(text)).on_hover_text("Pictures that are drawn");
-            if ui
-                .button("Cancel")
-                .on_hover_text("End it after the picture that is being drawn; no file is written")
-                .clicked()
-            {
+        ui.allocate_ui_with_layout(size, center, |ui| {
+            let bar = ProgressBar::new(part).desired_width((size.x - 66.0).max(40.0)).text(RichText::new(text).small());
+            ui.add(bar).on_hover_text("Pictures that are drawn");
+            let about = "End it after the picture that is being drawn; no file is written";
+            if ui.button("Cancel").on_hover_text(about).clicked() {
                 running.cancel();
             }
         });
     }
-    if is_busy && captures.iter().count() > 1 && button(ui, "Cancel all", "End everything that is under way") {
+    if captures.iter().count() > 1 && button(ui, "Cancel all", "End everything that is under way") {
         commands.push(Command::CancelCaptures);
-    }
-    if !is_busy {
-        ui.label(RichText::new("Files go to the working directory. Nothing is under way.").small().color(QUIET));
     }
 }
 
