@@ -101,6 +101,13 @@ pub(super) struct Timing {
 }
 
 impl Timing {
+    /// An empty history. `compiles_in_frame`: the device compiles in the first frame of new shaders, as a software device does.
+    pub(super) fn of_device(compiles_in_frame: bool) -> Self {
+        let mut timing = Self::default();
+        timing.cost.compiles_in_frame = compiles_in_frame;
+        timing
+    }
+
     /// Notes a frame that goes to the device.
     pub(super) fn submitted(&mut self, serial: u64, shown: Shown, cpu: CpuTimes) {
         self.submitted.push_back((serial, shown, cpu));

@@ -225,7 +225,7 @@ impl Viewer {
             versions: Versions::default(),
             compare: Compare::default(),
             edits,
-            timing: Timing::default(),
+            timing: Timing::of_device(gpu.info().kind == "cpu"),
             stages: StageTable::default(),
             clock: Clock::default(),
             is_complete: false,

@@ -19,9 +19,10 @@ pub(in crate::app) struct CostRow {
 }
 
 impl CostRow {
-    /// By how many milliseconds it became slower; negative if it became faster. `None` if the change is no more than noise.
+    /// By how many milliseconds it became slower; negative if it became faster. `None` if the change is no more than noise, or if one side
+    /// was not drawn.
     pub(in crate::app) fn change(&self) -> Option<f64> {
-        let (before, after) = (self.before.unwrap_or_default(), self.after.unwrap_or_default());
+        let (before, after) = (self.before?, self.after?);
         let change = after - before;
         (change.abs() > NOISE_MS && change.abs() > before * NOISE).then_some(change)
     }
@@ -50,6 +51,8 @@ impl Cost {
 /// Collects the frames before and after an edit.
 #[derive(Default)]
 pub(super) struct Tracker {
+    /// Whether the device compiles in the first frame of new shaders, whose time then says nothing about the shaders.
+    pub(super) compiles_in_frame: bool,
     before: Vec<Sample>,
     after: VecDeque<Sample>,
 }
@@ -63,11 +66,11 @@ impl Tracker {
             let is_before = |old: &&Sample| {
                 Some(old.shown.generation) == newest.map(|last| last.generation) && old.shown.is_like(&sample.shown)
             };
-            self.before = of_value(earlier.iter().rev().filter(is_before).take(FRAMES).cloned().collect());
+            self.before = self.of_value(earlier.iter().rev().filter(is_before).take(FRAMES).cloned().collect());
             self.after.clear();
         } else if newest.is_some_and(|last| last.generation > sample.shown.generation) {
             // Another tree, or the worker has started again.
-            *self = Self::default();
+            *self = Self { compiles_in_frame: self.compiles_in_frame, ..Self::default() };
         }
         let is_like = |shown: &Shown| shown.is_like(&sample.shown) && shown.generation < sample.shown.generation;
         if self.before.first().is_some_and(|before| is_like(&before.shown)) {
@@ -78,15 +81,18 @@ impl Tracker {
     }
 
     pub(super) fn cost(&self) -> Option<Cost> {
-        let after = of_value(self.after.iter().rev().cloned().collect());
+        let after = self.of_value(self.after.iter().rev().cloned().collect());
         let (before, first) = (self.before.first()?, after.first()?);
         let sides = [&self.before, &after];
         let of = |name: &str| {
-            let median_of = |samples: &[Sample]| median(samples.iter().filter_map(|sample| sample.pass_ms(name)));
+            let median_of = |samples: &[Sample]| median(samples.iter().filter_map(|sample| drawn_ms(sample, name)));
             let [before, after] = sides.map(|samples| median_of(samples));
             CostRow { name: name.to_owned(), before, after }
         };
-        let [before_ms, after_ms] = sides.map(|samples| median(samples.iter().map(|sample| sample.device_ms)));
+        // A frame that keeps images of passes takes less than one that draws them.
+        let is_alike = |sample: &&Sample| kept(sample).eq(kept(first));
+        let [before_ms, after_ms] =
+            sides.map(|samples| median(samples.iter().filter(is_alike).map(|sample| sample.device_ms)));
         let frame = CostRow { name: "Whole frame".to_owned(), before: before_ms, after: after_ms };
         let mut names: Vec<&str> = Vec::new();
         for pass in first.passes.iter().chain(&before.passes) {
@@ -100,14 +106,25 @@ impl Tracker {
             frames: [self.before.len(), after.len()],
         })
     }
+
+    /// The frames, the newest first, without the first frame of their shaders if there are others, or if the device compiles in it.
+    fn of_value(&self, mut samples: Vec<Sample>) -> Vec<Sample> {
+        if samples.len() > 1 || self.compiles_in_frame {
+            samples.pop();
+        }
+        samples
+    }
 }
 
-/// The frames, the newest first, without the first frame of their shaders if there are others: a software device compiles in it.
-fn of_value(mut samples: Vec<Sample>) -> Vec<Sample> {
-    if samples.len() > 1 {
-        samples.pop();
-    }
-    samples
+/// The time of a pass in a frame that draws it; `None` if the frame keeps its image.
+fn drawn_ms(sample: &Sample, name: &str) -> Option<f64> {
+    let is_kept = sample.passes.iter().any(|pass| pass.name == name && pass.kept);
+    sample.pass_ms(name).filter(|_| !is_kept)
+}
+
+/// The names of the passes whose images a frame keeps.
+fn kept(sample: &Sample) -> impl Iterator<Item = &str> {
+    sample.passes.iter().filter(|pass| pass.kept).map(|pass| pass.name.as_str())
 }
 
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
@@ -136,9 +153,37 @@ mod tests {
         let row = |name: &str| cost.rows.iter().find(|row| row.name == name).unwrap();
         assert_eq!((row("model").before, row("model").after, row("model").change()), (Some(2.0), Some(3.0), Some(1.0)));
         assert_eq!(row("bloom").change(), None, "noise");
-        assert_eq!((row("film").before, row("film").change()), (None, Some(0.5)));
+        assert_eq!((row("film").before, row("film").after, row("film").change()), (None, Some(0.5), None));
         assert_eq!(cost.slower().map(|(row, ms)| (row.name.as_str(), ms)), Some(("model", 1.0)));
         assert_eq!(cost.rows[0].before, Some(3.0));
+    }
+
+    #[test]
+    fn kept_images_and_frames_that_compile_say_nothing() {
+        let mut timing = Timing::of_device(true);
+        draw(&mut timing, &shown(1), &[("model", 200.0)]);
+        draw(&mut timing, &shown(2), &[("model", 300.0)]);
+        draw(&mut timing, &shown(2), &[("model", 3.0)]);
+        assert_eq!(timing.cost(), None, "the only frame before has compiled");
+        draw(&mut timing, &shown(3), &[("model", 300.0)]);
+        draw(&mut timing, &shown(3), &[("model", 2.0)]);
+        assert_eq!(timing.cost().unwrap().rows[1].change(), Some(-1.0));
+
+        let mut pass = super::super::tests::passes(&[("model", 2.0), ("ground", 1.0)]);
+        let cpu = super::super::CpuTimes::default();
+        let sample = |passes: &[crate::gpu::PassTime], generation| Sample {
+            shown: shown(generation),
+            cpu,
+            device_ms: 3.0,
+            passes: passes.to_vec(),
+            counts: crate::gpu::DrawCounts::default(),
+        };
+        let drawn = sample(&pass, 1);
+        pass[1].kept = true;
+        let kept = sample(&pass, 2);
+        let tracker = Tracker { before: vec![drawn], after: VecDeque::from([kept]), compiles_in_frame: false };
+        let cost = tracker.cost().unwrap();
+        assert!(cost.rows.iter().all(|row| row.change().is_none()), "{cost:?}");
     }
 
     #[test]
