@@ -168,6 +168,6 @@ mod tests {
     #[test]
     fn names_are_known() {
         assert_eq!(Turn::NAMES.map(|name| Turn::named(name).unwrap()), [Turn::Camera, Turn::Light, Turn::Model]);
-        assert!(Turn::named("lite").unwrap_err().contains("Did you mean `light`?"));
+        assert!(Turn::named("lights").unwrap_err().contains("Did you mean `light`?"));
     }
 }

@@ -105,13 +105,15 @@ fn still_fit((before_low, before_high): Limits, (low, high): Limits) -> bool {
 
 /// Limits around the values that are round numbers, so that a legend can be read.
 fn rounded(low: f32, high: f32) -> Limits {
+    let (low, high) = (f64::from(low), f64::from(high));
     let span = (high - low).max(1e-3 * high.abs().max(low.abs())).max(1e-6);
     // Two digits of the span: a step is a hundredth to a tenth of it.
-    let step = 10.0_f32.powf(span.log10().floor() - 1.0);
-    let (first, last) = ((low / step).floor() * step, (high / step).ceil() * step);
+    let step = 10.0_f64.powf(span.log10().floor() - 1.0);
+    // A value that is a round number already stays, although it is not exact as a float.
+    let (first, last) = ((low / step + 1e-3).floor() * step, (high / step - 1e-3).ceil() * step);
     // Values near 0 begin there.
     let first = if first > 0.0 && first < 0.1 * span { 0.0 } else { first };
-    (first, if last > first { last } else { first + step })
+    (first as f32, if last > first { last } else { first + step } as f32)
 }
 
 #[cfg(test)]
@@ -130,7 +132,8 @@ mod tests {
     fn auto_leaves_what_fits_as_it_is() {
         let roughness = display(&data(""), ViewRange::Auto);
         assert_eq!(roughness.limits(Some((0.2, 0.9)), None), None);
-        assert_eq!(roughness.limits(Some((0.2, 4.0)), None), Some((0.2, 4.0)));
+        assert_eq!(roughness.limits(Some((0.2, 4.0)), None), Some((0.0, 4.0)));
+        assert_eq!(roughness.limits(Some((1.2, 4.0)), None), Some((1.2, 4.0)));
         let depth = display(&data("m"), ViewRange::Auto);
         assert_eq!(depth.limits(Some((0.2, 0.9)), None), Some((0.2, 0.9)));
         assert_eq!(depth.limits(None, None), None, "nothing is measured yet");

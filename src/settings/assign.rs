@@ -260,8 +260,8 @@ mod tests {
         for (assignment, part) in [
             (
                 "view.exposure=1",
-                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, bounces, ev, \
-                 frames, msaa, pass_memory, tonemap (see `specula help set`)",
+                "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, bounces, channels, \
+                 colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
             ),
             ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? At the top there are camera, "),
             ("shader.rim.x=1", "unknown setting `shader.rim.x`. "),

@@ -295,7 +295,10 @@ pub(super) fn choose(
 
 /// A check box.
 pub(super) fn check(ui: &mut Ui, on: &mut bool) -> Response {
-    ui.add(Checkbox::without_text(on))
+    let response = ui.add(Checkbox::without_text(on));
+    // egui gives a box without text an empty name, which would hide that of the row.
+    ui.ctx().accesskit_node_builder(response.id, |node| node.clear_label());
+    response
 }
 
 /// A color picker for linear RGB.

@@ -89,7 +89,9 @@ impl SurveyReadback {
         if let Some((image, buffer)) = self.image.as_ref().filter(|(image, _)| fits(image)) {
             return Ok((image.clone(), buffer.clone()));
         }
-        let usage = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+        // Nothing samples the image, but every image has a view.
+        let copies = vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+        let usage = copies | vk::ImageUsageFlags::SAMPLED;
         let image = Image::new(gpu, "survey", ImageDesc::new(size.0, size.1, format, usage))?;
         let bytes = u64::from(size.0) * u64::from(size.1) * if is_half(format) { 8 } else { 16 };
         let buffer = Buffer::new(gpu, "survey", bytes, vk::BufferUsageFlags::TRANSFER_DST, Memory::Readback)?;

@@ -125,7 +125,7 @@ mod tests {
         let parse = |text| Expression::parse(text, 0).map(|e| (e.to_string(), e.column, e.text));
         let plain = ("brdf/ndf.glsl:20:a2".to_owned(), None, "a2".to_owned());
         assert_eq!(parse("brdf/ndf.glsl:20:a2"), Ok(plain.clone()));
-        assert_eq!(parse(" brdf/ndf.glsl 24 a2 "), Ok(plain));
+        assert_eq!(parse(" brdf/ndf.glsl 20 a2 "), Ok(plain));
         assert_eq!(parse("a.glsl:3:9:x == 1 ? y : z").unwrap().1, Some(9));
         assert_eq!(parse("a.glsl:3:x <= 1.0 ? y : z").unwrap().2, "x <= 1.0 ? y : z");
         for (wrong, words) in [
