@@ -152,7 +152,7 @@ fn what_does_not_parse_says_what_was_expected() {
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
         "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, \
-         needs=, key= or doc=, found `colour`",
+         needs=, range=, colormap=, key= or doc=, found `colour`",
     );
     let errors = read_text("const uint M = 1u; //@mode d \"D\" needs=sheen,clearcot").unwrap_err();
     let needs =
