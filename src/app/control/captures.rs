@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value, json};
 
 use super::files::write_capture;
-use super::requests::path_text;
+use super::requests::{path_text, short};
 use crate::app::viewer::Viewer;
 use crate::capture::{
     Animation, CaptureError, Renderer as _, SheetPlan, Stills, Turn, Turntable, VersionPicture, check_animation,
@@ -145,7 +145,7 @@ fn value_json(pixel: &PixelValue) -> Value {
     match pixel {
         PixelValue { not_finite: true, .. } => json!("NaN"),
         PixelValue { no_data: true, .. } => Value::Null,
-        PixelValue { value, .. } => json!(value),
+        PixelValue { value, .. } => short(value),
     }
 }
 

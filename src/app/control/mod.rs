@@ -13,6 +13,7 @@ use super::viewer::Viewer;
 use crate::control::{Asked, Reply, Request};
 use crate::shader::{Diagnostic, Severity};
 pub(super) use captures::{Captures, Work};
+use requests::short;
 
 /// Commands that are not done yet, and captures that are under way.
 #[derive(Default)]
@@ -212,7 +213,8 @@ impl Viewer {
     fn camera_json(&self) -> Value {
         self.shown().map_or(Value::Null, |state| {
             let camera = &state.camera;
-            json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fovy": camera.fovy_rad.to_degrees() })
+            let (eye, target) = (short(camera.eye.to_array()), short(camera.target.to_array()));
+            json!({ "eye": eye, "target": target, "fovy": short(camera.fovy_rad.to_degrees()) })
         })
     }
 }

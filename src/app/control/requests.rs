@@ -53,7 +53,7 @@ impl Viewer {
             Request::Compare(compare) => {
                 self.compare_as(compare)?;
                 let (version, wipe) = (self.compare.version(), self.compare.wipe);
-                Next::Done(json!({ "is_on": self.compare.is_on(), "version": version, "wipe": wipe }))
+                Next::Done(json!({ "is_on": self.compare.is_on(), "version": version, "wipe": short(wipe) }))
             }
             Request::Versions(None) => Next::Done(self.versions_json()),
             Request::Versions(Some(number)) => {
@@ -281,7 +281,7 @@ impl Viewer {
         let is_animated = self.is_animated();
         let playback = &self.playback;
         Ok(
-            json!({ "time": playback.time_s(), "paused": playback.paused, "speed": playback.speed, "is_animated": is_animated }),
+            json!({ "time": short(playback.time_s()), "paused": playback.paused, "speed": short(playback.speed), "is_animated": is_animated }),
         )
     }
 }
@@ -312,7 +312,7 @@ fn is_exr(file: &std::path::Path) -> bool {
 
 /// The settings at a path, or all.
 fn get(settings: &Settings, path: Option<&str>) -> Result<Value, String> {
-    let all = serde_json::to_value(settings).map_err(|error| error.to_string())?;
+    let all = short(settings);
     let Some(path) = path.filter(|path| !path.is_empty()) else { return Ok(all) };
     let at = |path: &str| {
         path.split('.').try_fold(&all, |value, key| match value {
@@ -334,6 +334,11 @@ fn settings_json() -> Value {
             "unit": setting.unit, "doc": setting.doc })
     };
     catalog().into_iter().map(setting).collect()
+}
+
+/// A value for an answer. Floats have the fewest digits that name them: 0.3, not 0.30000001192092896.
+pub(super) fn short(value: impl serde::Serialize) -> Value {
+    serde_json::to_string(&value).and_then(|text| serde_json::from_str(&text)).unwrap_or_default()
 }
 
 /// A path for an answer: absolute.
