@@ -175,7 +175,7 @@ impl Viewer {
             shown: None,
             versions: Versions::default(),
             compare: Compare::default(),
-            timing: Timing::of_device(gpu.info().kind == "cpu"),
+            timing: Timing::default(),
             stages: StageTable::default(),
             clock: Clock::default(),
             is_complete: false,
