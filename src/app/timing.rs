@@ -82,6 +82,8 @@ pub(super) struct DeviceTimes<'a> {
     pub(super) ms: f64,
     pub(super) passes: &'a [PassTime],
     pub(super) counts: DrawCounts,
+    /// Whether the device compiles in the first frame of new shaders, as a software device does.
+    pub(super) compiles_in_frame: bool,
 }
 
 /// The history.
@@ -101,13 +103,6 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// An empty history. `compiles_in_frame`: the device compiles in the first frame of new shaders, as a software device does.
-    pub(super) fn of_device(compiles_in_frame: bool) -> Self {
-        let mut timing = Self::default();
-        timing.cost.compiles_in_frame = compiles_in_frame;
-        timing
-    }
-
     /// Notes a frame that goes to the device.
     pub(super) fn submitted(&mut self, serial: u64, shown: Shown, cpu: CpuTimes) {
         self.submitted.push_back((serial, shown, cpu));
@@ -125,6 +120,7 @@ impl Timing {
         let Some((_, shown, cpu)) = self.submitted.drain(..=at).next_back() else { return };
         let DeviceTimes { ms, passes, counts, .. } = *times;
         let sample = Sample { shown, cpu, device_ms: ms, passes: passes.to_vec(), counts };
+        self.cost.compiles_in_frame = times.compiles_in_frame;
         if sample.is_of_picture() {
             self.cost.take(&sample, &self.pictures);
             push(&mut self.pictures, sample, FRAMES);
@@ -189,12 +185,18 @@ pub(super) mod tests {
 
     /// A frame that goes to the device and is finished.
     pub(in crate::app) fn draw(timing: &mut Timing, shown: &Shown, times: &[(&str, f64)]) {
+        draw_on(timing, false, shown, times);
+    }
+
+    /// The same on a device that compiles in the first frame, or does not.
+    pub(in crate::app) fn draw_on(timing: &mut Timing, compiles_in_frame: bool, shown: &Shown, times: &[(&str, f64)]) {
         let serial = timing.drawn + 1;
         let cpu = CpuTimes { ui_ms: serial as f64, record_ms: 1.0 };
         timing.submitted(serial, shown.clone(), cpu);
         let ms = times.iter().map(|(_, ms)| ms).sum();
         let passes = passes(times);
-        let times = DeviceTimes { serial, ms, passes: &passes, counts: DrawCounts::default() };
+        let counts = DrawCounts::default();
+        let times = DeviceTimes { serial, ms, passes: &passes, counts, compiles_in_frame };
         timing.finished(&times);
         // The next frame asks again before a newer one has finished.
         timing.finished(&times);

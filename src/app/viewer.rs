@@ -225,7 +225,7 @@ impl Viewer {
             versions: Versions::default(),
             compare: Compare::default(),
             edits,
-            timing: Timing::of_device(gpu.info().kind == "cpu"),
+            timing: Timing::default(),
             stages: StageTable::default(),
             clock: Clock::default(),
             is_complete: false,

@@ -11,7 +11,9 @@ impl Screen {
     pub(super) fn take_times(&self, viewer: &mut Viewer) {
         let Some(ms) = self.frames.last_device_ms() else { return };
         let (passes, counts) = (self.frames.pass_times(), self.frames.draw_counts());
-        viewer.timing.finished(&DeviceTimes { serial: self.frames.timed(), ms, passes, counts });
+        let compiles_in_frame = !viewer.gpu_is_fast();
+        let serial = self.frames.timed();
+        viewer.timing.finished(&DeviceTimes { serial, ms, passes, counts, compiles_in_frame });
     }
 
     /// How much of the picture to draw. While the panel Timing is open, new shaders get a few frames more than they need, to be measured.

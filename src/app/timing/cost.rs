@@ -136,7 +136,7 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::super::Timing;
-    use super::super::tests::{draw, shown};
+    use super::super::tests::{draw, draw_on, shown};
     use super::*;
 
     #[test]
@@ -160,13 +160,13 @@ mod tests {
 
     #[test]
     fn kept_images_and_frames_that_compile_say_nothing() {
-        let mut timing = Timing::of_device(true);
-        draw(&mut timing, &shown(1), &[("model", 200.0)]);
-        draw(&mut timing, &shown(2), &[("model", 300.0)]);
-        draw(&mut timing, &shown(2), &[("model", 3.0)]);
+        let mut timing = Timing::default();
+        draw_on(&mut timing, true, &shown(1), &[("model", 200.0)]);
+        draw_on(&mut timing, true, &shown(2), &[("model", 300.0)]);
+        draw_on(&mut timing, true, &shown(2), &[("model", 3.0)]);
         assert_eq!(timing.cost(), None, "the only frame before has compiled");
-        draw(&mut timing, &shown(3), &[("model", 300.0)]);
-        draw(&mut timing, &shown(3), &[("model", 2.0)]);
+        draw_on(&mut timing, true, &shown(3), &[("model", 300.0)]);
+        draw_on(&mut timing, true, &shown(3), &[("model", 2.0)]);
         assert_eq!(timing.cost().unwrap().rows[1].change(), Some(-1.0));
 
         let mut pass = super::super::tests::passes(&[("model", 2.0), ("ground", 1.0)]);
