@@ -84,12 +84,12 @@ fn the_geometry_stage_of_the_readme() {
 fn the_parameters_and_constants_of_the_shader_readme() {
     let mut session = session();
     let before = session.render();
-    let params = session.tree.edited("user/params.glsl", "};", &format!("{}\n}};", snippet("rim_width").trim_end()));
+    let params = session.tree.edited("user/params.glsl", "};", &format!("{}\n}};", snippet("dust_size").trim_end()));
     ready(&session.save("user/params.glsl", &params));
     let hook = "void user_surface(inout Surface s) {";
     let user = session.tree.edited("user.glsl", hook, &format!("{}\n{hook}", snippet("PATTERN = 0u")));
     let body =
-        "if (INVERT) s.base_color = 1.0 - s.base_color;\n    s.emissive += float(PATTERN) * rim_width * rim_color;";
+        "if (INVERT) s.base_color = 1.0 - s.base_color;\n    s.emissive += float(PATTERN) * dust_size * dust_color;";
     ready(&session.save("user.glsl", &user.replace(hook, &format!("{hook}\n    {body}"))));
     assert_same(&before, &session.render(), "at their defaults they change nothing");
     session.set("INVERT=true");
@@ -98,7 +98,7 @@ fn the_parameters_and_constants_of_the_shader_readme() {
     session.set("PATTERN=Dots");
     let dots = session.render();
     assert_differ(&inverted, &dots, "the choice");
-    session.set("rim_color=0,0,1");
+    session.set("dust_color=0,0,1");
     assert_differ(&dots, &session.render(), "the color");
     passes_check(&session);
 }
