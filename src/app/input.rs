@@ -302,11 +302,14 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
         Key::Named(NamedKey::Escape) if viewer.panels.open_gallery.is_open => {
             viewer.panels.open_gallery.is_open = false
         }
-        Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing => {
+        // A click pins a pixel and selects what it shows; Escape takes both back.
+        Key::Named(NamedKey::Escape)
+            if viewer.selected != Selected::Nothing || viewer.panels.inspector.is_pinned() =>
+        {
+            viewer.panels.inspector.unpin();
             viewer.execute(Command::Select(Selected::Nothing));
         }
         Key::Named(NamedKey::Escape) if viewer.panels.grid.is_on() => viewer.panels.grid.end(),
-        Key::Named(NamedKey::Escape) if viewer.panels.inspector.is_pinned() => viewer.panels.inspector.unpin(),
         Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
         Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
         Key::Character(text) => {

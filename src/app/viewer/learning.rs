@@ -128,11 +128,11 @@ impl Viewer {
             Err(message) => Measured::Failed(message),
         };
         let passed = self.learning.is_solved();
-        if let Measured::Findings(goals) = &self.learning.measured {
-            emit(&self.events, &Event::Exercise { name: &exercise.name, passed, goals });
-        }
         if passed {
             self.learning.progress.update(exercise, |record| record.solved = true);
+        }
+        if let Measured::Findings(goals) = &self.learning.measured {
+            emit(&self.events, &Event::Exercise { name: &exercise.name, passed, goals });
         }
     }
 
