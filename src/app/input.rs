@@ -303,9 +303,7 @@ fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
             viewer.panels.open_gallery.is_open = false
         }
         // A click pins a pixel and selects what it shows; Escape takes both back.
-        Key::Named(NamedKey::Escape)
-            if viewer.selected != Selected::Nothing || viewer.panels.inspector.is_pinned() =>
-        {
+        Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing || viewer.panels.inspector.is_pinned() => {
             viewer.panels.inspector.unpin();
             viewer.execute(Command::Select(Selected::Nothing));
         }

@@ -21,8 +21,12 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector) {
     let shaders = viewer.session.shaders.clone().unwrap_or_default();
     header(ui, state, &shaders.modes);
     let Some(reading) = &state.reading else {
-        let hint =
-            "Click a pixel of the picture to read its value in every mode. Esc, or a click on the marker, unpins it.";
+        let hint = match state.is_pinned() {
+            true => "Reading the pixel…",
+            false => {
+                "Click a pixel of the picture to read its value in every mode. Esc, or a click on the marker, unpins it."
+            }
+        };
         ui.label(RichText::new(hint).small().color(QUIET));
         return;
     };
