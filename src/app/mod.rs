@@ -202,8 +202,9 @@ impl App {
     }
 
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
-        if let Some(open) = self.open.take() {
+        if let Some(mut open) = self.open.take() {
             if let Err(AppError::Gpu(GpuError::DeviceLost(_))) = &result {
+                open.viewer.end_all_waiting();
                 open.viewer.recorder.finish();
                 // Destroying a lost device could wait forever for it to become idle.
                 std::mem::forget(open);

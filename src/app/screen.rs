@@ -284,7 +284,11 @@ impl Screen {
         self.survive(outlined)?;
         let shown = self.draw_texture(&mut encoder, viewer, frame.as_ref());
         self.survive(shown)?;
-        self.draw_grid(&mut encoder, slot, &acquired.image)?;
+        let grid = self.draw_grid(&mut encoder, slot, &acquired.image);
+        if self.survive(grid)?.is_none() {
+            self.cells.clear();
+            viewer.panels.grid.end();
+        }
         let recorded = self.record_thumbnail(&mut encoder, slot, viewer);
         if self.survive(recorded)?.is_none() {
             // The newest picture matters more.

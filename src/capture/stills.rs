@@ -150,12 +150,17 @@ impl Stills {
     fn picture(&mut self, frame: &BoundFrame) -> Result<Capture, HeadlessError> {
         self.view.restart_passes();
         self.view.restart_mean();
+        self.view.forget_limits();
         let accumulates = frame.state.pipelines.accumulates;
         let count = if accumulates { self.session.settings.view.frames } else { self.count };
         for _ in 1..count {
             self.draw(frame, Redraw::Always, |_, _, _| Ok(()))?;
         }
-        let readback = self.draw(frame, Redraw::Always, View::read_back)?;
+        let mut readback = self.draw(frame, Redraw::Always, View::read_back)?;
+        if frame.state.display.is_measured() {
+            // The range follows the values that have just been drawn.
+            readback = self.draw(frame, Redraw::ToneMap, View::read_back)?;
+        }
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
     }
 
@@ -184,6 +189,7 @@ impl Stills {
         let result = result?;
         // SYNC: this thread reads the picture, or draws the next over it.
         self.frames.wait()?;
+        self.view.take_survey(slot);
         match self.frames.endless_loop(self.frames.current()) {
             Some(words) => Err(HeadlessError::Gpu(GpuError::EndlessLoop(words))),
             None => Ok(result),

@@ -152,7 +152,9 @@ pub struct Clients(Arc<Mutex<Vec<Client>>>);
 impl Clients {
     /// Adds a reader.
     pub fn add(&self, client: Client) {
-        self.lock().push(client);
+        let mut clients = self.lock();
+        clients.retain(|client| !client.is_closed());
+        clients.push(client);
     }
 
     /// Whether nobody reads.

@@ -1,7 +1,11 @@
 //! The local socket: a file that only the user can reach. There is no network port.
 
+#[cfg(unix)]
+use std::collections::VecDeque;
 use std::io;
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crossbeam_channel::Sender;
 
@@ -81,9 +85,10 @@ impl Socket {
     /// Accepts clients on a thread. Each gets the events, and has a thread that reads its commands.
     pub(super) fn accept(&self, clients: Clients, sender: Sender<Asked>) {
         let Ok(listener) = self.listener.try_clone() else { return };
+        let ended = Ended::default();
         let work = move || {
             for stream in listener.incoming() {
-                match stream.and_then(|stream| connect(&stream, &clients, &sender)) {
+                match stream.and_then(|stream| connect(&stream, &clients, &ended, &sender)) {
                     Ok(()) => {}
                     Err(error) => {
                         tracing::debug!("a client of the socket was not accepted: {error}");
@@ -98,16 +103,40 @@ impl Socket {
     }
 }
 
+/// Most clients that stay connected after the end of their commands.
 #[cfg(unix)]
-fn connect(stream: &std::os::unix::net::UnixStream, clients: &Clients, sender: &Sender<Asked>) -> io::Result<()> {
+const MOST_ENDED: usize = 16;
+
+/// The clients whose commands have ended, the oldest first.
+#[cfg(unix)]
+type Ended = Arc<Mutex<VecDeque<super::Client>>>;
+
+#[cfg(unix)]
+fn connect(
+    stream: &std::os::unix::net::UnixStream,
+    clients: &Clients,
+    ended: &Ended,
+    sender: &Sender<Asked>,
+) -> io::Result<()> {
     use super::{Client, reader};
     let (input, output, line) = (stream.try_clone()?, stream.try_clone()?, stream.try_clone()?);
     let hang_up = move || drop(line.shutdown(std::net::Shutdown::Both));
     let client = Client::start(output, Some(Box::new(hang_up)));
     clients.add(client.clone());
     let sender = sender.clone();
-    // A client may end its commands and go on reading events, so the end of its input does not close it.
-    let work = move || reader::read(input, &client, &sender);
+    // A client may end its commands and go on reading events, so the end of its input does not close it. Whether anybody reads is
+    // known only when a line is written to it, so just the newest of these stay open.
+    let ended = ended.clone();
+    let work = move || {
+        reader::read(input, &client, &sender);
+        let mut ended = ended.lock().unwrap_or_else(PoisonError::into_inner);
+        ended.push_back(client);
+        if ended.len() > MOST_ENDED
+            && let Some(oldest) = ended.pop_front()
+        {
+            oldest.close();
+        }
+    };
     std::thread::Builder::new().name("specula-commands".to_owned()).spawn(work).map(|_| ())
 }
 

@@ -150,6 +150,11 @@ impl Viewer {
         self.controlled.captures.cancel();
     }
 
+    /// Answers all commands that wait: the device is lost.
+    pub(in crate::app) fn end_all_waiting(&mut self) {
+        self.end_waiting(|_| true, "the graphics device was lost");
+    }
+
     fn end_waiting(&mut self, is: impl Fn(&Until) -> bool, message: &str) {
         for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
             if is(&until) { reply.error(message) } else { self.controlled.waiting.push((reply, until)) }

@@ -184,7 +184,7 @@ fn progress(ui: &mut Ui, captures: &Captures, commands: &mut Vec<Command>) {
         ui.allocate_ui_with_layout(size, center, |ui| {
             let bar = ProgressBar::new(part).desired_width((size.x - 66.0).max(40.0)).text(RichText::new(text).small());
             ui.add(bar).on_hover_text("Pictures that are drawn");
-            let about = "End it after the picture that is being drawn; no file is written";
+            let about = "End it after the picture that is being drawn. Of numbered frames, those that are written stay";
             if ui.button("Cancel").on_hover_text(about).clicked() {
                 running.cancel();
             }

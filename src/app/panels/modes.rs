@@ -5,8 +5,8 @@ use egui::{RichText, Ui, vec2};
 
 use super::theme::icon;
 use super::{PanelState, QUIET, mode_tile};
-use crate::shader::ShaderSet;
 use crate::shader::annotation::Mode;
+use crate::shader::{PATHS_STAGE, ShaderSet};
 
 /// Width of the button that switches between gallery and list, points.
 const TOGGLE: f32 = 34.0;
@@ -111,7 +111,7 @@ pub(super) fn show(
         *current = slug;
     }
     let added = added.and_then(|slug| shaders.modes.iter().find(|mode| mode.slug == slug));
-    added.is_some_and(|mode| mode.traces || mode.accumulate || !grid.toggle(&mode.slug, current))
+    added.is_some_and(|mode| mode.stage == PATHS_STAGE || mode.accumulate || !grid.toggle(&mode.slug, current))
 }
 
 /// Shows a mode with its keys at the right.

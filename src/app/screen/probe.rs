@@ -47,7 +47,8 @@ impl Screen {
         let at = self.mouse.over.then(|| self.mouse_pixel()).flatten();
         let cell = if self.mouse.over { self.mouse_cell() } else { None };
         for (index, other) in self.cells.iter_mut().enumerate() {
-            other.view.probe = cell.filter(|(of, _)| *of == index).map(|(_, at)| at);
+            // The value of a cell without a picture would never come.
+            other.view.probe = cell.filter(|(of, _)| *of == index && other.shown.is_some()).map(|(_, at)| at);
         }
         let of_reference = at.is_some_and(|at| self.is_in_reference(at));
         self.view.probe = at.filter(|_| !of_reference);

@@ -60,7 +60,7 @@ impl Screen {
         let Some(tools) = viewer.tools() else { return Ok(()) };
         let Some(image) = self.texture.image.as_ref() else {
             // The next frame begins with one.
-            self.redraws = true;
+            self.redraws = self.shortage.is_none();
             return Ok(());
         };
         let Some(texture) = viewer.resources.texture(&request.source).cloned() else { return Ok(()) };

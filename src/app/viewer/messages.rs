@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
+use crate::app::inspector::Shown;
 use crate::app::recent::Kind;
 use crate::app::selection::Selected;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
@@ -103,7 +104,11 @@ impl Viewer {
         self.stages_changed();
         match &reload.outcome {
             Outcome::Unchanged { .. } => return,
-            Outcome::Failed(diagnostics) => self.show_errors(diagnostics),
+            Outcome::Failed(diagnostics) => {
+                // The generation never settles, so the exercise is not measured.
+                self.learning.checking = None;
+                self.show_errors(diagnostics);
+            }
             Outcome::Ready(set) => {
                 self.set_diagnostics(set.shaders.warnings.clone());
                 self.session.shaders = Some(set.shaders.clone());
@@ -391,7 +396,12 @@ impl Viewer {
                 "checking"
             }
             Role::Measurer => {
-                self.panels.inspector.asked = None;
+                // The same question would panic again, so it stays asked until another one comes.
+                let inspector = &mut self.panels.inspector;
+                if let Some(asked) = &inspector.asked {
+                    let now = Err("the measurement has failed".to_owned());
+                    inspector.curves = Some(Shown { of: asked.material, now, before: None });
+                }
                 "measuring"
             }
             Role::Capturer(number) => {

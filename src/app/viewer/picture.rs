@@ -31,6 +31,8 @@ impl Viewer {
         let selected = std::mem::replace(&mut self.session.settings.mode, preview);
         let frame = self.frame_of_settings(size, prepare);
         self.session.settings.mode = selected;
+        // Commands that wait for the settings wait until the preview ends.
+        self.shows_settings = false;
         frame
     }
 
@@ -90,6 +92,7 @@ impl Viewer {
         // The picture comes first.
         if self.is_complete
             && !state.pipelines.needs_pending(&state.shaders)
+            && self.resources.missing(&state).pipelines
             && let Some(set) = self.resources.pipelines()
         {
             self.threads.worker.build(set, &state.pipelines);

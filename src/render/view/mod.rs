@@ -108,6 +108,10 @@ pub struct View {
     known_limits: HashMap<u32, Limits>,
     /// The content of the display's constants in the last frame.
     displayed: Option<(Display, Option<Limits>)>,
+    /// Whether the last frame showed other limits than the one before.
+    is_shown_anew: bool,
+    /// The limits of another view, which replace those of this view's own values.
+    followed: Option<Option<Limits>>,
 }
 
 impl View {
@@ -144,6 +148,8 @@ impl View {
             mode_since: None,
             known_limits: HashMap::new(),
             displayed: None,
+            is_shown_anew: false,
+            followed: None,
         })
     }
 
@@ -203,6 +209,7 @@ impl View {
         let limits = self.limits_of(frame);
         let is_shown_anew =
             self.displayed.replace((frame.state.display, limits)) != Some((frame.state.display, limits));
+        self.is_shown_anew = is_shown_anew;
         let surveys = (self.surveys || frame.state.display.is_measured()) && self.surveyed != self.picture;
         let Some(targets) = &self.targets else { return Ok(()) };
         let in_flight = &mut self.in_flight[slot];
@@ -295,6 +302,9 @@ impl View {
     /// picture.
     fn limits_of(&mut self, frame: &BoundFrame) -> Option<Limits> {
         let state = &frame.state;
+        if let Some(limits) = self.followed {
+            return limits;
+        }
         let mode = state.pipelines.mode;
         if self.mode_since.is_none_or(|(last, _)| last != mode) {
             self.mode_since = Some((mode, self.picture));
@@ -345,9 +355,16 @@ impl View {
         self.survey.as_ref()
     }
 
-    /// Whether samples of the picture are on their way, or have arrived since the last frame.
+    /// Shows values between these limits, those of a picture that this view's is compared with. `None`: between the limits of its own
+    /// values.
+    pub fn follow_limits(&mut self, limits: Option<Option<Limits>>) {
+        self.followed = limits;
+    }
+
+    /// Whether samples of the picture are on their way, or the last frame showed new limits, which a legend does not know yet.
     pub fn awaits_survey(&self) -> bool {
-        self.surveyed != 0 && self.survey.as_ref().map(|survey| survey.picture) != Some(self.surveyed)
+        self.is_shown_anew
+            || self.surveyed != 0 && self.survey.as_ref().map(|survey| survey.picture) != Some(self.surveyed)
     }
 
     /// Whether the picture shows how the camera has moved, so that the next one differs even if the camera rests.
