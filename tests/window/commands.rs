@@ -88,7 +88,8 @@ fn a_program_drives_the_window_by_standard_input() {
     let result = viewer.running.done(json!({"command": "capture", "file": "window.png", "ui": true}));
     assert_eq!((&result["width"], &result["height"]), (&json!(640), &json!(480)));
     let window = open_image(&viewer.tree.beside("window.png")).into_rgba8();
-    assert!(window.pixels().all(|pixel| pixel[3] == 255) && window.get_pixel(320, 240) != window.get_pixel(2, 2));
+    let colors: std::collections::BTreeSet<[u8; 4]> = window.pixels().map(|pixel| pixel.0).collect();
+    assert!(window.pixels().all(|pixel| pixel[3] == 255) && colors.len() > 200, "{} colors", colors.len());
 
     // Values of a pixel.
     let running = &mut viewer.running;

@@ -29,7 +29,9 @@ fn an_expression_is_watched_by_the_palette() {
     // The line is found again below another one.
     let edited = original.replace(head, &format!("float half_of(float x) {{ return 0.5 * x; }}\n\n{head}"));
     viewer.tree.write(USER, &edited);
-    viewer.running.reload(true);
+    let is_edit = |event: &serde_json::Value| event["event"] == "reload" && event["changed"] != serde_json::json!([]);
+    let reload = viewer.running.until("the reload of the edit", is_edit);
+    viewer.running.settled(&reload);
     viewer.until("the value after an edit", |shot| is_color(shot, [51, 102, 204]));
 
     // An expression that does not compile leaves the picture as it is.

@@ -160,12 +160,12 @@ fn files_that_were_open_are_offered() {
     std::fs::write(&other, glb::model(&glb::sphere(8, 16), &glb::gray())).unwrap();
     std::fs::create_dir_all(tree.beside("state/specula")).unwrap();
     let recent = tree.beside(RECENT);
-    let stored = json!({ "models": [tree.beside("gone.glb"), other, model] });
+    let stored = json!({ "models": [tree.beside("vanished.glb"), other, model] });
     std::fs::write(&recent, stored.to_string()).unwrap();
     let mut viewer = Viewer::open(tree, &["sphere-grid", "--size", "1000x480"]);
     viewer.running.event("ready");
     let first = viewer.screenshot();
-    choose(&viewer, "model gone");
+    choose(&viewer, "model vanished");
     assert!(viewer.screenshot() == first, "a file that is gone was offered");
     viewer.key("ctrl+p");
     viewer.screenshot();
