@@ -62,7 +62,7 @@ pub enum Event<'a> {
         name: &'a str,
         /// Whether all goals are reached.
         passed: bool,
-        /// What was found about each.
+        /// Result of each goal.
         goals: &'a [Finding],
     },
     /// The inspector has read a pixel.

@@ -47,7 +47,7 @@ pub struct Settings {
     pub material: MaterialOverride,
     /// Factors of single materials of the model, by name of the material.
     pub materials: BTreeMap<String, MaterialValues>,
-    /// What is drawn of the model.
+    /// Visible parts of the model.
     pub scene: SceneSettings,
     /// Where the model stands.
     pub model: ModelSettings,
@@ -72,7 +72,7 @@ pub struct Settings {
 pub const GROUND: &str = "ground";
 
 impl Settings {
-    /// What a window shows at first: the model over the shadow that it casts on the ground, in its environment, out of focus.
+    /// Initial settings of a window: the model, its shadow on the ground, and a blurred environment as background.
     pub fn of_window() -> Self {
         let mut settings = Self::default();
         settings.view.background = "env".into();

@@ -56,7 +56,7 @@ vec3 specular_radiance(Surface s, vec3 v) {
     return radiance + missing_sun(s.roughness) * sun_radiance(direction, s.roughness);
 }
 
-// What the base's specular lobe reflects of the environment.
+// Environment light that the base's specular lobe reflects.
 vec3 reflected_specular(Surface s, vec3 v, vec3 albedo) {
     if (REFLECTIONS_ARE_SAMPLED) return sampled_specular(s, v);
     vec3 light = albedo * specular_sky(s, v);

@@ -14,7 +14,7 @@ vec3 weight_of(Surface s, vec3 v, vec3 l, bool is_coat) {
     return (is_coat ? brdf.clearcoat : brdf.specular) * abs(dot(s.n, l));
 }
 
-// What the base's specular lobe or the coat reflects of the sun, without the environment's intensity. The variance of the disk
+// Sunlight that the base's specular lobe or the coat reflects, without the environment's intensity. The variance of the disk
 // widens the lobe, as in lobe_weight_of_light.
 vec3 reflected_sun(Surface s, vec3 v, bool is_coat) {
     vec2 roughness = vec2(s.roughness, s.clearcoat_roughness);

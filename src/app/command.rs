@@ -12,7 +12,7 @@ use crate::file_kind::FileKind;
 use crate::shader::Source;
 use crate::shader::rewrite::Edit;
 
-/// What the picture is compared with.
+/// Reference that the picture is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CompareWith {
     Nothing,
@@ -114,7 +114,7 @@ pub(super) enum Command {
     Choose(Dialog),
     /// Write the built-in shaders to this folder, or to one that the user chooses, and open them.
     NewTree(Option<PathBuf>),
-    /// What the panel of exercises asks for.
+    /// Run a command of the exercise panel.
     Learn(LearnCommand),
     /// Open a shader tree.
     OpenTree(PathBuf),

@@ -10,7 +10,7 @@ use crate::shader::TreePath;
 /// Unchanged lines around each change.
 const CONTEXT: usize = 2;
 
-/// What a line says.
+/// Kind of a line in a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// The name of the file that the next lines are of, or a gap between them.

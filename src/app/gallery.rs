@@ -1,5 +1,4 @@
-//! What the gallery of modes and the screen tell each other: which thumbnails are in sight, where they lie in their texture, and which
-//! mode the mouse rests on.
+//! State that the mode gallery and the screen share: the visible thumbnails, their places in the texture, and the hovered mode.
 
 use std::collections::{BTreeSet, HashMap};
 use std::time::Duration;

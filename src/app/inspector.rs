@@ -13,7 +13,7 @@ use crate::shader::PixelValue;
 
 use directions::Directions;
 
-/// What the panel shows.
+/// Page that the inspector panel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Page {
     /// The value in every mode.
@@ -36,7 +36,7 @@ pub(super) struct Inspector {
     pub(super) search: String,
     /// The newest values, also while newer ones are being read.
     pub(super) reading: Option<Reading>,
-    /// What the newest curves were asked for.
+    /// Inputs of the newest request for curves.
     pub(super) asked: Option<Asked>,
     pub(super) curves: Option<Shown>,
     /// How far the user has turned the lobe in space, degrees.

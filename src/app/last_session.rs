@@ -36,7 +36,7 @@ pub(super) struct LastSession {
 }
 
 impl LastSession {
-    /// What it shows, for people.
+    /// Describes the session for the user.
     pub(super) fn words(&self) -> String {
         let name = |path: &PathBuf| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let model = self.work.model.as_ref().map_or_else(|| BUILT_IN[0].to_owned(), name);
@@ -55,12 +55,12 @@ impl LastSession {
     }
 }
 
-/// What is known of earlier sessions.
+/// Earlier sessions.
 #[derive(Default)]
 pub(super) struct LastSessions {
     /// Whether a window goes on with the last session by itself.
     always: bool,
-    /// That of the working directory.
+    /// The last session in the working directory.
     pub(super) here: Option<LastSession>,
 }
 

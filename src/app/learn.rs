@@ -8,7 +8,7 @@ use super::difference::{Line, difference};
 use crate::learn::{Exercise, Finding, Progress};
 use crate::shader::{ShaderSet, TreePath};
 
-/// What the panel of exercises asks for.
+/// Commands that the exercise panel sends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum LearnCommand {
     /// Open the exercise with this number.
@@ -52,7 +52,7 @@ pub(super) struct Learning {
     pub(super) checking: Option<u64>,
     /// Whether the list is shown although an exercise is open.
     pub(super) shows_list: bool,
-    /// What the solution changes in the files as they are now, while it is shown.
+    /// Difference between the current files and the solution, while the solution is shown.
     pub(super) solution: Option<Vec<Line>>,
     /// Whether the user is asked before the files of the start are written.
     pub(super) asks: bool,

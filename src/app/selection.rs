@@ -1,4 +1,4 @@
-//! What is selected: in the panel Scene, and by a click in the picture.
+//! The selection, which the panel Scene or a click in the picture sets.
 
 use crate::frame::Scene;
 use crate::scene::{Model, TextureSource};

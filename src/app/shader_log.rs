@@ -1,4 +1,4 @@
-//! What the last edits of the shaders did: which stages they reached, how long each step took, and what failed.
+//! Log of the last shader edits: the stages that they reached, the time of each step, and failures.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 

@@ -8,7 +8,7 @@ use crate::frame::PipelineRequest;
 use crate::pipeline::{Figure, PipelineSet, StageReport, figures};
 use crate::shader::{ShaderSet, StageKind, TreePath};
 
-/// What a stage does at the moment.
+/// Current state of a shader stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum StageState {
     /// Its newest text does not compile.

@@ -22,7 +22,7 @@ pub(super) struct ShaderStatus {
     pub(super) compiling: bool,
     /// The last finished reload.
     pub(super) last: Option<ReloadEvent>,
-    /// What the last edits did.
+    /// Log of the last edits.
     pub(super) log: ShaderLog,
     /// Whether to ask the driver about the machine code of each picture.
     pub(super) asks_driver: bool,

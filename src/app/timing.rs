@@ -20,7 +20,7 @@ const EXTRA: usize = 4;
 /// Passes that a frame has even if the picture stays.
 const NOT_OF_PICTURE: [&str; 7] = ["tone map", "ui", "thumbnails", "thumbnail", "outline", "texture", "inspector"];
 
-/// What a frame shows. Times of frames that show the same can be compared.
+/// Inputs of a frame. Times can be compared between frames with equal inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shown {
     /// Generation of the shaders.
@@ -40,7 +40,7 @@ impl Shown {
     }
 }
 
-/// What the CPU did for a frame, in milliseconds.
+/// CPU time of a frame, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct CpuTimes {
     /// Running the panels and making triangles of them.
@@ -142,7 +142,7 @@ impl Timing {
         self.pictures.back().map(|sample| sample.device_ms)
     }
 
-    /// What the last edit cost; `None` before the first.
+    /// Cost of the last edit; `None` before the first edit.
     pub(super) fn cost(&self) -> Option<Cost> {
         self.cost.cost()
     }

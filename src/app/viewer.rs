@@ -127,7 +127,7 @@ pub(super) struct Viewer {
     pub(super) history: History,
     /// The exercise that is open.
     pub(super) learning: Learning,
-    /// What is selected in the scene.
+    /// Selected item of the scene.
     pub(super) selected: Selected,
     /// The selected instances of a scene.
     selected_cache: Option<(Selected, Scene, Arc<[bool]>)>,

@@ -21,7 +21,7 @@ const SLUG: [u8; 3] = [150, 154, 162];
 /// Most pixels of a sheet: 1 GiB of memory.
 const MOST_PIXELS: u64 = 1 << 28;
 
-/// What a sheet shows.
+/// Contents and size of a sheet.
 pub struct SheetPlan {
     /// The modes, in order.
     pub modes: Vec<Mode>,

@@ -30,7 +30,7 @@ pub struct Stills {
 /// A version of the shaders, for a picture of it.
 pub(crate) struct VersionPicture {
     pub(crate) set: Arc<PipelineSet>,
-    /// What is written in its picture.
+    /// Label that is drawn into the picture.
     pub(crate) label: String,
     /// A frame with its shaders, if there was one: its light is the version's own.
     pub(crate) like: Option<BoundFrame>,

@@ -10,7 +10,7 @@ use crate::message::did_you_mean;
 use crate::scene::{Model, frame};
 use crate::settings::{CameraSettings, Settings};
 
-/// What turns.
+/// Object that a turntable rotates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Turn {
     /// The camera around the model.
@@ -26,7 +26,7 @@ impl Turn {
     /// Its names.
     pub const NAMES: [&str; 3] = ["camera", "light", "model"];
 
-    /// What has this name.
+    /// Returns the rotating object with this name.
     ///
     /// # Errors
     /// A message with the names.
@@ -52,7 +52,7 @@ pub struct Turntable {
     pub fps: f32,
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// What turns.
+    /// Object that a turntable rotates.
     pub turn: Turn,
 }
 

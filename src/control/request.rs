@@ -47,7 +47,7 @@ pub struct Described {
     pub command: &'static str,
     /// Its fields, as JSON that could be sent. `?` marks those that may be left out.
     pub takes: &'static str,
-    /// What it does, and its result.
+    /// Description of the command and its result.
     pub doc: &'static str,
 }
 
@@ -168,7 +168,7 @@ pub struct Probe {
     pub modes: Option<Vec<String>>,
 }
 
-/// What `open` opens.
+/// Argument of `open`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Open {
     File(PathBuf),

@@ -4,7 +4,7 @@ use crate::interface::Frame;
 use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};
 use crate::shader::{Encode, Mode};
 
-/// What the display makes of the values of a mode. It changes no value, and so needs no new picture.
+/// How the display maps the values of a mode to colors. The mapping changes no value, so it needs no new render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Display {
     range: Range,
@@ -19,7 +19,7 @@ enum Range {
     #[default]
     Encoded,
     Fixed(f32, f32),
-    /// That of the picture's values.
+    /// The range of the values in the picture.
     Measured {
         /// Whether 0 lies in the middle.
         is_signed: bool,
@@ -32,7 +32,7 @@ enum Range {
 pub type Limits = (f32, f32);
 
 impl Display {
-    /// What `view` says about pictures of `mode`.
+    /// Returns the display mapping that `view` selects for pictures of `mode`.
     pub(crate) fn new(view: &ViewSettings, mode: Option<&Mode>) -> Self {
         let Some(mode) = mode else { return Self::default() };
         let is_signed = mode.encode == Encode::Vector;

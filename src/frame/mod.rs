@@ -120,7 +120,7 @@ pub struct FrameState {
     pub lights: Vec<Light>,
     /// Width and height, pixels, at least 1.
     pub size: (u32, u32),
-    /// What the display makes of the values.
+    /// How the display maps values to colors.
     pub display: Display,
     /// The same for each mode of a set of thumbnails: value of `MODE`, components of a value, display.
     pub displays: Vec<(u32, u8, Display)>,

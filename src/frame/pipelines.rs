@@ -95,7 +95,7 @@ impl Selection<'_> {
             Part::Mean => self.accumulates,
             Part::Model if pass.note.background => {
                 let is_on = is_switched_on(pass, self.shaders, self.constants) && pass.is_wanted(&self.settings.passes);
-                // What blends lies over any background, a plain one too.
+                // Blended passes are drawn over any background, including a plain color.
                 let is_seen = self.shows_light && (self.shows_environment || pass.note.blend);
                 draws_model && is_seen && is_on
             }

@@ -13,7 +13,7 @@ pub struct Step {
     pub done: u64,
     /// Frames or paths of the whole picture.
     pub of: u64,
-    /// What is counted, for people.
+    /// Unit of the count, as shown to the user.
     pub unit: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! What a command can tell about a picture besides its pixels.
+//! Hints about a picture that a command prints besides its pixels.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What is known of the stages of the picture.
+//! Reports on the shader stages of the picture.
 
 use std::collections::BTreeMap;
 

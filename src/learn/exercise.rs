@@ -50,7 +50,7 @@ pub struct Place {
 struct Data {
     title: String,
     level: Level,
-    /// What the exercise teaches, in a few words.
+    /// The idea that the exercise teaches, in a few words.
     idea: String,
     text: String,
     source: String,
@@ -61,10 +61,10 @@ struct Data {
     #[serde(default)]
     set: Vec<String>,
     open: Place,
-    /// What is wrong with the shipped tree at the start.
+    /// Edits that put the fault into the shipped tree at the start.
     #[serde(default)]
     fault: Vec<Edit>,
-    /// What the solution adds to the shipped tree.
+    /// Edits that the solution makes to the shipped tree.
     #[serde(default)]
     solution: Vec<Edit>,
     goal: Vec<Goal>,
@@ -81,7 +81,7 @@ pub struct Exercise {
     pub title: String,
     /// How hard it is.
     pub level: Level,
-    /// What it teaches, in a few words.
+    /// The idea that the exercise teaches, in a few words.
     pub idea: String,
     /// The explanation: paragraphs, and formulas in lines that begin with four spaces.
     pub text: String,

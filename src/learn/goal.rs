@@ -11,7 +11,7 @@ pub struct Goal {
     /// Settings of its measurement, as `--set` takes them, after those of the exercise.
     #[serde(default)]
     pub set: Vec<String>,
-    /// What is measured.
+    /// The measurement that decides the goal.
     pub check: Check,
 }
 
@@ -104,13 +104,13 @@ fn one() -> u32 {
     1
 }
 
-/// What was found about a goal.
+/// Result of checking a goal.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// The goal in a sentence.
     pub goal: String,
     /// Whether it is reached.
     pub passed: bool,
-    /// What was measured, and what was expected if that is something else.
+    /// The measured value, and the expected value if it differs.
     pub found: String,
 }

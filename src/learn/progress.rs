@@ -1,4 +1,4 @@
-//! What a student has done, kept between runs in `learn.json`.
+//! Progress of a student, kept between runs in `learn.json`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use crate::state;
 
 const FILE: &str = "learn.json";
 
-/// What a student has done of an exercise.
+/// Progress of a student in one exercise.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Record {
@@ -22,7 +22,7 @@ pub struct Record {
     pub saw_solution: bool,
 }
 
-/// What a student has done.
+/// Progress of a student in all exercises.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Progress {

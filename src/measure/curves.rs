@@ -35,7 +35,7 @@ pub struct Material {
     pub light_deg: f32,
 }
 
-/// What is measured of a material.
+/// Measured curves of a material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
     /// Lobes in the plane of incidence, as [`Bench::lobes`] returns them.

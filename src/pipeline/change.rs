@@ -8,7 +8,7 @@ use crate::gpu::{Executable, Statistic};
 pub struct Figure {
     /// Its unit, as in "96 registers", or the driver's name for it.
     pub name: String,
-    /// What it means.
+    /// Meaning of the number.
     pub meaning: String,
     /// Its value.
     pub value: f64,
@@ -85,7 +85,7 @@ pub fn all_statistics(now: &StageReport, before: Option<&StageReport>) -> Vec<(S
     executables(now).into_iter().map(of).collect()
 }
 
-/// What the drivers' names for their numbers mean.
+/// Kind of a pipeline statistic, derived from the driver's name for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Registers,

@@ -1,4 +1,4 @@
-//! What a pixel shows: the instances of a model that may cover it, and the nearest surface.
+//! Picking: finds the instances of a model that may cover a pixel, and the nearest surface.
 
 use glam::{Mat4, Vec2, Vec3, Vec4Swizzles as _};
 use rayon::prelude::*;

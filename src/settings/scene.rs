@@ -1,4 +1,4 @@
-//! What is drawn of the model, and where it stands.
+//! Visible parts of the model, and its placement.
 
 use glam::{EulerRot, Mat4, Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use super::list::names;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SceneSettings {
-    /// What is not drawn.
+    /// Names of the parts that are not drawn.
     #[serde(deserialize_with = "names")]
     pub hidden: Vec<String>,
     /// If it names anything, nothing else is drawn.

@@ -9,7 +9,7 @@ use super::compile::include::included_names;
 /// The includes of a set of files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct IncludeGraph {
-    /// What each file includes, as text, in the order of its lines.
+    /// Include names of each file as written, in the order of its lines.
     names: BTreeMap<TreePath, (Arc<str>, Vec<String>)>,
     includes: BTreeMap<TreePath, Vec<TreePath>>,
     included_by: BTreeMap<TreePath, BTreeSet<TreePath>>,

@@ -12,7 +12,7 @@ use crate::gpu::Gpu;
 use crate::learn::{Exercise, Finding, Lab, LearnError};
 use crate::shader::{Compiler, Source};
 
-/// What the checker has found out.
+/// Result of a check.
 pub(crate) struct Checked {
     /// Number of the request.
     pub(crate) number: u64,

@@ -14,7 +14,7 @@ use crate::measure::{Bench, Curves, Material, prepare};
 use crate::settings::Settings;
 use crate::shader::{Compiler, ShaderSet, Source};
 
-/// What to measure.
+/// Request for curves.
 #[derive(Clone)]
 pub(crate) struct CurvesRequest {
     /// The newest shaders, and those before the last edit.
@@ -25,7 +25,7 @@ pub(crate) struct CurvesRequest {
     pub(crate) material: Material,
 }
 
-/// What was measured.
+/// Result of a request for curves.
 pub(crate) struct Measured {
     /// The number of the request.
     pub(crate) number: u64,

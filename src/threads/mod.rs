@@ -46,7 +46,7 @@ pub(crate) enum Message {
     FilesChanged(BTreeSet<PathBuf>),
     /// The difference of the two pictures that the window compares, or why there is none.
     Compared(u64, Result<Box<Comparison>, String>),
-    /// What was written into the files of the shader tree, or why nothing was.
+    /// Summary of the edits written to the shader files, or the reason why none were written.
     Written(Result<String, String>),
     /// The curves of a pixel's material.
     Curves(Box<measurer::Measured>),

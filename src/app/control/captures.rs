@@ -1,4 +1,4 @@
-//! What a thread draws beside the window: pictures of another size or mode, values of a pixel, sheets and animations.
+//! Renders on a background thread: pictures of another size or mode, values of a pixel, sheets and animations.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ const FPS: f32 = 25.0;
 /// Versions a second.
 const VERSIONS_PER_S: f32 = 1.5;
 
-/// What a thread draws.
+/// Job of the background render thread.
 #[derive(Clone, Debug)]
 pub(in crate::app) enum Work {
     Picture { file: Option<PathBuf>, size: Option<(u32, u32)>, mode: Option<String>, frames: u32 },
@@ -74,7 +74,7 @@ impl Work {
         Ok(Self::Timeline { file: fields.file, fps, size: fields.size.map(Into::into) })
     }
 
-    /// What it is, for the panel.
+    /// Title of the job in the panel.
     fn title(&self) -> &'static str {
         match self {
             Self::Picture { .. } => "Picture",

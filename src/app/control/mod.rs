@@ -22,7 +22,7 @@ pub(super) struct Controlled {
     pub(super) captures: Captures,
 }
 
-/// What a command waits for.
+/// Condition that a command waits for.
 pub(super) enum Until {
     /// A frame that shows the settings.
     Shown,
@@ -42,7 +42,7 @@ pub(super) enum Until {
     Picture(Work),
 }
 
-/// What becomes of a command at once.
+/// Immediate outcome of a command.
 pub(super) enum Next {
     Done(Value),
     Wait(Until),

@@ -1,4 +1,4 @@
-//! What each command does.
+//! Executes the commands of the control interface.
 
 use std::path::PathBuf;
 
@@ -286,7 +286,7 @@ impl Viewer {
     }
 }
 
-/// What a capture waits for: the screen, the window, or a thread that draws it.
+/// Returns the condition that a capture waits for: the screen, the window, or a render on a thread.
 fn capture_of(capture: Capture) -> Result<Until, String> {
     let Capture { file, size, mode, frames, ui } = capture;
     if let Some(file) = &file {

@@ -1,4 +1,4 @@
-//! What the tiles look like, and what their tabs do.
+//! Appearance of the tiles, and behavior of their tabs.
 
 use egui::{Color32, Margin, Rect, Response, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabState, Tile, TileId, Tiles, UiResponse};

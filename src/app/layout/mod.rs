@@ -20,7 +20,7 @@ use repair::repair;
 /// Width of a column of panels that has none to take it from.
 const COLUMN: f32 = 318.0;
 
-/// What a tile shows.
+/// Panel that a tile shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Panel {
     Viewport,
@@ -230,7 +230,7 @@ impl Layout {
         self.fit.apply(&mut self.tree, area.size());
         let mut dock =
             Dock { panels, picture: None, is_edited: false, is_dropped: false, is_selected: false, closed: None };
-        // What the tiles leave uncovered, apart from the picture, is painted behind them.
+        // The background fills the gaps between tiles, but not the picture.
         let background = ui.painter().add(egui::Shape::Noop);
         self.tree.ui(&mut dock, ui);
         let Dock { picture, is_edited, is_dropped, is_selected, closed, .. } = dock;

@@ -201,7 +201,7 @@ fn lessons() -> impl Iterator<Item = Entry> {
     })
 }
 
-/// What depends on what is on screen: comparisons, versions that can be written to the files, sides of the model.
+/// Entries that depend on the current picture: comparisons, versions to write to the files, views of the model.
 fn of_picture(viewer: &Viewer) -> Vec<Entry> {
     let compare = |title: String, with| Entry::new("Compare", title, Action::Do(Command::Compare(with)));
     let newest = viewer.shown_generation();

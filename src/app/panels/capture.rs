@@ -23,7 +23,7 @@ const SIZES: [(&str, [u32; 2]); 5] = [
     ("1080 × 1080", [1080, 1080]),
 ];
 
-/// What the panel is set to. It lasts as long as the window.
+/// Settings of the capture panel. They last as long as the window.
 pub(super) struct CaptureState {
     /// `None` for the size on screen.
     size: Option<[u32; 2]>,

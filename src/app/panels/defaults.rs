@@ -7,7 +7,7 @@ use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::viewer::{NO_FOLDER, Viewer};
 
-/// What the dialog asks about.
+/// State of the confirmation dialog.
 #[derive(Default)]
 pub(in crate::app) struct Asked {
     /// Of one parameter, or of all that are set. `None` while the dialog is closed.

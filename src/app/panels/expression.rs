@@ -246,7 +246,7 @@ fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut Shown, commands: &mut Vec<C
             }
         });
         if changed {
-            // What is compiled is an f32 or a whole number.
+            // The compiler gets an f32 or an integer, so integers are rounded.
             for (literal, value) in &mut shown.numbers {
                 *value = if literal.is_whole { value.round() } else { *value };
             }

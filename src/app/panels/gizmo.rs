@@ -21,7 +21,7 @@ const SMALLEST: f32 = 0.3;
 /// Points of a drag that double the distance.
 const DOUBLE: f32 = 120.0;
 
-/// What is being dragged.
+/// State of the light handles: the drag in progress.
 #[derive(Default)]
 pub(super) struct Gizmo {
     drag: Option<Drag>,

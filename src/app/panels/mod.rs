@@ -136,13 +136,13 @@ impl PanelState {
     }
 }
 
-/// What is known of the picture under the mouse.
+/// Readings of the picture under the mouse.
 pub(super) struct Readings {
     /// Text of the value under the mouse.
     pub(super) value: Option<String>,
     /// Title over the picture.
     pub(super) title: Option<String>,
-    /// What the legend says; `None` before the first picture.
+    /// Contents of the legend; `None` before the first picture.
     pub(super) legend: Option<LegendOf>,
 }
 

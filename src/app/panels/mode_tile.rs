@@ -86,7 +86,7 @@ fn badge(ui: &Ui, picture: Rect, key: char) {
     ui.painter().text(at.center(), Align2::CENTER_CENTER, key, font, Color32::from_gray(225));
 }
 
-/// What stands in place of a thumbnail.
+/// Text that replaces a missing thumbnail.
 fn without_thumbnail(mode: &Mode) -> &'static str {
     match mode {
         mode if mode.pass.is_some() => "image of a pass",

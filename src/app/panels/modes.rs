@@ -129,7 +129,7 @@ fn keys(index: usize, mode: &Mode) -> Vec<char> {
     mode.key.into_iter().chain(digit).collect()
 }
 
-/// What the search looks through, in small letters.
+/// Returns the lowercase text that the search matches against.
 fn text_of(mode: &Mode) -> String {
     format!("{} {} {} {}", mode.name, mode.slug, mode.group, mode.doc).to_lowercase()
 }

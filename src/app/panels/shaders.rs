@@ -18,7 +18,7 @@ use crate::events::ReloadEvent;
 use crate::shader::{Diagnostic, Severity};
 pub(super) use stages::short_figures;
 
-/// What the lower part shows.
+/// Tab that the lower part of the panel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Tab {
     #[default]

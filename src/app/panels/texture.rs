@@ -12,7 +12,7 @@ use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
 use crate::scene::{Mip, Model, TextureSource, Wrap, mips};
 
-/// What the screen draws for the panel.
+/// Texture view that the panel requests from the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::app) struct TextureRequest {
     pub(in crate::app) source: TextureSource,
@@ -34,7 +34,7 @@ const CHANNELS: [(&str, &str); 6] = [
 
 /// State of the panel between frames.
 pub(in crate::app) struct TextureState {
-    /// What the screen draws; `None` while the panel is not in sight.
+    /// Current request; `None` while the panel is not visible.
     pub(in crate::app) request: Option<TextureRequest>,
     /// The picture that the screen has drawn, and the part of it that shows the texture.
     pub(in crate::app) shown: Option<(egui::TextureId, Rect)>,

@@ -19,7 +19,7 @@ const MOST_LINES: usize = 40;
 const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different both pictures look when one is flipped to the other, \
     0.7 m from a 4K screen. And the largest difference of a channel of the display";
 
-/// What the panel keeps between frames.
+/// State that the panel keeps between frames.
 #[derive(Default)]
 pub(in crate::app) struct TimelineState {
     /// The version that the user is asked about before it is written to the files.

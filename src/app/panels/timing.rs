@@ -36,7 +36,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut TimingState, device
     memory(ui, state.memory.read(&viewer.gpu));
 }
 
-/// What the last edit cost, in a sentence.
+/// Describes the frame time cost of the last edit in a sentence.
 fn cost(ui: &mut Ui, viewer: &Viewer) {
     let Some(cost) = viewer.timing.cost() else {
         let text = "The cost of an edit stands here after the next one";
@@ -87,7 +87,7 @@ fn row(ui: &mut Ui, (name, color): (&str, egui::Color32), value: &str, hint: &st
     ui.end_row();
 }
 
-/// What the last picture was drawn with.
+/// Shows the counts of draws, triangles and pipelines.
 fn counts(ui: &mut Ui, viewer: &Viewer) {
     let counts = viewer.timing.pictures().back().map(|sample| sample.counts).unwrap_or_default();
     let pipelines = viewer.resources.pipelines().map_or(0, |set| set.count());

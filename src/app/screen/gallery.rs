@@ -270,7 +270,7 @@ impl Gallery {
     }
 }
 
-/// What thumbnails of `size` pixels show now. `None` while the shaders of the picture, or its resources, are not complete.
+/// Returns the inputs of thumbnails of `size` pixels. `None` while the shaders or resources of the picture are incomplete.
 pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
     let state = viewer.shown()?;
     let shaders = viewer.session.shaders.clone()?;

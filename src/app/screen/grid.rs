@@ -14,7 +14,7 @@ pub(super) struct Cell {
     pub(super) rect: PictureRect,
     pub(super) view: View,
     image: Arc<Image>,
-    /// What it has drawn last; `None` until its pipelines are there.
+    /// The last complete frame; `None` until the pipelines are ready.
     pub(super) shown: Option<LastComplete>,
 }
 

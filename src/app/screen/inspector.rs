@@ -33,7 +33,7 @@ struct Pending {
 #[derive(Default)]
 pub(super) struct PixelReader {
     renderer: Option<PixelModes>,
-    /// What the values show, and at which pixel.
+    /// The picture that the values belong to, and the pixel.
     shown: Option<(Shown, [u32; 2])>,
     /// Counts the changes of `shown`.
     picture: u64,

@@ -72,7 +72,7 @@ impl Screen {
         of_cell.or_else(|| viewer.shown())
     }
 
-    /// What the legend says about the picture under the mouse.
+    /// Returns the contents of the legend for the picture under the mouse.
     pub(super) fn legend(&self, viewer: &Viewer) -> Option<LegendOf> {
         let state = self.pointed_at(viewer)?;
         let view = self.cells.iter().find(|cell| cell.view.probe.is_some()).map_or(&self.view, |cell| &cell.view);

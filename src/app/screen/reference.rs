@@ -12,7 +12,7 @@ use crate::render::{BoundFrame, Output, Readback, Redraw, View};
 pub(super) struct ReferenceView {
     pub(super) view: View,
     image: Arc<Image>,
-    /// What it has drawn last.
+    /// The frame that was drawn last.
     pub(super) frame: BoundFrame,
     /// The part of the width that shows it, from the left, 0..1.
     part: f32,

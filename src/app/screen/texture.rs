@@ -17,7 +17,7 @@ pub(super) struct ShownTexture {
     image: Option<UiImage>,
     /// The texture that is read, with its descriptor set.
     source: Option<(Arc<Image>, Arc<DescriptorSet>)>,
-    /// What the image shows, and the scene with whose meshes.
+    /// Request that the image shows, and the scene whose meshes it draws.
     drawn: Option<(TextureRequest, Option<crate::frame::Scene>)>,
 }
 

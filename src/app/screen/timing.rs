@@ -34,7 +34,7 @@ impl Screen {
     }
 }
 
-/// What a picture shows.
+/// Returns the inputs of a picture that decide whether its times can be compared.
 fn shown(state: &FrameState) -> Shown {
     Shown {
         generation: state.shaders.generation,

@@ -1,4 +1,4 @@
-//! What the last edit cost: device time of the frame and of each pass before and after it.
+//! Cost of the last edit: device time of the frame and of each pass, before and after the edit.
 
 use std::collections::VecDeque;
 
@@ -28,7 +28,7 @@ impl CostRow {
     }
 }
 
-/// What an edit cost.
+/// Change of device time by an edit.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::app) struct Cost {
     /// Generations of the shaders before and after.

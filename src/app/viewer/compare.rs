@@ -48,7 +48,7 @@ enum With {
     Kept(Box<LastComplete>, String),
 }
 
-/// What a frame draws of the earlier picture.
+/// The earlier picture, as a frame draws it for a comparison.
 pub(in crate::app) struct Reference {
     pub(in crate::app) frame: BoundFrame,
     /// The part of the width that shows it, from the left, 0..1.
@@ -144,7 +144,7 @@ impl Viewer {
         self.versions.before(self.shown_generation()).map(|version| version.number)
     }
 
-    /// What the earlier picture is called, while one is shown.
+    /// Label of the earlier picture; `None` if no comparison is shown.
     pub(in crate::app) fn reference_label(&self) -> Option<String> {
         let before = self.version_before();
         let number = match &self.compare.with {
@@ -197,7 +197,7 @@ impl Viewer {
         Ok(frame.map(|frame| Reference { frame, part }))
     }
 
-    /// What a picture of each version needs, the oldest first.
+    /// Inputs for a picture of each version, oldest first.
     pub(in crate::app) fn version_pictures(&self) -> Vec<VersionPicture> {
         let newest = self.shown_generation();
         let versions =

@@ -1,5 +1,4 @@
-//! What the window changes in the shaders: the watched expression, numbers that are dragged, and values that become defaults in the
-//! files.
+//! Shader edits that the window makes: the watched expression, dragged numbers, and values that become defaults in the files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -14,7 +13,7 @@ use crate::shader::{Change, Expression, ShaderSet, TreePath};
 use crate::threads::Message;
 use crate::write_back;
 
-/// What to do with a tree that has no folder.
+/// Message for a shader tree that has no folder on disk.
 pub(in crate::app) const NO_FOLDER: &str = "These shaders are no folder on disk: `specula new DIR` writes them to one, which you can \
     open and edit";
 
@@ -171,7 +170,7 @@ impl Viewer {
     }
 }
 
-/// What was written, in a line.
+/// Summarizes the written edits in one line.
 fn told(edits: &[Edit]) -> String {
     let change = |edit: &Edit| {
         let new = edit.new.trim_start_matches([' ', '=']);

@@ -148,7 +148,7 @@ impl Viewer {
     /// The number and picture, at `size`, of a version that lacks a thumbnail while the panel that shows them is open.
     pub(in crate::app) fn missing_thumbnail(&self, size: (u32, u32)) -> Option<(u64, BoundFrame)> {
         let newest = self.shown_generation();
-        // That of the newest waits for the light that its edit changes.
+        // The thumbnail of the newest version waits until its lighting is complete.
         let is_settled = self.is_complete && self.settled == Some(newest);
         let shown = self.shown.as_ref().filter(|shown| is_settled && shown.scene.is_some());
         let lacks = self.versions.without_thumbnail();

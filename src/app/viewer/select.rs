@@ -1,4 +1,4 @@
-//! What the user selects, hides and looks through.
+//! Selection, visibility of nodes, and the camera that the user looks through.
 
 use std::sync::Arc;
 

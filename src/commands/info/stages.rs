@@ -15,7 +15,7 @@ use crate::commands::common::{Common, check_validation, compiler};
 /// The picture's size does not matter: nothing is drawn.
 const SIZE: (u32, u32) = (64, 64);
 
-/// What is known of the stages.
+/// Reports on the shader stages.
 pub(super) struct Stages {
     reports: BTreeMap<String, StageReport>,
     /// Stages of the picture.

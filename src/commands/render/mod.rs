@@ -42,7 +42,7 @@ pub struct Args {
     /// Write a full turn of N frames as an animation, .gif or .webp, or as numbered .png files; 25 frames a second without --fps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     turntable: Option<u32>,
-    /// What turns in a turntable
+    /// Object that a turntable rotates
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
     turn: Turn,
     /// Stay, and render again whenever a shader or the model is saved

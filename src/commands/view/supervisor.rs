@@ -123,7 +123,7 @@ fn run_child(program: &Path, folder: &Path, input: &Input, forwards: bool) -> io
     status
 }
 
-/// What comes on standard input, on its way to the child. The pipe to the child stays open when the input ends.
+/// Forwards standard input to the child. The pipe to the child stays open when the input ends.
 #[derive(Clone, Default)]
 struct Input(Arc<(Mutex<Lead>, Condvar)>);
 

@@ -3,7 +3,7 @@
 use ash::vk;
 use serde::Serialize;
 
-/// What the commands of a submission draw, without the user interface.
+/// Draw counts of a submission, without the user interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct DrawCounts {
     /// Draws.

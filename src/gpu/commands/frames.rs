@@ -71,7 +71,7 @@ impl Frames {
         self.times.as_ref().map_or(&[], |times| &times.passes)
     }
 
-    /// What the frame of [`Frames::last_device_ms`] drew, without the user interface.
+    /// Draw counts of the frame of [`Frames::last_device_ms`], without the user interface.
     pub fn draw_counts(&self) -> DrawCounts {
         self.times.as_ref().map(|times| times.counts).unwrap_or_default()
     }

@@ -30,7 +30,7 @@ pub(in crate::gpu) struct Times {
     pub(in crate::gpu) ms: f64,
     /// Times of its passes, in the order in which they began.
     pub(in crate::gpu) passes: Vec<PassTime>,
-    /// What they drew.
+    /// Draw counts of the commands.
     pub(in crate::gpu) counts: DrawCounts,
 }
 

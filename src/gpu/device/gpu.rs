@@ -153,7 +153,7 @@ impl Gpu {
         properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR)
     }
 
-    /// What the device has of tessellation and geometry stages.
+    /// Reports whether the device supports tessellation and geometry stages.
     pub fn optional_stages(&self) -> OptionalStages {
         self.optional_stages
     }

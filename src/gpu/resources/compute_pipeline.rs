@@ -22,7 +22,7 @@ pub struct ComputePipeline {
     pub layout: Option<Arc<PassLayout>>,
     /// The descriptors that its stage uses.
     pub uses: Uses,
-    /// What is known of its code.
+    /// Facts about the compiled code.
     pub facts: Facts,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,

@@ -66,7 +66,7 @@ impl ShaderModule {
         Ok(Arc::new(Self { gpu: gpu.clone(), raw, name, names_loops, words, words_before, uses }))
     }
 
-    /// What is known of it in a pipeline.
+    /// Returns the report on this stage in a pipeline.
     pub(super) fn facts(&self, driver_ms: Option<f64>) -> PipelineStage {
         PipelineStage { stage: self.name.clone(), words_before: self.words_before, words: self.words, driver_ms }
     }
@@ -175,7 +175,7 @@ pub struct Pipeline {
     pub layout: Arc<PassLayout>,
     /// The descriptors that its stages use.
     pub uses: Uses,
-    /// What is known of its code.
+    /// Facts about the compiled code.
     pub facts: Facts,
     /// The buffer that its stages write when a loop does not end, if they have such loops.
     pub(in crate::gpu) loops: Option<Arc<Buffer>>,

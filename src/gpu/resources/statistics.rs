@@ -1,5 +1,5 @@
-//! What is known of a compiled pipeline: the words of its modules, the driver's time, and the numbers that the driver tells of its
-//! machine code (VK_KHR_pipeline_executable_properties). Drivers tell different numbers, under names of their own.
+//! Statistics of a compiled pipeline: the SPIR-V words of its modules, the compile time of the driver, and the driver's statistics of
+//! the machine code (VK_KHR_pipeline_executable_properties). Each driver reports different statistics under its own names.
 
 use std::ffi::{CStr, c_char};
 use std::sync::OnceLock;
@@ -15,7 +15,7 @@ use crate::gpu::{Gpu, GpuError};
 pub struct Statistic {
     /// The driver's name for it, as `Register Count`.
     pub name: String,
-    /// What the driver says that it means.
+    /// Meaning of the number, as the driver describes it.
     pub meaning: String,
     /// Its value. A driver's true is 1.
     pub value: f64,
@@ -47,7 +47,7 @@ pub struct PipelineStage {
     pub driver_ms: Option<f64>,
 }
 
-/// What is known of a pipeline.
+/// Facts about a compiled pipeline.
 #[derive(Debug, Default)]
 pub struct Facts {
     /// Its stages, in the order in which they run.

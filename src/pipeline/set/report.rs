@@ -1,4 +1,4 @@
-//! What is known of the stages of a picture: their words, the driver's time, and what the driver tells of their machine code.
+//! Reports on the stages of a picture: SPIR-V words, compile time of the driver, and statistics of the machine code.
 
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub struct InPipeline {
     pub pipeline_ms: f64,
     /// Whether the driver took the pipeline from a cache.
     pub is_cached: bool,
-    /// What the driver tells of the stage's machine code; `None` until it is asked.
+    /// The driver's statistics of the stage's machine code; `None` until they are requested.
     pub executables: Option<Vec<Executable>>,
 }
 

@@ -13,7 +13,7 @@ use crate::settings::MaterialChannel;
 /// The textures on the device, by source.
 pub(crate) type Textures = HashMap<TextureSource, Arc<Image>>;
 
-/// What materials of a model are bound with.
+/// Resources that bind the materials of a model.
 pub(super) struct MaterialSets<'a> {
     pub(super) gpu: &'a Arc<Gpu>,
     pub(super) layouts: &'a Arc<SetLayouts>,

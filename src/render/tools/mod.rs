@@ -1,5 +1,5 @@
-//! What helps the user to see what is in a scene: the outline of a selection, and pictures of textures. The shaders are the program's
-//! own and no part of a tree, so no edit breaks them. They are compiled when they are first needed.
+//! Tools to inspect a scene: the outline of a selection, and pictures of textures. Their shaders are built in and not part of a
+//! shader tree, so no edit breaks them. They are compiled on first use.
 
 mod outline;
 mod texture;

@@ -22,7 +22,7 @@ pub struct Constant {
     pub range: Option<(f64, f64)>,
     /// Named values; empty if all values are allowed.
     pub choices: Vec<(String, i64)>,
-    /// What each choice does, with the source; may be empty.
+    /// Description of each choice, with its source; may be empty.
     #[serde(skip)]
     pub choice_docs: Vec<String>,
     /// Choices that claim never to reflect more light than arrives. `None` if the constant does not affect that.
@@ -35,7 +35,7 @@ pub struct Constant {
     /// Heading under which the window shows it; empty for none.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub group: String,
-    /// What it does, with the source; may be empty.
+    /// Description of the parameter, with its source; may be empty.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub doc: String,
     /// Unit of the number; empty for none.
@@ -111,7 +111,7 @@ pub struct Parameter {
     pub color: bool,
     /// Named values; empty for free choice.
     pub choices: Vec<(String, i64)>,
-    /// What each choice does, with the source; may be empty.
+    /// Description of each choice, with its source; may be empty.
     #[serde(skip)]
     pub choice_docs: Vec<String>,
     /// The constant without which it changes nothing: the window shows it only while that is not 0.
@@ -120,7 +120,7 @@ pub struct Parameter {
     /// Heading under which the window shows it; empty for none.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub group: String,
-    /// What it does, with the source; may be empty.
+    /// Description of the parameter, with its source; may be empty.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub doc: String,
     /// Unit of the number; empty for none.

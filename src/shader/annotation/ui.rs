@@ -28,7 +28,7 @@ pub struct Ui {
     pub range: Option<(f64, f64)>,
     /// `choice A=0 B=1`
     pub choices: Vec<(String, i64)>,
-    /// What each choice does: the text in quotes behind it, or empty.
+    /// Description of each choice: the quoted text after the choice, or empty.
     pub choice_docs: Vec<String>,
     /// `conserves="A"`
     pub conserves: Option<Vec<String>>,

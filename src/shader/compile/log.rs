@@ -43,7 +43,7 @@ pub fn parse(
     out.into_iter().partition(|diagnostic| diagnostic.severity == Severity::Error)
 }
 
-/// What to do about a location that pass.glsl has, too.
+/// Help text for a location that pass.glsl also declares.
 const OVERLAPPING: &str = "pass.glsl declares `in vec2 uv` and `out vec4 color` at location 0, too; a pass with draw=model does \
     not include it";
 

@@ -6,7 +6,7 @@ use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::TreePath;
 use crate::shader::source::text::{Line, is_word, tokens};
 
-/// What glslang says in place of a name.
+/// Text that glslang prints in place of a name.
 pub(super) const OUTSIDE: &str = "non-opaque uniforms outside a block";
 
 const PRECISIONS: [&str; 3] = ["lowp", "mediump", "highp"];

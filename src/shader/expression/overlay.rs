@@ -17,7 +17,7 @@ use crate::shader::source::text::lines;
 
 /// The stage that shows the expression. No tree lists it: names of files with a dot at their start are hidden.
 pub const STAGE: &str = ".expression.frag";
-/// What that stage includes in place of its first include.
+/// Path that replaces the first include of that stage.
 const LIBRARY: &str = ".expression.glsl";
 /// The slug of the mode.
 pub const MODE: &str = "expression";
@@ -117,7 +117,7 @@ impl Overlay {
         Diagnostic { message: format!("cannot watch `{}` here: {why}", self.text), ..self.at.clone() }
     }
 
-    /// What the compiler said about the stage, as errors of the expression.
+    /// Converts compiler errors of the stage to errors of the expression.
     pub fn explained(&self, errors: &[Diagnostic]) -> Vec<Diagnostic> {
         let Some(first) = errors.first() else { return Vec::new() };
         let is_type = first.message.contains(FUNCTION) && first.message.contains("no matching overloaded function");

@@ -66,7 +66,7 @@ impl<'a> Code<'a> {
     }
 }
 
-/// What a statement is.
+/// Kind of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `{ ... }`
@@ -86,7 +86,7 @@ pub enum Kind {
 /// A statement.
 #[derive(Debug)]
 pub struct Statement {
-    /// What it is.
+    /// Kind of the statement.
     pub kind: Kind,
     /// All of its bytes.
     pub bytes: Range<usize>,

@@ -132,7 +132,7 @@ impl Library {
             return Vec::new();
         }
         let mut used = self.dependencies();
-        // What a stage includes that has not been compiled yet is known from its text alone.
+        // Includes of a stage that has not been compiled yet are found in its text.
         let unseen = self.slots.iter().filter(|slot| slot.current.is_none() && slot.good.is_none());
         used.extend(unseen.flat_map(|slot| files_of(snapshot, &slot.path)));
         self.idle.iter().filter(|path| !used.contains(*path)).filter_map(|path| idle(path, snapshot)).collect()

@@ -25,7 +25,7 @@ pub(super) struct Watched {
 /// One version of the tree, as its stages see it.
 pub(super) struct View<'a> {
     pub snapshot: Snapshot<'a>,
-    /// What the stage of the watched expression sees instead.
+    /// Snapshot and overlay for the stage of the watched expression.
     watched: Option<(Snapshot<'a>, Overlay)>,
 }
 

@@ -109,7 +109,7 @@ fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Respons
     response.on_hover_ui(|ui| about(ui, mode, &value))
 }
 
-/// What a row shows, in words.
+/// Hover text that describes a row.
 fn about(ui: &mut Ui, mode: &Mode, value: &PixelValue) {
     ui.set_max_width(340.0);
     ui.label(RichText::new(&mode.name).strong());

@@ -23,7 +23,7 @@ const BINS: usize = 88;
 const STOPS: f32 = 8.0;
 const MIDDLE_GRAY: f32 = 0.18;
 
-/// What the legend says about the picture on screen.
+/// Contents of the legend for the picture on screen.
 pub(in crate::app) struct Legend<'a> {
     pub(in crate::app) title: Option<&'a str>,
     pub(in crate::app) of: &'a LegendOf,

@@ -1,4 +1,4 @@
-//! What is selected: its numbers, and what can be done with it.
+//! Details of the selection: its properties and the actions for it.
 
 use egui::{Button, Label, RichText, Ui};
 

@@ -14,7 +14,7 @@ const INDENT: f32 = 10.0;
 /// Width of the switch, points.
 const SWITCH: f32 = 18.0;
 
-/// What the user does with a row.
+/// User action on a row.
 pub(super) enum Action {
     Toggle,
     Select(Selected),

@@ -25,7 +25,7 @@ pub(super) struct Row {
     pub(super) name: String,
     /// Counts and sizes, at the right.
     pub(super) detail: String,
-    /// What it selects; `None` for the title of a group.
+    /// Item that the row selects; `None` for the title of a group.
     pub(super) item: Option<Selected>,
     group: Group,
     /// Whether rows below it can be folded away; `Some(true)` if they are.
@@ -43,7 +43,7 @@ pub(super) struct Tree {
     drawn: Option<(Scene, Vec<bool>)>,
     /// Whether other rows are folded than when the rows were made.
     is_changed: bool,
-    /// What the rows were made of: a model and a search.
+    /// Inputs of the cached rows: the model and the search text.
     made_of: Option<(Arc<Model>, String)>,
 }
 

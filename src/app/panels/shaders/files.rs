@@ -114,7 +114,7 @@ fn rows(graph: &IncludeGraph, search: &str, closed: &BTreeSet<String>, unfolded:
     out
 }
 
-/// What is to be said about a file.
+/// Status mark of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mark {
     Wrong,

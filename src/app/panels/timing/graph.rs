@@ -95,7 +95,7 @@ pub(super) fn passes(ui: &mut Ui, timing: &Timing, names: &[String]) {
             columns.add(edges, (low, low + ms), color(place));
             low += ms;
         }
-        // What no pass accounts for.
+        // Device time outside of all passes.
         columns.add(edges, (low, sample.device_ms), Color32::from_gray(60));
     }
     painter.add(Shape::mesh(columns.mesh));

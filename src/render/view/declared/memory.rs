@@ -26,7 +26,7 @@ pub(super) fn check(frame: &BoundFrame) -> Result<(), GpuError> {
             if slots.get(image.0).is_none_or(|slot| taken.insert(*slot)) {
                 total += desc.texels() * texel;
             }
-            // What passes need only while they draw is shared by all that need the same.
+            // Passes share scratch images of equal description, because each pass needs them only while it draws.
             for (of, bytes) in [(desc.first_level(), texel), (desc.depth(), 4)] {
                 if let Some(of) = of.filter(|of| !scratch.contains(of)) {
                     total += u64::from(of.size.0) * u64::from(of.size.1) * bytes;

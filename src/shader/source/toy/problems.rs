@@ -19,7 +19,7 @@ const OPTIONS: [&str; 4] = ["Type", "WrapMode", "MinFilter", "MagFilter"];
 /// The directives of GLSL that begin with the same letter.
 const DIRECTIVES: [&str; 4] = ["#if", "#ifdef", "#ifndef", "#include"];
 
-/// What is wrong in a line: the bytes for the caret, a message, and a help text that may be empty.
+/// An error in a line: the bytes for the caret, a message, and a help text that may be empty.
 type Problem = (Range<usize>, String, String);
 
 /// The errors of a text. `shown`: the path of its file, for messages; `folder`: what its names are relative to.
@@ -50,7 +50,7 @@ pub(super) fn problems(shown: &str, text: &str, folder: &Path) -> Vec<Diagnostic
     out
 }
 
-/// What a text says about its channels.
+/// Channels and samplers that a text declares.
 struct Known<'a> {
     channels: Vec<(usize, Channel)>,
     samplers: [Sampler; CHANNELS],
