@@ -37,8 +37,7 @@ fn modes_lie_side_by_side_and_one_is_kept() {
     viewer
         .tree
         .write("debug/light.glsl", &light.replace("s.base_color = vec3(0.5);", "s.base_color = vec3(0.0, 0.5, 0.0);"));
-    let reload = viewer.running.reload(true);
-    viewer.running.settled(&reload);
+    viewer.running.reload(true);
     viewer.until_screen("green clay", |screen| right(screen) != right(&beside) && grays(screen) < 200);
     viewer.tree.write("debug/light.glsl", &light);
     viewer.until_screen("gray clay", |screen| right(screen) == right(&beside));
