@@ -26,7 +26,7 @@
 #include "lighting/sun.glsl"
 
 const uint PREFILTERED = 0u;
-//@ui "Reflections" choice Prefiltered=0 "Maps filtered by roughness and a table: the split sum (Karis 2013)" Sampled32=32 "32 directions in each pixel: follows every edit of D, V and F" Sampled64=64 "64 directions: half the streaks, twice the time" Sampled128=128 "128 directions: closest to random paths" group="Sampling" doc="Of the environment: from prefiltered maps, or by a sum over directions in each pixel, which follows every edit of D, V and F and costs time"
+//@ui "Reflections" choice Prefiltered=0 "Maps filtered by roughness and a table: the split sum (Karis 2013)" Sampled32=32 "32 directions in each pixel: follows every edit of D, V and F" Sampled64=64 "64 directions: half the streaks, twice the samples" Sampled128=128 "128 directions: closest to random paths" group="Sampling" doc="Of the environment: from prefiltered maps, or by a sum over directions in each pixel, which follows every edit of D, V and F and costs time"
 layout(constant_id = USER_CONSTANTS + 14) const uint REFLECTION_SAMPLES = PREFILTERED;
 
 // Under uniform light the split sum is exact.

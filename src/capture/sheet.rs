@@ -35,7 +35,7 @@ impl SheetPlan {
     /// Columns and rows.
     fn grid(&self) -> (u32, u32) {
         let count = self.modes.len().max(1) as u32;
-        let (width, height) = (f64::from(self.size.0 + GAP), f64::from(self.size.1 + LINE + GAP));
+        let (width, height) = (f64::from(self.size.0) + f64::from(GAP), f64::from(self.size.1) + f64::from(LINE + GAP));
         let fitting = (f64::from(count) * 16.0 / 9.0 * height / width).sqrt().round() as u32;
         let columns = self.columns.unwrap_or(fitting).clamp(1, count);
         (columns, count.div_ceil(columns))
@@ -44,8 +44,9 @@ impl SheetPlan {
     /// Width and height of the sheet, pixels.
     fn extent(&self) -> (u64, u64) {
         let (columns, rows) = self.grid();
-        let along = |count: u32, each: u32| u64::from(GAP) + u64::from(count) * (u64::from(each) + u64::from(GAP));
-        (along(columns, self.size.0), along(rows, self.size.1 + LINE))
+        // No size that can be asked for overflows 64 bits.
+        let along = |count: u32, each: u64| u64::from(GAP) + u64::from(count) * (each + u64::from(GAP));
+        (along(columns, self.size.0.into()), along(rows, u64::from(self.size.1) + u64::from(LINE)))
     }
 
     /// Draws the sheet and writes it. `paths` is the number of frames of modes that average random paths. The settings are as before
@@ -67,7 +68,7 @@ impl SheetPlan {
             return Err(CaptureError::Usage("none of these modes has data in this model".to_owned()));
         }
         let (width, height) = self.extent();
-        if width * height > MOST_PIXELS {
+        if width.saturating_mul(height) > MOST_PIXELS {
             let message =
                 format!("a sheet of {width}x{height} pixels is too large; choose fewer modes or smaller pictures");
             return Err(CaptureError::Usage(message));

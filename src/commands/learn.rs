@@ -44,7 +44,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         Some("list") => list(args.json),
         Some("check") => check(&args),
         Some("reset") => {
-            Progress::default().save();
+            Progress::load().reset();
             out!("No exercise counts as solved any more. Their folders stay as they are.");
             Ok(())
         }

@@ -38,6 +38,12 @@ impl Progress {
         state::load(FILE).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
     }
 
+    /// Forgets what was solved, but not where the folders are.
+    pub fn reset(&mut self) {
+        self.records.clear();
+        self.save();
+    }
+
     /// Keeps it for the next run.
     pub fn save(&self) {
         match serde_json::to_string(self) {

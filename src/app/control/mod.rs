@@ -186,7 +186,7 @@ impl Viewer {
 
     /// Whether every mode has been compiled, or none will be before the next edit.
     fn has_all_modes(&self) -> bool {
-        self.has_errors() || self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty())
+        self.has_errors() || self.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete())
     }
 
     fn has_errors(&self) -> bool {

@@ -40,7 +40,7 @@ impl Viewer {
             Request::Probe(Probe { at, modes }) => {
                 let names = modes.unwrap_or_else(|| vec!["all".to_owned()]);
                 // The names are looked up again when the picture is there.
-                if self.session.shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty()) {
+                if self.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete()) {
                     modes_of(&self.session, &names)?;
                 }
                 Next::Wait(Until::Picture(Work::Probe { at: at.into(), names }))
@@ -114,7 +114,7 @@ impl Viewer {
         settings.check()?;
         let shaders = self.session.shaders.clone();
         // A stage that is pending may declare a name that is not known yet.
-        let is_complete = shaders.as_ref().is_some_and(|shaders| shaders.pending.is_empty());
+        let is_complete = shaders.as_ref().is_some_and(|shaders| shaders.is_complete());
         let before = self.session.problems(is_complete);
         self.history.record(&self.session.settings, false);
         let old = std::mem::replace(&mut self.session.settings, settings);

@@ -204,6 +204,7 @@ impl Common {
             !self.mode.is_empty(),
             !self.set.is_empty(),
             self.look.is_some(),
+            self.watch_expr.is_some(),
         ];
         !options.contains(&true)
     }

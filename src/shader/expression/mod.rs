@@ -101,7 +101,11 @@ fn check(expression: &str) -> Result<(), String> {
         let touches =
             |next: usize| signs.get(next).filter(|(range, _)| range.start == bytes.end).map(|(_, text)| *text);
         let before = at.checked_sub(1).and_then(|at| signs.get(at)).map_or("", |(_, text)| *text);
-        let assigns = *text == "=" && touches(at + 1) != Some("=") && !matches!(before, "=" | "<" | ">" | "!");
+        // `<` before `=` compares, unless another `<` shifts.
+        let shifts =
+            matches!(before, "<" | ">") && at >= 2 && signs.get(at - 2).is_some_and(|(_, text)| *text == before);
+        let compares = matches!(before, "=" | "<" | ">" | "!") && !shifts;
+        let assigns = *text == "=" && touches(at + 1) != Some("=") && !compares;
         let counts = matches!(*text, "+" | "-") && touches(at + 1) == Some(*text);
         if assigns || counts {
             return Err("the expression changes a variable, so it would change the picture".to_owned());
@@ -137,6 +141,8 @@ mod tests {
             ("a.glsl:1:x = 2.0", "changes a variable"),
             ("a.glsl:1:x++", "changes a variable"),
             ("a.glsl:1:x += 1", "changes a variable"),
+            ("a.glsl:1:x <<= 1", "changes a variable"),
+            ("a.glsl:1:x >>= 1", "changes a variable"),
             ("a.glsl:1:f(x", "parentheses"),
             ("a.glsl:1:x); discard; (y", "no `;`"),
             ("a.glsl:1:x // y", "comment"),
