@@ -28,7 +28,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn a_click_pins_a_pixel_whose_values_are_those_of_probe_and_follow_edits() {
     let mut viewer = Viewer::open(Tree::new(), &["--size", "1000x700", "shader-ball", "--set", "lights.chosen=2"]);
     viewer.running.event("ready");
-    choose(&viewer, "Inspector");
+    choose(&viewer, "panel inspector");
     let before = viewer.screenshot();
     viewer.click(AT);
     let found = viewer.running.event("inspected");
