@@ -149,6 +149,7 @@ layout(constant_id = 2) const uint FEATURES = 0u; // what the material uses, FEA
 layout(constant_id = 3) const uint TONEMAP = 0u; // tone map, one of TONEMAP_* in common/tonemap.glsl
 layout(constant_id = 4) const uint ENCODE = 0u; // how the picture stores values, one of ENCODE_*
 layout(constant_id = 5) const uint LIGHT_COUNT = 0u; // lights, if they are few; 0: see frame.light_count
+layout(constant_id = 6) const uint MAPS_VALUES = 0u; // not 0: the display maps values by range, channels or colormap
 
 layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     mat4 clip_from_world;              // World (meters, +Y up) to clip space (+Y down); depth is reversed: 1 near, 0 at infinity.

@@ -29,7 +29,9 @@ void main() {
     float coverage = is_pass ? 1.0 : coverage_of(scene.a);
     // Where there is no value, the picture says so in colors of its own.
     bool has_value = is_pass || scene.a < 2.0;
-    bool ranged = has_value && has_range();
+    // A constant: a software device would compute both sides of a branch on a uniform.
+    bool is_mapped = MAPS_VALUES != 0u && has_value;
+    bool ranged = is_mapped && has_range();
     vec2 uv = (gl_FragCoord.xy - frame.viewport_origin_px) / frame.viewport_px;
     vec3 value = scene.rgb;
     if (TONEMAP != TONEMAP_OFF && !ranged) {
@@ -40,7 +42,7 @@ void main() {
     // where nothing covers the pixel, the color is 0.
     value /= max(coverage, 1e-6);
     vec3 front = ranged ? saturate(in_range(value)) : display_value(value, uv);
-    if (has_value) {
+    if (is_mapped) {
         front = chosen_channels(front, is_pass ? saturate(scene.a) : coverage);
         if (frame.has_colormap != 0u) {
             front = color_of_number(front.x);

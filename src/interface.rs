@@ -233,6 +233,9 @@ pub const SPEC_LIGHT_COUNT: u32 = 5;
 /// Up to this many lights, a pipeline is specialized for their number, so that the loop over them is unrolled.
 pub const UNROLLED_LIGHTS: usize = 4;
 
+/// `constant_id` of whether the display maps values by range, channels or colormap; for the tone mapping pass.
+pub const SPEC_MAPS_VALUES: u32 = 6;
+
 /// The specialization constants that Rust sets for every stage; those from [`USER_CONSTANTS`] on are the author's.
 pub const SPECIALIZATION: &[Specialization] = &[
     Specialization { id: SPEC_MODE, name: "MODE", doc: "debug mode, one of MODE_* in debug/modes.glsl" },
@@ -244,5 +247,10 @@ pub const SPECIALIZATION: &[Specialization] = &[
         id: SPEC_LIGHT_COUNT,
         name: "LIGHT_COUNT",
         doc: "lights, if they are few; 0: see frame.light_count",
+    },
+    Specialization {
+        id: SPEC_MAPS_VALUES,
+        name: "MAPS_VALUES",
+        doc: "not 0: the display maps values by range, channels or colormap",
     },
 ];

@@ -53,6 +53,11 @@ impl Display {
         Self { range, channels: view.channels, colormap, dither: view.dither }
     }
 
+    /// Whether it maps values by range, channels or colormap: not each as its mode stores it.
+    pub(crate) fn maps_values(&self) -> bool {
+        self.range != Range::Encoded || self.channels != Channels::Rgb || self.colormap != Colormap::None
+    }
+
     /// Whether the range follows the picture's values.
     pub fn is_measured(&self) -> bool {
         matches!(self.range, Range::Measured { .. })

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::display::Display;
 use super::formats::{MEAN_FORMAT, TargetFormat, pass_format};
 use super::pipeline_key::{KeyPass, PipelineKey};
 use super::{Scene, SharedMode};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
-    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MODE, SPEC_TONEMAP,
-    TONEMAP_OFF, UNROLLED_LIGHTS,
+    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES,
+    SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF, UNROLLED_LIGHTS,
 };
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings};
@@ -41,6 +42,8 @@ pub struct PipelineRequest {
     pub tonemap: u32,
     /// `interface::ENCODE_*`.
     pub encode: u32,
+    /// Whether the display maps values by range, channels or colormap.
+    pub maps_values: bool,
     /// Format of the HDR target.
     pub target: TargetFormat,
     /// Kinds of material in the scene.
@@ -152,6 +155,7 @@ impl PipelineRequest {
             constants: constants.clone(),
             tonemap: if mode.is_some_and(|m| m.tonemap) { settings.view.tonemap as u32 } else { TONEMAP_OFF },
             encode: mode.map_or(Encode::Color, |m| m.encode).id(),
+            maps_values: Display::new(&settings.view, mode).maps_values(),
             target,
             materials: scene.map(|scene| scene.materials().clone()).unwrap_or_default(),
             shared_features: shared_features(settings),
@@ -315,7 +319,9 @@ impl PipelineRequest {
 
     fn tonemap_key_of(&self, encode: u32) -> Option<PipelineKey> {
         let pass = self.pass_of(|pass| pass.part == Part::Tonemap)?;
-        let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, encode)];
+        // Modes that are drawn at once have displays of their own.
+        let maps_values = u32::from(self.maps_values || !self.modes.is_empty());
+        let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, encode), (SPEC_MAPS_VALUES, maps_values)];
         let specialization = own.iter().chain(&self.constants).copied().collect();
         Some(self.triangle_key(pass, Raster::Solid, Swapchain::FORMAT, specialization))
     }

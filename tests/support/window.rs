@@ -306,8 +306,15 @@ impl Viewer {
     #[track_caller]
     pub fn until(&mut self, what: &str, mut is: impl FnMut(&RgbaImage) -> bool) {
         let deadline = Instant::now() + PATIENCE;
-        while !is(&self.screenshot()) {
-            assert!(Instant::now() < deadline, "{what} never appeared. {}", self.running.story());
+        loop {
+            let shot = self.screenshot();
+            if is(&shot) {
+                return;
+            }
+            if Instant::now() > deadline {
+                let path = keep(&self.screen());
+                panic!("{what} never appeared in the picture, kept as {}; the screen is kept as {}. {}", keep(&shot), path, self.running.story());
+            }
         }
     }
 
@@ -326,9 +333,7 @@ impl Viewer {
                 return screen;
             }
             if Instant::now() > deadline {
-                let (_, path) = tempfile::Builder::new().suffix(".png").tempfile().unwrap().keep().unwrap();
-                screen.save(&path).unwrap();
-                panic!("{what} never appeared on the screen, kept as {}. {}", path.display(), self.running.story());
+                panic!("{what} never appeared on the screen, kept as {}. {}", keep(&screen), self.running.story());
             }
             // The frame buffer gives no event when it changes.
             std::thread::sleep(Duration::from_millis(10));
@@ -343,4 +348,11 @@ impl Viewer {
         assert!(status.success(), "it ended with {status}. {}", self.running.story());
         self.running.stderr()
     }
+}
+
+/// Stores a picture of a failed test where it stays. Returns the path.
+fn keep(picture: &RgbaImage) -> String {
+    let (_, path) = tempfile::Builder::new().suffix(".png").tempfile().unwrap().keep().unwrap();
+    picture.save(&path).unwrap();
+    path.display().to_string()
 }

@@ -88,12 +88,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, area: egui::Rect, 
     }
     let mut palette = std::mem::take(&mut viewer.panels.palette);
     let mut entries = entries(viewer);
-    if let Ok(expression) = Expression::parse(&palette.query, 0) {
-        let action = Action::Watch(expression.to_string());
-        let entry = Entry::new("Expression", format!("Watch {}", palette.query.trim()), action);
-        entries.insert(0, Entry { words: palette.query.clone(), ..entry });
-    }
-    let chosen = window(egui, &mut palette, &entries, area);
+    let chosen = window(egui, &mut palette, &mut entries, area);
     palette.is_open &= chosen.is_none();
     viewer.panels.palette = palette;
     if let Some(action) = chosen {
@@ -102,7 +97,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, area: egui::Rect, 
 }
 
 /// Shows the search and the list, or asks for a number. Returns the chosen action.
-fn window(egui: &egui::Context, palette: &mut Palette, entries: &[Entry], area: egui::Rect) -> Option<Action> {
+fn window(egui: &egui::Context, palette: &mut Palette, entries: &mut Vec<Entry>, area: egui::Rect) -> Option<Action> {
     if egui.input(|input| input.key_pressed(Key::Escape)) {
         // Back from a number to the list.
         palette.is_open = palette.asks.take().is_some();
@@ -144,7 +139,7 @@ fn field(ui: &mut Ui, text: &mut String, hint: &str) -> egui::Response {
 }
 
 /// Shows the search and the list. Returns the chosen action.
-fn list(ui: &mut Ui, palette: &mut Palette, entries: &[Entry], rows: usize) -> Option<Action> {
+fn list(ui: &mut Ui, palette: &mut Palette, entries: &mut Vec<Entry>, rows: usize) -> Option<Action> {
     // Before the field takes the arrows.
     let step = ui.input_mut(|input| {
         let down = input.count_and_consume_key(egui::Modifiers::NONE, Key::ArrowDown);
@@ -154,6 +149,8 @@ fn list(ui: &mut Ui, palette: &mut Palette, entries: &[Entry], rows: usize) -> O
         palette.row = 0;
     }
     let query = palette.query.clone();
+    // The text and the Enter behind it may come in one frame, so the entry is made from the text as it is now.
+    entries.splice(0..0, expression(&query));
     let found = find(entries, &query);
     palette.row = palette.row.saturating_add_signed(step).min(found.len().saturating_sub(1));
     if found.is_empty() {
@@ -170,6 +167,13 @@ fn list(ui: &mut Ui, palette: &mut Palette, entries: &[Entry], rows: usize) -> O
         chosen = chosen.or_else(|| found.get(palette.row));
     }
     choose(palette, chosen?)
+}
+
+/// The entry that watches the expression which the query names.
+fn expression(query: &str) -> Option<Entry> {
+    let expression = Expression::parse(query, 0).ok()?;
+    let entry = Entry::new("Expression", format!("Watch {}", query.trim()), Action::Watch(expression.to_string()));
+    Some(Entry { words: query.to_owned(), ..entry })
 }
 
 /// The text at the right of a title: the key, or the number that the query sets.
