@@ -28,9 +28,8 @@ use super::viewer::Viewer;
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
-use crate::picture;
 use crate::render::tools::Outline;
-use crate::render::{BoundFrame, Capture, Output, PixelAt, Redraw, View};
+use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use error_map::ErrorMap;
 use gallery::Gallery;
@@ -246,19 +245,8 @@ impl Screen {
         self.place_probe();
         let measures = self.measure_error(viewer, frame.as_ref());
         let measures = self.survive(measures)?.unwrap_or(false);
-        // A screenshot that was requested before the first picture waits for it.
-        if let Some(frame) = frame.as_ref().filter(|_| viewer.screenshot) {
-            viewer.screenshot = false;
-            match self.screenshot(viewer, frame) {
-                Err(error @ GpuError::OutOfMemory(_)) => {
-                    self.view.forget();
-                    self.reference = None;
-                    viewer.say(format!("no screenshot: {error}"));
-                }
-                written => written?,
-            }
-        }
         if let Some(frame) = &frame {
+            self.take_screenshot(viewer, frame)?;
             self.take_shots(viewer, frame)?;
         }
 
@@ -399,36 +387,6 @@ impl Screen {
         let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none() && self.cells.is_empty());
         viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, device_ms);
         Ok(!viewer.times_next_frame())
-    }
-
-    /// Writes the picture, without panels, to `specula-N.png` in the working directory.
-    fn screenshot(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
-        let Some(capture) = self.read_picture(viewer, frame)? else { return Ok(()) };
-        match picture::write_numbered(&capture, &viewer.look()) {
-            Ok(path) => {
-                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
-                viewer.say(format!("wrote {}", whole.display()));
-                emit(&viewer.events, &Event::Screenshot { file: &path.display().to_string() });
-            }
-            Err(message) => viewer.say(message),
-        }
-        Ok(())
-    }
-
-    /// Draws the picture as it is on screen, without panels, and reads it back.
-    fn read_picture(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<Option<Capture>, GpuError> {
-        let image = self.view.output_image(frame.state.size)?;
-        let mut encoder = self.frames.begin()?;
-        self.check_loops(viewer);
-        let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
-        let slot = self.frames.current();
-        self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?;
-        self.draw_reference(&mut encoder, slot, &image, (0, 0))?;
-        let readback = self.view.read_back(&mut encoder, &image)?;
-        self.frames.submit(encoder, Default::default())?;
-        // SYNC: the CPU reads the picture.
-        self.frames.wait()?;
-        Ok(readback.map(|readback| readback.finish()))
     }
 }
 

@@ -2,8 +2,10 @@
 
 mod compare;
 mod edits;
+mod execute;
 mod inspect;
 mod learning;
+mod loaded;
 mod messages;
 mod picture;
 mod recording;
@@ -17,9 +19,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::command::{Command, open_as};
 use super::control::Controlled;
-use super::hint;
 use super::history::History;
 use super::learn::Learning;
 use super::panels::PanelState;
@@ -29,23 +29,19 @@ use super::stages::StageTable;
 use super::status::{Notices, ShaderStatus};
 use super::timing::Timing;
 use super::{AppOptions, Early};
-use super::{dialog, editor};
 use crate::control::Clients;
 use crate::events::{Event, ReloadEvent, emit};
 use crate::frame::{Clock, Revisions, Scene};
 use crate::gpu::{Gpu, GpuError, SetLayouts};
 use crate::message;
-use crate::picture::read_settings;
 use crate::pipeline::endless_loop;
 use crate::recovery::{Recorder, Work};
 use crate::render::{BoundFrame, Resources};
-use crate::scene::LoadOptions;
 use crate::session::Session;
 use crate::settings::{LightSource, Settings};
-use crate::shader::{Change, Compiler, Diagnostic, Source};
-use crate::threads::loader::{self, Reading};
+use crate::shader::{Compiler, Diagnostic, Source};
 use crate::threads::worker::{Snapshot, Worker};
-use crate::threads::{Message, Outbox, Threads};
+use crate::threads::{Outbox, Threads};
 pub(super) use compare::{Compare, Difference, Reference};
 use edits::Edits;
 pub(super) use edits::NO_FOLDER;
@@ -355,117 +351,6 @@ impl Viewer {
             self.keep_saying(text);
         }
         true
-    }
-
-    pub(super) fn execute(&mut self, command: Command) {
-        match command {
-            Command::Reload => {
-                // A build that failed, for example without memory, is tried again.
-                self.threads.worker.built();
-                self.shader.compiling = true;
-                self.threads.worker.change(Change::All, Instant::now());
-            }
-            Command::Undo if !self.history.undo(&mut self.session.settings) => self.say("There is nothing to undo"),
-            Command::Redo if !self.history.redo(&mut self.session.settings) => self.say("There is nothing to redo"),
-            Command::Undo | Command::Redo => {}
-            Command::FrameModel => {
-                self.session.settings.camera.eye = None;
-                self.session.settings.camera.target = None;
-            }
-            Command::ViewFrom(side) => {
-                let camera = &mut self.session.settings.camera;
-                (camera.eye, camera.target) = (None, None);
-                [camera.azimuth, camera.elevation] = side.angles();
-            }
-            Command::KeepCamera(number) => {
-                let settings = &mut self.session.settings;
-                settings.bookmarks.insert(number.to_string(), settings.camera.clone());
-                self.say(format!("Kept this camera as {number}. Ctrl+{number} returns to it"));
-            }
-            Command::RecallCamera(number) => match self.session.settings.bookmarks.get(&number.to_string()).cloned() {
-                Some(camera) => self.session.settings.camera = camera,
-                None => self.say(format!("No camera is kept as {number}. Ctrl+Shift+{number} keeps this one")),
-            },
-            Command::Screenshot => self.screenshot = true,
-            Command::Pick(at) => {
-                self.inspect(at);
-                self.select_at(at);
-            }
-            Command::Select(selected) => self.select(selected),
-            Command::HideSelected => self.hide_selected(),
-            Command::IsolateSelected => self.isolate_selected(),
-            Command::ShowAll => self.show_all(),
-            Command::OpenPanel(panel) => self.panels.layout.open(panel),
-            Command::LookThrough(camera) => self.look_through(camera),
-            Command::PlaceRectangle => self.place_rectangle(),
-            Command::Quit => self.quit = true,
-            Command::Edit(place) => match editor::open(&place) {
-                Ok(editor) => self.threads.wait(|| editor.failure().map(Message::Say)),
-                Err(message) => self.say(message),
-            },
-            Command::Choose(_) if self.is_choosing => self.say("The file dialog is already open"),
-            Command::Choose(dialog) => {
-                self.is_choosing = true;
-                self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
-            }
-            Command::ShowGallery => self.panels.open_gallery.is_open = true,
-            Command::RestoreSession => self.restore_session(),
-            Command::RestoreAlways(always) => self.panels.last_sessions.set_always(always),
-            Command::Say(text) => self.say(text),
-            Command::Ask(request) => self.ask_self(*request),
-            Command::CancelCaptures => self.cancel_captures(),
-            Command::Compare(with) => self.compare_with(with),
-            Command::WriteVersion(number) => self.write_version(number),
-            Command::NewTree(_) if self.is_choosing => self.say("The file dialog is already open"),
-            Command::NewTree(folder) => {
-                self.is_choosing = true;
-                self.threads.wait(move || Some(Message::NewTree(hint::write_tree(folder))));
-            }
-            Command::Learn(command) => self.learn(command),
-            Command::Draft(edits) => self.draft(edits),
-            Command::WriteEdits(edits) => self.write_edits(edits),
-            Command::OpenTree(path) => {
-                let source = Source::open(path);
-                self.source = source.clone();
-                self.settled = None;
-                // Versions of another tree must never be written into this one.
-                self.forget_all_references();
-                self.edits.forget_draft();
-                self.watch_tree(&source);
-                self.shader.compiling = true;
-                self.threads.worker.open_tree(source);
-                self.find_exercise();
-            }
-            Command::OpenModel(path) => self.load_model(Some(path)),
-            Command::OpenEnvironment(path) => self.session.settings.environment.name = path.display().to_string(),
-            Command::OpenLook(path) => {
-                self.threads.wait(move || Some(Message::Look(read_settings(&path).map(Box::new))));
-            }
-            Command::OpenMeasured(path) => {
-                self.session.settings.measured = path.display().to_string();
-                self.session.settings.mode = "measured".into();
-            }
-        }
-        self.watch_files();
-    }
-
-    /// Opens a file or folder that was dropped on the window.
-    pub(super) fn open_path(&mut self, path: PathBuf) {
-        self.execute(open_as(path).unwrap_or_else(Command::Say));
-    }
-
-    /// Loads a model. The current model stays until the new one is ready.
-    fn load_model(&mut self, path: Option<PathBuf>) {
-        let reading = loader::read(path.clone(), LoadOptions { allow_outside: self.allow_outside });
-        self.begin_loading(path, reading);
-    }
-
-    /// Loads the model of `path`, and watches the file while it is read.
-    fn begin_loading(&mut self, path: Option<PathBuf>, reading: Reading) {
-        self.model.files.extend(path.iter().filter_map(|path| std::path::absolute(path).ok()));
-        self.model.requested = path;
-        self.model.loading = true;
-        self.threads.loader.upload(reading);
     }
 
     /// The shader tree.

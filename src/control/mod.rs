@@ -2,6 +2,7 @@
 //! them out; this module knows neither window nor device.
 
 mod client;
+mod described;
 mod reader;
 mod reply;
 mod request;
@@ -14,8 +15,8 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 pub use client::{Client, Clients};
+pub use described::{COMMANDS, Described};
 pub(crate) use reply::Reply;
-pub use request::{COMMANDS, Described};
 pub(crate) use request::{Camera, Capture, Compare, Open, Playback, Probe, Request, Run, Sheet, Timeline, Turntable};
 pub use socket::{Socket, socket_path};
 

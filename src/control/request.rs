@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
+use super::described::COMMANDS;
 use super::values::assignments;
 use crate::message::did_you_mean;
 
@@ -39,102 +40,6 @@ pub enum Request {
     Cancel,
     Quit,
 }
-
-/// A command in words.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
-pub struct Described {
-    /// Its name.
-    pub command: &'static str,
-    /// Its fields, as JSON that could be sent. `?` marks those that may be left out.
-    pub takes: &'static str,
-    /// Description of the command and its result.
-    pub doc: &'static str,
-}
-
-const fn row(command: &'static str, takes: &'static str, doc: &'static str) -> Described {
-    Described { command, takes, doc }
-}
-
-/// All commands.
-pub const COMMANDS: [Described; 25] = [
-    row(
-        "set",
-        r#""values": "path=value" | ["path=value", ...] | {"path": value}"#,
-        "Changes settings, all or none. Done when a frame that shows them has been drawn",
-    ),
-    row("get", r#""path"?: "view.ev""#, "The settings, or the one at a path"),
-    row("mode", r#""name": "d""#, "Shows a debug mode"),
-    row(
-        "camera",
-        r#""eye"?: [x,y,z], "target"?: [x,y,z], "fovy"?: deg, "azimuth"?: deg, "elevation"?: deg, "frame"?: true, "view"?: "front""#,
-        "Moves the camera; azimuth, elevation, frame and view frame the model. Result: eye, target, fovy",
-    ),
-    row(
-        "capture",
-        r#""file"?: "a.png" | "a.exr", "size"?: [w,h], "mode"?: "d", "frames"?: n, "ui"?: true"#,
-        "Writes the picture as it is on screen, or drawn anew at a size or in a mode; EXR holds raw floats; with ui the whole window. Result: file, width, height",
-    ),
-    row(
-        "probe",
-        r#""at": [x,y], "modes"?: ["d", "f"]"#,
-        "Raw values of a pixel of the picture, in these modes or all. Result: pixel, modes",
-    ),
-    row("reload", "", "Compiles all shaders again. Result: generation; an error lists the diagnostics"),
-    row(
-        "open",
-        r#""file" | "model" | "environment" | "tree" | "look" | "measured": "path or name""#,
-        "Opens a file or folder. Done when it is on screen",
-    ),
-    row(
-        "compare",
-        r#""with"?: "nothing" | "picture" | "previous" | number, "wipe"?: 0..1"#,
-        "Compares the picture with an earlier one. Result: version, wipe",
-    ),
-    row(
-        "versions",
-        r#""write"?: number"#,
-        "Versions of the shaders since the start; write puts one back into the files",
-    ),
-    row("undo", "", "Takes the last change of a setting back"),
-    row("redo", "", "Takes the last undo back"),
-    row("pass", r#""name": "bloom", "on"?: true | false"#, "Switches a pass on or off"),
-    row(
-        "playback",
-        r#""paused"?: bool, "step"?: true, "restart"?: true, "time"?: s, "speed"?: factor"#,
-        "The clock of animated shaders. Result: time, paused, speed",
-    ),
-    row("modes", "", "All debug modes: id, name, slug, group, encode, doc"),
-    row("settings", "", "All settings, with what each takes, its range, unit and meaning"),
-    row("commands", "", "This list"),
-    row("help", "", "This list"),
-    row("entries", "", "What the command palette can do at the moment"),
-    row(
-        "run",
-        r#""entry": "Layout: Look", "value"?: number"#,
-        "Does what an entry of the command palette does; value is for numbers",
-    ),
-    row(
-        "sheet",
-        r#""file": "sheet.png", "modes"?: "modes" | "all" | ["d", ...], "size"?: [w,h], "columns"?: n"#,
-        "Writes a contact sheet of modes with their names; size is that of one picture",
-    ),
-    row(
-        "turntable",
-        r#""file": "spin.gif" | ".webp" | ".png", "frames"?: n, "fps"?: n, "size"?: [w,h], "turn"?: "camera" | "light" | "model""#,
-        "Writes a full turn as an animation, or as numbered PNGs",
-    ),
-    row(
-        "timeline",
-        r#""file": "edits.webp", "fps"?: n, "size"?: [w,h]"#,
-        "Writes the versions of the shaders as an animation",
-    ),
-    row(
-        "cancel",
-        "",
-        "Ends the captures, sheets, animations and probes that are under way; each answers with an error",
-    ),
-    row("quit", "", "Closes the window"),
-];
 
 /// Fields of `camera`.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]

@@ -1,20 +1,18 @@
 //! Selects the pipelines of a picture by debug mode, the author's constants, and the kinds of material in the scene.
 
+mod keys;
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::display::Display;
-use super::formats::{MEAN_FORMAT, TargetFormat, pass_format};
-use super::pipeline_key::{KeyPass, PipelineKey};
+use super::formats::{MEAN_FORMAT, TargetFormat};
 use super::{Scene, SharedMode};
-use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
-use crate::interface::{
-    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES,
-    SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF, UNROLLED_LIGHTS,
-};
+use crate::gpu::{PrimitiveClass, Specialization, vk};
+use crate::interface::{self, TONEMAP_OFF, UNROLLED_LIGHTS};
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings};
-use crate::shader::annotation::pass::{MODEL, Target};
+use crate::shader::annotation::pass::MODEL;
 use crate::shader::graph::{Input, Part};
 use crate::shader::{DrawAs, Encode, GraphPass, Mode, PATHS_STAGE, ShaderSet, values};
 
@@ -193,59 +191,6 @@ impl PipelineRequest {
         self.passes.iter().find(|pass| is_wanted(pass))
     }
 
-    /// The pipeline that draws a material of the model.
-    pub(crate) fn model_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
-        let raster = match self.draw {
-            DrawAs::Lines => Raster::Lines,
-            DrawAs::Layers => Raster::Added,
-            DrawAs::Surfaces if material.alpha == interface::ALPHA_BLEND => match self.shows_picture() {
-                true => Raster::Blended,
-                // A debug mode stores flags in alpha, which must not be blended.
-                false => Raster::Replaced,
-            },
-            DrawAs::Surfaces => Raster::Solid,
-        };
-        let pass = self.model_pass().filter(|pass| material.is_taken_by(pass))?;
-        Some(self.key_with_model(pass, material, raster))
-    }
-
-    /// A pipeline that draws a material to the multisampled picture.
-    fn key_with_model(&self, pass: &Arc<GraphPass>, material: MaterialVariant, raster: Raster) -> PipelineKey {
-        PipelineKey {
-            pass: KeyPass(pass.clone()),
-            raster,
-            class: material.class,
-            format: self.target.color,
-            samples: self.target.samples,
-            specialization: self.material_constants(material),
-            modes: self.modes.iter().map(|mode| mode.id).collect(),
-        }
-    }
-
-    /// The specialization of stages that draw a material.
-    fn material_constants(&self, material: MaterialVariant) -> Specialization {
-        let own = [
-            (SPEC_MODE, self.model_mode()),
-            (SPEC_ALPHA_MODE, material.alpha),
-            (SPEC_FEATURES, material.features | self.shared_features),
-            (SPEC_LIGHT_COUNT, self.light_count),
-        ];
-        own.iter().chain(&self.constants).copied().collect()
-    }
-
-    /// The pipeline that draws the edges of a material's triangles over the picture.
-    pub(crate) fn edges_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
-        let pass = self.edges.as_ref().filter(|pass| material.is_taken_by(pass))?;
-        if material.class != PrimitiveClass::Triangles {
-            return None;
-        }
-        let key = self.key_with_model(pass, material, Raster::Edges);
-        let own = [(SPEC_TONEMAP, self.tonemap)];
-        let rest =
-            key.specialization.iter().map(|(id, value)| (*id, if *id == SPEC_MODE { EDGES_MODE } else { *value }));
-        Some(PipelineKey { specialization: own.into_iter().chain(rest).collect(), modes: Vec::new(), ..key })
-    }
-
     /// Random paths per pixel in each frame of an accumulating mode. Tracing the model takes so long on a software device that a
     /// frame has one path.
     pub fn paths_per_frame(&self) -> u32 {
@@ -274,115 +219,9 @@ impl PipelineRequest {
         transmissive && self.through && !self.is_picture_stage()
     }
 
-    /// The pipeline that draws a material in the pass `behind`.
-    pub(crate) fn behind_key(&self, material: MaterialVariant) -> Option<PipelineKey> {
-        let is_opaque = material.alpha != interface::ALPHA_BLEND && !is_transmissive(material);
-        if !is_opaque || !self.draws_opaque_twice() {
-            return self.model_key(material);
-        }
-        let pass = self.pass_of(|pass| pass.name() == MODEL).filter(|pass| material.is_taken_by(pass))?;
-        let picture = Self { mode: interface::MODE_FINAL, ..self.clone() };
-        Some(picture.key_with_model(pass, material, Raster::Solid))
-    }
-
-    /// The pipeline of a pass that draws a full-screen triangle.
-    fn triangle_key(
-        &self,
-        pass: &Arc<GraphPass>,
-        raster: Raster,
-        format: vk::Format,
-        specialization: Specialization,
-    ) -> PipelineKey {
-        let class = PrimitiveClass::Triangles;
-        PipelineKey {
-            pass: KeyPass(pass.clone()),
-            raster,
-            class,
-            format,
-            samples: 1,
-            specialization,
-            modes: Vec::new(),
-        }
-    }
-
-    /// The pipeline of the tone map.
-    pub(crate) fn tonemap_key(&self) -> Option<PipelineKey> {
-        self.tonemap_key_of(self.encode)
-    }
-
-    /// The pipelines of the tone map of each mode that is drawn.
-    pub(crate) fn tonemap_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let modes = self.modes.iter().map(|mode| mode.encode);
-        let only = self.modes.is_empty().then_some(self.encode);
-        modes.chain(only).filter_map(|encode| self.tonemap_key_of(encode))
-    }
-
-    fn tonemap_key_of(&self, encode: u32) -> Option<PipelineKey> {
-        let pass = self.pass_of(|pass| pass.part == Part::Tonemap)?;
-        // Modes that are drawn at once have displays of their own.
-        let maps_values = u32::from(self.maps_values || !self.modes.is_empty());
-        let own = [(SPEC_TONEMAP, self.tonemap), (SPEC_ENCODE, encode), (SPEC_MAPS_VALUES, maps_values)];
-        let specialization = own.iter().chain(&self.constants).copied().collect();
-        Some(self.triangle_key(pass, Raster::Solid, Swapchain::FORMAT, specialization))
-    }
-
-    /// The pipelines of what lies behind the model, in the order in which it is drawn: what blends lies over the rest.
-    pub(crate) fn background_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let passes = |blend| {
-            let is_drawn = move |pass: &&Arc<GraphPass>| pass.part == Part::Model && pass.note.background;
-            self.passes.iter().filter(is_drawn).filter(move |pass| pass.note.blend == blend)
-        };
-        passes(false).chain(passes(true)).map(|pass| {
-            let specialization = [&[(SPEC_FEATURES, self.shared_features)], &*self.constants].concat();
-            let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
-            let key = self.triangle_key(pass, raster, self.target.color, specialization);
-            PipelineKey { samples: self.target.samples, ..key }
-        })
-    }
-
     /// The passes that draw the model to the picture besides the model's own.
     pub(crate) fn added_passes(&self) -> impl Iterator<Item = &Arc<GraphPass>> {
         self.passes.iter().filter(|pass| pass.adds_to_model())
-    }
-
-    /// The pipeline that adds a frame to the mean, in an accumulating mode.
-    pub(crate) fn average_key(&self) -> Option<PipelineKey> {
-        let pass = self.pass_of(|pass| pass.part == Part::Mean)?;
-        Some(self.triangle_key(pass, Raster::Averaged, MEAN_FORMAT, Vec::new()))
-    }
-
-    /// The pipelines of a pass that is none of the built-in steps: one for each material if it draws the model, none for a
-    /// compute pass.
-    pub(crate) fn pass_keys(&self, pass: &Arc<GraphPass>) -> Vec<PipelineKey> {
-        if pass.is_compute || pass.note.is_built_in() || pass.note.background {
-            return Vec::new();
-        }
-        if pass.note.model.is_some() {
-            let materials = self.materials.iter().filter(|material| material.is_taken_by(pass));
-            return materials.map(|material| self.model_pass_key(pass, *material)).collect();
-        }
-        let format = match pass.note.to {
-            Target::Image => pass_format(pass.note.format),
-            _ if pass.part == Part::Display => Swapchain::FORMAT,
-            _ => self.picture_format(),
-        };
-        vec![self.triangle_key(pass, Raster::Solid, format, self.pass_constants())]
-    }
-
-    /// The specialization of declared passes that cover an image or compute.
-    pub(crate) fn pass_constants(&self) -> Specialization {
-        let shared = [(SPEC_FEATURES, self.shared_features), (SPEC_LIGHT_COUNT, self.light_count)];
-        shared.iter().chain(&self.constants).copied().collect()
-    }
-
-    /// The pipeline with which a pass that is not the model's own draws a material of the model.
-    pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
-        let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
-        let key = PipelineKey { modes: Vec::new(), ..self.key_with_model(pass, material, raster) };
-        match pass.note.to {
-            Target::Image => PipelineKey { format: pass_format(pass.note.format), samples: 1, ..key },
-            _ => key,
-        }
     }
 
     /// Format of the HDR picture before the tone map.
@@ -405,19 +244,6 @@ impl PipelineRequest {
         let is_pending = |path: &String| shaders.pending.contains(path);
         // A step that has never compiled is not in the graph yet.
         !shaders.pending.is_empty() && (self.tonemap_key().is_none() || self.stages().iter().any(is_pending))
-    }
-
-    /// The pipelines of the model, of what is drawn with it, and of the mean.
-    pub(crate) fn model_keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let of = |m: &MaterialVariant| [self.model_key(*m), self.behind_key(*m), self.edges_key(*m)];
-        let model = self.materials.iter().flat_map(of).flatten();
-        let added = self.added_passes().flat_map(|pass| self.pass_keys(pass));
-        model.chain(added).chain(self.background_keys()).chain(self.average_key())
-    }
-
-    pub(crate) fn keys(&self) -> impl Iterator<Item = PipelineKey> {
-        let others = self.passes.iter().filter(|pass| pass.part != Part::Model);
-        self.model_keys().chain(self.tonemap_keys()).chain(others.flat_map(|pass| self.pass_keys(pass)))
     }
 }
 

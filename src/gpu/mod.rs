@@ -14,8 +14,9 @@ pub mod watchdog;
 mod window;
 
 pub use commands::counts::DrawCounts;
-pub use commands::encoder::{Attachments, Encoder, Rect, Use};
+pub use commands::encoder::{Attachments, Encoder, Rect};
 pub use commands::frames::{Frames, one_shot};
+pub use commands::image_use::Use;
 pub use commands::pass::PassTime;
 pub use commands::slot::Submission;
 pub use commands::upload::upload_images;

@@ -9,7 +9,6 @@ use crate::app::dialog::Dialog;
 use crate::app::layout::{Panel, Preset};
 use crate::app::learn::LearnCommand;
 use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
-use crate::app::panels::expression::watch;
 use crate::app::panels::parameters::default_of;
 use crate::app::panels::passes::{internal, is_of_pass, is_switch};
 use crate::app::panels::rows::choice_name;
@@ -110,7 +109,7 @@ impl Ask {
     }
 
     /// Sets the number to its present value.
-    fn set(&self, settings: &mut Settings) {
+    pub(super) fn set(&self, settings: &mut Settings) {
         let value = self.now;
         match &self.target {
             Target::Setting(number) => number.set(settings, value),
@@ -372,46 +371,5 @@ fn passes(entries: &mut Vec<Entry>, shaders: &ShaderSet, settings: &Settings) {
         let action = |on| Action::Pass(pass.name().to_owned(), on);
         let entry = switch("Pass", &pass.note.label, pass.name(), pass.is_wanted(&settings.passes), action);
         entries.push(Entry { is_minor: internal.contains(pass.name()), ..entry });
-    }
-}
-
-/// Carries out the action of the chosen entry.
-pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Command>) {
-    let settings = &mut viewer.session.settings;
-    match action {
-        Action::Mode(slug) => settings.mode = slug,
-        Action::Do(command) => commands.push(command),
-        Action::Environment(name) => settings.environment.name = name,
-        Action::Lights(source) => settings.lights.source = source,
-        Action::Tonemap(tonemap) => settings.view.tonemap = tonemap,
-        Action::Value(name, value) => drop(settings.shader.insert(name, value)),
-        Action::Number(ask) => ask.set(settings),
-        Action::Pass(name, on) => drop(settings.passes.insert(name, on)),
-        Action::Open(panel) => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.open(panel);
-        }
-        Action::Arrange(preset) => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.arrange(preset);
-        }
-        Action::ArrangeOwn => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.arrange_own();
-        }
-        Action::WriteVersion(number) => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.open(Panel::Timeline);
-            viewer.panels.timeline.ask(number);
-        }
-        Action::AskExpression => {
-            viewer.panels.visible = true;
-            viewer.panels.layout.open(Panel::Expression);
-            viewer.panels.expression.focus();
-        }
-        Action::Watch(at) => watch(settings, at),
-        Action::WriteDefaults => viewer.panels.defaults.ask(None),
-        Action::TogglePanels => viewer.panels.visible ^= true,
-        Action::ShowKeys => viewer.panels.show_keys = true,
     }
 }

@@ -1,6 +1,7 @@
 //! The command palette (Ctrl+P): finds modes, panels, files, switches, choices, numbers and commands by words of their names. The
 //! value of a number is typed behind its name (`exposure 1.5`) or in a second step.
 
+mod act;
 mod entries;
 mod row;
 mod search;
@@ -12,7 +13,8 @@ use super::panels::theme::{EDGE, ERROR, PANEL, QUIET};
 use super::viewer::Viewer;
 use crate::message::did_you_mean;
 use crate::shader::Expression;
-use entries::{Action, Ask, Entry, act, entries};
+use act::act;
+use entries::{Action, Ask, Entry, entries};
 use search::{Found, find};
 
 /// Most rows of the list.

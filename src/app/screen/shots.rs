@@ -5,8 +5,10 @@ use std::sync::Arc;
 use super::Screen;
 use crate::app::control::Shot;
 use crate::app::viewer::Viewer;
+use crate::events::{Event, emit};
 use crate::gpu::{Buffer, Encoder, GpuError, Image, Memory, Use, vk};
-use crate::render::BoundFrame;
+use crate::picture;
+use crate::render::{BoundFrame, Capture, Output, Redraw};
 
 /// A picture of the window on its way from the device.
 pub(super) struct WindowShot {
@@ -18,8 +20,58 @@ pub(super) struct WindowShot {
 }
 
 impl Screen {
+    /// Writes the screenshot that a key has asked for. It waits for the first picture, and for the range of a mode's values.
+    pub(super) fn take_screenshot(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
+        if !viewer.screenshot || self.view.lacks_limits(frame) {
+            return Ok(());
+        }
+        viewer.screenshot = false;
+        match self.write_screenshot(viewer, frame) {
+            Err(error @ GpuError::OutOfMemory(_)) => {
+                self.view.forget();
+                self.reference = None;
+                viewer.say(format!("no screenshot: {error}"));
+                Ok(())
+            }
+            written => written,
+        }
+    }
+
+    /// Writes the picture, without panels, to `specula-N.png` in the working directory.
+    fn write_screenshot(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
+        let Some(capture) = self.read_picture(viewer, frame)? else { return Ok(()) };
+        match picture::write_numbered(&capture, &viewer.look()) {
+            Ok(path) => {
+                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+                viewer.say(format!("wrote {}", whole.display()));
+                emit(&viewer.events, &Event::Screenshot { file: &path.display().to_string() });
+            }
+            Err(message) => viewer.say(message),
+        }
+        Ok(())
+    }
+
+    /// Draws the picture as it is on screen, without panels, and reads it back.
+    fn read_picture(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<Option<Capture>, GpuError> {
+        let image = self.view.output_image(frame.state.size)?;
+        let mut encoder = self.frames.begin()?;
+        self.check_loops(viewer);
+        let output = Output { image: &image, before: Use::Undefined, at: (0, 0) };
+        let slot = self.frames.current();
+        self.view.draw(&mut encoder, slot, frame, &output, Redraw::IfChanged)?;
+        self.draw_reference(&mut encoder, slot, &image, (0, 0))?;
+        let readback = self.view.read_back(&mut encoder, &image)?;
+        self.frames.submit(encoder, Default::default())?;
+        // SYNC: the CPU reads the picture.
+        self.frames.wait()?;
+        Ok(readback.map(|readback| readback.finish()))
+    }
+
     /// Takes the pictures that are asked for, as they are on screen. A lack of memory costs only them.
     pub(super) fn take_shots(&mut self, viewer: &mut Viewer, frame: &BoundFrame) -> Result<(), GpuError> {
+        if self.view.lacks_limits(frame) {
+            return Ok(());
+        }
         for shot in viewer.take_shots() {
             match self.read_picture(viewer, frame) {
                 Ok(Some(capture)) => viewer.write_shot(shot, capture),

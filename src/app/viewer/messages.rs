@@ -1,24 +1,20 @@
 //! Applies the results of the threads to the viewer.
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use super::{FirstFrame, Viewer};
 use crate::app::command::Command;
 use crate::app::inspector::Shown;
 use crate::app::recent::Kind;
-use crate::app::selection::Selected;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
-use crate::message;
 use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
-use crate::scene::{BUILT_IN, environment};
-use crate::settings::{GROUND, LightSource, SceneSettings};
+use crate::scene::environment;
+use crate::settings::GROUND;
 use crate::shader::{Diagnostic, Severity, ShaderSet, expression};
 use crate::threads::baker::BakeMessage;
-use crate::threads::loader::Loaded;
 use crate::threads::worker::WorkerMessage;
 use crate::threads::{Message, Role};
 
@@ -215,65 +211,6 @@ impl Viewer {
         }
     }
 
-    fn on_loaded(&mut self, loaded: Loaded) {
-        if loaded.number != self.threads.loader.newest {
-            return;
-        }
-        self.model.loading = false;
-        match loaded.result {
-            Ok(uploaded) => {
-                // The pictures of older versions would keep the old model on the device.
-                self.versions.drop_pictures();
-                let (model, is_other) = (uploaded.model(), loaded.path != self.model.path);
-                for warning in &model.warnings {
-                    message::warn(format_args!("{}: {warning}", model.name));
-                }
-                if self.session.settings.lights.source == LightSource::Model && model.lights.is_empty() {
-                    self.say(format!("warning: {} has no lights of its own for `--lights model`", model.name));
-                }
-                // A session that is restored brings its own settings.
-                let is_restored = std::mem::take(&mut self.model.keeps_camera);
-                if is_other && !is_restored {
-                    self.execute(Command::FrameModel);
-                    // They name parts of the model before.
-                    self.session.settings.scene = SceneSettings::default();
-                    self.session.settings.materials.clear();
-                }
-                if is_other || !self.selected.is_in(model) {
-                    self.select(Selected::Nothing);
-                }
-                if !is_restored && (is_other || self.session.model().is_none()) {
-                    self.follow_lights(model);
-                }
-                self.panels.show_model_warnings = true;
-                if let Some(path) = loaded.path.as_deref().filter(|path| !is_built_in(path)) {
-                    self.panels.recent.remember(Kind::Model, path);
-                }
-                self.model.path = loaded.path;
-                self.model.load_ms = loaded.ms;
-                self.model.files.clone_from(&model.files);
-                self.session.set_model(model);
-                self.resources.set_model(&uploaded);
-                let settings = &self.session.settings;
-                let unknown = model.unknown_part(&settings.scene);
-                let unknown = unknown.or_else(|| model.unknown_material(settings.materials.keys()));
-                unknown.into_iter().for_each(|problem| self.say(problem));
-            }
-            Err((message, tried)) => {
-                self.model.keeps_camera = false;
-                // Watch the model on screen as well as the files that must be repaired.
-                let on_screen = self.session.model().map(|model| model.files.clone()).unwrap_or_default();
-                self.model.files = on_screen.into_iter().chain(tried).collect();
-                if let Some(path) = &loaded.path {
-                    self.panels.recent.forget(Kind::Model, path);
-                }
-                self.model_failed(&message);
-                self.say(message);
-            }
-        }
-        self.watch_files();
-    }
-
     fn on_bake(&mut self, message: BakeMessage) {
         match message {
             BakeMessage::Progress(number, done, next) => self.threads.baker.set_progress(number, done, next),
@@ -336,23 +273,6 @@ impl Viewer {
     fn warn_of(&mut self, functions: impl IntoIterator<Item = &'static str>) {
         for function in functions {
             self.say(wrong_values(function));
-        }
-    }
-
-    /// Handles changed files of the environment, the measured BRDF or the model.
-    fn on_files_changed(&mut self, changed: &BTreeSet<PathBuf>) {
-        let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
-        let is_changed = |files: &[PathBuf]| files.iter().any(|file| changed.contains(file));
-        if is_changed(&environment) {
-            self.session.revisions.environment += 1;
-        }
-        if is_changed(&measured) {
-            self.session.revisions.measured += 1;
-        }
-        if is_changed(&self.model.files) {
-            let on_screen = self.session.model().is_some_and(|model| is_changed(&model.files));
-            let path = if on_screen && !self.model.loading { &self.model.path } else { &self.model.requested };
-            self.load_model(path.clone());
         }
     }
 
@@ -422,9 +342,4 @@ impl Viewer {
         };
         self.keep_saying(format!("Specula's {thread} thread failed ({text}). Please report this; your files are safe"));
     }
-}
-
-/// Whether a path is the name of a built-in model.
-fn is_built_in(path: &Path) -> bool {
-    BUILT_IN.iter().any(|name| Path::new(name) == path)
 }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::encoder::{Encoder, Use};
+use super::encoder::Encoder;
+use super::image_use::Use;
 use crate::gpu::{Buffer, Image};
 
 impl Encoder {

@@ -6,6 +6,7 @@ pub(in crate::gpu) mod copy;
 pub(in crate::gpu) mod counts;
 pub(in crate::gpu) mod encoder;
 pub(in crate::gpu) mod frames;
+pub(in crate::gpu) mod image_use;
 pub(in crate::gpu) mod pass;
 pub(in crate::gpu) mod slot;
 pub(in crate::gpu) mod upload;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::encoder::Use;
 use super::frames::one_shot;
+use super::image_use::Use;
 use crate::gpu::{Buffer, Gpu, GpuError, Image, Memory};
 
 /// Uploads all levels and layers of the images, and leaves them in [`Use::Sampled`].

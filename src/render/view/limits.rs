@@ -1,0 +1,86 @@
+//! Between which limits a view's display shows values: from samples of its own picture, or as another view does.
+
+use std::sync::Arc;
+
+use super::{Survey, View};
+use crate::frame::Limits;
+use crate::render::BoundFrame;
+
+impl View {
+    /// The limits of the values that the display shows of `frame`. Until samples of this mode are there, they are those of its last
+    /// picture.
+    pub(super) fn limits_of(&mut self, frame: &BoundFrame) -> Option<Limits> {
+        let state = &frame.state;
+        if let Some(limits) = self.followed {
+            return limits;
+        }
+        let mode = state.pipelines.mode;
+        if self.mode_since.is_none_or(|(last, _)| last != mode) {
+            self.mode_since = Some((mode, self.picture));
+        }
+        let since = self.mode_since.map_or(0, |(_, since)| since);
+        let survey = self.survey.as_ref().filter(|survey| survey.picture >= since);
+        let values = match (survey, self.measured) {
+            (Some(survey), Some((picture, values))) if survey.picture == picture => values,
+            (Some(survey), _) if state.display.is_measured() => {
+                let values = survey.limits(state.mode().map_or(3, |mode| mode.components));
+                self.measured = Some((survey.picture, values));
+                values
+            }
+            _ => None,
+        };
+        let before = self.known_limits.get(&mode).copied();
+        if values.is_none() && state.display.is_measured() {
+            return before;
+        }
+        let limits = state.display.limits(values, before);
+        match limits {
+            Some(limits) => self.known_limits.insert(mode, limits),
+            None => self.known_limits.remove(&mode),
+        };
+        limits
+    }
+
+    /// Whether the range of `frame` follows the values of its mode, and none of them are known yet.
+    pub fn lacks_limits(&self, frame: &BoundFrame) -> bool {
+        let mode = frame.state.pipelines.mode;
+        let since = self.mode_since.filter(|(last, _)| *last == mode).map(|(_, since)| since);
+        let knows = |since| self.survey.as_ref().is_some_and(|survey| survey.picture >= since);
+        frame.state.display.is_measured() && self.followed.is_none() && !since.is_some_and(knows)
+    }
+
+    /// The limits of the values that the last frame showed; `None` if it stored them as the mode says.
+    pub fn limits(&self) -> Option<Limits> {
+        self.displayed.and_then(|(_, limits)| limits)
+    }
+
+    /// Forgets the limits of earlier pictures, so that the next one depends on its own values alone.
+    pub fn forget_limits(&mut self) {
+        self.known_limits.clear();
+    }
+
+    /// Takes the samples of slot `slot`. SYNC: after the fence of its last frame.
+    pub fn take_survey(&mut self, slot: usize) {
+        let taken = self.in_flight.get_mut(slot).and_then(|in_flight| in_flight.survey.take());
+        if let Some(survey) = taken.filter(|taken| self.survey.as_ref().is_none_or(|old| old.picture < taken.picture)) {
+            self.survey = Some(Arc::new(survey));
+        }
+    }
+
+    /// The newest samples of the picture's values.
+    pub fn survey(&self) -> Option<&Arc<Survey>> {
+        self.survey.as_ref()
+    }
+
+    /// Shows values between these limits, those of a picture that this view's is compared with. `None`: between the limits of its own
+    /// values.
+    pub fn follow_limits(&mut self, limits: Option<Option<Limits>>) {
+        self.followed = limits;
+    }
+
+    /// Whether samples of the picture are on their way, or the last frame showed new limits, which a legend does not know yet.
+    pub fn awaits_survey(&self) -> bool {
+        self.is_shown_anew
+            || self.surveyed != 0 && self.survey.as_ref().map(|survey| survey.picture) != Some(self.surveyed)
+    }
+}
