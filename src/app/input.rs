@@ -89,29 +89,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
         WindowEvent::MouseInput { state, button, .. } => {
             let pressed = *state == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
             match button {
-                MouseButton::Left => {
-                    let was = std::mem::replace(&mut screen.mouse.left, pressed);
-                    let is_double = pressed && is_double_click(&mut screen.mouse);
-                    let place = screen.mouse.at;
-                    let clicked = screen.mouse.click.take().filter(|start| start.distance(place) <= SAME_PLACE);
-                    screen.mouse.click = (pressed && !is_double && !has_modifier(&screen.mouse)).then_some(place);
-                    match pressed {
-                        true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
-                        false if was => viewer.playback.release(),
-                        false => {}
-                    }
-                    if is_double {
-                        return focus(viewer, screen);
-                    }
-                    let is_click = clicked.is_some() && was && !pressed;
-                    if is_click && keep_mode_at(viewer, screen) {
-                        return true;
-                    }
-                    if let Some((x, y)) = screen.mouse_pixel().filter(|_| is_click) {
-                        viewer.execute(Command::Pick([x, y]));
-                        return true;
-                    }
-                }
+                MouseButton::Left => return on_left_button(viewer, screen, pressed),
                 MouseButton::Middle => screen.mouse.middle = pressed,
                 MouseButton::Right => {
                     screen.mouse.right = pressed;
@@ -145,6 +123,31 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
         }
         _ => false,
     }
+}
+
+/// Handles the left button: a press in the picture of a shader, a double click that focuses, a click that picks. Returns whether to
+/// redraw.
+fn on_left_button(viewer: &mut Viewer, screen: &mut Screen, pressed: bool) -> bool {
+    let was = std::mem::replace(&mut screen.mouse.left, pressed);
+    let is_double = pressed && is_double_click(&mut screen.mouse);
+    let place = screen.mouse.at;
+    let clicked = screen.mouse.click.take().filter(|start| start.distance(place) <= SAME_PLACE);
+    screen.mouse.click = (pressed && !is_double && !has_modifier(&screen.mouse)).then_some(place);
+    match pressed {
+        true => viewer.playback.press(in_picture(screen, screen.mouse.at)),
+        false if was => viewer.playback.release(),
+        false => {}
+    }
+    if is_double {
+        return focus(viewer, screen);
+    }
+    let is_click = clicked.is_some() && was && !pressed;
+    if is_click && keep_mode_at(viewer, screen) {
+        return true;
+    }
+    let Some((x, y)) = screen.mouse_pixel().filter(|_| is_click) else { return false };
+    viewer.execute(Command::Pick([x, y]));
+    true
 }
 
 /// Shows the mode of the grid under the mouse alone. Returns whether there is one.

@@ -8,6 +8,7 @@ mod loops;
 mod probe;
 mod reference;
 mod selection;
+mod sets;
 mod shots;
 mod texture;
 mod thumbnail;

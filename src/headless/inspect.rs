@@ -1,9 +1,7 @@
 //! The values of one pixel in many modes, drawn as the window's inspector draws them.
 
-use std::sync::Arc;
-
 use super::{Headless, HeadlessError};
-use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
+use crate::frame::{TargetFormat, mode_sets};
 use crate::render::{PixelModes, Thumbnails};
 use crate::shader::{Mode, PixelValue};
 
@@ -17,21 +15,10 @@ impl Headless {
     pub fn inspect(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<(String, PixelValue)>, HeadlessError> {
         self.finish_or_fail()?;
         self.provide()?;
-        let (shaders, scene) = (self.shaders(), self.session.scene());
         let mut pixel = PixelModes::new(&self.gpu, &self.layouts, 1)?;
         let mut found = Vec::new();
         for set in mode_sets(modes, Thumbnails::most_at_once(&self.gpu)) {
-            let inputs = FrameInputs {
-                settings: &self.session.settings,
-                shaders: &shaders,
-                scene: scene.as_ref(),
-                revisions: self.session.revisions,
-                clock: self.clock,
-                size: self.size,
-                target: TargetFormat::full(1),
-            };
-            let state = Arc::new(FrameState::of_modes(&inputs, &set));
-            let frame = self.resources.provide(&state).map_err(|error| self.explained(error.into()))?;
+            let frame = self.bind_modes(&set, self.size, TargetFormat::full(1))?;
             let mut encoder = self.frames.begin()?;
             pixel.draw(&mut encoder, 0, &frame, at)?;
             self.frames.submit(encoder, Default::default())?;

@@ -5,6 +5,7 @@ mod error;
 mod hints;
 mod inspect;
 mod pixel;
+mod reload;
 mod sequence;
 mod stages;
 mod thumbnails;
@@ -14,14 +15,14 @@ use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::frame::{Clock, FrameState, PipelineRequest, TargetFormat};
-use crate::gpu::{Frames, Gpu, GpuError, Image, PassTime, SetLayouts, return_freed_memory};
-use crate::pipeline::{Outcome, Reload, Reloader, endless_loop};
-use crate::render::{BakeError, BakeReport, BoundFrame, GpuModel, Resources, View, wrong_values};
+use crate::frame::{Clock, FrameState, TargetFormat};
+use crate::gpu::{Frames, Gpu, Image, PassTime, SetLayouts, return_freed_memory};
+use crate::pipeline::{Outcome, Reload, Reloader};
+use crate::render::{BakeReport, BoundFrame, GpuModel, Resources, View, wrong_values};
 use crate::scene::Model;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Change, Compiler, Severity, ShaderSet, Source};
+use crate::shader::{Compiler, Severity, ShaderSet, Source};
 
 pub use draw::Step;
 pub use error::HeadlessError;
@@ -84,15 +85,6 @@ impl Headless {
         this.reloader = Reloader::measuring(gpu, &this.layouts, compiler, source);
         this.compile_all()?;
         Ok(this)
-    }
-
-    fn compile_all(&mut self) -> Result<Reload, HeadlessError> {
-        let reload = self.update(Change::All);
-        match &reload.outcome {
-            Outcome::Ready(_) => Ok(reload),
-            Outcome::Failed(diagnostics) => Err(HeadlessError::Shaders(diagnostics.clone())),
-            Outcome::Unchanged { .. } => Err(HeadlessError::Shaders(Vec::new())),
-        }
     }
 
     /// Like [`Headless::new`], but reads the model while the shaders compile, compiles only what the picture needs, and
@@ -270,42 +262,6 @@ impl Headless {
         self.frames.pass_times()
     }
 
-    /// Reloads changed shaders. On failure the last good shaders stay.
-    pub fn update(&mut self, change: Change) -> Reload {
-        self.reload(|reloader, request| reloader.update(change, request))
-    }
-
-    /// Reloads the changed shaders that the next frame needs. [`Headless::finish`] compiles the others.
-    pub fn update_first(&mut self, change: Change) -> Reload {
-        self.reload(|reloader, request| reloader.update_first(change, true, request, || false))
-    }
-
-    /// Compiles the stages that [`Headless::update_first`] has left; `None` if there are none.
-    pub fn finish(&mut self) -> Option<Reload> {
-        let is_pending = self.session.shaders.as_ref().is_some_and(|shaders| !shaders.pending.is_empty());
-        is_pending.then(|| self.reload(|reloader, request| reloader.finish(request, || false)))
-    }
-
-    fn reload(
-        &mut self,
-        reload: impl FnOnce(&mut Reloader, &dyn Fn(&Arc<ShaderSet>) -> PipelineRequest) -> Reload,
-    ) -> Reload {
-        // `open` has checked that the target exists, so the fallback is never used unless the settings change.
-        let target = self.target().unwrap_or(TargetFormat::full(1));
-        let session = &self.session;
-        let reload = reload(&mut self.reloader, &|shaders| session.pipelines(shaders, target));
-        match &reload.outcome {
-            Outcome::Ready(set) => {
-                self.resources.set_pipelines(set);
-                self.session.shaders = Some(set.shaders.clone());
-                self.session.diagnostics.clone_from(&set.shaders.warnings);
-            }
-            Outcome::Failed(diagnostics) => self.session.diagnostics.clone_from(diagnostics),
-            Outcome::Unchanged { .. } => {}
-        }
-        reload
-    }
-
     /// Replaces the model. On failure the old model stays.
     ///
     /// # Errors
@@ -369,30 +325,6 @@ impl Headless {
             }
         }
         self.resources.provide(&Arc::new(state)).map_err(|error| self.explained(error.into()))
-    }
-
-    /// Watches the expression of the settings.
-    fn watch(&mut self) -> Result<Option<Change>, HeadlessError> {
-        self.reloader.watch(&self.session.settings.expression).map_err(HeadlessError::Settings)
-    }
-
-    fn finish_or_fail(&mut self) -> Result<(), HeadlessError> {
-        match self.finish().map(|reload| reload.outcome) {
-            Some(Outcome::Failed(diagnostics)) => Err(HeadlessError::Shaders(diagnostics)),
-            _ => Ok(()),
-        }
-    }
-
-    /// Replaces the error of a loop that did not end by a diagnostic with the loop's line.
-    fn explained(&self, error: HeadlessError) -> HeadlessError {
-        let words = match &error {
-            HeadlessError::Gpu(GpuError::EndlessLoop(words))
-            | HeadlessError::Bake(BakeError::Gpu(GpuError::EndlessLoop(words))) => *words,
-            _ => return error,
-        };
-        let library = self.reloader.library();
-        let diagnostic = endless_loop(&self.gpu, words, &self.shaders(), library.compiler(), library.source());
-        diagnostic.map_or(error, |diagnostic| HeadlessError::Shaders(vec![diagnostic]))
     }
 }
 

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::{Headless, HeadlessError};
-use crate::frame::{FrameInputs, FrameState, mode_sets};
+use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
 use crate::gpu::{Buffer, Memory, Use, vk};
-use crate::render::Thumbnails;
+use crate::render::{BoundFrame, Thumbnails};
 use crate::shader::Mode;
 
 /// A small picture of a mode.
@@ -27,22 +27,10 @@ impl Headless {
     pub fn thumbnails(&mut self, size: (u32, u32), modes: &[Mode]) -> Result<Vec<Thumbnail>, HeadlessError> {
         self.finish_or_fail()?;
         let target = self.target()?;
-        let shaders = self.shaders();
-        let scene = self.session.scene();
         let mut thumbnails = Thumbnails::new(&self.gpu, &self.layouts, 1)?;
         let mut drawn = Vec::new();
         for set in mode_sets(modes, Thumbnails::most_at_once(&self.gpu)) {
-            let inputs = FrameInputs {
-                settings: &self.session.settings,
-                shaders: &shaders,
-                scene: scene.as_ref(),
-                revisions: self.session.revisions,
-                clock: self.clock,
-                size,
-                target,
-            };
-            let state = Arc::new(FrameState::of_modes(&inputs, &set));
-            let frame = self.resources.provide(&state).map_err(|error| self.explained(error.into()))?;
+            let frame = self.bind_modes(&set, size, target)?;
             let atlas = Thumbnails::atlas(&self.gpu, size, (1, set.len() as u32))?;
             let corners: Vec<(u32, u32)> = (0..set.len() as u32).map(|row| (0, row * size.1)).collect();
             let bytes = atlas.desc().bytes();
@@ -64,5 +52,26 @@ impl Headless {
             drawn.extend(made.map(|(mode, rgba8)| Thumbnail { slug: mode.slug.clone(), size, rgba8: rgba8.to_vec() }));
         }
         Ok(drawn)
+    }
+
+    /// The frame that draws a set of modes at once, with its pipelines.
+    pub(super) fn bind_modes(
+        &mut self,
+        set: &[&Mode],
+        size: (u32, u32),
+        target: TargetFormat,
+    ) -> Result<BoundFrame, HeadlessError> {
+        let (shaders, scene) = (self.shaders(), self.session.scene());
+        let inputs = FrameInputs {
+            settings: &self.session.settings,
+            shaders: &shaders,
+            scene: scene.as_ref(),
+            revisions: self.session.revisions,
+            clock: self.clock,
+            size,
+            target,
+        };
+        let state = Arc::new(FrameState::of_modes(&inputs, set));
+        self.resources.provide(&state).map_err(|error| self.explained(error.into()))
     }
 }

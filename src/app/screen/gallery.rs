@@ -3,43 +3,25 @@
 //! Thumbnails wait for everything else. They are drawn when the picture has come to rest, a few in each frame, those in sight alone, with
 //! pipelines that the worker builds when it has nothing else to do. A failure drops them without a word.
 
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::app::gallery::GalleryState;
 use crate::app::viewer::Viewer;
 use crate::events::{Event, emit};
-use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene, TargetFormat, mode_sets};
+use crate::frame::mode_sets;
 use crate::gpu::{Encoder, Gpu, GpuError, SetLayouts, UiImage, UiRenderer, Use};
-use crate::render::{GpuEnvironment, Thumbnails};
-use crate::settings::Settings;
+use crate::render::Thumbnails;
 use crate::shader::{Mode, ShaderSet};
 
 use super::FRAMES_IN_FLIGHT;
+use super::sets::{BoundSets, Shown, shown, time_to_rest};
 
-/// The time without a change after which thumbnails are drawn.
-pub(super) const REST: Duration = Duration::from_millis(150);
-/// The same on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
-pub(super) const REST_ON_CPU: Duration = Duration::from_millis(500);
 /// Draws of thumbnails, each of several modes, in one frame. On a GPU each takes less than a millisecond.
 const DRAWS_PER_FRAME: usize = 3;
 /// Thumbnails in a row of the texture.
 const COLUMNS: u32 = 16;
-
-/// Everything that thumbnails show, but the mode.
-#[derive(PartialEq)]
-pub(super) struct Shown {
-    pub(super) settings: Settings,
-    /// Address of the shaders: generations may count from 1 again.
-    shaders: usize,
-    pub(super) scene: Scene,
-    pub(super) revisions: Revisions,
-    environment: usize,
-    pub(super) target: TargetFormat,
-    /// Pixels of a thumbnail.
-    pub(super) size: (u32, u32),
-}
 
 /// The thumbnails of the gallery.
 #[derive(Default)]
@@ -136,10 +118,8 @@ impl Gallery {
             }
             return Ok(None);
         }
-        let rest = if viewer.gpu_is_fast() { REST } else { REST_ON_CPU };
-        let rested = self.since.map_or(rest, |since| since.elapsed());
-        if rested < rest {
-            return Ok(Some(rest - rested));
+        if let Some(left) = time_to_rest(viewer, self.since) {
+            return Ok(Some(left));
         }
         let drawn = self.draw_sets(encoder, slot, viewer, ui, layouts, &shaders, stale);
         match drawn {
@@ -172,29 +152,9 @@ impl Gallery {
         shaders: &Arc<ShaderSet>,
         stale: Vec<Vec<&Mode>>,
     ) -> Result<Option<Duration>, GpuError> {
-        let Some(Shown { settings, scene, revisions, target, size, .. }) = &self.shown else { return Ok(None) };
+        let Some(shown) = &self.shown else { return Ok(None) };
         let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
-        let (mut ready, mut missing, mut is_new) = (Vec::new(), VecDeque::new(), false);
-        for set in stale {
-            let inputs = FrameInputs {
-                settings,
-                shaders,
-                scene: Some(scene),
-                revisions: *revisions,
-                clock: Clock::default(),
-                size: *size,
-                target: *target,
-            };
-            let state = Arc::new(FrameState::of_modes(&inputs, &set));
-            match viewer.resources.bind(&state, false)? {
-                Some(frame) => ready.push((set, frame)),
-                None => {
-                    is_new |=
-                        self.asked.insert(set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" "));
-                    missing.push_back(state.pipelines.clone());
-                }
-            }
-        }
+        let BoundSets { ready, missing, is_new } = shown.bind(viewer, shaders, stale, &mut self.asked)?;
         if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new) {
             viewer.threads.worker.build_thumbnails(pipelines, missing);
         }
@@ -202,7 +162,7 @@ impl Gallery {
             return Ok(None);
         }
         let rows = (shaders.modes.len() as u32).div_ceil(COLUMNS).max(1);
-        let size = *size;
+        let size = shown.size;
         self.provide(&viewer.gpu, layouts, ui, (size, rows))?;
         let (Some(renderer), Some((image, _))) = (&mut self.renderer, &self.atlas) else { return Ok(None) };
         let atlas = image.image().clone();
@@ -268,33 +228,6 @@ impl Gallery {
             renderer.forget();
         }
     }
-}
-
-/// Returns the inputs of thumbnails of `size` pixels. `None` while the shaders or resources of the picture are incomplete.
-pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
-    let state = viewer.shown()?;
-    let shaders = viewer.session.shaders.clone()?;
-    let is_current = state.shaders.generation == shaders.generation && !viewer.shader.compiling;
-    if !is_current || !shaders.is_complete() || viewer.times_next_frame() {
-        return None;
-    }
-    let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());
-    let shown = Shown {
-        settings: Settings { mode: String::new(), ..viewer.session.settings.clone() },
-        shaders: Arc::as_ptr(&shaders) as usize,
-        scene: viewer.session.scene()?,
-        revisions: viewer.session.revisions,
-        environment: environment as usize,
-        target: target(viewer, state.pipelines.target),
-        size,
-    };
-    Some((shaders, shown))
-}
-
-/// A software device spends most of the time of multisampled thumbnails on small triangles. It draws twice the size instead, with one
-/// sample per pixel, which egui halves.
-fn target(viewer: &Viewer, picture: TargetFormat) -> TargetFormat {
-    if viewer.gpu_is_fast() { picture } else { TargetFormat { samples: 1, ..picture } }
 }
 
 /// Pixels of a thumbnail per pixel of the window, along each side.

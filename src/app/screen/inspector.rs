@@ -3,14 +3,14 @@
 //! Like thumbnails they wait for everything else. They are drawn when the picture has come to rest, a few sets of modes in each frame, with
 //! pipelines that the worker builds when it has nothing else to do. A failure leaves the values before.
 
-use std::collections::{HashSet, VecDeque};
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::FRAMES_IN_FLIGHT;
-use super::gallery::{REST, REST_ON_CPU, Shown, shown};
+use super::sets::{BoundSets, Shown, shown, time_to_rest};
 use crate::app::viewer::Viewer;
-use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat, mode_sets};
+use crate::frame::{TargetFormat, mode_sets};
 use crate::gpu::{Encoder, Frames, GpuError, SetLayouts};
 use crate::render::{PixelModes, Thumbnails};
 use crate::shader::{Mode, ShaderSet};
@@ -137,10 +137,8 @@ impl PixelReader {
             }
             return Ok(Some(Duration::ZERO));
         }
-        let rest = if viewer.gpu_is_fast() { REST } else { REST_ON_CPU };
-        let rested = self.since.map_or(rest, |since| since.elapsed());
-        if rested < rest {
-            return Ok(Some(rest - rested));
+        if let Some(left) = time_to_rest(viewer, self.since) {
+            return Ok(Some(left));
         }
         match self.draw_sets(encoder, slot, viewer, layouts, &shaders, stale) {
             Err(GpuError::OutOfMemory(_)) => {
@@ -161,28 +159,8 @@ impl PixelReader {
         shaders: &Arc<ShaderSet>,
         stale: Vec<Vec<&Mode>>,
     ) -> Result<Option<Duration>, GpuError> {
-        let Some((Shown { settings, scene, revisions, target, size, .. }, at)) = &self.shown else { return Ok(None) };
-        let (mut ready, mut missing, mut is_new) = (Vec::new(), VecDeque::new(), false);
-        for set in stale {
-            let inputs = FrameInputs {
-                settings,
-                shaders,
-                scene: Some(scene),
-                revisions: *revisions,
-                clock: Clock::default(),
-                size: *size,
-                target: *target,
-            };
-            let state = Arc::new(FrameState::of_modes(&inputs, &set));
-            match viewer.resources.bind(&state, false)? {
-                Some(frame) => ready.push((set, frame)),
-                None => {
-                    let slugs = set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" ");
-                    is_new |= self.asked.insert(slugs);
-                    missing.push_back(state.pipelines.clone());
-                }
-            }
-        }
+        let Some((shown, at)) = &self.shown else { return Ok(None) };
+        let BoundSets { ready, missing, is_new } = shown.bind(viewer, shaders, stale, &mut self.asked)?;
         if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new) {
             viewer.threads.worker.build_inspected(pipelines, missing);
         }

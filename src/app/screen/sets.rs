@@ -1,0 +1,110 @@
+//! Sets of modes that are drawn beside the picture: for thumbnails and for the inspected pixel. Both wait until the picture rests, and
+//! show what the picture shows.
+
+use std::collections::{HashSet, VecDeque};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::app::viewer::Viewer;
+use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
+use crate::gpu::GpuError;
+use crate::render::{BoundFrame, GpuEnvironment};
+use crate::settings::Settings;
+use crate::shader::{Mode, ShaderSet};
+
+/// The time without a change after which thumbnails are drawn.
+const REST: Duration = Duration::from_millis(150);
+/// The same on a software device, where the first draw of a pipeline compiles it and holds up the frames behind it.
+const REST_ON_CPU: Duration = Duration::from_millis(500);
+
+/// Everything that the sets show, but the modes.
+#[derive(PartialEq)]
+pub(super) struct Shown {
+    settings: Settings,
+    /// Address of the shaders: generations may count from 1 again.
+    shaders: usize,
+    scene: Scene,
+    revisions: Revisions,
+    environment: usize,
+    pub(super) target: TargetFormat,
+    /// Pixels of a picture.
+    pub(super) size: (u32, u32),
+}
+
+/// The sets whose pipelines are there, and the pipelines that are not.
+pub(super) struct BoundSets<'a> {
+    pub(super) ready: Vec<(Vec<&'a Mode>, BoundFrame)>,
+    pub(super) missing: VecDeque<PipelineRequest>,
+    /// Whether the worker has not been asked for all of the missing pipelines.
+    pub(super) is_new: bool,
+}
+
+impl Shown {
+    /// Binds the pipelines of each set. `asked` has the sets, by the slugs of their modes, whose pipelines the worker was asked for.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub(super) fn bind<'a>(
+        &self,
+        viewer: &mut Viewer,
+        shaders: &Arc<ShaderSet>,
+        sets: Vec<Vec<&'a Mode>>,
+        asked: &mut HashSet<String>,
+    ) -> Result<BoundSets<'a>, GpuError> {
+        let inputs = FrameInputs {
+            settings: &self.settings,
+            shaders,
+            scene: Some(&self.scene),
+            revisions: self.revisions,
+            clock: Clock::default(),
+            size: self.size,
+            target: self.target,
+        };
+        let mut bound = BoundSets { ready: Vec::new(), missing: VecDeque::new(), is_new: false };
+        for set in sets {
+            let state = Arc::new(FrameState::of_modes(&inputs, &set));
+            match viewer.resources.bind(&state, false)? {
+                Some(frame) => bound.ready.push((set, frame)),
+                None => {
+                    let slugs = set.iter().map(|mode| mode.slug.as_str()).collect::<Vec<_>>().join(" ");
+                    bound.is_new |= asked.insert(slugs);
+                    bound.missing.push_back(state.pipelines.clone());
+                }
+            }
+        }
+        Ok(bound)
+    }
+}
+
+/// The time until the picture has rested long enough since its last change.
+pub(super) fn time_to_rest(viewer: &Viewer, since: Option<Instant>) -> Option<Duration> {
+    let rest = if viewer.gpu_is_fast() { REST } else { REST_ON_CPU };
+    since.and_then(|since| rest.checked_sub(since.elapsed())).filter(|left| !left.is_zero())
+}
+
+/// Returns the inputs of sets that are drawn with `size` pixels. `None` while the shaders or resources of the picture are incomplete.
+pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
+    let state = viewer.shown()?;
+    let shaders = viewer.session.shaders.clone()?;
+    let is_current = state.shaders.generation == shaders.generation && !viewer.shader.compiling;
+    if !is_current || !shaders.is_complete() || viewer.times_next_frame() {
+        return None;
+    }
+    let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());
+    let shown = Shown {
+        settings: Settings { mode: String::new(), ..viewer.session.settings.clone() },
+        shaders: Arc::as_ptr(&shaders) as usize,
+        scene: viewer.session.scene()?,
+        revisions: viewer.session.revisions,
+        environment: environment as usize,
+        target: target(viewer, state.pipelines.target),
+        size,
+    };
+    Some((shaders, shown))
+}
+
+/// A software device spends most of the time of multisampled thumbnails on small triangles. It draws twice the size instead, with one
+/// sample per pixel, which egui halves.
+fn target(viewer: &Viewer, picture: TargetFormat) -> TargetFormat {
+    if viewer.gpu_is_fast() { picture } else { TargetFormat { samples: 1, ..picture } }
+}
