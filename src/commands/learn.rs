@@ -35,6 +35,12 @@ pub struct Args {
 /// Runs the command.
 pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     let what = args.what.take();
+    if args.common.shaders.is_some() {
+        return Err(Failure::Usage(
+            "an exercise has a shader tree of its own, so `learn` takes no --shaders; --dir chooses where it lies"
+                .into(),
+        ));
+    }
     if what.as_deref() != Some("check") && args.exercise.is_some() {
         return Err(Failure::Usage(
             "one exercise at a time; only `specula learn check EXERCISE` takes two words".into(),
@@ -108,6 +114,9 @@ fn check(args: &Args) -> Result<(), Failure> {
     drop(lab);
     let findings = findings?;
     check_validation(&gpu)?;
+    if findings.iter().all(|finding| finding.passed) {
+        Progress::load().update(exercise, |record| record.solved = true);
+    }
     report(exercise, &findings, args.json)
 }
 

@@ -17,12 +17,16 @@ const MARK: &str = "<!-- specula learn ";
 /// A message: the folder cannot be written, or holds something else.
 pub fn prepare(parent: &Path, exercise: &Exercise) -> Result<PathBuf, String> {
     let folder = parent.join(&exercise.name);
-    if exercise_of(&folder).is_some_and(|found| found.name == exercise.name) && is_specula_tree(&folder) {
-        return Ok(folder);
-    }
     let error = |error: &dyn std::fmt::Display| {
         format!("cannot write exercise {} to {}: {error}", exercise.number, folder.display())
     };
+    let is_own = exercise_of(&folder).map_or(!folder.join(TEXT).exists(), |found| found.name == exercise.name);
+    if is_own && is_specula_tree(&folder) {
+        if !folder.join(TEXT).exists() {
+            replace_file(&folder.join(TEXT), page(exercise).as_bytes()).map_err(|e| error(&e))?;
+        }
+        return Ok(folder);
+    }
     let is_used = std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some());
     if is_used {
         return Err(error(&"the folder holds other files. Choose another with --dir"));

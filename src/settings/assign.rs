@@ -17,9 +17,11 @@ impl Settings {
     /// # Errors
     /// No `=`, a path that does not exist, or a value of the wrong kind: what was expected, with the nearest name.
     pub fn assign(&mut self, assignment: &str) -> Result<(), String> {
-        let (path, text) = assignment
-            .split_once('=')
-            .ok_or_else(|| format!("'{assignment}' has no value: expected path=value, as in view.ev=1 {SEE}"))?;
+        // The name of a material may have a `=`, its factors have none.
+        let is_factor = assignment.trim_start().starts_with(MATERIALS);
+        let parts = if is_factor { assignment.rsplit_once('=') } else { assignment.split_once('=') };
+        let (path, text) =
+            parts.ok_or_else(|| format!("'{assignment}' has no value: expected path=value, as in view.ev=1 {SEE}"))?;
         let (path, text) = (path.trim(), text.trim());
         if let Some(of_material) = path.strip_prefix(MATERIALS) {
             return self.assign_factor(of_material, text);
@@ -29,7 +31,11 @@ impl Settings {
         let full = if is_own { format!("shader.{path}") } else { path.to_owned() };
         let old = find(&known, &full)?;
         let is_text = matches!(old, Some(toml::Value::String(_))) && !full.starts_with("shader.");
+        // A list of names: numbers in it are names too.
+        let is_names = matches!(old, Some(toml::Value::Array(list)) if list.iter().all(toml::Value::is_str));
         let value = match parse(text) {
+            toml::Value::Array(list) if is_names && list.iter().all(toml::Value::is_str) => toml::Value::Array(list),
+            _ if is_names => toml::Value::String(text.trim_matches('"').into()),
             value if is_text && !value.is_str() => toml::Value::String(text.into()),
             value => value,
         };

@@ -115,12 +115,15 @@ impl Jobs {
     }
 }
 
+/// Most build requests that are remembered, so that a failed one is not sent again with every frame.
+const MOST_ASKED: usize = 16;
+
 /// The window's end of the worker. Dropping it ends the thread and waits for it.
 pub(crate) struct Worker {
     jobs: Option<Jobs>,
     snapshot: Arc<Mutex<Snapshot>>,
-    /// The newest build request that has not succeeded yet.
-    asked: Option<Build>,
+    /// The build requests since the last success, the newest first: as many as modes can lie side by side.
+    asked: VecDeque<Build>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -154,7 +157,7 @@ impl Worker {
             outbox: outbox.clone(),
         };
         let thread = std::thread::spawn(move || state.run());
-        Self { jobs: Some(Jobs { sender, edits }), snapshot, asked: None, thread: Some(thread) }
+        Self { jobs: Some(Jobs { sender, edits }), snapshot, asked: VecDeque::new(), thread: Some(thread) }
     }
 
     /// Sets what the next reload builds pipelines for.
@@ -176,8 +179,9 @@ impl Worker {
     /// Builds pipelines. The newest request wins. A request that is running or has failed is not sent again.
     pub(crate) fn build(&mut self, set: &Arc<PipelineSet>, request: &PipelineRequest) {
         let is_asked = |(asked, for_this): &Build| Arc::ptr_eq(asked, set) && for_this == request;
-        if !self.asked.as_ref().is_some_and(is_asked) {
-            self.asked = Some((set.clone(), request.clone()));
+        if !self.asked.iter().any(is_asked) {
+            self.asked.truncate(MOST_ASKED - 1);
+            self.asked.push_front((set.clone(), request.clone()));
             self.send(Job::Build((set.clone(), request.clone())));
         }
     }
@@ -198,9 +202,9 @@ impl Worker {
         self.send(Job::AskDriver((set.clone(), request.clone())));
     }
 
-    /// Marks the newest build as successful, or lets a failed one be tried again.
+    /// Notes that a build has succeeded, or lets failed ones be tried again.
     pub(crate) fn built(&mut self) {
-        self.asked = None;
+        self.asked.clear();
     }
 
     /// Tells the worker that the first frame of a reload is on screen, so that it compiles the stages that are not.

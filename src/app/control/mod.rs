@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use super::viewer::Viewer;
 use crate::control::{Asked, Reply, Request};
+use crate::shader::expression::is_about_expression;
 use crate::shader::{Diagnostic, Severity};
 pub(super) use captures::{Captures, Work};
 use requests::short;
@@ -190,7 +191,13 @@ impl Viewer {
     }
 
     fn has_errors(&self) -> bool {
-        self.session.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
+        self.errors().next().is_some()
+    }
+
+    /// The errors of the shaders. A watched expression that does not compile is none.
+    fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
+        let is_error = |found: &&Diagnostic| found.severity == Severity::Error && !is_about_expression(found);
+        self.session.diagnostics.iter().filter(is_error)
     }
 
     /// Whether there are no shaders, and an edit is needed before there are.
@@ -208,8 +215,7 @@ impl Viewer {
 
     /// Answers with the errors of the shaders.
     fn without_picture(&self, reply: Reply) {
-        let errors: Vec<&Diagnostic> =
-            self.session.diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error).collect();
+        let errors: Vec<&Diagnostic> = self.errors().collect();
         let message = errors.first().map_or_else(|| "there is no picture".to_owned(), |first| first.one_line());
         reply.error_with(message, json!({ "diagnostics": errors }));
     }

@@ -84,8 +84,9 @@ fn compare(entry: &Entry, query: &str) -> Option<(Class, Vec<Range<usize>>)> {
     all.then(|| (class, in_title.into_iter().flatten().collect()))
 }
 
-/// The title of a switch without its action.
+/// The title of a switch without its action, and of a panel without that word.
 fn name(title: &str) -> &str {
+    let title = title.strip_prefix("panel: ").unwrap_or(title);
     title.strip_suffix(": turn on").or_else(|| title.strip_suffix(": turn off")).unwrap_or(title)
 }
 
@@ -146,6 +147,9 @@ mod tests {
         assert_eq!(titles(&commands, "undo")[0], "Undo");
         assert_eq!(titles(&commands, "f12"), ["Screenshot"]);
         assert_eq!(titles(&commands, "camera")[0], "Panel: Camera", "a title comes before a word of another entry");
+        let named =
+            [entry("Inspector of something", false), Entry::new("Panel", "Panel: Inspector".into(), Action::ShowKeys)];
+        assert_eq!(titles(&named, "inspector")[0], "Panel: Inspector");
         assert!(titles(&commands, "no such words").is_empty());
         assert_eq!(titles(&commands, "").len(), commands.len());
     }

@@ -45,9 +45,9 @@ fn bookmarks(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) 
             let button = ui.add(Button::new(if is_kept { text.color(ACCENT) } else { text.color(QUIET) }));
             let hint = match is_kept {
                 true => {
-                    format!("Return to this camera (Ctrl+{number}). Shift+click keeps the present one in its place")
+                    format!("Return to this camera (Ctrl+{number}). Shift+click replaces it with the current camera")
                 }
-                false => format!("Keep this camera as {number} (Ctrl+Shift+{number})"),
+                false => format!("Store the current camera as {number} (Ctrl+Shift+{number})"),
             };
             if button.on_hover_text(hint).clicked() {
                 let keeps = !is_kept || ui.input(|input| input.modifiers.shift);

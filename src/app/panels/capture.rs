@@ -65,7 +65,7 @@ pub(super) fn show(
     row(
         ui,
         "Size",
-        "Pixels of the file. A size of its own is drawn beside the window, whose picture stays as it is",
+        "Size of the file in pixels. Any size is possible: the picture in the window does not change",
         |ui| size(ui, &mut state.size, shown),
     );
     row(
@@ -151,7 +151,7 @@ pub(super) fn show(
         let (frames, fps, size) = (Some(state.frames), Some(state.fps), state.size);
         ask(Request::Turntable(Turntable { file, frames, fps, size, turn }));
     }
-    let about = "Write the versions of the shaders since the start to specula-timeline-N, as they look with the settings of now";
+    let about = "Write all shader versions of this session to specula-timeline-N, drawn with the current settings";
     if ui
         .add_enabled(versions > 1, Button::new("Write timeline"))
         .on_hover_text(about)
@@ -183,14 +183,14 @@ fn progress(ui: &mut Ui, captures: &Captures, commands: &mut Vec<Command>) {
         };
         ui.allocate_ui_with_layout(size, center, |ui| {
             let bar = ProgressBar::new(part).desired_width((size.x - 66.0).max(40.0)).text(RichText::new(text).small());
-            ui.add(bar).on_hover_text("Pictures that are drawn");
-            let about = "End it after the picture that is being drawn. Of numbered frames, those that are written stay";
+            ui.add(bar).on_hover_text("Pictures drawn so far");
+            let about = "Stop after the picture in progress. Numbered frames that were already written stay";
             if ui.button("Cancel").on_hover_text(about).clicked() {
                 running.cancel();
             }
         });
     }
-    if captures.iter().count() > 1 && button(ui, "Cancel all", "End everything that is under way") {
+    if captures.iter().count() > 1 && button(ui, "Cancel all", "Stop all captures in progress") {
         commands.push(Command::CancelCaptures);
     }
 }

@@ -91,7 +91,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec
         };
         ui.horizontal(|ui| {
             let write = ui.add_enabled(can_write, Button::new("Write"));
-            if write.on_hover_text("Change these values in the files; all else stays as it is").clicked() {
+            if write.on_hover_text("Change these values in the files and nothing else").clicked() {
                 commands.extend(edits.clone().ok().map(Command::WriteEdits));
                 closes = true;
             }

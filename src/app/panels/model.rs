@@ -106,7 +106,7 @@ fn place(ui: &mut Ui, settings: &mut Settings) {
     let is_moved = settings.model != ModelSettings::default();
     heading(ui, "Transform");
     TRANSFORM.iter().for_each(|row| number(ui, settings, row));
-    if is_moved && ui.small_button("Reset").on_hover_text("Stand where the file places it").clicked() {
+    if is_moved && ui.small_button("Reset").on_hover_text("Return to the transform of the file").clicked() {
         settings.model = ModelSettings::default();
     }
 }

@@ -45,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     let constants: Vec<&Constant> =
         constants.into_iter().filter(|c| is_found([&c.label, &c.name, &c.group, &c.doc])).collect();
     if constants.is_empty() && parameters.is_empty() {
-        ui.label(RichText::new("No parameter has these words").small().color(QUIET));
+        ui.label(RichText::new("No parameter matches").small().color(QUIET));
     }
     // Without a group first, then group by group in the order in which the tree names them.
     let mut groups = vec![""];

@@ -149,17 +149,17 @@ fn show_parameters<'a>(
 fn clock(ui: &mut Ui, playback: &mut Playback) {
     ui.horizontal_wrapped(|ui| {
         let label = if playback.paused { "Play" } else { "Pause" };
-        if ui.button(label).on_hover_text("Let frame.time_s run, or stop it").clicked() {
+        if ui.button(label).on_hover_text("Run or stop frame.time_s").clicked() {
             playback.paused = !playback.paused;
         }
-        if ui.button("Step").on_hover_text("One frame of 1/60 s").clicked() {
+        if ui.button("Step").on_hover_text("Advance by 1/60 s").clicked() {
             playback.step();
         }
-        if ui.button("0").on_hover_text("Back to 0 s").clicked() {
+        if ui.button("0").on_hover_text("Restart at 0 s").clicked() {
             playback.restart();
         }
         let speed = egui::DragValue::new(&mut playback.speed).range(0.0..=10.0).speed(0.01).suffix("×");
-        ui.add(speed).on_hover_text("Speed of the time");
+        ui.add(speed).on_hover_text("Playback speed");
         ui.label(RichText::new(format!("{:.1} s", playback.time_s())).monospace().color(QUIET));
     });
 }

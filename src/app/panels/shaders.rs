@@ -98,11 +98,11 @@ fn words(status: &ShaderStatus, generation: u64, errors: usize, cut_short: bool)
     match (status.compiling, errors) {
         (true, _) => ("Compiling…".into(), "The picture stays until the new shaders are ready"),
         (_, 0) if generation == 0 => ("No shaders yet".into(), "The first shaders have not compiled yet"),
-        (_, 0) => {
-            (format!("Generation {generation}").into(), "Number of the shaders on screen: 1 is that of the start")
+        (_, 0) => (format!("Generation {generation}").into(), "Counts the successful reloads: 1 is the first build"),
+        (_, errors) if cut_short => {
+            (plural(errors, "error").into(), "A loop did not end, so the picture is incomplete")
         }
-        (_, errors) if cut_short => (plural(errors, "error").into(), "A loop did not end"),
-        (_, errors) => (plural(errors, "error").into(), "The picture is that of the last good shaders"),
+        (_, errors) => (plural(errors, "error").into(), "The picture still uses the last shaders that compiled"),
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut TimingState, device
 /// Describes the frame time cost of the last edit in a sentence.
 fn cost(ui: &mut Ui, viewer: &Viewer) {
     let Some(cost) = viewer.timing.cost() else {
-        let text = "The cost of an edit stands here after the next one";
+        let text = "The cost of your next edit will appear here";
         ui.label(RichText::new(text).small().color(QUIET));
         return;
     };
@@ -67,8 +67,8 @@ fn cpu(ui: &mut Ui, viewer: &Viewer) {
     let (frames, summary) = viewer.timing.summary();
     Grid::new("cpu").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         let hint = format!(
-            "CPU time to run the panels and to make triangles of them, in the last frame. In {} frames: median {:.2}, 95 % below \
-             {:.2}, at most {:.2} ms. It should stay below {UI_LIMIT_MS} ms",
+            "CPU time to lay out and tessellate the panels in the last frame. Over {} frames: median {:.2}, 95th percentile \
+             {:.2}, maximum {:.2} ms. The budget is {UI_LIMIT_MS} ms",
             grouped(frames as f64),
             summary.median,
             summary.p95,
@@ -120,7 +120,7 @@ fn memory(ui: &mut Ui, (device, process): (&MemoryUse, Option<u64>)) {
                     format!("{} of {}", mib(used), mib(budget)),
                     "What the driver counts for this process, and what it may take (VK_EXT_memory_budget)",
                 ),
-                None => (mib(heap.size), "Size of the heap. This driver does not tell how much is in use"),
+                None => (mib(heap.size), "Size of the heap. This driver does not report how much is in use"),
             };
             row(ui, (name, QUIET.color()), &value, hint);
         }

@@ -77,7 +77,7 @@ fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
             commands.push(Command::RestoreSession);
         }
         let mut always = last_sessions.is_always();
-        let hint = "At a start without a model and options, go on with the last session of the folder";
+        let hint = "When Specula starts in this folder without arguments, continue its last session";
         if ui.checkbox(&mut always, "Restore at start").on_hover_text(hint).changed() {
             commands.push(Command::RestoreAlways(always));
         }

@@ -1,5 +1,6 @@
 //! Exercises: opens their trees, has the checker measure them, and keeps what the student has done.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ use crate::app::learn::{LearnCommand, Measured};
 use crate::events::{Event, emit};
 use crate::learn::{Exercise, exercise_of, exercises, prepare};
 use crate::settings::Settings;
-use crate::shader::TreePath;
+use crate::shader::{ShaderSet, TreePath};
 use crate::threads::Message;
 use crate::threads::checker::Checked;
 
@@ -43,8 +44,8 @@ impl Viewer {
             (LearnCommand::StartOver, Some(_)) if !learning.asks => learning.asks = true,
             (LearnCommand::StartOver, Some(exercise)) => {
                 learning.asks = false;
-                let text = |path: &TreePath| Some((path.clone(), exercise.text_at_start(path)?));
-                let files = exercise.solution().filter_map(|(path, _)| text(path)).collect();
+                let shaders = self.session.shaders.as_deref();
+                let files = files_to_restore(exercise, shaders);
                 self.write_exercise(files, "The exercise starts again");
             }
             (LearnCommand::Edit, Some(exercise)) => self.edit_exercise(exercise),
@@ -155,4 +156,15 @@ impl Viewer {
             Some(Message::Say(write_files(&writes).map_or_else(|message| message, |()| done.to_owned())))
         });
     }
+}
+
+/// The files at the start of an exercise: those that the solution changes, and those that the shaders on screen have otherwise.
+fn files_to_restore(exercise: &Exercise, shaders: Option<&ShaderSet>) -> Vec<(TreePath, String)> {
+    let read = shaders.into_iter().flat_map(|shaders| shaders.texts.keys());
+    let paths: BTreeSet<&TreePath> = exercise.solution().map(|(path, _)| path).chain(read).collect();
+    let at_start = |path: &TreePath| Some((path.clone(), exercise.text_at_start(path)?));
+    let differs = |(path, text): &(TreePath, String)| {
+        shaders.and_then(|shaders| shaders.texts.get(path)).is_none_or(|now| **now != **text)
+    };
+    paths.into_iter().filter_map(at_start).filter(differs).collect()
 }

@@ -15,7 +15,7 @@ use std::fmt;
 use crate::shader::source::text::tokens;
 
 pub use follow::follow;
-pub use overlay::{MODE, Overlay, STAGE, components_of, is_virtual};
+pub use overlay::{MODE, Overlay, STAGE, components_of, is_about_expression, is_virtual};
 pub use scope::variables;
 
 /// An expression and the place where it is watched.

@@ -25,6 +25,13 @@ pub const MODE: &str = "expression";
 const MODE_ID: u32 = interface::PASS_MODES - 1;
 /// The function that the inserted calls name.
 const FUNCTION: &str = "watch_value";
+/// Begins the message of a diagnostic about the expression itself.
+const CANNOT_WATCH: &str = "cannot watch ";
+
+/// Whether a diagnostic is about the watched expression, so that the shaders are good without it.
+pub fn is_about_expression(diagnostic: &Diagnostic) -> bool {
+    diagnostic.message.starts_with(CANNOT_WATCH)
+}
 
 /// Whether a file is one of those that stand for a watched expression.
 pub fn is_virtual(path: &TreePath) -> bool {
@@ -114,7 +121,7 @@ impl Overlay {
     }
 
     fn diagnostic(&self, why: &str) -> Diagnostic {
-        Diagnostic { message: format!("cannot watch `{}` here: {why}", self.text), ..self.at.clone() }
+        Diagnostic { message: format!("{CANNOT_WATCH}`{}` here: {why}", self.text), ..self.at.clone() }
     }
 
     /// Converts compiler errors of the stage to errors of the expression.

@@ -56,7 +56,7 @@ pub(super) fn show(
         return;
     };
     if asked.is_none_or(|asked| asked.material != shown.of) {
-        ui.label(RichText::new("Measuring… the curves below are those of the material before").small().color(QUIET));
+        ui.label(RichText::new("Measuring… the curves below still show the previous material").small().color(QUIET));
     }
     let curves = match &shown.now {
         Ok(curves) => curves,
@@ -110,7 +110,7 @@ fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Re
         would reflect the light, 180° on the side of the light";
     ui.label(RichText::new(text).small()).on_hover_text(doc);
     if *light_deg >= 90.0 {
-        let text = "The light is below the horizon of this surface; the lobe is that of a light at 89°";
+        let text = "The light is below the horizon of this surface, so the lobe is shown for a light at 89°";
         ui.label(RichText::new(text).small().color(WARNING));
     }
     let left_out = left_out(reading);

@@ -186,7 +186,8 @@ fn bar(ui: &mut Ui, legend: &Legend<'_>) {
         }
     }
     ui.painter().add(mesh);
-    response.on_hover_text("Colors of the values between both numbers. The value at the mouse stays raw");
+    response
+        .on_hover_text("Colors of the values between both numbers. The readout at the mouse still shows the raw value");
 }
 
 /// Switches of the channels, the colormap and the histogram.
@@ -273,7 +274,7 @@ fn histogram(ui: &mut Ui, legend: &Legend<'_>, view: &ViewSettings, state: &mut 
     });
     let axis = if legend.shown().is_some() { "value" } else { "stops from middle gray after exposure" };
     response.on_hover_text(format!(
-        "Horizontal: {axis}; the outer columns hold all beyond. Vertical: square root of the count"
+        "Horizontal: {axis}; the outer columns also count all values beyond. Vertical: square root of the count"
     ));
 }
 

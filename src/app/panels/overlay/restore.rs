@@ -28,7 +28,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
                 if ui.button("Always").on_hover_text(hint).clicked() {
                     commands.extend([Command::RestoreAlways(true), Command::RestoreSession]);
                 }
-                if ui.button("Not now").on_hover_text("The menu Open still has it").clicked() {
+                if ui.button("Not now").on_hover_text("You can still restore it from the menu Open").clicked() {
                     viewer.offers_session = false;
                 }
             });

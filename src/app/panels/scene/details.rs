@@ -150,7 +150,9 @@ fn parts(
 /// Offers lights that do not shine.
 fn use_source(ui: &mut Ui, viewer: &mut Viewer, source: LightSource, text: &str) {
     let now = &mut viewer.session.settings.lights.source;
-    if *now != source && ui.button(text).on_hover_text("This light does not shine now").clicked() {
+    if *now != source
+        && ui.button(text).on_hover_text("This light is off: another source of lights is selected").clicked()
+    {
         *now = source;
     }
 }

@@ -144,7 +144,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut FilesState, command
         .on_hover_text("Files that no stage includes are not listed");
     let rows = rows(&state.graph, &state.search, &state.closed, &state.unfolded);
     if rows.is_empty() {
-        ui.label(RichText::new("No file has these words").small().color(QUIET));
+        ui.label(RichText::new("No file matches").small().color(QUIET));
     }
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, ROW, rows.len(), |ui, range| {

@@ -26,8 +26,9 @@ pub(super) struct StagesState {
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut StagesState) {
     ui.horizontal(|ui| {
         let count = viewer.stages.rows().len();
-        ui.checkbox(&mut state.shows_all, RichText::new(format!("All {count}")).small())
-            .on_hover_text("Also list stages that draw nothing now: bakes, other modes, passes that are off");
+        ui.checkbox(&mut state.shows_all, RichText::new(format!("All {count}")).small()).on_hover_text(
+            "Also list the stages that the current picture does not use: bakes, other modes, disabled passes",
+        );
         ask(ui, viewer);
     });
     let is_shown = |row: &&StageRow| state.shows_all || row.state <= StageState::Pending;
@@ -64,13 +65,13 @@ fn ask(ui: &mut Ui, viewer: &mut Viewer) {
     let tells = viewer.gpu.tells_statistics();
     let hint = match tells {
         true => {
-            "Ask the driver for the registers, instructions, spills and size of the machine code of each picture \
-             (VK_KHR_pipeline_executable_properties). It builds each pipeline once more for that, in the background, when \
-             nothing else is to be done"
+            "Query the driver's statistics for each pipeline of the picture: registers, instructions, spills, code size \
+             (VK_KHR_pipeline_executable_properties). The driver builds each pipeline once more for this, in the background \
+             while the program is idle"
         }
         false => {
-            "This driver tells nothing of its machine code: it lacks VK_KHR_pipeline_executable_properties. The words of \
-             SPIR-V are those that it gets"
+            "This driver lacks VK_KHR_pipeline_executable_properties, so it reports no statistics of its machine code. The \
+             SPIR-V word counts below are exact"
         }
     };
     let asks = egui::Checkbox::new(&mut viewer.shader.asks_driver, RichText::new("Ask the driver").small());
@@ -124,7 +125,7 @@ fn numbers(ui: &mut Ui, row: &StageRow) -> bool {
     }
     let text = RichText::new(format!("· {}", times.join(" + "))).monospace().small().color(QUIET);
     let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
-    let hover = "Time to compile the stage to SPIR-V, the last time that it was, and the driver's time for it";
+    let hover = "Time of the last compilation to SPIR-V, and the driver's time to build the pipeline";
     label.on_hover_text(hover).clicked()
 }
 
@@ -151,14 +152,22 @@ fn change(ui: &mut Ui, figure: &Figure) {
 
 /// All that is known of a stage.
 fn details(ui: &mut Ui, row: &StageRow) {
-    let mut lines = vec![("Words as compiled", grouped(row.now.compiled as f64), "With all that constants switch off")];
+    let mut lines = vec![(
+        "Words as compiled",
+        grouped(row.now.compiled as f64),
+        "SPIR-V before specialization, including code that constants disable",
+    )];
     if let Some(largest) = &row.now.largest {
         lines.push((
             "Words with its constants",
             grouped(largest.words_before as f64),
             "What this picture needs, before Specula's optimizer",
         ));
-        lines.push(("Words that the driver gets", grouped(largest.words as f64), "After the optimizer"));
+        lines.push((
+            "Words given to the driver",
+            grouped(largest.words as f64),
+            "SPIR-V after specialization and optimization",
+        ));
         lines.push((
             "Pipelines in the picture",
             row.now.pipelines.to_string(),
@@ -168,7 +177,7 @@ fn details(ui: &mut Ui, row: &StageRow) {
         lines.push((
             "Pipeline",
             format!("{:.1} ms{cached}", largest.pipeline_ms),
-            "Time that the driver took for the pipeline with all of its stages",
+            "Driver time to build the pipeline with all of its stages",
         ));
         if let Some(ms) = largest.driver_ms {
             lines.push(("This stage in it", format!("{ms:.1} ms"), "As the driver tells it"));
