@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 use specula::render::Capture;
-use support::{Session, glb, load, ready, settings, stages};
+use support::{Session, assert_validated, glb, load, ready, settings, stages};
 
 const EYE: DVec3 = DVec3::new(1.0, 0.5, 2.5);
 const PLACE: DVec3 = DVec3::new(1.5, 1.2, 2.0);
@@ -110,6 +110,22 @@ fn the_zeltner_sheen_gains_no_energy_where_charlie_does() {
         assert_eq!(red, 0, "roughness {roughness}");
         assert!((0.3..0.95).contains(&largest), "roughness {roughness}: {largest}");
     }
+}
+
+#[test]
+fn under_a_sun_sheen_is_as_bright_as_random_paths() {
+    for sheen in ["SHEEN=Charlie", "SHEEN=ZeltnerLTC"] {
+        for roughness in [0.2, 0.5, 1.0] {
+            let more = [sheen, "lights.source=none", "environment.name=sky", "view.frames=64"];
+            let mut session = sphere(roughness, &more);
+            let [picture, paths] = ["final", "monte-carlo"]
+                .map(|mode| covered(&session.mode(mode)).iter().map(|light| light.element_sum()).sum::<f64>());
+            let error = picture / paths - 1.0;
+            println!("{sheen}, roughness {roughness}: {:.1} %", 100.0 * error);
+            assert!(error.abs() < 0.05, "{sheen}, roughness {roughness}: {:.1} % off", 100.0 * error);
+        }
+    }
+    assert_validated();
 }
 
 #[test]

@@ -40,9 +40,9 @@ vec4 filtered_mean(vec3 n, float roughness) {
     return vec4(sum.rgb / sum.w, sum.w / float(task.samples));
 }
 
+// Without the sun, which is lit as a lamp is (lighting/sun.glsl).
 vec3 small_light_sum(vec3 n, float roughness) {
-    float to_sun = dot(listed.sun.direction, n);
-    vec3 sum = to_sun > 0.0 ? listed.sun.intensity * lobe_weight(to_sun, roughness) : vec3(0.0);
+    vec3 sum = vec3(0.0);
     for (uint i = 0u; i < listed_lights(); ++i) {
         float n_dot_l = dot(listed.lights[i].direction, n);
         if (n_dot_l > 0.0) sum += listed.lights[i].intensity * lobe_weight(n_dot_l, roughness);

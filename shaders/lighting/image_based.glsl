@@ -96,7 +96,9 @@ Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
         light.clearcoat = reflected_coat(s, v, albedo.clearcoat) * occlusion;
     }
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
-        light.sheen = albedo.sheen * prefiltered_sheen(reflect(-v, s.n), s.sheen_roughness) * visibility;
+        vec3 sheen = albedo.sheen * prefiltered_sheen(reflect(-v, s.n), s.sheen_roughness);
+        if ((FEATURES & FEATURE_SUN) != 0u) sheen += frame.environment_intensity * sun_from_sheen(s, v);
+        light.sheen = sheen * visibility;
     }
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
         light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n) * visibility;

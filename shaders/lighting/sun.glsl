@@ -24,4 +24,10 @@ vec3 reflected_sun(Surface s, vec3 v, bool is_coat) {
     return frame.sun_intensity * weight_of(s, v, world_from_map(frame.sun_direction), is_coat);
 }
 
+// The same for sheen, which is wider than the disk.
+vec3 sun_from_sheen(Surface s, vec3 v) {
+    vec3 l = world_from_map(frame.sun_direction);
+    return frame.sun_intensity * evaluate_brdf(s, l, v).sheen * max(dot(s.n, l), 0.0);
+}
+
 #endif
