@@ -57,6 +57,7 @@ void main() {
     float alpha = mix(frame.background.a, 1.0, coverage);
     vec3 color = mix(back, front, coverage / max(alpha, 1e-6));
     if (ENCODE == ENCODE_COLOR) color = srgb_from_linear(color);
-    if (TONEMAP != TONEMAP_OFF) color += dither_noise(gl_FragCoord.xy - frame.viewport_origin_px);
+    // Not on a plain background, which has no bands. A device compresses equal pixels.
+    if (TONEMAP != TONEMAP_OFF) color += coverage * dither_noise(gl_FragCoord.xy - frame.viewport_origin_px);
     out_color = vec4(color, alpha);
 }
