@@ -120,13 +120,13 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "turntable",
-        r#""file": "spin.gif" | ".webp" | ".png", "frames"?: n, "fps"?: n, "size"?: [w,h], "turn"?: "camera" | "light" | "model""#,
-        "Writes a full turn as an animation, or as numbered PNGs",
+        r#""file": "spin.mp4" | ".gif" | ".webp" | ".png", "frames"?: n, "fps"?: n, "size"?: [w,h], "turn"?: "camera" | "light" | "model""#,
+        "Writes a full turn as a video, as an animation, or as numbered PNGs",
     ),
     row(
         "timeline",
-        r#""file": "edits.webp", "fps"?: n, "size"?: [w,h]"#,
-        "Writes the versions of the shaders as an animation",
+        r#""file": "edits.mp4" | ".gif" | ".webp" | ".png", "fps"?: n, "size"?: [w,h]"#,
+        "Writes the versions of the shaders as a video or an animation",
     ),
     row(
         "cancel",
