@@ -12,6 +12,7 @@ use image::{DynamicImage, ImageBuffer, ImageFormat};
 use crate::render::Capture;
 use crate::settings::Settings;
 pub use look::{read_look, read_settings};
+use part::PartFile;
 pub use part::{Halt, remove_unfinished};
 
 /// Linux gives up after this many symbolic links, too.
@@ -108,10 +109,32 @@ pub fn write_image(image: &DynamicImage, path: &Path) -> Result<(), String> {
 /// # Errors
 /// The system cannot write it; the file is then as it was.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let target = follow_links(path)?;
-    let permissions = target.metadata().ok().map(|metadata| metadata.permissions());
-    part::replace(&target, bytes)?;
-    permissions.map_or(Ok(()), |permissions| std::fs::set_permissions(&target, permissions))
+    let mut replacement = Replacement::begin(path)?;
+    replacement.file.write_all(bytes)?;
+    replacement.finish()
+}
+
+/// The next content of a file, written piece by piece to a temporary file beside it. The file stays as it was until
+/// [`Replacement::finish`]; a replacement that is dropped unfinished leaves nothing.
+pub(crate) struct Replacement {
+    target: PathBuf,
+    pub(crate) file: PartFile,
+}
+
+impl Replacement {
+    /// Creates the temporary file. Through symbolic links, it is beside the file that they lead to.
+    pub(crate) fn begin(path: &Path) -> io::Result<Self> {
+        let target = follow_links(path)?;
+        let file = PartFile::create(&target)?;
+        Ok(Self { target, file })
+    }
+
+    /// Replaces the file, whose permissions stay.
+    pub(crate) fn finish(self) -> io::Result<()> {
+        let permissions = self.target.metadata().ok().map(|metadata| metadata.permissions());
+        self.file.finish()?;
+        permissions.map_or(Ok(()), |permissions| std::fs::set_permissions(&self.target, permissions))
+    }
 }
 
 fn write_bytes(bytes: &[u8], path: &Path) -> io::Result<()> {

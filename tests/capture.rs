@@ -8,9 +8,11 @@ use std::path::Path;
 
 use image::codecs::gif::GifDecoder;
 use image::codecs::webp::WebPDecoder;
-use image::{AnimationDecoder as _, GenericImageView as _, RgbaImage};
+use image::imageops::thumbnail;
+use image::{AnimationDecoder as _, DynamicImage, GenericImageView as _, RgbaImage};
 use support::open_image;
 use support::process::{Finished, run};
+use support::video::Video;
 
 /// Arguments of a `render` that is fast.
 const QUICK: [&str; 8] = ["render", "sphere-grid", "--env", "none", "--lights", "orbit", "--set", "view.msaa=1"];
@@ -28,6 +30,11 @@ fn distance(a: &RgbaImage, b: &RgbaImage) -> f64 {
     assert_eq!(a.dimensions(), b.dimensions());
     let sum: u64 = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
     sum as f64 / a.as_raw().len() as f64
+}
+
+/// The upper left 64x46 pixels, at half the size: a video has one color for two by two pixels, so only their mean is near.
+fn halved(image: &DynamicImage) -> RgbaImage {
+    thumbnail(&image.crop_imm(0, 0, 64, 46).into_rgba8(), 32, 23)
 }
 
 #[test]
@@ -78,6 +85,14 @@ fn a_turntable_is_a_full_turn() {
     assert_eq!(gif.len(), 4);
     assert!(distance(gif[0].buffer(), &first) < 8.0, "{}", distance(gif[0].buffer(), &first));
 
+    turn("spin.mp4");
+    let video = Video::read(&std::fs::read(path.join("spin.mp4")).unwrap());
+    assert_eq!(video.frames.len(), 4);
+    for (frame, webp) in video.frames.iter().zip(&frames) {
+        let apart = distance(&halved(&DynamicImage::from(frame.clone())), &halved(&webp.buffer().clone().into()));
+        assert!(apart < 2.0, "the video differs from the WebP by {apart}");
+    }
+
     turn("spin.png");
     for number in 1..=4 {
         let frame = open_image(&path.join(format!("spin.{number:04}.png"))).into_rgba8();
@@ -86,11 +101,45 @@ fn a_turntable_is_a_full_turn() {
 }
 
 #[test]
+fn a_video_has_the_size_and_the_times_that_were_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let args = ["--turntable", "7", "--fps", "2.5", "--size", "65x47"];
+    render(path, &[&args[..], &["--out", "spin.mp4"]].concat()).expect(0, &[]);
+    render(path, &["--turntable", "7", "--size", "65x47", "--out", "spin.png"]).expect(0, &[]);
+    let video = Video::read(&std::fs::read(path.join("spin.mp4")).unwrap());
+    // 4:2:0 needs even sides: the last column and row are there twice.
+    assert_eq!(video.size, (66, 48));
+    assert_eq!(video.times, [0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4]);
+    assert!((video.duration - 2.8).abs() < 1e-6, "{} s", video.duration);
+    assert_eq!(video.keyframes, [true, false, false, false, false, true, false], "every two seconds");
+    assert!(video.starts_fast, "a browser shows it while it loads");
+    // ITU-T H.273: primaries of BT.709, transfer of sRGB, matrix of BT.709, limited range.
+    assert_eq!(video.colors, *b"nclx\0\x01\0\x0d\0\x01\0");
+    for (index, frame) in video.frames.iter().enumerate() {
+        let picture = open_image(&path.join(format!("spin.{:04}.png", index + 1)));
+        let apart = distance(&halved(&DynamicImage::from(frame.clone())), &halved(&picture));
+        assert!(apart < 2.0, "frame {index} differs by {apart}");
+        for (outer, inner) in [((65, 20), (64, 20)), ((20, 47), (20, 46))] {
+            let luma = |(x, y)| DynamicImage::from(frame.clone()).into_luma8().get_pixel(x, y)[0];
+            let (last, before) = (luma(outer), luma(inner));
+            assert!(last.abs_diff(before) < 8, "{last} beside {before}");
+        }
+    }
+    // What the video replaces is gone whole, and nothing else is left.
+    std::fs::write(path.join("spin.mp4"), "old").unwrap();
+    render(path, &["--turntable", "2", "--size", "12x12", "--out", "spin.mp4"])
+        .expect(1, &["cannot write spin.mp4: an MP4 has 16 to 3840 pixels a side, and at most 2160 on the shorter"]);
+    assert_eq!(std::fs::read(path.join("spin.mp4")).unwrap(), b"old");
+    assert_eq!(std::fs::read_dir(path).unwrap().count(), 8);
+}
+
+#[test]
 fn what_cannot_be_written_is_told_before_any_work() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();
-    render(path, &["--turntable", "4", "--out", "a.mp4"])
-        .expect(2, &["no encoder for video", "ffmpeg -i a.%04d.png a.mp4"]);
+    render(path, &["--turntable", "4", "--out", "a.webm"])
+        .expect(2, &["a video must end in .mp4", "ffmpeg -i a.%04d.png a.webm"]);
     render(path, &["--turntable", "0", "--out", "a.gif"]).expect(2, &["0"]);
     render(path, &["--sheet", "all", "--out", "a.exr"]).expect(2, &["must end in .png"]);
     render(path, &["--sheet", "metalic", "--out", "a.png"]).expect(2, &["Did you mean `metallic`?"]);

@@ -1,4 +1,4 @@
-//! Frames to a file: GIF, animated WebP, or numbered PNGs for another encoder.
+//! Frames to a file: MP4, GIF, animated WebP, or numbered PNGs for another encoder.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -9,6 +9,7 @@ use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
 
 use super::CaptureError;
+use super::mp4::Mp4;
 use super::webp::{AnimatedWebP, LARGEST};
 use super::write;
 use crate::picture;
@@ -21,13 +22,16 @@ const FPS: std::ops::RangeInclusive<f32> = 0.1..=100.0;
 enum Format {
     Gif,
     WebP,
+    Mp4,
     Frames,
 }
 
-/// An animation that is being written. Nothing but numbered PNGs is on disk before [`Animation::finish`].
+/// An animation that is being written. Before [`Animation::finish`], nothing but numbered PNGs is on disk under its name.
 pub struct Animation {
     path: PathBuf,
-    ms: u32,
+    fps: f32,
+    /// Frames that are expected.
+    expected: usize,
     size: Option<(u32, u32)>,
     encoder: Encoder,
     /// Frames so far.
@@ -38,6 +42,8 @@ enum Encoder {
     Gif(Box<GifEncoder<Shared>>, Shared),
     /// `None` before the first frame.
     WebP(Option<AnimatedWebP>),
+    /// `None` before the first frame.
+    Mp4(Option<Box<Mp4>>),
     Frames,
 }
 
@@ -72,11 +78,11 @@ pub fn check_animation(path: &Path, fps: f32) -> Result<(), String> {
 }
 
 impl Animation {
-    /// Begins an animation.
+    /// Begins an animation of some `expected` frames: a video has its index at its beginning if it has no more.
     ///
     /// # Errors
     /// As [`check_animation`].
-    pub fn new(path: &Path, fps: f32) -> Result<Self, CaptureError> {
+    pub fn new(path: &Path, fps: f32, expected: usize) -> Result<Self, CaptureError> {
         check_animation(path, fps).map_err(CaptureError::Usage)?;
         let encoder = match format_of(path).map_err(CaptureError::Usage)? {
             Format::Gif => {
@@ -87,10 +93,10 @@ impl Animation {
                 Encoder::Gif(Box::new(encoder), bytes)
             }
             Format::WebP => Encoder::WebP(None),
+            Format::Mp4 => Encoder::Mp4(None),
             Format::Frames => Encoder::Frames,
         };
-        let ms = (1000.0 / fps).round().max(1.0) as u32;
-        Ok(Self { path: path.to_owned(), ms, size: None, encoder, count: 0 })
+        Ok(Self { path: path.to_owned(), fps, expected, size: None, encoder, count: 0 })
     }
 
     /// Adds a frame. All must have the size of the first.
@@ -104,6 +110,7 @@ impl Animation {
             return Err(cannot("its frames differ in size".to_owned()));
         }
         self.count += 1;
+        let ms = (1000.0 / self.fps).round().max(1.0) as u32;
         match &mut self.encoder {
             Encoder::Gif(encoder, _) => {
                 if size.0.max(size.1) > u32::from(u16::MAX) {
@@ -111,14 +118,24 @@ impl Animation {
                 }
                 // A GIF knows no partly transparent pixel.
                 frame.pixels_mut().for_each(|pixel| pixel.0[3] = if pixel[3] < 128 { 0 } else { 255 });
-                let frame = Frame::from_parts(frame, 0, 0, Delay::from_numer_denom_ms(self.ms, 1));
+                let frame = Frame::from_parts(frame, 0, 0, Delay::from_numer_denom_ms(ms, 1));
                 encoder.encode_frame(frame).map_err(|error| cannot(error.to_string()))
             }
             Encoder::WebP(animation) => {
                 if size.0.max(size.1) > LARGEST {
                     return Err(cannot(format!("a WebP has at most {LARGEST} pixels a side")));
                 }
-                animation.get_or_insert_with(|| AnimatedWebP::new(size)).add(&frame, self.ms).map_err(cannot)
+                animation.get_or_insert_with(|| AnimatedWebP::new(size)).add(&frame, ms).map_err(cannot)
+            }
+            Encoder::Mp4(video) => {
+                let video = match video {
+                    Some(video) => video,
+                    None => {
+                        let begun = Mp4::begin(&self.path, self.fps, size, self.expected).map_err(cannot)?;
+                        video.insert(Box::new(begun))
+                    }
+                };
+                video.add(&frame).map_err(cannot)
             }
             Encoder::Frames => write(frame, &numbered(&self.path, self.count)),
         }
@@ -137,7 +154,8 @@ impl Animation {
                 bytes.0.take()
             }
             Encoder::WebP(Some(animation)) => animation.finish().map_err(cannot)?,
-            Encoder::WebP(None) => return Err(cannot("it has no frames".to_owned())),
+            Encoder::Mp4(Some(video)) => return video.finish().map_err(cannot),
+            Encoder::WebP(None) | Encoder::Mp4(None) => return Err(cannot("it has no frames".to_owned())),
             Encoder::Frames => return Ok(()),
         };
         picture::replace_file(&self.path, &bytes).map_err(|error| cannot(error.to_string()))
@@ -155,14 +173,15 @@ fn format_of(path: &Path) -> Result<Format, String> {
         "gif" => Ok(Format::Gif),
         "webp" => Ok(Format::WebP),
         "png" => Ok(Format::Frames),
-        "mp4" | "mov" | "mkv" | "webm" => Err(format!(
-            "cannot write {0}: Specula has no encoder for video. Write numbered frames, as --out {1}, and join them: ffmpeg -i {2} {0}",
+        "mp4" => Ok(Format::Mp4),
+        "mov" | "mkv" | "webm" => Err(format!(
+            "cannot write {0}: a video must end in .mp4. For another format, write numbered frames, as --out {1}, and join them: ffmpeg -i {2} {0}",
             path.display(),
             path.with_extension("png").display(),
             path.with_extension("%04d.png").display(),
         )),
         _ => Err(format!(
-            "cannot write {}: an animation must end in .gif or .webp, or in .png for numbered frames",
+            "cannot write {}: an animation must end in .mp4, .gif or .webp, or in .png for numbered frames",
             path.display()
         )),
     }
@@ -181,7 +200,7 @@ mod tests {
     fn a_gif_holds_all_frames() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.gif");
-        let mut animation = Animation::new(&path, 25.0).unwrap();
+        let mut animation = Animation::new(&path, 25.0, 3).unwrap();
         for value in [0, 120, 240] {
             animation.add(RgbaImage::from_pixel(8, 4, Rgba([value, 10, 20, 255]))).unwrap();
         }
@@ -199,7 +218,7 @@ mod tests {
     #[test]
     fn frames_are_numbered() {
         let folder = tempfile::tempdir().unwrap();
-        let mut animation = Animation::new(&folder.path().join("a.png"), 25.0).unwrap();
+        let mut animation = Animation::new(&folder.path().join("a.png"), 25.0, 2).unwrap();
         animation.add(RgbaImage::new(2, 2)).unwrap();
         animation.add(RgbaImage::new(2, 2)).unwrap();
         animation.finish().unwrap();
@@ -209,8 +228,8 @@ mod tests {
     #[test]
     fn what_cannot_be_written_is_told_at_once() {
         for (path, fps, part) in [
-            ("a.mp4", 25.0, "ffmpeg -i a.%04d.png a.mp4"),
-            ("a.jpg", 25.0, "must end in .gif"),
+            ("a.webm", 25.0, "ffmpeg -i a.%04d.png a.webm"),
+            ("a.jpg", 25.0, "must end in .mp4, .gif"),
             ("a.gif", 1000.0, "can have 0.1 to 100"),
             ("no-such-folder/a.gif", 25.0, "there is no folder"),
         ] {

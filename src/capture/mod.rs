@@ -4,10 +4,12 @@
 mod animation;
 mod label;
 mod modes;
+mod mp4;
 mod sheet;
 mod stills;
 mod turntable;
 mod webp;
+mod yuv;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -70,7 +70,7 @@ impl Turntable {
             let message = format!("a turntable of {} frames: it can have 1 to {}", self.frames, Self::MOST_FRAMES);
             return Err(CaptureError::Usage(message));
         }
-        let animation = Animation::new(path, self.fps)?;
+        let animation = Animation::new(path, self.fps, self.frames as usize)?;
         let before = renderer.settings().clone();
         let written = self.draw(renderer, &before, animation, tell);
         *renderer.settings() = before;

@@ -37,7 +37,8 @@ pub const COMMANDS: [Described; 25] = [
     row(
         "probe",
         r#""at": [x,y], "modes"?: ["d", "f"]"#,
-        "Raw values of a pixel of the picture, in these modes or all. Result: pixel, modes",
+        "Raw values of a pixel of the picture, in these modes or all. Result: pixel, modes, textures (a texel of each), not_finite (the first \
+         line with NaN or Inf, if a value is one)",
     ),
     row("reload", "", "Compiles all shaders again. Result: generation; an error lists the diagnostics"),
     row(
@@ -47,13 +48,13 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "compare",
-        r#""with"?: "nothing" | "picture" | "previous" | number, "wipe"?: 0..1"#,
-        "Compares the picture with an earlier one. Result: version, wipe",
+        r#""with"?: "nothing" | "picture" | "previous" | number, "file"?: "a.png", "tree"?: "folder", "wipe"?: 0..1"#,
+        "Compares the picture with an earlier one, a picture from a file (PNG, JPEG, HDR, EXR) or that of another shader tree. Result: version, file, tree, wipe, note; an event `compared` has FLIP",
     ),
     row(
         "versions",
         r#""write"?: number"#,
-        "Versions of the shaders since the start; write puts one back into the files",
+        "Versions of the shaders since the start; write puts one back into the files, and is done when they are written",
     ),
     row("undo", "", "Takes the last change of a setting back"),
     row("redo", "", "Takes the last undo back"),
@@ -80,13 +81,13 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "turntable",
-        r#""file": "spin.gif" | ".webp" | ".png", "frames"?: n, "fps"?: n, "size"?: [w,h], "turn"?: "camera" | "light" | "model""#,
-        "Writes a full turn as an animation, or as numbered PNGs",
+        r#""file": "spin.mp4" | ".gif" | ".webp" | ".png", "frames"?: n, "fps"?: n, "size"?: [w,h], "turn"?: "camera" | "light" | "model""#,
+        "Writes a full turn as a video, as an animation, or as numbered PNGs",
     ),
     row(
         "timeline",
-        r#""file": "edits.webp", "fps"?: n, "size"?: [w,h]"#,
-        "Writes the versions of the shaders as an animation",
+        r#""file": "edits.mp4" | ".gif" | ".webp" | ".png", "fps"?: n, "size"?: [w,h]"#,
+        "Writes the versions of the shaders as a video or an animation",
     ),
     row(
         "cancel",

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write as _};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -26,12 +26,50 @@ pub fn remove_unfinished() -> Halt {
 
 /// Gives the file `path` this content, all or nothing. The content is on the disk before the old file goes.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let (part, mut file) = Part::create(path)?;
+    let mut file = PartFile::create(path)?;
     file.write_all(bytes)?;
-    match file.sync_all() {
-        // Some file systems cannot sync. Others report only now that the disk is full.
-        Err(error) if !matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Err(error),
-        _ => fs::rename(&part.0, path),
+    file.finish()
+}
+
+/// A file that is written piece by piece under a temporary name. Dropped unfinished, it leaves no file.
+pub struct PartFile {
+    target: PathBuf,
+    part: Part,
+    file: File,
+}
+
+impl PartFile {
+    /// Creates the temporary file beside `path`.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let (part, file) = Part::create(path)?;
+        Ok(Self { target: path.to_owned(), part, file })
+    }
+
+    /// Renames the file to its name, once its content is on the disk.
+    pub fn finish(self) -> io::Result<()> {
+        match self.file.sync_all() {
+            // Some file systems cannot sync. Others report only now that the disk is full.
+            Err(error) if !matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
+                Err(error)
+            }
+            _ => fs::rename(&self.part.0, &self.target),
+        }
+    }
+}
+
+impl Write for PartFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for PartFile {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
     }
 }
 
@@ -41,9 +79,16 @@ struct Part(PathBuf);
 impl Part {
     fn create(path: &Path) -> io::Result<(Self, File)> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let part = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
         // The lock is held while the file is created, so that a signal comes before that or finds the file.
         let mut unfinished = lock();
+        let mut part = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+        // Another thread may be writing a file of the same name.
+        for number in 2.. {
+            if !unfinished.contains(&part) {
+                break;
+            }
+            part.set_file_name(format!(".{name}.{}-{number}.part", std::process::id()));
+        }
         // An earlier process with the same number may have been killed. In a container, numbers repeat.
         let _ = fs::remove_file(&part);
         let file = OpenOptions::new().write(true).create_new(true).open(&part)?;
@@ -85,6 +130,22 @@ mod tests {
         drop(part);
         replace(&target, b"newer").unwrap();
         assert_eq!(fs::read(&target).unwrap(), b"newer");
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn two_writers_of_one_name_do_not_mix() {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let directory = tempfile::tempdir().unwrap();
+        let target = directory.path().join("spin.mp4");
+        let mut first = PartFile::create(&target).unwrap();
+        first.write_all(b"first").unwrap();
+        replace(&target, b"second").unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"second");
+        let third = PartFile::create(&target).unwrap();
+        first.finish().unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"first");
+        drop(third);
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
     }
 

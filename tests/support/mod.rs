@@ -6,6 +6,7 @@
 pub mod glb;
 pub mod hdr;
 pub mod process;
+pub mod video;
 pub mod window;
 pub mod xdnd;
 

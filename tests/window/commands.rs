@@ -9,6 +9,7 @@ use image::RgbaImage;
 use serde_json::{Value, json};
 
 use crate::NDF;
+use crate::support::video::Video;
 use crate::support::window::Viewer;
 use crate::support::{Tree, open_image};
 
@@ -115,7 +116,7 @@ fn a_program_drives_the_window_by_standard_input() {
         (json!({"command": "open", "environment": "no-such-file.hdr"}), "no-such-file.hdr"),
         (json!({"command": "pass", "name": "blom", "on": true}), "no pass is named `blom`"),
         (json!({"command": "run", "entry": "Reload all shader"}), "Did you mean `Reload all shaders`?"),
-        (json!({"command": "turntable", "file": "a.mp4"}), "ffmpeg"),
+        (json!({"command": "turntable", "file": "a.webm"}), "ffmpeg"),
     ] {
         let message = running.refused(command.clone());
         assert!(message.contains(part), "{command}: {message}");
@@ -182,13 +183,22 @@ fn clients_of_a_socket_drive_the_window() {
     assert_eq!(second.ask("d", turn)["event"], "done");
     assert!(viewer.tree.beside("spin.gif").exists());
 
-    // Long work is canceled by who likes.
-    second.say(&json!({"id": "long", "command": "turntable", "file": "long.gif", "frames": 5000}).to_string());
-    second.until(|event| event["event"] == "progress" && event["id"] == "long" && event["done"].as_u64() > Some(0));
-    second.say(&json!({"id": "cancel", "command": "cancel"}).to_string());
-    let answer = second.until(|event| event["id"] == "long" && event["event"] == "error");
-    assert_eq!(answer["message"], "canceled", "{answer}");
-    assert!(!viewer.tree.beside("long.gif").exists());
+    let turn = json!({"command": "turntable", "file": "spin.mp4", "frames": 3, "size": [64, 48]});
+    assert_eq!(second.ask("video", turn)["event"], "done");
+    assert_eq!(Video::read(&std::fs::read(viewer.tree.beside("spin.mp4")).unwrap()).frames.len(), 3);
+
+    // Long work is canceled by who likes, and leaves no part of a file.
+    for file in ["long.gif", "long.mp4"] {
+        second.say(&json!({"id": file, "command": "turntable", "file": file, "frames": 5000}).to_string());
+        second.until(|event| event["event"] == "progress" && event["id"] == file && event["done"].as_u64() > Some(1));
+        second.say(&json!({"id": "cancel", "command": "cancel"}).to_string());
+        let answer = second.until(|event| event["id"] == file && event["event"] == "error");
+        assert_eq!(answer["message"], "canceled", "{answer}");
+        let folder = viewer.tree.beside(file);
+        let names = std::fs::read_dir(folder.parent().unwrap()).unwrap().map(|entry| entry.unwrap().file_name());
+        let left: Vec<_> = names.filter(|name| name.to_string_lossy().contains("long")).collect();
+        assert!(left.is_empty(), "{left:?}");
+    }
 
     assert_eq!(second.ask("e", json!({"command": "quit"}))["event"], "done");
     let status = viewer.running.end();

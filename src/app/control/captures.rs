@@ -132,7 +132,7 @@ impl Work {
                 Ok(json!({ "file": path_text(&file), "frames": frames }))
             }
             Self::Timeline { file, fps, size: own } => {
-                let animation = Animation::new(&file, fps)?;
+                let animation = Animation::new(&file, fps, versions.len())?;
                 stills.timeline(versions, own.unwrap_or(size), animation, tell)?;
                 Ok(json!({ "file": path_text(&file), "versions": versions.len() }))
             }

@@ -113,11 +113,11 @@ pub(super) fn show(
     row(
         ui,
         "Format",
-        "WebP: lossless. GIF: 256 colors a frame. PNG: numbered frames, which ffmpeg joins to a video",
+        "MP4: a video, small, for any player. WebP: lossless. GIF: 256 colors a frame. PNGs: numbered frames, for other programs",
         |ui| {
-            let webp = ui.selectable_value(&mut state.animation, "webp", "WebP");
-            let gif = ui.selectable_value(&mut state.animation, "gif", "GIF");
-            webp.union(gif).union(ui.selectable_value(&mut state.animation, "png", "PNGs"))
+            let formats = [("mp4", "MP4"), ("webp", "WebP"), ("gif", "GIF"), ("png", "PNGs")];
+            let choices = formats.map(|(ending, name)| ui.selectable_value(&mut state.animation, ending, name));
+            choices.into_iter().reduce(|all, choice| all.union(choice)).unwrap_or_else(|| ui.label(""))
         },
     );
     row(ui, "Frames", "Frames of a full turn", |ui| {

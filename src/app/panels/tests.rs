@@ -6,9 +6,11 @@ use egui_kittest::kittest::Queryable as _;
 
 use super::LegendOf;
 use super::overlay::legend::{self, Legend, LegendState};
-use super::{camera, range, rows, theme};
+use super::{camera, capture, range, rows, theme};
 use crate::app::command::Command;
+use crate::app::control::Captures;
 use crate::app::numbers::EXPOSURE;
+use crate::control::{Request, Timeline, Turntable};
 use crate::scene::Model;
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
 use crate::shader::{Encode, Mode};
@@ -65,6 +67,29 @@ fn rows_are_named_and_follow_the_keyboard() {
     harness.run();
     assert!(harness.state().view.wireframe);
     assert_eq!(harness.state().view.range, ViewRange::Auto);
+}
+
+#[test]
+fn a_turntable_has_the_format_that_was_chosen() {
+    let state = (capture::CaptureState::default(), Vec::<Command>::new());
+    let mut harness = harness(state, |ui, (state, commands)| {
+        capture::show(ui, state, &Captures::default(), ((640, 480), 2), commands);
+    });
+    for (name, stem) in [("Write turntable", "specula-turntable-"), ("Write timeline", "specula-timeline-")] {
+        for format in ["MP4", "GIF", "WebP"] {
+            harness.get_by_role_and_label(Role::Button, format).click();
+            harness.run();
+            harness.get_by_role_and_label(Role::Button, name).click();
+            harness.run();
+            let Some(Command::Ask(request)) = harness.state_mut().1.pop() else { panic!("{name} asks for nothing") };
+            let (Request::Turntable(Turntable { file, .. }) | Request::Timeline(Timeline { file, .. })) = *request
+            else {
+                panic!("{name} asks for something else")
+            };
+            let file = file.to_string_lossy().into_owned();
+            assert!(file.starts_with(stem) && file.ends_with(&format!(".{}", format.to_lowercase())), "{file}");
+        }
+    }
 }
 
 #[test]

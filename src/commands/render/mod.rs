@@ -39,7 +39,7 @@ pub struct Args {
     /// Size of each picture of a sheet in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
     tile: (u32, u32),
-    /// Write a full turn of N frames as an animation, .gif or .webp, or as numbered .png files; 25 frames a second without --fps
+    /// Write a full turn of N frames as a video, .mp4, as an animation, .webp or .gif, or as numbered .png files; 25 frames a second without --fps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     turntable: Option<u32>,
     /// Object that a turntable rotates
