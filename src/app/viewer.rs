@@ -17,8 +17,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::command::{Command, open_as};
+use super::command::{Command, CompareWith, open_as};
 use super::control::Controlled;
+use super::dialog::Dialog;
 use super::hint;
 use super::history::History;
 use super::learn::Learning;
@@ -139,6 +140,8 @@ pub(super) struct Viewer {
     followed_source: LightSource,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
+    /// Before the threads: dropping it ends the thread of a second shader tree, for which they wait.
+    pub(super) compare: Compare,
     /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
     pub(super) recorder: Recorder,
@@ -146,7 +149,6 @@ pub(super) struct Viewer {
     shown: Option<LastComplete>,
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
-    pub(super) compare: Compare,
     pub(super) edits: Edits,
     /// The times of the last frames.
     pub(super) timing: Timing,
@@ -175,8 +177,8 @@ pub(super) struct Viewer {
     plain: Option<Work>,
     /// Whether the last session is offered over the picture.
     pub(super) offers_session: bool,
-    /// Whether the file dialog is open.
-    is_choosing: bool,
+    /// The file dialog that is open.
+    choosing: Option<Dialog>,
     pub(super) screenshot: bool,
     pub(super) quit: bool,
 }
@@ -240,7 +242,7 @@ impl Viewer {
             shortage: None,
             offers_session: options.plain.is_some(),
             plain: options.plain,
-            is_choosing: false,
+            choosing: None,
             screenshot: false,
             quit: false,
         };
@@ -248,6 +250,7 @@ impl Viewer {
         viewer.find_exercise();
         viewer.begin_loading(options.model, early.reading);
         viewer.report_loss();
+        viewer.compare_at_start(options.compare);
         Ok(viewer)
     }
 
@@ -403,9 +406,9 @@ impl Viewer {
                 Ok(editor) => self.threads.wait(|| editor.failure().map(Message::Say)),
                 Err(message) => self.say(message),
             },
-            Command::Choose(_) if self.is_choosing => self.say("The file dialog is already open"),
+            Command::Choose(_) if self.choosing.is_some() => self.say("The file dialog is already open"),
             Command::Choose(dialog) => {
-                self.is_choosing = true;
+                self.choosing = Some(dialog);
                 self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
             Command::ShowGallery => self.panels.open_gallery.is_open = true,
@@ -416,9 +419,9 @@ impl Viewer {
             Command::CancelCaptures => self.cancel_captures(),
             Command::Compare(with) => self.compare_with(with),
             Command::WriteVersion(number) => self.write_version(number),
-            Command::NewTree(_) if self.is_choosing => self.say("The file dialog is already open"),
+            Command::NewTree(_) if self.choosing.is_some() => self.say("The file dialog is already open"),
             Command::NewTree(folder) => {
-                self.is_choosing = true;
+                self.choosing = Some(Dialog::New);
                 self.threads.wait(move || Some(Message::NewTree(hint::write_tree(folder))));
             }
             Command::Learn(command) => self.learn(command),
@@ -449,8 +452,11 @@ impl Viewer {
         self.watch_files();
     }
 
-    /// Opens a file or folder that was dropped on the window.
+    /// Opens a file or folder that was dropped on the window. While pictures are compared, another picture takes part.
     pub(super) fn open_path(&mut self, path: PathBuf) {
+        if self.compare.takes(&path) {
+            return self.execute(Command::Compare(CompareWith::File(path)));
+        }
         self.execute(open_as(path).unwrap_or_else(Command::Say));
     }
 
@@ -479,10 +485,11 @@ impl Viewer {
         }
     }
 
-    /// Watches the files of the model, the environment and the measured BRDF.
+    /// Watches the files of the model, the environment, the measured BRDF and the compared picture.
     pub(super) fn watch_files(&mut self) {
         let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
-        let files: Vec<PathBuf> = self.model.files.iter().chain(&environment).chain(&measured).cloned().collect();
+        let files = self.model.files.iter().chain(&environment).chain(&measured).chain(self.compare.files());
+        let files: Vec<PathBuf> = files.cloned().collect();
         if let Err(message) = self.threads.watch_files(files) {
             self.say(message);
         }

@@ -87,13 +87,13 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "compare",
-        r#""with"?: "nothing" | "picture" | "previous" | number, "wipe"?: 0..1"#,
-        "Compares the picture with an earlier one. Result: version, wipe",
+        r#""with"?: "nothing" | "picture" | "previous" | number, "file"?: "a.png", "tree"?: "folder", "wipe"?: 0..1"#,
+        "Compares the picture with an earlier one, a picture from a file (PNG, JPEG, HDR, EXR) or that of another shader tree. Result: version, file, tree, wipe, note; an event `compared` has FLIP",
     ),
     row(
         "versions",
         r#""write"?: number"#,
-        "Versions of the shaders since the start; write puts one back into the files",
+        "Versions of the shaders since the start; write puts one back into the files, and is done when they are written",
     ),
     row("undo", "", "Takes the last change of a setting back"),
     row("redo", "", "Takes the last undo back"),
@@ -184,6 +184,8 @@ pub enum Open {
 #[serde(default, deny_unknown_fields)]
 pub struct Compare {
     pub with: Option<Value>,
+    pub file: Option<PathBuf>,
+    pub tree: Option<PathBuf>,
     pub wipe: Option<f32>,
 }
 

@@ -52,8 +52,10 @@ impl Viewer {
             Request::Open(open) => Next::Wait(self.open(open)?),
             Request::Compare(compare) => {
                 self.compare_as(compare)?;
-                let (version, wipe) = (self.compare.version(), self.compare.wipe);
-                Next::Done(json!({ "is_on": self.compare.is_on(), "version": version, "wipe": short(wipe) }))
+                match self.compare.is_opening() {
+                    true => Next::Wait(Until::Compared),
+                    false => Next::Done(self.compare_json()),
+                }
             }
             Request::Versions(None) => Next::Done(self.versions_json()),
             Request::Versions(Some(number)) => {
@@ -63,7 +65,7 @@ impl Viewer {
                     ));
                 }
                 self.execute(Command::WriteVersion(number));
-                Next::Done(Value::Null)
+                Next::Wait(Until::Written(number))
             }
             Request::Undo if !self.history.undo(&mut self.session.settings) => {
                 return Err("there is nothing to undo".into());
@@ -206,7 +208,14 @@ impl Viewer {
         let newest = self.shown_generation();
         let showable =
             |number: u64| self.versions.get(number).is_some_and(|version| self.versions.can_show(version, newest));
-        let with = match asked.with {
+        let Compare { with, file, tree, wipe } = asked;
+        if [with.is_some(), file.is_some(), tree.is_some()].into_iter().filter(|given| *given).count() > 1 {
+            return Err("`compare` takes one of `with`, `file` and `tree`".to_owned());
+        }
+        if let Some(wipe) = wipe.filter(|wipe| !(0.0..=1.0).contains(wipe)) {
+            return Err(format!("`wipe` is {wipe}; it can be 0 to 1"));
+        }
+        let with = match with {
             None | Some(Value::Null) => None,
             Some(Value::String(with)) => Some(match with.as_str() {
                 "nothing" => CompareWith::Nothing,
@@ -233,18 +242,28 @@ impl Viewer {
             }
         };
         if let Some(with) = with {
+            let ends = with == CompareWith::Nothing;
             self.execute(Command::Compare(with));
-            if with != CompareWith::Nothing && !self.compare.is_on() {
+            if !ends && !self.compare.is_on() {
                 return Err("there is no whole picture to keep".to_owned());
             }
         }
-        if let Some(wipe) = asked.wipe {
-            if !(0.0..=1.0).contains(&wipe) {
-                return Err(format!("`wipe` is {wipe}; it can be 0 to 1"));
-            }
-            self.compare.wipe = wipe;
+        if let Some(file) = file {
+            self.execute(Command::Compare(CompareWith::File(file)));
         }
+        if let Some(tree) = tree {
+            self.open_second_tree(&tree)?;
+        }
+        self.compare.wipe = wipe.unwrap_or(self.compare.wipe);
         Ok(())
+    }
+
+    /// The comparison that is on.
+    pub(super) fn compare_json(&self) -> Value {
+        let compare = &self.compare;
+        let file = compare.file().map(|file| path_text(file));
+        json!({ "is_on": compare.is_on(), "version": compare.version(), "file": file, "tree": compare.tree_name(),
+            "wipe": short(compare.wipe), "note": compare.note() })
     }
 
     fn versions_json(&self) -> Value {
