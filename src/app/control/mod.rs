@@ -124,7 +124,7 @@ impl Viewer {
     pub(super) fn fail_waiting(&mut self, message: &str) {
         for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
             match until {
-                Until::Look | Until::Model(_) | Until::Reloaded | Until::Compared | Until::Written(_) => {
+                Until::Look | Until::Model(_) | Until::Reloaded | Until::Written(_) => {
                     self.controlled.waiting.push((reply, until))
                 }
                 _ => reply.error(message),
