@@ -2,6 +2,7 @@
 //! shows it has been drawn, a file when it is written.
 
 mod captures;
+mod compare;
 mod files;
 mod requests;
 
