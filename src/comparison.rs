@@ -1,9 +1,14 @@
-//! Compares two pictures, for the goldens and for `specula diff`.
+//! Compares two pictures, for the goldens, for `specula diff` and for the window.
+
+mod fit;
+mod still;
 
 use std::path::Path;
 
 use image::{DynamicImage, Rgb32FImage, RgbImage, Rgba32FImage, RgbaImage};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip, magma_lut};
+
+pub use still::Still;
 
 /// A picture as stored in a file.
 pub enum Picture {
@@ -28,7 +33,8 @@ impl Picture {
         })
     }
 
-    fn size(&self) -> (u32, u32) {
+    /// Width and height.
+    pub fn size(&self) -> (u32, u32) {
         match self {
             Self::Display(image) => image.dimensions(),
             Self::Raw(image) => image.dimensions(),

@@ -5,6 +5,7 @@ mod support;
 mod window {
     mod commands;
     mod compare;
+    mod compare_files;
     mod controls;
     mod endurance;
     mod expressions;

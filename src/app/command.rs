@@ -13,13 +13,17 @@ use crate::shader::Source;
 use crate::shader::rewrite::Edit;
 
 /// Reference that the picture is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum CompareWith {
     Nothing,
     /// The picture as it is now, with all its settings.
     ThisPicture,
     /// A version of the shaders, by its number.
     Version(u64),
+    /// A picture from a file.
+    File(PathBuf),
+    /// The picture of another shader tree.
+    Tree(PathBuf),
 }
 
 /// A side of the model, as in Blender: glTF models face +Z.
@@ -100,7 +104,7 @@ pub(super) enum Command {
     Quit,
     /// Show a message for a few seconds.
     Say(String),
-    /// Show the picture beside an earlier one.
+    /// Show the picture beside another one.
     Compare(CompareWith),
     /// Write the texts of a version of the shaders over the files of the tree.
     WriteVersion(u64),

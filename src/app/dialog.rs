@@ -12,10 +12,16 @@ pub(super) enum Dialog {
     Tree,
     /// A folder to write the shaders to.
     New,
+    /// A picture to compare with.
+    Picture,
+    /// A folder with a shader tree to compare with.
+    SecondTree,
 }
 
 /// Extensions of models, environments, measured BRDFs, look files and single shaders.
 const EXTENSIONS: [&str; 11] = ["gltf", "glb", "hdr", "exr", "binary", "bin", "toml", "png", "glsl", "frag", "fs"];
+/// Extensions of pictures.
+const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "hdr", "exr"];
 /// Nobody cancels a dialog in less than this. The portal gives the same answer to a cancel and to its own absence.
 const SHORTEST: Duration = Duration::from_millis(300);
 
@@ -31,6 +37,11 @@ pub(super) fn choose(dialog: Dialog) -> Result<Option<PathBuf>, String> {
             files.add_filter("Models, environments, shaders", &EXTENSIONS).add_filter("All files", &["*"]).pick_file()
         }
         Dialog::Tree => rfd::FileDialog::new().set_title("Open a shader tree").pick_folder(),
+        Dialog::Picture => {
+            let files = rfd::FileDialog::new().set_title("A picture to compare with");
+            files.add_filter("Pictures", &PICTURES).add_filter("All files", &["*"]).pick_file()
+        }
+        Dialog::SecondTree => rfd::FileDialog::new().set_title("A shader tree to compare with").pick_folder(),
         Dialog::New => rfd::FileDialog::new().set_title("A folder for the shaders").pick_folder(),
     };
     answer(chosen, start.elapsed())

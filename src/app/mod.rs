@@ -84,12 +84,23 @@ pub struct AppOptions {
     pub device: Option<String>,
     /// Whether to enable the validation layers.
     pub validation: bool,
+    /// What to compare the picture with.
+    pub compare: Option<OtherPicture>,
     /// Whether models may read files outside their folder.
     pub allow_outside: bool,
     /// Those who get events and send commands.
     pub control: Control,
     /// Start of the program, for the events' times.
     pub start: Instant,
+}
+
+/// The other picture of a comparison.
+#[derive(Clone, Debug)]
+pub enum OtherPicture {
+    /// A picture from a file.
+    File(PathBuf),
+    /// The picture of another shader tree.
+    Tree(PathBuf),
 }
 
 /// Why there is no window, or why it closed early.

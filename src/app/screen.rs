@@ -305,7 +305,8 @@ impl Screen {
 
         viewer.answer();
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let reference = self.reference.as_ref().map(|reference| (&reference.view, &reference.frame));
+        let drawn = self.reference.as_ref().filter(|reference| !reference.is_still());
+        let reference = drawn.map(|reference| (&reference.view, &reference.frame));
         let cells = || self.cells.iter().filter_map(|cell| Some((&cell.view, cell.shown.as_ref()?.frame())));
         let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference).chain(cells());
         let leaves_motion = views().any(|(view, frame)| view.is_moving(frame));

@@ -20,6 +20,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::control::Controlled;
+use super::dialog::Dialog;
 use super::history::History;
 use super::learn::Learning;
 use super::panels::PanelState;
@@ -135,6 +136,8 @@ pub(super) struct Viewer {
     followed_source: LightSource,
     pub(super) gpu: Arc<Gpu>,
     pub(super) resources: Resources,
+    /// Before the threads: dropping it ends the thread of a second shader tree, for which they wait.
+    pub(super) compare: Compare,
     /// Dropping the threads waits for those that use the device.
     pub(super) threads: Threads,
     pub(super) recorder: Recorder,
@@ -142,7 +145,6 @@ pub(super) struct Viewer {
     shown: Option<LastComplete>,
     /// The versions of the shaders that were on screen.
     pub(super) versions: Versions,
-    pub(super) compare: Compare,
     pub(super) edits: Edits,
     /// The times of the last frames.
     pub(super) timing: Timing,
@@ -171,8 +173,8 @@ pub(super) struct Viewer {
     plain: Option<Work>,
     /// Whether the last session is offered over the picture.
     pub(super) offers_session: bool,
-    /// Whether the file dialog is open.
-    is_choosing: bool,
+    /// The file dialog that is open.
+    choosing: Option<Dialog>,
     pub(super) screenshot: bool,
     pub(super) quit: bool,
 }
@@ -236,7 +238,7 @@ impl Viewer {
             shortage: None,
             offers_session: options.plain.is_some(),
             plain: options.plain,
-            is_choosing: false,
+            choosing: None,
             screenshot: false,
             quit: false,
         };
@@ -244,6 +246,7 @@ impl Viewer {
         viewer.find_exercise();
         viewer.begin_loading(options.model, early.reading);
         viewer.report_loss();
+        viewer.compare_at_start(options.compare);
         Ok(viewer)
     }
 
@@ -364,10 +367,11 @@ impl Viewer {
         }
     }
 
-    /// Watches the files of the model, the environment and the measured BRDF.
+    /// Watches the files of the model, the environment, the measured BRDF and the compared picture.
     pub(super) fn watch_files(&mut self) {
         let (environment, measured) = (self.session.environment_files(), self.session.measured_files());
-        let files: Vec<PathBuf> = self.model.files.iter().chain(&environment).chain(&measured).cloned().collect();
+        let files = self.model.files.iter().chain(&environment).chain(&measured).chain(self.compare.files());
+        let files: Vec<PathBuf> = files.cloned().collect();
         if let Err(message) = self.threads.watch_files(files) {
             self.say(message);
         }

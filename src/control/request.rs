@@ -89,6 +89,8 @@ pub enum Open {
 #[serde(default, deny_unknown_fields)]
 pub struct Compare {
     pub with: Option<Value>,
+    pub file: Option<PathBuf>,
+    pub tree: Option<PathBuf>,
     pub wipe: Option<f32>,
 }
 

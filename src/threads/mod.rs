@@ -5,6 +5,7 @@ pub(crate) mod baker;
 pub(crate) mod checker;
 pub(crate) mod loader;
 pub(crate) mod measurer;
+pub(crate) mod second_tree;
 pub(crate) mod worker;
 
 use std::collections::BTreeSet;
@@ -15,13 +16,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use crossbeam_channel::Receiver;
-use image::RgbaImage;
+use image::{RgbaImage, imageops};
 use winit::event_loop::EventLoopProxy;
 
-use crate::comparison::{Comparison, Picture};
+use crate::comparison::{Comparison, Picture, Still};
 use crate::control::Asked;
 use crate::frame::{MeasuredKey, TablesKey};
-use crate::gpu::{Gpu, SetLayouts};
+use crate::gpu::{Gpu, Rect, SetLayouts};
 use crate::learn::Exercise;
 use crate::message::panic_text;
 use crate::render::tools::Tools;
@@ -33,6 +34,7 @@ use baker::{BakeMessage, Baker};
 use checker::{Checked, Checker};
 use loader::{Loaded, Loader};
 use measurer::Measurer;
+use second_tree::SecondTreeMessage;
 use worker::{Worker, WorkerMessage};
 
 /// Messages of the threads to the window.
@@ -46,6 +48,14 @@ pub(crate) enum Message {
     FilesChanged(BTreeSet<PathBuf>),
     /// The difference of the two pictures that the window compares, or why there is none.
     Compared(u64, Result<Box<Comparison>, String>),
+    /// The picture of a file that the window compares with, or why there is none, by the number of the request.
+    PictureRead(u64, Result<Arc<Picture>, String>),
+    /// The same picture, scaled to the window's picture.
+    PictureFits(u64, Result<Arc<Still>, String>),
+    /// What the thread of the second shader tree with this number has done.
+    SecondTree(u64, SecondTreeMessage),
+    /// The texts of a version of the shaders have been written to its files, or why not.
+    VersionWritten(u64, Result<String, String>),
     /// Summary of the edits written to the shader files, or the reason why none were written.
     Written(Result<String, String>),
     /// The curves of a pixel's material.
@@ -91,10 +101,35 @@ pub(crate) enum Role {
     /// Measures the BRDF.
     Measurer,
     Capturer(u64),
+    /// Compiles and bakes for the second shader tree with this number.
+    SecondTree(u64),
+    /// Scales the picture of a file.
+    Scaler(u64),
     /// Makes the pipelines of outlines and pictures of textures.
     Toolmaker,
     /// Waits for what is outside of Specula, or compares pictures.
     Waiter,
+}
+
+/// One of two pictures that are compared.
+pub(crate) enum Side {
+    /// A copy from the device.
+    Drawn(Readback),
+    /// The colors of a file.
+    Stored(Arc<RgbaImage>),
+}
+
+impl Side {
+    /// All pixels. SYNC: after the fence of the copy's submission.
+    fn pixels(self) -> Option<Arc<RgbaImage>> {
+        match self {
+            Self::Drawn(readback) => {
+                let (width, height, rgba8) = readback.finish_display();
+                RgbaImage::from_raw(width, height, rgba8).map(Arc::new)
+            }
+            Self::Stored(image) => Some(image),
+        }
+    }
 }
 
 /// Sends messages to the window and wakes it. After the window has closed, messages are dropped.
@@ -157,8 +192,9 @@ pub(crate) struct Threads {
     pub(crate) baker: Baker,
     pub(crate) checker: Checker,
     pub(crate) measurer: Measurer,
-    /// Threads that look for the line of a loop, or make the pipelines of tools.
-    explainers: Vec<JoinHandle<()>>,
+    gpu: Arc<Gpu>,
+    /// Threads that look for the line of a loop, make the pipelines of tools, scale pictures or compile a second shader tree.
+    device_threads: Vec<JoinHandle<()>>,
     /// Threads that draw captures, and what cancels each.
     capturers: Vec<(Arc<AtomicBool>, JoinHandle<()>)>,
     /// Held by the capture that is being drawn, so that the others wait.
@@ -184,31 +220,48 @@ impl Threads {
             baker: Baker::new(device.0, outbox),
             checker: Checker::new(device.0, compiler, outbox),
             measurer: Measurer::new(device.0, outbox),
-            explainers: Vec::new(),
+            gpu: device.0.clone(),
+            device_threads: Vec::new(),
             capturers: Vec::new(),
             capturing: Arc::default(),
             outbox: outbox.clone(),
         }
     }
 
-    /// Compares two pictures, whose copies have finished, on a thread of its own. The result comes with this number.
-    pub(crate) fn compare(&self, number: u64, pictures: [Readback; 2]) {
+    /// Compares a part of two pictures, whose copies have finished, on a thread of its own. The result comes with this number.
+    pub(crate) fn compare(&self, number: u64, pictures: [Side; 2], part: Rect) {
         self.wait(move || {
-            let of = |readback: Readback| {
-                let (width, height, rgba8) = readback.finish_display();
-                RgbaImage::from_raw(width, height, rgba8)
+            let of = |side: Side| {
+                let whole = side.pixels()?;
+                Some(imageops::crop_imm(&*whole, part.x, part.y, part.width, part.height).to_image())
             };
-            let [a, b] = pictures.map(|readback| of(readback).map(Picture::Display));
+            let [a, b] = pictures.map(|side| of(side).map(Picture::Display));
             let compared = a.zip(b).ok_or_else(|| "a picture was not read whole".to_owned());
             let compared = compared.and_then(|(a, b)| Comparison::new(&a, &b));
             Some(Message::Compared(number, compared.map(Box::new)))
         });
     }
 
+    /// Scales the picture of a file to the size of the window's picture, and uploads it. The result comes with this number.
+    pub(crate) fn scale(&mut self, number: u64, picture: Arc<Picture>, size: (u32, u32)) {
+        self.device_threads.retain(|thread| !thread.is_finished());
+        let gpu = self.gpu.clone();
+        self.device_threads.push(self.outbox.spawn(Role::Scaler(number), move |outbox| {
+            let still = Still::new(&gpu, &picture, size).map(Arc::new).map_err(|error| error.to_string());
+            outbox.send(Message::PictureFits(number, still));
+        }));
+    }
+
+    /// Keeps a thread that uses the device until it ends. Closing waits for it.
+    pub(crate) fn keep(&mut self, thread: JoinHandle<()>) {
+        self.device_threads.retain(|thread| !thread.is_finished());
+        self.device_threads.push(thread);
+    }
+
     /// Sends the diagnostic that `find` returns, which compiles a stage, for a loop that did not end.
     pub(crate) fn explain(&mut self, words: [u32; 2], find: impl FnOnce() -> Option<Diagnostic> + Send + 'static) {
-        self.explainers.retain(|thread| !thread.is_finished());
-        self.explainers.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
+        self.device_threads.retain(|thread| !thread.is_finished());
+        self.device_threads.push(self.outbox.spawn(Role::Explainer(words), move |outbox| {
             outbox.send(Message::EndlessLoop(words, find().map(Box::new)));
         }));
     }
@@ -236,7 +289,7 @@ impl Threads {
 
     /// Sends the pipelines that `make` returns.
     pub(crate) fn make_tools(&mut self, make: impl FnOnce() -> Result<Arc<Tools>, String> + Send + 'static) {
-        self.explainers.push(self.outbox.spawn(Role::Toolmaker, |outbox| outbox.send(Message::Tools(make()))));
+        self.device_threads.push(self.outbox.spawn(Role::Toolmaker, |outbox| outbox.send(Message::Tools(make()))));
     }
 
     /// Waits on a thread of its own until `work` returns, which uses no device, and sends its message. The thread may outlive the
@@ -289,7 +342,7 @@ impl Drop for Threads {
     fn drop(&mut self) {
         self.capturers.iter().for_each(|(canceled, _)| canceled.store(true, Ordering::Relaxed));
         let capturers = self.capturers.drain(..).map(|(_, thread)| thread);
-        for thread in self.explainers.drain(..).chain(capturers) {
+        for thread in self.device_threads.drain(..).chain(capturers) {
             let _ = thread.join();
         }
     }

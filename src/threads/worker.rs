@@ -29,7 +29,8 @@ pub(crate) struct Snapshot {
 }
 
 impl Snapshot {
-    fn request(&self, shaders: &ShaderSet) -> PipelineRequest {
+    /// The pipelines that the picture needs from `shaders`.
+    pub(super) fn request(&self, shaders: &ShaderSet) -> PipelineRequest {
         let mut request = PipelineRequest::new(&self.settings, shaders, self.scene.as_ref(), self.target);
         if self.scene.is_none() {
             // While the model loads, build the pipeline that most models need.

@@ -2,6 +2,7 @@
 //! shows it has been drawn, a file when it is written.
 
 mod captures;
+mod compare;
 mod files;
 mod requests;
 
@@ -35,6 +36,10 @@ pub(super) enum Until {
     Model(PathBuf),
     /// A look file that is being read.
     Look,
+    /// The other picture of a comparison, and a frame that shows both.
+    Compared,
+    /// The files of this version of the shaders.
+    Written(u64),
     /// A frame that shows the settings, for a picture of it.
     Screen(Option<PathBuf>),
     /// The same for a picture of the window.
@@ -93,6 +98,7 @@ impl Viewer {
             match until {
                 Until::Shown if shows => reply.done(Value::Null),
                 Until::Camera if shows => reply.done(self.camera_json()),
+                Until::Compared if shows && self.compare.is_drawn() => reply.done(self.compare_json()),
                 Until::Picture(work) if shows && self.has_all_modes() => self.begin_capture(reply, work),
                 Until::Reloaded if !self.shader.compiling && (shows || self.has_errors()) => self.reloaded(reply),
                 Until::Model(path) if !self.model.loading => match self.model.is_file(&path) {
@@ -120,7 +126,9 @@ impl Viewer {
     pub(super) fn fail_waiting(&mut self, message: &str) {
         for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
             match until {
-                Until::Look | Until::Model(_) | Until::Reloaded => self.controlled.waiting.push((reply, until)),
+                Until::Look | Until::Model(_) | Until::Reloaded | Until::Written(_) => {
+                    self.controlled.waiting.push((reply, until))
+                }
                 _ => reply.error(message),
             }
         }
@@ -142,6 +150,22 @@ impl Viewer {
                 }
             }
             Err(message) => self.end_waiting(|until| matches!(until, Until::Look), message),
+        }
+    }
+
+    /// Answers those who wait for a comparison that does not come.
+    pub(super) fn comparison_failed(&mut self, message: &str) {
+        self.end_waiting(|until| matches!(until, Until::Compared), message);
+    }
+
+    /// Answers those who wait for the files of a version. `error` is why they were not written.
+    pub(super) fn answer_written(&mut self, number: u64, error: Option<&str>) {
+        for (reply, until) in std::mem::take(&mut self.controlled.waiting) {
+            match (until, error) {
+                (Until::Written(of), Some(error)) if of == number => reply.error(error),
+                (Until::Written(of), None) if of == number => reply.done(Value::Null),
+                (until, _) => self.controlled.waiting.push((reply, until)),
+            }
         }
     }
 

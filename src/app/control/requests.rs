@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 
 use super::{Next, Until, Work};
-use crate::app::command::{Command, CompareWith, Side, open_as};
+use crate::app::command::{Command, Side, open_as};
 use crate::app::palette;
 use crate::app::viewer::Viewer;
 use crate::capture::modes_of;
-use crate::control::{COMMANDS, Camera, Capture, Compare, Open, Playback, Probe, Request, Run};
+use crate::control::{COMMANDS, Camera, Capture, Open, Playback, Probe, Request, Run};
 use crate::message::did_you_mean;
 use crate::picture;
 use crate::scene::BUILT_IN;
@@ -50,11 +50,7 @@ impl Viewer {
                 Next::Wait(Until::Reloaded)
             }
             Request::Open(open) => Next::Wait(self.open(open)?),
-            Request::Compare(compare) => {
-                self.compare_as(compare)?;
-                let (version, wipe) = (self.compare.version(), self.compare.wipe);
-                Next::Done(json!({ "is_on": self.compare.is_on(), "version": version, "wipe": short(wipe) }))
-            }
+            Request::Compare(compare) => self.compare_as(compare)?,
             Request::Versions(None) => Next::Done(self.versions_json()),
             Request::Versions(Some(number)) => {
                 if self.files_of_version(number).is_empty() {
@@ -63,7 +59,7 @@ impl Viewer {
                     ));
                 }
                 self.execute(Command::WriteVersion(number));
-                Next::Done(Value::Null)
+                Next::Wait(Until::Written(number))
             }
             Request::Undo if !self.history.undo(&mut self.session.settings) => {
                 return Err("there is nothing to undo".into());
@@ -200,51 +196,6 @@ impl Viewer {
             command => command,
         });
         Ok(until)
-    }
-
-    fn compare_as(&mut self, asked: Compare) -> Result<(), String> {
-        let newest = self.shown_generation();
-        let showable =
-            |number: u64| self.versions.get(number).is_some_and(|version| self.versions.can_show(version, newest));
-        let with = match asked.with {
-            None | Some(Value::Null) => None,
-            Some(Value::String(with)) => Some(match with.as_str() {
-                "nothing" => CompareWith::Nothing,
-                "picture" => CompareWith::ThisPicture,
-                "previous" => {
-                    let before = self.versions.iter().rev().find(|version| self.versions.can_show(version, newest));
-                    CompareWith::Version(
-                        before.ok_or("there is no earlier version: no edit has been shown yet")?.number,
-                    )
-                }
-                other => {
-                    let hint = did_you_mean(other, ["nothing", "picture", "previous"]);
-                    return Err(format!(
-                        "cannot compare with `{other}`.{hint} It can be nothing, picture, previous or a number"
-                    ));
-                }
-            }),
-            Some(Value::Number(number)) => {
-                let number = number.as_u64().filter(|number| showable(*number));
-                Some(CompareWith::Version(number.ok_or("this version is not kept; `versions` lists those that are")?))
-            }
-            Some(other) => {
-                return Err(format!("cannot compare with {other}; it can be nothing, picture, previous or a number"));
-            }
-        };
-        if let Some(with) = with {
-            self.execute(Command::Compare(with));
-            if with != CompareWith::Nothing && !self.compare.is_on() {
-                return Err("there is no whole picture to keep".to_owned());
-            }
-        }
-        if let Some(wipe) = asked.wipe {
-            if !(0.0..=1.0).contains(&wipe) {
-                return Err(format!("`wipe` is {wipe}; it can be 0 to 1"));
-            }
-            self.compare.wipe = wipe;
-        }
-        Ok(())
     }
 
     fn versions_json(&self) -> Value {

@@ -209,6 +209,12 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
         false => vec![compare("Keep this picture and compare".to_owned(), CompareWith::ThisPicture)],
     };
     entries[0].key = "Ctrl+K".to_owned();
+    let choose = |title: &str, words: &str, dialog| {
+        let entry = Entry::new("Compare", title.to_owned(), Action::Do(Command::Choose(dialog)));
+        Entry { words: words.to_owned(), ..entry }
+    };
+    entries.push(choose("Compare with a picture…", "file image PNG JPEG EXR HDR reference", Dialog::Picture));
+    entries.push(choose("Compare with another shader tree…", "second folder A B", Dialog::SecondTree));
     for version in viewer.versions.iter().filter(|version| viewer.versions.can_show(version, newest)) {
         let title = format!("Compare with version {}: {}", version.number, version.title());
         entries.push(compare(title, CompareWith::Version(version.number)));

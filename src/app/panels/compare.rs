@@ -53,11 +53,12 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
 
 /// Covers the picture with the map of the difference.
 fn map(painter: &Painter, compare: &mut Compare, picture: Rect) {
-    let Some(Difference { map, texture, .. }) = &mut compare.difference else { return };
+    let Some(Difference { map, texture, part, .. }) = &mut compare.difference else { return };
     let load = || painter.ctx().load_texture("difference", map.clone(), egui::TextureOptions::NEAREST);
     let texture = texture.get_or_insert_with(load).id();
     let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    painter.image(texture, picture, uv, Color32::WHITE);
+    let at = |corner: Pos2| picture.min + corner.to_vec2() * picture.size();
+    painter.image(texture, Rect::from_min_max(at(part.min), at(part.max)), uv, Color32::WHITE);
 }
 
 /// Writes the name of one of the pictures.

@@ -4,6 +4,7 @@
 mod camera;
 mod capture;
 mod compare;
+mod comparison;
 pub(super) mod defaults;
 mod environment;
 pub(super) mod expression;

@@ -6,10 +6,12 @@ use egui_kittest::kittest::Queryable as _;
 
 use super::LegendOf;
 use super::overlay::legend::{self, Legend, LegendState};
-use super::{camera, capture, range, rows, theme};
-use crate::app::command::Command;
+use super::{camera, capture, comparison, range, rows, theme};
+use crate::app::command::{Command, CompareWith};
 use crate::app::control::Captures;
+use crate::app::dialog::Dialog;
 use crate::app::numbers::EXPOSURE;
+use crate::app::viewer::Compare;
 use crate::control::{Request, Timeline, Turntable};
 use crate::scene::Model;
 use crate::settings::{Channels, Colormap, Settings, ViewRange};
@@ -107,4 +109,25 @@ fn cameras_are_kept_and_found_by_their_number() {
     harness.get_by_role_and_label(Role::Button, "3").click();
     harness.run();
     assert_eq!(harness.state().1.last(), Some(&Command::RecallCamera(3)));
+}
+
+#[test]
+fn a_comparison_begins_with_a_picture_or_a_second_tree() {
+    let state = (Compare::default(), Vec::new());
+    let mut harness = harness(state, |ui, (compare, commands)| comparison::show(ui, compare, commands));
+    harness.get_by_role_and_label(Role::Button, "Keep this picture").click();
+    harness.run();
+    for name in ["A picture…", "A shader tree…"] {
+        harness.get_by_role_and_label(Role::Button, "Compare with…").click();
+        harness.run();
+        harness.get_by_role_and_label(Role::Button, name).click();
+        harness.run();
+    }
+    let (_, commands) = harness.state();
+    let expected = [
+        Command::Compare(CompareWith::ThisPicture),
+        Command::Choose(Dialog::Picture),
+        Command::Choose(Dialog::SecondTree),
+    ];
+    assert_eq!(commands.as_slice(), expected);
 }

@@ -3,10 +3,10 @@
 use egui::{Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
 use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT};
-use super::{EDGE, ERROR, WARNING};
+use super::{EDGE, ERROR, WARNING, comparison};
 use crate::app::command::{Command, CompareWith};
 use crate::app::difference::{Kind, Line};
-use crate::app::viewer::{Difference, Version, Viewer};
+use crate::app::viewer::{Version, Viewer};
 
 /// Size of a thumbnail in points.
 pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
@@ -14,10 +14,6 @@ pub(in crate::app) const THUMBNAIL: Vec2 = vec2(128.0, 80.0);
 const IN_LIST: f32 = 0.625;
 /// Most lines of a difference in the hover text.
 const MOST_LINES: usize = 40;
-
-/// The meaning of the numbers of a comparison.
-const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different both pictures look when one is flipped to the other, \
-    0.7 m from a 4K screen. And the largest difference of a channel of the display";
 
 /// State that the panel keeps between frames.
 #[derive(Default)]
@@ -38,24 +34,7 @@ impl TimelineState {
 /// Shows the panel.
 pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, commands: &mut Vec<Command>) {
     state.is_visible = true;
-    let compare = &mut viewer.compare;
-    ui.horizontal_wrapped(|ui| match compare.is_on() {
-        true => {
-            if ui.button("Stop comparing").on_hover_text("Show the newest picture alone (Ctrl+K)").clicked() {
-                commands.push(Command::Compare(CompareWith::Nothing));
-            }
-            ui.toggle_value(&mut compare.shows_map, "Difference").on_hover_text(
-                "Cover the picture with FLIP of each pixel: black is equal, white as different as can be",
-            );
-            ui.label(monospace(difference_text(compare.difference.as_ref()))).on_hover_text(FLIP);
-        }
-        false => {
-            let hint = "Keep the picture as it is now, with all settings, and compare what follows with it (Ctrl+K)";
-            if ui.button("Keep this picture").on_hover_text(hint).clicked() {
-                commands.push(Command::Compare(CompareWith::ThisPicture));
-            }
-        }
-    });
+    comparison::show(ui, &mut viewer.compare, commands);
     if let Some(number) = state.asked {
         ask(ui, viewer, number, &mut state.asked, commands);
     }
@@ -81,14 +60,6 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
             }
         });
     });
-}
-
-/// How much both pictures differ.
-fn difference_text(difference: Option<&Difference>) -> String {
-    match difference {
-        Some(Difference { flip, largest, .. }) => format!("FLIP {flip:.4}  largest {:.0}/255", largest * 255.0),
-        None => "FLIP …".to_owned(),
-    }
 }
 
 /// A version in the panel.
@@ -217,7 +188,7 @@ fn hover(ui: &mut Ui, hint: &str, lines: &[Line]) {
 }
 
 /// Small text of a fixed width.
-fn monospace(text: impl Into<String>) -> RichText {
+pub(super) fn monospace(text: impl Into<String>) -> RichText {
     RichText::new(text).font(egui::FontId::monospace(11.0))
 }
 

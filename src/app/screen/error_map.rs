@@ -4,14 +4,16 @@
 use std::sync::Arc;
 
 use super::Screen;
+use super::reference::ReferenceView;
 use crate::app::viewer::Viewer;
 use crate::frame::FrameState;
-use crate::gpu::{GpuError, Use};
-use crate::render::{BoundFrame, Output, Readback, Redraw};
+use crate::gpu::{GpuError, Rect, Use};
+use crate::render::{BoundFrame, Output, Redraw};
+use crate::threads::Side;
 
 /// Both pictures, by their numbers and states.
 pub(super) struct Pair {
-    numbers: [u64; 2],
+    numbers: [u64; 3],
     states: [Arc<FrameState>; 2],
 }
 
@@ -19,6 +21,13 @@ impl Pair {
     fn is_same(&self, other: &Self) -> bool {
         self.numbers == other.numbers && self.states.iter().zip(&other.states).all(|(a, b)| a.is_same(b))
     }
+}
+
+/// Copies of both pictures that a frame in this slot makes, and their part that is measured.
+struct Copied {
+    slot: usize,
+    pictures: [Side; 2],
+    part: Rect,
 }
 
 /// The pictures that are measured.
@@ -29,7 +38,7 @@ pub(super) struct ErrorMap {
     /// The pictures that were measured last, or are being measured.
     measured: Option<Pair>,
     /// The slot of the frame that copies both pictures.
-    copied: Option<(usize, [Readback; 2])>,
+    copied: Option<Copied>,
     /// The number of the last measurement.
     number: u64,
 }
@@ -51,7 +60,7 @@ impl Screen {
             viewer.compare.measuring = None;
             return Ok(false);
         };
-        let numbers = [reference.view.picture(), self.view.picture()];
+        let numbers = [reference.view.picture(), reference.still_number(), self.view.picture()];
         let states = [reference.frame.state.clone(), live.state.clone()];
         let same_size = states[0].size == states[1].size;
         let pair = Pair { numbers, states };
@@ -90,16 +99,18 @@ impl Screen {
             Some(reference) => reference.copy(&mut encoder, slot)?,
             None => None,
         };
+        let part = self.reference.as_ref().map(ReferenceView::covered).unwrap_or_default();
         self.frames.submit(encoder, Default::default())?;
-        self.error_map.copied = of_reference.zip(of_live).map(|(a, b)| (slot, [a, b]));
+        let copied = of_reference.zip(of_live.map(Side::Drawn));
+        self.error_map.copied = copied.map(|(a, b)| Copied { slot, pictures: [a, b], part });
         Ok(())
     }
 
     /// Sends copies whose frame has finished to the thread that compares them.
     pub(super) fn take_copies(&mut self, viewer: &Viewer) {
-        let is_finished = |(slot, _): &mut (usize, [Readback; 2])| self.frames.is_finished(*slot);
-        if let Some((_, copies)) = self.error_map.copied.take_if(is_finished) {
-            viewer.threads.compare(self.error_map.number, copies);
+        let is_finished = |copied: &mut Copied| self.frames.is_finished(copied.slot);
+        if let Some(Copied { pictures, part, .. }) = self.error_map.copied.take_if(is_finished) {
+            viewer.threads.compare(self.error_map.number, pictures, part);
         }
     }
 }

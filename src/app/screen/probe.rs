@@ -53,7 +53,8 @@ impl Screen {
         let of_reference = at.is_some_and(|at| self.is_in_reference(at));
         self.view.probe = at.filter(|_| !of_reference);
         if let Some(reference) = &mut self.reference {
-            reference.view.probe = at.filter(|_| of_reference);
+            // Stored colors have no value behind them.
+            reference.view.probe = at.filter(|_| of_reference && !reference.is_stored());
         }
     }
 

@@ -3,10 +3,14 @@
 
 use std::sync::Arc;
 
+use image::RgbaImage;
+
 use super::{FRAMES_IN_FLIGHT, Screen};
 use crate::app::viewer::{Reference, Viewer};
-use crate::gpu::{Encoder, GpuError, Image, Use};
-use crate::render::{BoundFrame, Output, Readback, Redraw, View};
+use crate::comparison::Still;
+use crate::gpu::{Encoder, GpuError, Image, Rect, Use};
+use crate::render::{BoundFrame, Output, Redraw, View};
+use crate::threads::Side;
 
 /// The view of the reference, and the image that it draws to.
 pub(super) struct ReferenceView {
@@ -14,6 +18,8 @@ pub(super) struct ReferenceView {
     image: Arc<Image>,
     /// The frame that was drawn last.
     pub(super) frame: BoundFrame,
+    /// The picture from a file that takes its place, with its number.
+    still: Option<(u64, Arc<Still>)>,
     /// The part of the width that shows it, from the left, 0..1.
     part: f32,
 }
@@ -24,17 +30,71 @@ impl ReferenceView {
         (self.part.clamp(0.0, 1.0) * self.frame.state.size.0 as f32).round() as u32
     }
 
+    /// Whether the reference is a picture from a file.
+    pub(super) fn is_still(&self) -> bool {
+        self.still.is_some()
+    }
+
+    /// Whether the reference is the colors of a file, which no view draws.
+    pub(super) fn is_stored(&self) -> bool {
+        self.stored().is_some()
+    }
+
+    /// The number of the picture from a file, 0 without.
+    pub(super) fn still_number(&self) -> u64 {
+        self.still.as_ref().map_or(0, |(number, _)| *number)
+    }
+
+    /// The part of the picture that the reference covers.
+    pub(super) fn covered(&self) -> Rect {
+        let (width, height) = self.frame.state.size;
+        self.still.as_ref().map_or(Rect { x: 0, y: 0, width, height }, |(_, still)| still.covered)
+    }
+
+    /// The colors of a file, which need no view.
+    fn stored(&self) -> Option<(&Arc<Image>, &Arc<RgbaImage>)> {
+        let (_, still) = self.still.as_ref()?;
+        Some((&still.image, still.display.as_ref()?))
+    }
+
     /// Draws the reference to its image.
     fn draw(&mut self, encoder: &mut Encoder, slot: usize) -> Result<(), GpuError> {
+        // A file's light takes the place of the picture that is drawn, so no mean of it is needed.
+        let redraw = if self.is_still() { Redraw::ToneMap } else { Redraw::IfChanged };
         let Self { view, image, frame, .. } = self;
         let output = Output { image, before: Use::Undefined, at: (0, 0) };
-        encoder.untimed(|encoder| view.draw(encoder, slot, frame, &output, Redraw::IfChanged))
+        encoder.untimed(|encoder| view.draw(encoder, slot, frame, &output, redraw))
     }
 
     /// Draws the reference and records its readback.
-    pub(super) fn copy(&mut self, encoder: &mut Encoder, slot: usize) -> Result<Option<Readback>, GpuError> {
+    pub(super) fn copy(&mut self, encoder: &mut Encoder, slot: usize) -> Result<Option<Side>, GpuError> {
+        if let Some((_, pixels)) = self.stored() {
+            return Ok(Some(Side::Stored(pixels.clone())));
+        }
         self.draw(encoder, slot)?;
-        self.view.read_back(encoder, &self.image)
+        Ok(self.view.read_back(encoder, &self.image)?.map(Side::Drawn))
+    }
+
+    /// Copies the reference over the left columns of `target`, which is in [`Use::Color`] before and after.
+    fn copy_to(
+        &mut self,
+        encoder: &mut Encoder,
+        slot: usize,
+        target: &Arc<Image>,
+        at: (u32, u32),
+    ) -> Result<(), GpuError> {
+        let is_stored = self.is_stored();
+        if !is_stored {
+            self.draw(encoder, slot)?;
+        }
+        let image = self.stored().map_or(&self.image, |(image, _)| image);
+        let image_use = if is_stored { Use::Sampled } else { Use::Color };
+        encoder.transition(image, image_use, Use::CopyFrom);
+        encoder.transition(target, Use::Color, Use::CopyTo);
+        encoder.copy_columns_to(image, self.columns(), target, at);
+        encoder.transition(target, Use::CopyTo, Use::Color);
+        encoder.transition(image, Use::CopyFrom, image_use);
+        Ok(())
     }
 }
 
@@ -53,18 +113,22 @@ impl Screen {
         viewer: &Viewer,
         reference: Option<Reference>,
     ) -> Result<Option<ReferenceView>, GpuError> {
-        let Some(Reference { frame, part }) = reference else { return Ok(None) };
+        let Some(Reference { frame, still, part }) = reference else { return Ok(None) };
         let (mut view, image) = match self.reference.take() {
             Some(ReferenceView { view, image, .. }) => (view, Some(image)),
             None => (View::new(&viewer.gpu, viewer.resources.layouts(), FRAMES_IN_FLIGHT)?, None),
         };
-        view.prepare(&frame)?;
+        let stored = still.as_ref().is_some_and(|(_, still)| still.display.is_some());
+        view.given = still.as_ref().filter(|_| !stored).map(|(_, still)| still.image.clone());
+        if !stored {
+            view.prepare(&frame)?;
+        }
         let fits = |image: &Arc<Image>| (image.desc().width, image.desc().height) == frame.state.size;
         let image = match image.filter(fits) {
             Some(image) => image,
             None => view.output_image(frame.state.size)?,
         };
-        Ok(Some(ReferenceView { view, image, frame, part }))
+        Ok(Some(ReferenceView { view, image, frame, still, part }))
     }
 
     /// Draws the reference over the left part of a picture that lies at `at` in `target`, which is in [`Use::Color`] before and
@@ -81,15 +145,7 @@ impl Screen {
         let live = self.last.as_ref().map(|live| &live.state);
         let is_same_mode = live.is_some_and(|live| live.pipelines.mode == reference.frame.state.pipelines.mode);
         reference.view.follow_limits(is_same_mode.then(|| self.view.limits()));
-        encoder.pass("compare", |encoder| {
-            reference.draw(encoder, slot)?;
-            let (image, columns) = (&reference.image, reference.columns());
-            encoder.transition(image, Use::Color, Use::CopyFrom);
-            encoder.transition(target, Use::Color, Use::CopyTo);
-            encoder.copy_columns_to(image, columns, target, at);
-            encoder.transition(target, Use::CopyTo, Use::Color);
-            Ok(())
-        })
+        encoder.pass("compare", |encoder| reference.copy_to(encoder, slot, target, at))
     }
 
     /// Whether a pixel of the picture shows the reference.

@@ -1,25 +1,42 @@
-//! Compares the picture with an earlier one: that of an older version of the shaders, or one that the user has kept.
+//! Compares the picture with another one: that of an older version of the shaders, one that the user has kept, that of a second
+//! shader tree, or a picture from a file.
 
-use std::path::{Path, PathBuf};
+mod file;
+mod tree;
+mod write;
+
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::{LastComplete, Version, Versions, Viewer};
-use crate::app::command::CompareWith;
+use crate::app::OtherPicture;
+use crate::app::command::{Command, CompareWith};
 use crate::capture::VersionPicture;
-use crate::comparison::Comparison;
+use crate::comparison::{Comparison, Still};
 use crate::events::{Event, emit};
+use crate::frame::FrameState;
 use crate::gpu::GpuError;
-use crate::picture;
 use crate::render::BoundFrame;
-use crate::shader::TreePath;
-use crate::threads::Message;
+use crate::shader::ShaderSet;
+use file::PictureFile;
+use tree::TreePicture;
+pub(super) use write::write_files;
 
-/// The earlier picture, and how much of it is shown.
+/// The answer to a request for a comparison that a newer one has replaced.
+const REPLACED: &str = "the comparison was ended or replaced before it was shown";
+
+/// The other picture, and how much of it is shown.
 pub(in crate::app) struct Compare {
     with: Option<With>,
-    /// Where the border between both pictures is: the part of the width that shows the earlier one, 0..1.
+    /// What is being read or compiled. It takes the place of `with` when it is there; if it cannot be, `with` stays.
+    opening: Option<Opening>,
+    /// The number of the last request to read, scale or compile.
+    number: u64,
+    /// Whether the other picture was part of the last frame.
+    is_drawn: bool,
+    /// Where the border between both pictures is: the part of the width that shows the other one, 0..1.
     pub(in crate::app) wipe: f32,
-    /// Whether only the earlier one is shown (Space).
+    /// Whether only the other one is shown (Space).
     is_held: bool,
     /// The number of the measurement that is under way.
     pub(in crate::app) measuring: Option<u64>,
@@ -39,6 +56,8 @@ pub(in crate::app) struct Difference {
     pub(in crate::app) map: egui::ImageData,
     /// The map on the device, once it has been shown.
     pub(in crate::app) texture: Option<egui::TextureHandle>,
+    /// The part of the picture that was measured, as fractions of its size.
+    pub(in crate::app) part: egui::Rect,
 }
 
 enum With {
@@ -46,18 +65,43 @@ enum With {
     Version(u64),
     /// A picture with all its settings, and how it is called.
     Kept(Box<LastComplete>, String),
+    /// A picture from a file.
+    File(PictureFile),
+    /// The picture of another shader tree.
+    Tree(Box<TreePicture>),
 }
 
-/// The earlier picture, as a frame draws it for a comparison.
+/// What the comparison will be with.
+enum Opening {
+    /// A file that is being read, and the number of the request.
+    File(u64, PathBuf),
+    /// A tree that is being compiled.
+    Tree(Box<TreePicture>),
+}
+
+/// The other picture, as a frame draws it for a comparison.
 pub(in crate::app) struct Reference {
+    /// The frame that draws it. For a picture from a file, the frame of the picture beside it.
     pub(in crate::app) frame: BoundFrame,
+    /// The picture from a file, with the number of the request that made it.
+    pub(in crate::app) still: Option<(u64, Arc<Still>)>,
     /// The part of the width that shows it, from the left, 0..1.
     pub(in crate::app) part: f32,
 }
 
 impl Default for Compare {
     fn default() -> Self {
-        Self { with: None, wipe: 0.5, is_held: false, measuring: None, difference: None, shows_map: false }
+        Self {
+            with: None,
+            opening: None,
+            number: 0,
+            is_drawn: false,
+            wipe: 0.5,
+            is_held: false,
+            measuring: None,
+            difference: None,
+            shows_map: false,
+        }
     }
 }
 
@@ -67,7 +111,7 @@ impl Compare {
         self.with.is_some()
     }
 
-    /// Whether the earlier picture is shown alone.
+    /// Whether the other picture is shown alone.
     pub(in crate::app) fn is_held(&self) -> bool {
         self.is_held
     }
@@ -78,6 +122,32 @@ impl Compare {
             Some(With::Version(number)) => Some(number),
             _ => None,
         }
+    }
+
+    /// Whether a picture or tree for the comparison is being read or compiled.
+    pub(in crate::app) fn is_opening(&self) -> bool {
+        self.opening.is_some()
+    }
+
+    /// Whether both pictures were part of the last frame.
+    pub(in crate::app) fn is_drawn(&self) -> bool {
+        self.is_drawn && self.is_on() && !self.is_opening()
+    }
+
+    /// Compares with something else.
+    fn set(&mut self, with: Option<With>) {
+        (self.difference, self.measuring, self.shows_map) = (None, None, false);
+        (self.with, self.is_drawn) = (with, false);
+    }
+
+    /// Ends the comparison, but not the numbers of its requests, whose answers may still come.
+    fn end(&mut self) {
+        *self = Self { number: self.number, ..Self::default() };
+    }
+
+    fn next_number(&mut self) -> u64 {
+        self.number += 1;
+        self.number
     }
 }
 
@@ -95,17 +165,28 @@ impl Viewer {
                 let map = compared.map().to_rgb8();
                 let size = [map.width() as usize, map.height() as usize];
                 let map = egui::ColorImage::from_rgb(size, map.as_raw()).into();
-                self.compare.difference = Some(Difference { flip, largest, map, texture: None });
+                let part = self.compare.measured_part();
+                self.compare.difference = Some(Difference { flip, largest, map, texture: None, part });
             }
             Ok(_) => {}
             Err(message) => self.say(message),
         }
     }
 
-    /// Chooses the earlier picture.
+    /// Begins the comparison that the command line asks for.
+    pub(super) fn compare_at_start(&mut self, with: Option<OtherPicture>) {
+        let with = with.map(|with| match with {
+            OtherPicture::File(path) => CompareWith::File(path),
+            OtherPicture::Tree(path) => CompareWith::Tree(path),
+        });
+        with.into_iter().for_each(|with| self.execute(Command::Compare(with)));
+    }
+
+    /// Chooses the other picture. The present one stays until the other is there.
     pub(super) fn compare_with(&mut self, with: CompareWith) {
-        (self.compare.difference, self.compare.measuring, self.compare.shows_map) = (None, None, false);
-        self.compare.with = match with {
+        let with = match with {
+            CompareWith::File(path) => return self.open_picture(&path),
+            CompareWith::Tree(path) => return self.open_second_tree(&path).unwrap_or_else(|message| self.say(message)),
             CompareWith::Nothing => None,
             CompareWith::Version(number) => Some(With::Version(number)),
             CompareWith::ThisPicture => {
@@ -118,6 +199,9 @@ impl Viewer {
                 Some(With::Kept(Box::new(shown.clone()), label))
             }
         };
+        self.compare.opening = None;
+        self.compare.set(with);
+        self.comparison_failed(REPLACED);
         if matches!(self.compare.with, Some(With::Kept(..))) {
             self.say("Kept this picture. Change a file or a setting and compare; Ctrl+K ends it");
         }
@@ -149,6 +233,8 @@ impl Viewer {
         let before = self.version_before();
         let number = match &self.compare.with {
             Some(With::Kept(_, label)) => return Some(label.clone()),
+            Some(With::File(file)) => return Some(file.label()),
+            Some(With::Tree(tree)) => return Some(tree.label()),
             Some(With::Version(number)) => *number,
             None => before.filter(|_| self.compare.is_held)?,
         };
@@ -160,41 +246,56 @@ impl Viewer {
         })
     }
 
-    /// The earlier picture with the camera of now. An older version follows all settings as soon as its pipelines for them are
-    /// built; until then, and with settings that need another light, it is the last picture that it had on screen.
+    /// The other picture with the camera of now. An older version and a second tree follow all settings as soon as their pipelines for
+    /// them are built; until then, and with settings that need another light, it is the last picture that they had on screen.
     ///
     /// # Errors
     /// No memory left.
     pub(in crate::app) fn reference(&mut self, live: &BoundFrame) -> Result<Option<Reference>, GpuError> {
         let part = if self.compare.is_held { 1.0 } else { self.compare.wipe };
-        let number = match &self.compare.with {
-            Some(With::Kept(kept, _)) => {
-                let frame = self.interim(kept, self.clock, live.state.size);
-                return Ok(Some(Reference { frame, part }));
+        let drawn = |frame| Reference { frame, still: None, part };
+        let reference = match &self.compare.with {
+            Some(With::Kept(kept, _)) => Some(drawn(self.interim(kept, self.clock, live.state.size))),
+            Some(With::File(_)) => {
+                let still = self.picture_that_fits(live.state.size);
+                still.map(|still| Reference { frame: live.clone(), still: Some(still), part })
             }
-            Some(With::Version(number)) => Some(*number),
-            None => self.version_before().filter(|_| self.compare.is_held),
+            Some(With::Tree(_)) => self.picture_of_tree(live)?.map(drawn),
+            Some(With::Version(number)) => self.picture_of_version(Some(*number), live)?.map(drawn),
+            None => {
+                let before = self.version_before().filter(|_| self.compare.is_held);
+                self.picture_of_version(before, live)?.map(drawn)
+            }
         };
+        self.compare.is_drawn = reference.is_some();
+        Ok(reference)
+    }
+
+    fn picture_of_version(&mut self, number: Option<u64>, live: &BoundFrame) -> Result<Option<BoundFrame>, GpuError> {
         let Some(version) = number.and_then(|number| self.versions.get(number)) else {
             self.compare.with = None;
             return Ok(None);
         };
         let (set, like) = (version.set.clone(), version.picture.as_ref().map(|picture| picture.frame.clone()));
-        // The mouse may preview a mode.
-        let mode = live.state.mode().map_or_else(|| self.session.settings.mode.clone(), |mode| mode.slug.clone());
-        let selected = std::mem::replace(&mut self.session.settings.mode, mode);
-        let state = self.session.frame_state_of(&set.shaders, self.clock, live.state.size, live.state.pipelines.target);
-        self.session.settings.mode = selected;
-        let state = Arc::new(state);
+        let state = self.state_like(live, &set.shaders);
         if let Some(frame) = self.resources.bind_older(&set, &state, like.as_ref())? {
-            return Ok(Some(Reference { frame, part }));
+            return Ok(Some(frame));
         }
         if self.is_complete && !state.pipelines.needs_pending(&set.shaders) {
             self.threads.worker.build(&set, &state.pipelines);
         }
         let picture = self.versions.get(set.shaders.generation).and_then(|version| version.picture.as_ref());
-        let frame = picture.map(|picture| self.interim(picture, self.clock, live.state.size));
-        Ok(frame.map(|frame| Reference { frame, part }))
+        Ok(picture.map(|picture| self.interim(picture, self.clock, live.state.size)))
+    }
+
+    /// The picture of now with other shaders.
+    fn state_like(&mut self, live: &BoundFrame, shaders: &Arc<ShaderSet>) -> Arc<FrameState> {
+        // The mouse may preview a mode.
+        let mode = live.state.mode().map_or_else(|| self.session.settings.mode.clone(), |mode| mode.slug.clone());
+        let selected = std::mem::replace(&mut self.session.settings.mode, mode);
+        let state = self.session.frame_state_of(shaders, self.clock, live.state.size, live.state.pipelines.target);
+        self.session.settings.mode = selected;
+        Arc::new(state)
     }
 
     /// Inputs for a picture of each version, oldest first.
@@ -212,73 +313,21 @@ impl Viewer {
 
     /// Ends the comparison and drops old versions, while memory is short.
     pub(in crate::app) fn forget_references(&mut self) {
-        self.compare = Compare::default();
+        self.compare.end();
         self.versions.drop_old();
     }
 
     /// Ends the comparison and drops all versions.
     pub(super) fn forget_all_references(&mut self) {
-        (self.compare, self.versions) = (Compare::default(), Versions::default());
+        self.compare.end();
+        self.versions = Versions::default();
     }
 
     /// Ends the comparison, since a loop did not end in one of both pictures.
     pub(in crate::app) fn end_comparison(&mut self) {
         if self.compare.is_on() || self.compare.is_held {
-            self.compare = Compare::default();
+            self.compare.end();
             self.say("A loop did not end, so the comparison has ended");
         }
     }
-
-    /// The files in which a version differs from the version on screen, with its text of each. Empty for a tree without a folder.
-    pub(in crate::app) fn files_of_version(&self, number: u64) -> Vec<(PathBuf, Arc<str>)> {
-        let newest = self.session.shaders.as_ref().map(|shaders| &shaders.texts);
-        let all = self.source.root().zip(self.versions.get(number)).zip(newest);
-        let Some(((root, version), newest)) = all else { return Vec::new() };
-        let differs = |(path, text): &(&TreePath, &Arc<str>)| newest.get(*path) != Some(*text);
-        let texts = version.set.shaders.texts.iter().filter(differs);
-        texts.map(|(path, text)| (root.join(path.as_str()), text.clone())).collect()
-    }
-
-    /// Writes the texts of a version over the files in which it differs from the version on screen, on a thread of its own. What is
-    /// on disk and was never shown, such as an edit with an error, is kept beside each file.
-    pub(super) fn write_version(&mut self, number: u64) {
-        let (files, newest) = (self.files_of_version(number), self.session.shaders.clone());
-        let Some((newest, root)) = newest.zip(self.source.root().map(Path::to_owned)) else { return };
-        self.threads.wait(move || {
-            let shown = |path: &Path| {
-                let path = path.strip_prefix(&root).ok()?.to_str()?;
-                newest.texts.get(&TreePath::from(path)).cloned()
-            };
-            let files: Vec<_> = files.into_iter().map(|(path, text)| (shown(&path), path, text)).collect();
-            let names: Vec<&str> = files.iter().filter_map(|(_, path, _)| path.file_name()?.to_str()).collect();
-            let done = || format!("Wrote version {number} of {}", names.join(", "));
-            Some(Message::Say(write_files(&files).map_or_else(|message| message, |()| done())))
-        });
-    }
-}
-
-/// A file to write: the text that is shown, its path, and the new text.
-pub(super) type Write = (Option<Arc<str>>, PathBuf, Arc<str>);
-
-/// Writes files whole, all or none as far as reading them tells. A file keeps its byte order mark.
-pub(super) fn write_files(files: &[Write]) -> Result<(), String> {
-    let mark: &[u8] = b"\xef\xbb\xbf";
-    let mut writes = Vec::new();
-    for (shown, path, text) in files {
-        let error = |error: std::io::Error| format!("cannot write {}: {error}. Nothing was written", path.display());
-        let old = match std::fs::read(path) {
-            Err(missing) if missing.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-            read => read.map_err(error)?,
-        };
-        let (has_mark, old_text) = (old.starts_with(mark), old.strip_prefix(mark).unwrap_or(&old));
-        let is_known = old.is_empty() || old_text == text.as_bytes();
-        if !is_known && shown.as_ref().is_none_or(|shown| old_text != shown.as_bytes()) {
-            let beside = path.with_extension(format!("{}.bak", path.extension().unwrap_or_default().display()));
-            std::fs::write(&beside, &old).map_err(error)?;
-        }
-        writes.push((path, [if has_mark { mark } else { b"" }, text.as_bytes()].concat()));
-    }
-    writes.iter().try_for_each(|(path, bytes)| {
-        picture::replace_file(path, bytes).map_err(|error| format!("cannot write {}: {error}", path.display()))
-    })
 }

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::Viewer;
-use crate::app::command::{Command, open_as};
+use crate::app::command::{Command, CompareWith, open_as};
+use crate::app::dialog::Dialog;
 use crate::app::{dialog, editor, hint};
 use crate::picture::read_settings;
 use crate::scene::LoadOptions;
@@ -59,9 +60,9 @@ impl Viewer {
                 Ok(editor) => self.threads.wait(|| editor.failure().map(Message::Say)),
                 Err(message) => self.say(message),
             },
-            Command::Choose(_) if self.is_choosing => self.say("The file dialog is already open"),
+            Command::Choose(_) if self.choosing.is_some() => self.say("The file dialog is already open"),
             Command::Choose(dialog) => {
-                self.is_choosing = true;
+                self.choosing = Some(dialog);
                 self.threads.wait(move || Some(Message::Chosen(dialog::choose(dialog))));
             }
             Command::ShowGallery => self.panels.open_gallery.is_open = true,
@@ -72,9 +73,9 @@ impl Viewer {
             Command::CancelCaptures => self.cancel_captures(),
             Command::Compare(with) => self.compare_with(with),
             Command::WriteVersion(number) => self.write_version(number),
-            Command::NewTree(_) if self.is_choosing => self.say("The file dialog is already open"),
+            Command::NewTree(_) if self.choosing.is_some() => self.say("The file dialog is already open"),
             Command::NewTree(folder) => {
-                self.is_choosing = true;
+                self.choosing = Some(Dialog::New);
                 self.threads.wait(move || Some(Message::NewTree(hint::write_tree(folder))));
             }
             Command::Learn(command) => self.learn(command),
@@ -94,8 +95,11 @@ impl Viewer {
         self.watch_files();
     }
 
-    /// Opens a file or folder that was dropped on the window.
+    /// Opens a file or folder that was dropped on the window. While pictures are compared, another picture takes part.
     pub(in crate::app) fn open_path(&mut self, path: PathBuf) {
+        if self.compare.takes(&path) {
+            return self.execute(Command::Compare(CompareWith::File(path)));
+        }
         self.execute(open_as(path).unwrap_or_else(Command::Say));
     }
 

@@ -22,6 +22,7 @@ impl Viewer {
             Ok(uploaded) => {
                 // The pictures of older versions would keep the old model on the device.
                 self.versions.drop_pictures();
+                self.forget_second_picture();
                 let (model, is_other) = (uploaded.model(), loaded.path != self.model.path);
                 for warning in &model.warnings {
                     message::warn(format_args!("{}: {warning}", model.name));
@@ -82,6 +83,7 @@ impl Viewer {
         if is_changed(&measured) {
             self.session.revisions.measured += 1;
         }
+        self.on_picture_changed(changed);
         if is_changed(&self.model.files) {
             let on_screen = self.session.model().is_some_and(|model| is_changed(&model.files));
             let path = if on_screen && !self.model.loading { &self.model.path } else { &self.model.requested };

@@ -1,10 +1,11 @@
 //! Applies the results of the threads to the viewer.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{FirstFrame, Viewer};
-use crate::app::command::Command;
+use crate::app::command::{Command, CompareWith, open_as};
+use crate::app::dialog::Dialog;
 use crate::app::inspector::Shown;
 use crate::app::recent::Kind;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
@@ -65,15 +66,19 @@ impl Viewer {
             Message::Captures(number, done, of) => self.controlled.captures.progress(number, done, of),
             Message::Captured(number) => self.controlled.captures.ended(number),
             Message::Compared(number, compared) => self.on_compared(number, compared),
+            Message::PictureRead(number, read) => self.on_picture_read(number, read),
+            Message::PictureFits(number, still) => self.on_picture_fits(number, still),
+            Message::SecondTree(number, message) => self.on_second_tree(number, message),
+            Message::VersionWritten(number, written) => self.on_version_written(number, &written),
             Message::Chosen(answer) => {
-                self.is_choosing = false;
+                let dialog = self.choosing.take();
                 match answer {
-                    Ok(path) => path.into_iter().for_each(|path| self.open_path(path)),
+                    Ok(path) => path.into_iter().for_each(|path| self.chosen(dialog, path)),
                     Err(message) => self.say(message),
                 }
             }
             Message::NewTree(answer) => {
-                self.is_choosing = false;
+                self.choosing = None;
                 match answer {
                     Ok(path) => path.into_iter().for_each(|path| self.execute(Command::OpenTree(path))),
                     Err(message) => self.say(message),
@@ -83,6 +88,15 @@ impl Viewer {
             Message::Exercise(folder, exercise) => self.on_exercise(folder, exercise),
             Message::Checked(checked) => self.on_checked(checked),
             Message::Panicked(role, text) => self.on_panic(role, &text),
+        }
+    }
+
+    /// Opens what the user has chosen in a dialog.
+    fn chosen(&mut self, dialog: Option<Dialog>, path: PathBuf) {
+        match dialog {
+            Some(Dialog::Picture) => self.execute(Command::Compare(CompareWith::File(path))),
+            Some(Dialog::SecondTree) => self.execute(Command::Compare(CompareWith::Tree(path))),
+            _ => self.execute(open_as(path).unwrap_or_else(Command::Say)),
         }
     }
 
@@ -329,8 +343,16 @@ impl Viewer {
                 "capturing"
             }
             Role::Toolmaker => "toolmaker",
+            Role::SecondTree(number) => {
+                self.second_tree_failed(number);
+                "second tree"
+            }
+            Role::Scaler(number) => {
+                self.on_picture_fits(number, Err("the picture could not be scaled".to_owned()));
+                "scaling"
+            }
             Role::Waiter => {
-                (self.is_choosing, self.compare.measuring) = (false, None);
+                (self.choosing, self.compare.measuring) = (None, None);
                 "waiting"
             }
             Role::Tracer(key) => {

@@ -6,7 +6,7 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use specula::app::{self, AppError, AppOptions};
+use specula::app::{self, AppError, AppOptions, OtherPicture};
 use specula::control::{Control, Socket, socket_path};
 use specula::gpu::{GpuError, watchdog};
 use specula::message;
@@ -28,6 +28,12 @@ pub struct Args {
     /// Take commands on a local socket: a file that only you can open. A name without a slash lies in $XDG_RUNTIME_DIR/specula
     #[arg(long, value_name = "NAME|PATH")]
     socket: Option<PathBuf>,
+    /// Compare the picture with one from a file: PNG, JPEG, HDR or EXR. The window follows the file
+    #[arg(long, value_name = "FILE", conflicts_with = "compare_tree")]
+    compare: Option<PathBuf>,
+    /// Compare the picture with that of another shader tree. The window follows its files
+    #[arg(long, value_name = "DIR|FILE")]
+    compare_tree: Option<PathBuf>,
     #[command(flatten)]
     common: Common,
 }
@@ -35,7 +41,7 @@ pub struct Args {
 impl Args {
     /// The options of another command that opens the window.
     pub fn of(model: Option<PathBuf>, common: Common) -> Self {
-        Self { model, socket: None, common }
+        Self { model, socket: None, compare: None, compare_tree: None, common }
     }
 
     /// The model as given on the command line.
@@ -103,6 +109,9 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
     let work = state.work.clone().or(restored).unwrap_or(given);
     let good = folder.as_deref().map(|folder| GoodTexts::read(folder, work.tree.as_deref())).unwrap_or_default();
     let is_supervised = folder.is_some();
+    let compare = args.compare.map(OtherPicture::File).or(args.compare_tree.map(OtherPicture::Tree));
+    // After a loss the other picture is suspected, too.
+    let compare = compare.filter(|_| state.work.is_none());
     if is_supervised {
         watchdog::end_after(Duration::from_secs(args.common.timeout.into()), end_of_device);
     }
@@ -122,6 +131,7 @@ fn window(args: Args, start: Instant, folder: Option<PathBuf>) -> Result<(), Fai
         plain,
         size: state.window.map_or(args.common.size, |window| window.size),
         at: state.window.and_then(|window| window.at),
+        compare,
         allow_outside: args.common.allow_outside,
         validation: args.common.validate,
         device: args.common.device,

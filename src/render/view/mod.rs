@@ -113,6 +113,9 @@ pub struct View {
     is_shown_anew: bool,
     /// The limits of another view, which replace those of this view's own values.
     followed: Option<Option<Limits>>,
+    /// The light that the tone map reads instead of the picture that was drawn: that of a file. It has the size of the frames, and is
+    /// in [`Use::Sampled`].
+    pub given: Option<Arc<Image>>,
 }
 
 impl View {
@@ -151,6 +154,7 @@ impl View {
             displayed: None,
             is_shown_anew: false,
             followed: None,
+            given: None,
         })
     }
 
@@ -240,7 +244,8 @@ impl View {
         self.drawn = Some((frame.clone(), only));
 
         // The probed pixel, which `pixel` reads once the frame has finished.
-        let picture = self.declared.picture().unwrap_or(targets.picture()).clone();
+        let drawn_picture = self.declared.picture().unwrap_or(targets.picture());
+        let picture = self.given.as_ref().unwrap_or(drawn_picture).clone();
         in_flight.pixel.record(encoder, &picture, self.probe, self.picture);
         if surveys {
             in_flight.survey.record(&self.gpu, encoder, &picture, self.picture)?;

@@ -1,0 +1,59 @@
+//! What the picture is compared with, and how much both differ: the first lines of the panel Timeline.
+
+use egui::{Label, RichText, Ui};
+
+use super::theme::QUIET;
+use super::timeline::monospace;
+use crate::app::command::{Command, CompareWith};
+use crate::app::dialog::Dialog;
+use crate::app::viewer::{Compare, Difference};
+
+/// The meaning of the numbers of a comparison.
+const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different both pictures look when one is flipped to the other, \
+    0.7 m from a 4K screen. And the largest difference of a channel of the display";
+
+/// Shows the buttons that begin and end a comparison, and its numbers.
+pub(super) fn show(ui: &mut Ui, compare: &mut Compare, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        if compare.is_on() {
+            if ui.button("Stop comparing").on_hover_text("Show the newest picture alone (Ctrl+K)").clicked() {
+                commands.push(Command::Compare(CompareWith::Nothing));
+            }
+            ui.toggle_value(&mut compare.shows_map, "Difference").on_hover_text(
+                "Cover the picture with FLIP of each pixel: black is equal, white as different as can be",
+            );
+            ui.label(monospace(difference_text(compare.difference.as_ref()))).on_hover_text(FLIP);
+        } else {
+            let hint = "Keep the picture as it is now, with all settings, and compare what follows with it (Ctrl+K)";
+            if ui.button("Keep this picture").on_hover_text(hint).clicked() {
+                commands.push(Command::Compare(CompareWith::ThisPicture));
+            }
+        }
+        ui.menu_button("Compare with…", |ui| {
+            let picture = "A PNG, JPEG, HDR or EXR. The comparison follows the file";
+            if ui.button("A picture…").on_hover_text(picture).clicked() {
+                commands.push(Command::Choose(Dialog::Picture));
+                ui.close();
+            }
+            let tree = "The same picture, drawn with other shaders. The comparison follows their files";
+            if ui.button("A shader tree…").on_hover_text(tree).clicked() {
+                commands.push(Command::Choose(Dialog::SecondTree));
+                ui.close();
+            }
+        });
+        if compare.is_opening() {
+            ui.spinner().on_hover_text("The other picture is being read or compiled");
+        }
+    });
+    if let Some(note) = compare.note() {
+        ui.add(Label::new(RichText::new(note).small().color(QUIET)).wrap());
+    }
+}
+
+/// How much both pictures differ.
+fn difference_text(difference: Option<&Difference>) -> String {
+    match difference {
+        Some(Difference { flip, largest, .. }) => format!("FLIP {flip:.4}  largest {:.0}/255", largest * 255.0),
+        None => "FLIP …".to_owned(),
+    }
+}

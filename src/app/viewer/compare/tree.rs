@@ -1,0 +1,219 @@
+//! Compares with the picture of a second shader tree. A thread compiles it and bakes its light.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{Compare, Opening, REPLACED, With};
+use crate::app::viewer::picture::target;
+use crate::app::viewer::{LastComplete, Viewer};
+use crate::frame::{FrameState, Revisions};
+use crate::gpu::GpuError;
+use crate::pipeline::PipelineSet;
+use crate::render::BoundFrame;
+use crate::shader::{Diagnostic, Severity, Source, is_specula_tree};
+use crate::threads::second_tree::{Needs, SecondTree, SecondTreeMessage};
+use crate::threads::worker::Snapshot;
+
+/// The picture of a second shader tree.
+pub(super) struct TreePicture {
+    name: String,
+    tree: SecondTree,
+    /// The pipelines of its last good shaders.
+    set: Option<Arc<PipelineSet>>,
+    /// Whether its files have errors.
+    has_errors: bool,
+    /// Its last picture from the thread, whose light is its own.
+    like: Option<LastComplete>,
+    /// The picture that the thread was asked for last.
+    asked: Option<LastAsked>,
+}
+
+/// The inputs of a picture that the thread was asked for.
+struct LastAsked {
+    /// A picture without resources.
+    state: Arc<FrameState>,
+    snapshot: Snapshot,
+    revisions: Revisions,
+}
+
+impl LastAsked {
+    /// Whether a picture needs the same resources.
+    fn has_needs_of(&self, state: &FrameState) -> bool {
+        let asked = &*self.state;
+        Arc::ptr_eq(&asked.shaders, &state.shaders)
+            && asked.pipelines == state.pipelines
+            && asked.scene == state.scene
+            && asked.environment == state.environment
+            && asked.tables == state.tables
+            && asked.measured == state.measured
+    }
+}
+
+impl TreePicture {
+    pub(super) fn label(&self) -> String {
+        match self.has_errors {
+            true => format!("{}, before its last edit, which does not compile", self.name),
+            false => self.name.clone(),
+        }
+    }
+}
+
+impl Compare {
+    /// The second tree that is compared with, or that is being compiled for it.
+    fn tree(&mut self, number: u64) -> Option<&mut TreePicture> {
+        let opening = match &mut self.opening {
+            Some(Opening::Tree(tree)) => Some(tree),
+            _ => None,
+        };
+        let with = match &mut self.with {
+            Some(With::Tree(tree)) => Some(tree),
+            _ => None,
+        };
+        opening.into_iter().chain(with).map(|tree| &mut **tree).find(|tree| tree.tree.number == number)
+    }
+
+    /// The name of the second tree.
+    pub(in crate::app) fn tree_name(&self) -> Option<&str> {
+        match &self.with {
+            Some(With::Tree(tree)) => Some(&tree.name),
+            _ => None,
+        }
+    }
+}
+
+impl Viewer {
+    /// Compiles a tree on a thread, and then compares with it.
+    ///
+    /// # Errors
+    /// The path is no shader tree, or the tree cannot be watched.
+    pub(in crate::app) fn open_second_tree(&mut self, path: &Path) -> Result<(), String> {
+        let tree = self.second_tree(path)?;
+        self.comparison_failed(REPLACED);
+        self.compare.opening = Some(Opening::Tree(Box::new(tree)));
+        Ok(())
+    }
+
+    fn second_tree(&mut self, path: &Path) -> Result<TreePicture, String> {
+        let is_tree = is_specula_tree(path) || (Source::is_file(path) && path.exists());
+        if !is_tree {
+            return Err(no_tree(path));
+        }
+        // The tree is watched, and what it is called does not change with the working directory.
+        let source = Source::open(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let (number, snapshot) = (self.compare.next_number(), self.snapshot());
+        let (layouts, compiler) = (self.resources.layouts().clone(), self.compiler.clone());
+        let tree = SecondTree::open(&mut self.threads, number, source, (&layouts, &compiler), snapshot)?;
+        Ok(TreePicture { name, tree, set: None, has_errors: false, like: None, asked: None })
+    }
+
+    /// The settings, the model and the targets of now.
+    fn snapshot(&self) -> Snapshot {
+        let settings = self.session.settings.clone();
+        let target = target(&self.gpu, &settings);
+        Snapshot { scene: self.session.scene(), settings, target }
+    }
+
+    /// Takes what the thread of a second tree has done.
+    pub(in crate::app::viewer) fn on_second_tree(&mut self, number: u64, message: SecondTreeMessage) {
+        match message {
+            SecondTreeMessage::Compiled(set, diagnostics) => self.on_second_tree_compiled(number, set, &diagnostics),
+            SecondTreeMessage::Provided(provided) => {
+                let Some(tree) = self.compare.tree(number) else { return };
+                match (provided, &tree.asked) {
+                    (Ok(frame), Some(asked)) if Arc::ptr_eq(&frame.state, &asked.state) => {
+                        let (settings, scene) = (asked.snapshot.settings.clone(), asked.snapshot.scene.clone());
+                        let revisions = asked.revisions;
+                        tree.like = Some(LastComplete { settings, scene, revisions, frame: *frame });
+                    }
+                    // The picture that was asked for since follows.
+                    (Ok(_), _) => {}
+                    (Err(message), _) => {
+                        let message = format!("{}: {message}", tree.name);
+                        self.comparison_failed(&message);
+                        self.say(message);
+                    }
+                }
+            }
+        }
+    }
+
+    fn on_second_tree_compiled(&mut self, number: u64, set: Option<Arc<PipelineSet>>, diagnostics: &[Diagnostic]) {
+        let Some(tree) = self.compare.tree(number) else { return };
+        let errors = || diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
+        tree.has_errors = errors().next().is_some();
+        let is_new = set.is_some() && tree.set.is_none();
+        if let Some(set) = set {
+            (tree.set, tree.asked) = (Some(set), None);
+        }
+        let first = errors().next().map(|first| {
+            let more = match errors().count() {
+                1 => String::new(),
+                count => format!(" (and {} more)", count - 1),
+            };
+            let waits = if tree.set.is_none() { ". The comparison begins once it compiles" } else { "" };
+            format!("{} has errors: {}{more}{waits}", tree.name, first.one_line())
+        });
+        if is_new && let Some(Opening::Tree(tree)) = self.compare.opening.take() {
+            self.compare.set(Some(With::Tree(tree)));
+        }
+        if let Some(message) = first {
+            for diagnostic in diagnostics {
+                eprintln!("{}", diagnostic.full());
+            }
+            self.comparison_failed(&message);
+            self.say(message);
+        }
+    }
+
+    /// Ends the comparison with a second tree whose thread has panicked.
+    pub(in crate::app::viewer) fn second_tree_failed(&mut self, number: u64) {
+        if self.compare.tree(number).is_some() {
+            self.comparison_failed("the thread of the second shader tree has failed");
+            self.compare.end();
+        }
+    }
+
+    /// The picture of the second tree with the settings of now, as soon as the thread has what it needs.
+    pub(super) fn picture_of_tree(&mut self, live: &BoundFrame) -> Result<Option<BoundFrame>, GpuError> {
+        let Some(With::Tree(tree)) = &self.compare.with else { return Ok(None) };
+        let Some(set) = tree.set.clone() else { return Ok(None) };
+        let like = tree.like.as_ref().map(|like| like.frame.clone());
+        let state = self.state_like(live, &set.shaders);
+        let is_pending = state.pipelines.needs_pending(&set.shaders);
+        if !is_pending && let Some(frame) = self.resources.bind_older(&set, &state, like.as_ref())? {
+            return Ok(Some(frame));
+        }
+        // The picture comes first, and its light is likely to be the second tree's as well.
+        let snapshot = (self.is_complete && !is_pending).then(|| {
+            let mut snapshot = self.snapshot();
+            // The mouse may preview a mode.
+            live.state.mode().into_iter().for_each(|mode| snapshot.settings.mode.clone_from(&mode.slug));
+            snapshot
+        });
+        let revisions = self.session.revisions;
+        let Some(With::Tree(tree)) = &mut self.compare.with else { return Ok(None) };
+        let is_asked = tree.asked.as_ref().is_some_and(|asked| asked.has_needs_of(&state));
+        if let Some(snapshot) = snapshot.filter(|_| !is_asked) {
+            let resources = self.resources.clone();
+            tree.tree.provide(Needs { snapshot: snapshot.clone(), resources, set, state: state.clone() });
+            tree.asked = Some(LastAsked { state, snapshot, revisions });
+        }
+        let Some(With::Tree(tree)) = &self.compare.with else { return Ok(None) };
+        Ok(tree.like.as_ref().map(|like| self.interim(like, self.clock, live.state.size)))
+    }
+
+    /// Releases the picture of the second tree, which holds the model on the device.
+    pub(in crate::app::viewer) fn forget_second_picture(&mut self) {
+        if let Some(With::Tree(tree)) = &mut self.compare.with {
+            (tree.like, tree.asked) = (None, None);
+        }
+    }
+}
+
+fn no_tree(path: &Path) -> String {
+    format!(
+        "{} is no Specula shader tree: expected a folder with interface.glsl. `specula new DIR` writes one",
+        path.display()
+    )
+}
