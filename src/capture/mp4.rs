@@ -24,7 +24,7 @@ use crate::picture::Replacement;
 /// Pixels that the encoder takes on each side, and at most on the shorter.
 const SIDES: std::ops::RangeInclusive<u32> = 16..=3840;
 const SHORTER: u32 = 2160;
-/// Quantization of all blocks, 12 (best) to 51. At 18, frames of rendered models have a PSNR of some 47 dB.
+/// Quantization of all blocks, 12 (best) to 51. At 18, the PSNR was 38 to 50 dB, with the loss by 4:2:0: the larger a picture, the higher.
 const QUANTIZATION: u8 = 18;
 /// Seconds between frames from which a player can begin.
 const SEEK_S: f32 = 2.0;
