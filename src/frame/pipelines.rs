@@ -9,8 +9,8 @@ use super::pipeline_key::{KeyPass, PipelineKey};
 use super::{Scene, SharedMode};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
 use crate::interface::{
-    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES,
-    SPEC_MODE, SPEC_TONEMAP, TONEMAP_OFF, UNROLLED_LIGHTS,
+    self, EDGES_MODE, SPEC_ALPHA_MODE, SPEC_ENCODE, SPEC_FEATURES, SPEC_LIGHT_COUNT, SPEC_MAPS_VALUES, SPEC_MODE,
+    SPEC_TONEMAP, TONEMAP_OFF, UNROLLED_LIGHTS,
 };
 use crate::scene::{has_exact_sun, light_count};
 use crate::settings::{LightSource, Settings};

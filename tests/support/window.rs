@@ -313,7 +313,12 @@ impl Viewer {
             }
             if Instant::now() > deadline {
                 let path = keep(&self.screen());
-                panic!("{what} never appeared in the picture, kept as {}; the screen is kept as {}. {}", keep(&shot), path, self.running.story());
+                panic!(
+                    "{what} never appeared in the picture, kept as {}; the screen is kept as {}. {}",
+                    keep(&shot),
+                    path,
+                    self.running.story()
+                );
             }
         }
     }
