@@ -77,7 +77,8 @@ pub const COMMANDS: [Described; 25] = [
     row(
         "probe",
         r#""at": [x,y], "modes"?: ["d", "f"]"#,
-        "Raw values of a pixel of the picture, in these modes or all. Result: pixel, modes",
+        "Raw values of a pixel of the picture, in these modes or all. Result: pixel, modes, textures (a texel of each), not_finite (the first \
+         line with NaN or Inf, if a value is one)",
     ),
     row("reload", "", "Compiles all shaders again. Result: generation; an error lists the diagnostics"),
     row(

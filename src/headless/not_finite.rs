@@ -29,6 +29,8 @@ pub struct Search<'a> {
     pub mode: &'a Mode,
     /// The tree, which gives files their names.
     pub source: &'a Source,
+    /// Whether the result is no longer needed.
+    pub is_canceled: &'a dyn Fn() -> bool,
 }
 
 /// Compiles the stage of a mode with a text that traces its values, draws the pixel with it, and returns the first statement that made NaN
@@ -61,8 +63,11 @@ pub fn first_not_finite(
     };
     let plain = FrameState::of_modes(&inputs(shaders), &[mode]);
     let traced = TracedShaders::new(shaders, &plain.pipelines.stage, compiler, search.source)?;
+    let check = || if (search.is_canceled)() { Err("canceled") } else { Ok(()) };
+    check()?;
     let state = Arc::new(FrameState::of_modes(&inputs(&traced.shaders), &[mode]));
     let set = set.variant(traced.shaders.clone(), &state.pipelines).map_err(|error| error.to_string())?;
+    check()?;
     let bound = resources.bind_older(&set, &state, None).map_err(|error| error.to_string())?;
     let frame = bound.ok_or("the light of the picture is being baked")?;
     let mut draw = || {
@@ -98,6 +103,7 @@ impl Headless {
             at,
             mode,
             source: library.source(),
+            is_canceled: &|| false,
         };
         let compiler = library.compiler();
         first_not_finite(&self.gpu, compiler, (&mut self.resources, &mut self.frames), &search)

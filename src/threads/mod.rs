@@ -3,6 +3,7 @@
 
 pub(crate) mod baker;
 pub(crate) mod checker;
+pub(crate) mod finder;
 pub(crate) mod loader;
 pub(crate) mod measurer;
 pub(crate) mod worker;
@@ -28,9 +29,11 @@ use crate::render::tools::Tools;
 use crate::render::{Readback, TraceKey};
 use crate::scene::BuiltInPictures;
 use crate::settings::Settings;
+use crate::shader::not_finite::NotFinite;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
 use checker::{Checked, Checker};
+use finder::Finder;
 use loader::{Loaded, Loader};
 use measurer::Measurer;
 use worker::{Worker, WorkerMessage};
@@ -50,6 +53,8 @@ pub(crate) enum Message {
     Written(Result<String, String>),
     /// The curves of a pixel's material.
     Curves(Box<measurer::Measured>),
+    /// The first statement that makes NaN or infinity at the inspected pixel, for the request with this number.
+    NotFinite(u64, Box<NotFinite>),
     /// The settings of a look file, or why it cannot be used.
     Look(Result<Box<Settings>, String>),
     /// The pictures of the built-in models and environments.
@@ -90,6 +95,8 @@ pub(crate) enum Role {
     Checker,
     /// Measures the BRDF.
     Measurer,
+    /// Looks for the statement that makes NaN.
+    Finder,
     Capturer(u64),
     /// Makes the pipelines of outlines and pictures of textures.
     Toolmaker,
@@ -157,6 +164,7 @@ pub(crate) struct Threads {
     pub(crate) baker: Baker,
     pub(crate) checker: Checker,
     pub(crate) measurer: Measurer,
+    pub(crate) finder: Finder,
     /// Threads that look for the line of a loop, or make the pipelines of tools.
     explainers: Vec<JoinHandle<()>>,
     /// Threads that draw captures, and what cancels each.
@@ -184,6 +192,7 @@ impl Threads {
             baker: Baker::new(device.0, outbox),
             checker: Checker::new(device.0, compiler, outbox),
             measurer: Measurer::new(device.0, outbox),
+            finder: Finder::new(device.0, outbox),
             explainers: Vec::new(),
             capturers: Vec::new(),
             capturing: Arc::default(),
