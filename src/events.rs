@@ -83,6 +83,7 @@ pub enum Event<'a> {
         textures: Vec<serde_json::Value>,
     },
     /// The inspector has looked for the first statement that makes NaN or infinity at the pinned pixel.
+    #[serde(rename = "not-finite")]
     NotFinite {
         /// Shader generation.
         generation: u64,

@@ -68,7 +68,7 @@ pub fn first_not_finite(
     let state = Arc::new(FrameState::of_modes(&inputs(&traced.shaders), &[mode]));
     let set = set.variant(traced.shaders.clone(), &state.pipelines).map_err(|error| error.to_string())?;
     check()?;
-    let bound = resources.bind_older(&set, &state, None).map_err(|error| error.to_string())?;
+    let bound = resources.bind_variant(&set, &state).map_err(|error| error.to_string())?;
     let frame = bound.ok_or("the light of the picture is being baked")?;
     let mut draw = || {
         let mut pixel = PixelModes::new(gpu, resources.layouts(), 1)?;
