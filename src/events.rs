@@ -79,6 +79,16 @@ pub enum Event<'a> {
         material: Option<&'a str>,
         /// The values by slug of the mode, as `specula probe` prints them.
         modes: serde_json::Map<String, serde_json::Value>,
+        /// The texels of the material's textures, as `specula probe` prints them.
+        textures: Vec<serde_json::Value>,
+    },
+    /// The inspector has looked for the first statement that makes NaN or infinity at the pinned pixel.
+    #[serde(rename = "not-finite")]
+    NotFinite {
+        /// Shader generation.
+        generation: u64,
+        /// Mode, file, line, code and value, as `specula probe` prints them; or a message.
+        not_finite: serde_json::Value,
     },
     /// The inspector has measured the BRDF of a pixel's material.
     Curves {

@@ -77,6 +77,21 @@ fn values_of_layered_materials_are_those_of_probe() {
     compare("clearcoat", &["lights.chosen=2"], &slugs, &[(31, 32), (62, 33)]);
 }
 
+/// Intermediate results of the built-in shaders are finite, so the first line with NaN is the user's.
+#[test]
+fn a_search_at_a_finite_pixel_finds_nothing() {
+    for (name, pixels) in [("shader-ball", [(48, 30), (30, 40)]), ("clearcoat", [(31, 32), (62, 33)])] {
+        let mut headless = renderer(model(name), settings(&["view.msaa=1", "environment.name=none"]), SIZE);
+        for mode in modes(&headless, &["final", "d", "base-color", "direct-specular"]) {
+            for at in pixels {
+                let found = headless.first_not_finite(at, &mode).unwrap();
+                assert_eq!(found, None, "{name} at {at:?} in {}", mode.slug);
+            }
+        }
+    }
+    assert_validated();
+}
+
 /// What looks up an image of another pass, or noise, finds it at the pixel's place in the picture.
 #[test]
 fn values_with_shadows_and_screen_space_occlusion_are_those_of_probe() {

@@ -1,5 +1,9 @@
 //! `specula probe` prints the same values of a pixel that `render` draws.
 
+mod probe {
+    mod not_finite;
+    mod texels;
+}
 mod support;
 
 use std::path::Path;

@@ -8,8 +8,10 @@ use std::collections::BTreeMap;
 
 use crate::interface::Light;
 use crate::measure::{Curves, Material};
+use crate::render::Texel;
 use crate::scene::CameraView;
 use crate::shader::PixelValue;
+use crate::shader::not_finite::NotFinite;
 
 use directions::Directions;
 
@@ -39,11 +41,21 @@ pub(super) struct Inspector {
     /// Inputs of the newest request for curves.
     pub(super) asked: Option<Asked>,
     pub(super) curves: Option<Shown>,
+    /// The search for the first statement that makes NaN or infinity at the pinned pixel.
+    pub(super) search_not_finite: Option<NotFiniteSearch>,
     /// How far the user has turned the lobe in space, degrees.
     pub(super) turn_deg: f32,
 }
 
 impl Inspector {
+    /// Learns that the search has failed. The same search would fail again, so it is not repeated.
+    pub(super) fn fail_search(&mut self) {
+        if let Some(search) = &mut self.search_not_finite {
+            let found = Err("the search has failed".to_owned());
+            search.found = Some(NotFinite { mode: search.mode.clone(), found });
+        }
+    }
+
     /// Whether a pixel is pinned, and the user sees it.
     pub(super) fn is_pinned(&self) -> bool {
         self.is_visible && self.pin.is_some()
@@ -51,11 +63,22 @@ impl Inspector {
 
     /// Unpins the pixel. Its values go, unless the pixel under the mouse takes its place.
     pub(super) fn unpin(&mut self) {
-        self.pin = None;
+        (self.pin, self.search_not_finite) = (None, None);
         if !self.follows {
             (self.reading, self.asked, self.curves) = (None, None, None);
         }
     }
+}
+
+/// A search for the first statement that makes NaN or infinity.
+#[derive(Clone, Debug)]
+pub(super) struct NotFiniteSearch {
+    /// Number of the request.
+    pub(super) number: u64,
+    /// Slug of the mode.
+    pub(super) mode: String,
+    /// The result; none while the search goes on.
+    pub(super) found: Option<NotFinite>,
 }
 
 /// The values of a pixel.
@@ -76,6 +99,8 @@ pub(super) struct Reading {
     pub(super) lights: Vec<Light>,
     /// Names of the node and of the material, if the pixel shows a surface of the model.
     pub(super) names: Option<[String; 2]>,
+    /// The texels of the material's textures, once they are read.
+    pub(super) texels: Vec<Texel>,
 }
 
 impl Reading {

@@ -163,7 +163,7 @@ pub(super) struct Viewer {
     settled: Option<u64>,
     /// The loop that did not end in the last picture.
     endless_loop: Option<EndlessLoop>,
-    compiler: Arc<Compiler>,
+    pub(super) compiler: Arc<Compiler>,
     /// The shader tree.
     source: Source,
     ready: bool,

@@ -7,12 +7,13 @@ use super::label::Labels;
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
 use crate::frame::{Clock, FrameState};
 use crate::gpu::{Frames, Gpu, GpuError, Image, Use};
-use crate::headless::HeadlessError;
+use crate::headless::{HeadlessError, Search, first_not_finite};
 use crate::pipeline::PipelineSet;
-use crate::render::{BoundFrame, Capture, Output, Redraw, Resources, View};
+use crate::render::{BoundFrame, Capture, Output, Redraw, Resources, Texel, View, read_texels, texel_places};
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::shader::{Mode, PixelValue};
+use crate::shader::not_finite::NotFinite;
+use crate::shader::{Compiler, Mode, PixelValue, Source};
 
 /// Draws pictures of a session.
 pub struct Stills {
@@ -80,6 +81,41 @@ impl Stills {
         }
         self.view.probe = None;
         Ok(values)
+    }
+
+    /// The texels that the pixel `at` of a picture reads, of each texture of its material.
+    ///
+    /// # Errors
+    /// As [`Renderer::capture`].
+    pub fn texels(&mut self, size: (u32, u32), at: (u32, u32)) -> Result<Vec<Texel>, HeadlessError> {
+        let places = texel_places(&self.bind(size)?.state, at);
+        Ok(read_texels(&self.gpu, &self.resources, &mut self.frames, places)?)
+    }
+
+    /// The first statement that makes NaN or infinity at the pixel `at`, if one of the values in these modes is not finite.
+    pub(crate) fn not_finite(
+        &mut self,
+        (size, at): ((u32, u32), (u32, u32)),
+        values: &[(&Mode, PixelValue)],
+        (compiler, source): (&Compiler, &Source),
+    ) -> Option<NotFinite> {
+        let mode = NotFinite::mode_of(values.iter().map(|(mode, value)| (*mode, value)))?;
+        let scene = self.session.scene();
+        let shaders = self.session.shaders.clone()?;
+        let search = Search {
+            settings: &self.session.settings,
+            shaders: &shaders,
+            scene: scene.as_ref(),
+            revisions: self.session.revisions,
+            clock: self.clock,
+            size,
+            at,
+            mode,
+            source,
+            is_canceled: &|| false,
+        };
+        let found = first_not_finite(&self.gpu, compiler, (&mut self.resources, &mut self.frames), &search);
+        Some(NotFinite { mode: mode.slug.clone(), found })
     }
 
     /// Writes a picture of each version as an animation.

@@ -6,8 +6,10 @@ use serde_json::{Map, Value, json};
 use specula::frame::FrameState;
 use specula::headless::Headless;
 use specula::interface::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_RECT, LIGHT_SPOT, Light};
+use specula::render::Texel;
 use specula::shader::PixelValue;
 use specula::shader::expression;
+use specula::shader::not_finite::NotFinite;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
@@ -18,8 +20,11 @@ use super::{Failure, print_json};
 #[command(
     after_help = "Values are in world space, before exposure, tone map and encoding. Color is multiplied by coverage.\n\
     A mode without data at the pixel is null in JSON. A mode whose value is NaN or infinite is the string \"NaN\".\n\
+    If there is such a mode, the first statement that made NaN or infinity follows (`not_finite` in JSON).\n\
     The pixel has one sample, in its middle: view.msaa is 1, so that no edge mixes two surfaces.\n\
     The value of an accumulating mode is the mean of view.frames frames. Angles are in degrees.\n\
+    Textures of the material follow with the texel of level 0 at the pixel, as stored and as a linear number; the shader itself \
+    filters.\n\
     --mode may repeat; without it, all modes are printed.\n\
     The falloff of a spot light is the square of angle_scale * cosine + angle_offset, clamped to 0..1 \
     (KHR_lights_punctual)."
@@ -66,13 +71,24 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let hit = is_hit(&mut headless, args.at)?;
     let shown = if hit { modes.as_slice() } else { &[] };
     let values: Vec<_> = shown.iter().zip(headless.pixel(args.at, shown)?).collect();
+    let texels = if hit { headless.texels(args.at)? } else { Vec::new() };
+    let not_finite = first_not_finite(&mut headless, args.at, &values);
     if args.json {
         let modes: Map<String, Value> = values.iter().map(|(mode, pixel)| (mode.slug.clone(), value(pixel))).collect();
         let lights: Vec<Value> = state.lights.iter().map(light).collect();
-        let found = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state), "lights": lights });
+        let textures: Vec<Value> = texels.iter().map(Texel::json).collect();
+        let mut found = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state),
+            "lights": lights, "textures": textures });
+        if let Some(not_finite) = &not_finite {
+            found["not_finite"] = not_finite.json();
+        }
         print_json(&found);
     } else {
         print_table(args.at, &values, &state);
+        print_texels(&texels);
+        if let Some(not_finite) = &not_finite {
+            out!("\n{}", not_finite.text());
+        }
     }
     // The layers also report what is found when objects are destroyed.
     drop(headless);
@@ -93,6 +109,13 @@ fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
     slugs.iter().filter(|slug| *slug != "all").try_for_each(|slug| check_mode(shaders, slug))?;
     let all = slugs.is_empty() || slugs.iter().any(|slug| slug == "all");
     Ok(shaders.modes.iter().filter(|mode| all || slugs.contains(&mode.slug)).cloned().collect())
+}
+
+/// The first statement that makes NaN or infinity: in the final picture, or else in the first of these modes that has one.
+fn first_not_finite(headless: &mut Headless, at: (u32, u32), values: &[(&Mode, PixelValue)]) -> Option<NotFinite> {
+    let mode = NotFinite::mode_of(values.iter().map(|(mode, value)| (*mode, value)))?;
+    let found = headless.first_not_finite(at, mode).map_err(|error| error.to_string());
+    Some(NotFinite { mode: mode.slug.clone(), found })
 }
 
 /// Whether the model covers the pixel, in a mode that draws surfaces and no environment.
@@ -175,6 +198,14 @@ fn print_table((x, y): (u32, u32), values: &[(&Mode, PixelValue)], state: &Frame
         }
         out!("  {:width$}  {}", mode.slug, value.text(mode).trim_end());
     }
+}
+
+fn print_texels(texels: &[Texel]) {
+    if !texels.is_empty() {
+        out!("\nTextures");
+    }
+    let width = texels.iter().map(|texel| texel.place.slot_name().len()).max().unwrap_or(0);
+    texels.iter().for_each(|texel| out!("  {:width$}  {}", texel.place.slot_name(), texel.text()));
 }
 
 fn row(numbers: &[f32]) -> String {

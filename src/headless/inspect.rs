@@ -2,7 +2,7 @@
 
 use super::{Headless, HeadlessError};
 use crate::frame::{TargetFormat, mode_sets};
-use crate::render::{PixelModes, Thumbnails};
+use crate::render::{PixelModes, Texel, Thumbnails, read_texels, texel_places};
 use crate::shader::{Mode, PixelValue};
 
 impl Headless {
@@ -27,5 +27,14 @@ impl Headless {
             found.extend(set.iter().map(|mode| mode.slug.clone()).zip(pixel.values(0)));
         }
         Ok(found)
+    }
+
+    /// The texels that the pixel `at` reads, of each texture of its material.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn texels(&mut self, at: (u32, u32)) -> Result<Vec<Texel>, HeadlessError> {
+        let places = texel_places(&self.frame_state()?, at);
+        Ok(read_texels(&self.gpu, &self.resources, &mut self.frames, places)?)
     }
 }

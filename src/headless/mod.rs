@@ -4,6 +4,7 @@ mod draw;
 mod error;
 mod hints;
 mod inspect;
+mod not_finite;
 mod pixel;
 mod reload;
 mod sequence;
@@ -26,6 +27,7 @@ use crate::shader::{Compiler, Severity, ShaderSet, Source};
 
 pub use draw::Step;
 pub use error::HeadlessError;
+pub use not_finite::{Search, first_not_finite};
 pub use sequence::Sequence;
 pub use thumbnails::Thumbnail;
 

@@ -153,6 +153,14 @@ impl PipelineSet {
         Ok((Arc::new(set), built))
     }
 
+    /// A set of the same generation with another module for a stage, and with the pipelines of `request`.
+    ///
+    /// # Errors
+    /// As [`PipelineSet::new`].
+    pub fn variant(&self, shaders: Arc<ShaderSet>, request: &PipelineRequest) -> Result<Arc<Self>, GpuError> {
+        Self::new(&self.gpu, &self.layouts, shaders, self.textures.clone(), request, Some(self)).map(|(set, _)| set)
+    }
+
     /// The textures of this generation.
     pub(super) fn textures(&self) -> &Arc<PassTextures> {
         &self.textures

@@ -10,6 +10,7 @@ mod environment;
 mod paths;
 mod resources;
 mod scene;
+mod texels;
 pub(crate) mod tools;
 mod view;
 
@@ -21,5 +22,6 @@ pub use environment::maps::{BakeReport, GpuEnvironment};
 pub use paths::{TraceError, TraceKey, TraceRequest, Traced};
 pub use resources::{Missing, ProvideError, Resources, read_measured};
 pub use scene::{GpuModel, UploadError};
+pub use texels::{Texel, TexelPlace, TexelReadback, read_texels, texel_places};
 pub use view::{Capture, Output, PixelAt, PixelModes, Readback, Redraw, Survey, Thumbnails, View};
 pub(crate) use view::{SharedImages, Sources, Uniforms};

@@ -14,7 +14,7 @@ use super::environment::maps::GpuEnvironment;
 use super::paths::{TraceError, TraceKey, TraceRequest, Traced};
 use super::scene::{GpuModel, GpuScene};
 use crate::frame::{EnvironmentKey, FrameState, MeasuredKey, Scene, TablesKey};
-use crate::pipeline::PipelineSet;
+use crate::pipeline::{BoundPipelines, PipelineSet};
 
 /// The resources of a state that [`Resources`] does not have yet.
 #[derive(Clone, Debug, Default)]
@@ -221,6 +221,23 @@ impl Resources {
         let Some(pipelines) = self.pipelines_of(state).and_then(|set| set.bind(&state.pipelines)) else {
             return Ok(None);
         };
+        self.bind_with(pipelines, state, is_first)
+    }
+
+    /// Binds `state` to the pipelines of `set`, a variant of the newest set, as [`Resources::bind`] does to those of the newest.
+    ///
+    /// # Errors
+    /// No memory left for the materials.
+    pub fn bind_variant(&mut self, set: &PipelineSet, state: &Arc<FrameState>) -> Result<Option<BoundFrame>, GpuError> {
+        set.bind(&state.pipelines).map_or(Ok(None), |pipelines| self.bind_with(pipelines, state, false))
+    }
+
+    fn bind_with(
+        &mut self,
+        pipelines: BoundPipelines,
+        state: &Arc<FrameState>,
+        is_first: bool,
+    ) -> Result<Option<BoundFrame>, GpuError> {
         let tables = self.tables.get(Some(&state.tables));
         let tables = tables.or_else(|| self.tables.before_edit(|key| key.is_edit_of(&state.tables))).cloned();
         let environment = self.environment_of(state, is_first).cloned();

@@ -40,7 +40,7 @@ pub use pack::pack_material;
 pub use pick::{Hit, Sides, near_pixel, pick, point_at, ray};
 pub use pictures::{BuiltInPictures, PICTURE_SIZE, built_in_pictures};
 pub use replace::{factor, override_material, replace_channels, replace_factors};
-pub use texture_source::{TextureSource, texture_sources};
+pub use texture_source::{TextureSource, slot_name, texture_sources};
 
 /// Options of a load.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

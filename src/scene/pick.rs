@@ -36,6 +36,10 @@ pub struct Hit {
     pub instance: usize,
     /// World space.
     pub point: Vec3,
+    /// The vertices of its triangle, as indices into `Primitive::vertices`.
+    pub triangle: [u32; 3],
+    /// Their weights at the point, which sum to 1.
+    pub weights: [f32; 3],
 }
 
 /// Which sides of an instance are drawn.
@@ -74,15 +78,20 @@ pub fn pick(
             let corners = triangle.map(place);
             let [a, b, c] = corners;
             let faces_away = (b - a).cross(c - a).dot(ray) * mirror > 0.0;
-            distance(ray, corners).filter(|_| sides == Sides::Both || !faces_away)
+            let found = distance(ray, corners).filter(|_| sides == Sides::Both || !faces_away)?;
+            Some((found, *triangle))
         };
         let triangles = triangles(primitive.topology, &primitive.indices);
-        let nearest = triangles.par_iter().with_min_len(TRIANGLES_A_TASK).filter_map(hit).min_by(f32::total_cmp)?;
+        let nearest = triangles
+            .par_iter()
+            .with_min_len(TRIANGLES_A_TASK)
+            .filter_map(hit)
+            .min_by(|(a, _), (b, _)| a.0.total_cmp(&b.0))?;
         Some((nearest, instance))
     };
     let all = model.instances.iter().enumerate().filter_map(near);
-    let (nearest, instance) = all.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(Hit { instance, point: view.eye + ray * nearest })
+    let (((nearest, [u, v]), triangle), instance) = all.min_by(|a, b| a.0.0.0.total_cmp(&b.0.0.0))?;
+    Some(Hit { instance, point: view.eye + ray * nearest, triangle, weights: [1.0 - u - v, u, v] })
 }
 
 /// Triangles that one task tests.
@@ -127,8 +136,9 @@ pub fn point_at(model: &Model, view: &CameraView, size: (u32, u32), at: (u32, u3
     pick(model, view, size, at, |_| Sides::Both).map(|hit| hit.point)
 }
 
-/// Where a ray from the origin meets a triangle, in lengths of `ray` (Moller & Trumbore 1997).
-fn distance(ray: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
+/// Where a ray from the origin meets a triangle, in lengths of `ray` (Moller & Trumbore 1997), and the weights of its second and third
+/// corner there.
+fn distance(ray: Vec3, [a, b, c]: [Vec3; 3]) -> Option<(f32, [f32; 2])> {
     let (ab, ac) = (b - a, c - a);
     let across = ray.cross(ac);
     let per_volume = ab.dot(across).recip();
@@ -137,7 +147,7 @@ fn distance(ray: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let v = ray.dot(side) * per_volume;
     let distance = ac.dot(side) * per_volume;
     // A ray along the triangle makes these infinite or NaN, which no comparison lets pass.
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance.is_finite()).then_some(distance)
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance.is_finite()).then_some((distance, [u, v]))
 }
 
 /// The indices of each triangle, line or point. A fan is one piece.

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::interface::{
     TEXTURE_BASE_COLOR, TEXTURE_CLEARCOAT_NORMAL, TEXTURE_DIFFUSE_TRANSMISSION_COLOR, TEXTURE_EMISSIVE,
     TEXTURE_METALLIC_ROUGHNESS, TEXTURE_NORMAL, TEXTURE_OCCLUSION, TEXTURE_SHEEN_COLOR, TEXTURE_SPECULAR_COLOR,
+    TEXTURES,
 };
 use crate::scene::{Image, Material, Model, packs_occlusion};
 
@@ -33,6 +34,12 @@ pub enum TextureSource {
         /// The image of the red channel.
         occlusion: usize,
     },
+}
+
+/// The name of a texture slot of a material, as `metallic roughness`.
+pub fn slot_name(slot: usize) -> String {
+    let name = TEXTURES.get(slot).map_or("", |texture| texture.name);
+    name.trim_start_matches("TEXTURE_").to_lowercase().replace('_', " ")
 }
 
 /// Pixels that one task of the merge processes.
@@ -170,6 +177,12 @@ mod tests {
             Vec::from_iter(texture_sources(&model)),
             [TextureSource::White, TextureSource::FlatNormal, image, packed]
         );
+    }
+
+    #[test]
+    fn slots_have_names() {
+        assert_eq!([slot_name(0), slot_name(1)], ["base color", "metallic roughness"]);
+        assert!((0..TEXTURES.len()).all(|slot| !slot_name(slot).is_empty()));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 pub(crate) mod baker;
 pub(crate) mod checker;
+pub(crate) mod finder;
 pub(crate) mod loader;
 pub(crate) mod measurer;
 pub(crate) mod second_tree;
@@ -29,9 +30,11 @@ use crate::render::tools::Tools;
 use crate::render::{Readback, TraceKey};
 use crate::scene::BuiltInPictures;
 use crate::settings::Settings;
+use crate::shader::not_finite::NotFinite;
 use crate::shader::{Batch, Change, Compiler, Diagnostic, Source, Watcher};
 use baker::{BakeMessage, Baker};
 use checker::{Checked, Checker};
+use finder::Finder;
 use loader::{Loaded, Loader};
 use measurer::Measurer;
 use second_tree::SecondTreeMessage;
@@ -60,6 +63,8 @@ pub(crate) enum Message {
     Written(Result<String, String>),
     /// The curves of a pixel's material.
     Curves(Box<measurer::Measured>),
+    /// The first statement that makes NaN or infinity at the inspected pixel, for the request with this number.
+    NotFinite(u64, Box<NotFinite>),
     /// The settings of a look file, or why it cannot be used.
     Look(Result<Box<Settings>, String>),
     /// The pictures of the built-in models and environments.
@@ -100,6 +105,8 @@ pub(crate) enum Role {
     Checker,
     /// Measures the BRDF.
     Measurer,
+    /// Looks for the statement that makes NaN.
+    Finder,
     Capturer(u64),
     /// Compiles and bakes for the second shader tree with this number.
     SecondTree(u64),
@@ -192,6 +199,7 @@ pub(crate) struct Threads {
     pub(crate) baker: Baker,
     pub(crate) checker: Checker,
     pub(crate) measurer: Measurer,
+    pub(crate) finder: Finder,
     gpu: Arc<Gpu>,
     /// Threads that look for the line of a loop, make the pipelines of tools, scale pictures or compile a second shader tree.
     device_threads: Vec<JoinHandle<()>>,
@@ -220,6 +228,7 @@ impl Threads {
             baker: Baker::new(device.0, outbox),
             checker: Checker::new(device.0, compiler, outbox),
             measurer: Measurer::new(device.0, outbox),
+            finder: Finder::new(device.0, outbox),
             gpu: device.0.clone(),
             device_threads: Vec::new(),
             capturers: Vec::new(),

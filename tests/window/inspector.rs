@@ -1,12 +1,13 @@
 //! The inspector: a click pins a pixel, whose values are those of `specula probe`; an edit changes them; Esc unpins.
 
+use image::RgbaImage;
 use serde_json::Value;
 
-use super::controls::{ACCENT, choose, is_about};
+use super::controls::{ACCENT, ERROR, choose, is_about};
 use crate::NDF;
-use crate::support::Tree;
 use crate::support::process::run;
 use crate::support::window::Viewer;
+use crate::support::{Tree, line_of};
 
 /// The place of the clicked pixel in the window: on the model, left of all panels.
 const AT: (u32, u32) = (420, 330);
@@ -14,6 +15,14 @@ const AT: (u32, u32) = (420, 330);
 const MARK: (u32, u32) = (AT.0 + 5, AT.1);
 /// The button that shows the page BRDF.
 const BRDF: (u32, u32) = (760, 108);
+
+/// The button that shows the page Values.
+const VALUES: (u32, u32) = (715, 108);
+
+/// Whether the row under the buttons of the pages has the color of errors.
+fn has_red_text(screen: &RgbaImage) -> bool {
+    (690..980).any(|x| (140..170).any(|y| is_about(screen.get_pixel(x, y), ERROR)))
+}
 
 fn numbers(value: &Value) -> Vec<f64> {
     value
@@ -72,6 +81,10 @@ fn a_click_pins_a_pixel_whose_values_are_those_of_probe_and_follow_edits() {
     let edited = viewer.running.until("the values of the edit", is_edited);
     assert_eq!(edited["modes"]["roughness"], "NaN", "{edited}");
     assert_eq!(edited["modes"]["position"], found["modes"]["position"]);
+    let first = viewer.running.event("not-finite")["not_finite"].clone();
+    assert_eq!((&first["line"], &first["mode"]), (&line_of(&surface, line).into(), &"roughness".into()), "{first}");
+    viewer.click(VALUES);
+    viewer.until_screen("the red line", has_red_text);
 
     viewer.key("Escape");
     viewer.until_screen("no mark", |screen| !is_about(screen.get_pixel(MARK.0, MARK.1), ACCENT));

@@ -17,7 +17,8 @@ use crate::capture::{
 use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
 use crate::headless::HeadlessError;
 use crate::picture;
-use crate::shader::PixelValue;
+use crate::render::Texel;
+use crate::shader::{Compiler, PixelValue, Source};
 use crate::threads::Message;
 
 /// Time between two reports of progress.
@@ -85,12 +86,12 @@ impl Work {
         }
     }
 
-    /// Draws it. `size` is that of the picture on screen. Returns the result of the answer.
+    /// Draws it. `size` is that of the picture on screen, `tree` has what a stage is compiled with. Returns the result of the answer.
     fn draw(
         self,
         stills: &mut Stills,
         size: (u32, u32),
-        versions: &[VersionPicture],
+        (versions, tree): (&[VersionPicture], (&Compiler, &Source)),
         tell: &mut dyn FnMut(u64, u64) -> bool,
     ) -> Result<Value, CaptureError> {
         let wrong = |message: String| CaptureError::Usage(message);
@@ -115,10 +116,17 @@ impl Work {
                     )));
                 }
                 let modes = modes_of(stills.session(), &names).map_err(wrong)?;
-                let values = stills.pixel(size, at, &modes, tell)?;
+                let values: Vec<_> = modes.iter().zip(stills.pixel(size, at, &modes, tell)?).collect();
+                let not_finite = stills.not_finite((size, at), &values, tree);
+                let textures: Vec<Value> = stills.texels(size, at)?.iter().map(Texel::json).collect();
                 let values: Map<String, Value> =
-                    modes.iter().zip(values).map(|(mode, value)| (mode.slug.clone(), value_json(&value))).collect();
-                Ok(json!({ "pixel": [x, y], "size": [size.0, size.1], "modes": values }))
+                    values.iter().map(|(mode, value)| (mode.slug.clone(), value_json(value))).collect();
+                let mut found =
+                    json!({ "pixel": [x, y], "size": [size.0, size.1], "modes": values, "textures": textures });
+                if let Some(not_finite) = not_finite {
+                    found["not_finite"] = not_finite.json();
+                }
+                Ok(found)
             }
             Self::Sheet { file, names, size, columns } => {
                 let modes = modes_of(stills.session(), &names).map_err(wrong)?;
@@ -214,6 +222,7 @@ impl Viewer {
         let size = self.shown().map_or((1, 1), |state| state.size);
         let (gpu, session, resources, clock) =
             (self.gpu.clone(), self.session.clone(), self.resources.clone(), self.clock());
+        let (compiler, source) = (self.compiler.clone(), self.source().clone());
         self.threads.capture(number, canceled.clone(), move |outbox| {
             let mut last: Option<Instant> = None;
             let mut tell = |done: u64, of: u64| {
@@ -227,7 +236,7 @@ impl Viewer {
             let result = match tell(0, 0) {
                 true => Stills::new(&gpu, session, resources, clock)
                     .map_err(|error| CaptureError::Render(error.into()))
-                    .and_then(|mut stills| work.draw(&mut stills, size, &versions, &mut tell)),
+                    .and_then(|mut stills| work.draw(&mut stills, size, (&versions, (&compiler, &source)), &mut tell)),
                 false => Err(CaptureError::Canceled),
             };
             outbox.send(Message::Captured(number));

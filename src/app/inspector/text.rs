@@ -3,6 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::Reading;
+use crate::render::Texel;
+use crate::shader::not_finite::NotFinite;
 use crate::shader::{Encode, Mode, PixelValue};
 
 /// The numbers of a mode in a row of the panel, with five significant digits; or why there are none.
@@ -51,23 +53,28 @@ pub(in crate::app) fn json_value(value: &PixelValue) -> Value {
 }
 
 /// All values in JSON, in the form of `specula probe`.
-pub(in crate::app) fn json(reading: &Reading) -> Value {
+pub(in crate::app) fn json(reading: &Reading, not_finite: Option<&NotFinite>) -> Value {
     let values: Map<String, Value> =
         reading.values.iter().map(|(slug, (value, _))| (slug.clone(), json_value(value))).collect();
     let camera = &reading.camera;
     let names = reading.names.as_ref();
-    json!({
+    let mut out = json!({
         "pixel": reading.at,
         "hit": reading.is_hit(),
         "node": names.map(|[node, _]| node),
         "material": names.map(|[_, material]| material),
         "modes": values,
         "camera": { "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fovy": camera.fovy_rad.to_degrees() },
-    })
+        "textures": reading.texels.iter().map(Texel::json).collect::<Vec<_>>(),
+    });
+    if let Some(found) = not_finite {
+        out["not_finite"] = found.json();
+    }
+    out
 }
 
 /// All values as a table, in the order and groups of `modes`.
-pub(in crate::app) fn table(reading: &Reading, modes: &[Mode]) -> String {
+pub(in crate::app) fn table(reading: &Reading, modes: &[Mode], not_finite: Option<&NotFinite>) -> String {
     let [x, y] = reading.at;
     let mut lines = vec![format!("pixel {x} {y}")];
     if let Some([node, material]) = &reading.names {
@@ -83,6 +90,11 @@ pub(in crate::app) fn table(reading: &Reading, modes: &[Mode]) -> String {
         }
         lines.push(format!("  {:width$}  {}", mode.slug, value.text(mode).trim_end()));
     }
+    if !reading.texels.is_empty() {
+        lines.push("\nTextures".to_owned());
+    }
+    lines.extend(reading.texels.iter().map(|texel| format!("  {}  {}", texel.place.slot_name(), texel.text())));
+    lines.extend(not_finite.map(|found| format!("\n{}", found.text())));
     lines.join("\n") + "\n"
 }
 
@@ -122,6 +134,7 @@ mod tests {
             camera: CameraView::new(Vec3::Z * 4.0, Vec3::ZERO, 0.6, 1.0, &bounds),
             lights: Vec::new(),
             names: Some(["ball".into(), "gold".into()]),
+            texels: Vec::new(),
         }
     }
 
@@ -138,7 +151,7 @@ mod tests {
 
     #[test]
     fn json_is_that_of_probe() {
-        let found = json(&reading());
+        let found = json(&reading(), None);
         assert_eq!(found["pixel"], json!([12, 34]));
         assert_eq!(found["modes"]["position"], json!([1.0, -2.0, 0.5, 1.0]));
         assert_eq!((&found["modes"]["d"], &found["modes"]["uv1"]), (&json!("NaN"), &Value::Null));
@@ -149,7 +162,7 @@ mod tests {
     fn the_table_has_groups_and_units() {
         let modes =
             [mode("position", "Geometry", 3, "m"), mode("depth", "Geometry", 1, "m"), mode("d", "BRDF", 1, "1/sr")];
-        let table = table(&reading(), &modes);
+        let table = table(&reading(), &modes, None);
         let lines: Vec<&str> = table.lines().collect();
         assert_eq!(
             (lines[0], lines[1], lines[3], lines[7]),

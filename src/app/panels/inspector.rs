@@ -1,14 +1,17 @@
 //! The panel Inspector: the values of a pixel in every mode, and the lobe and albedo of its material.
 
 mod lobe;
+mod not_finite;
 mod plot;
 mod solid;
+mod texels;
 mod values;
 
 use egui::{Color32, Id, LayerId, Order, Rect, RichText, Stroke, TextEdit, Ui, pos2, vec2};
 
 use super::rows::choose;
 use super::theme::{ACCENT, QUIET};
+use crate::app::command::Command;
 use crate::app::inspector::{Inspector, Page, text};
 use crate::app::viewer::Viewer;
 
@@ -16,7 +19,7 @@ use crate::app::viewer::Viewer;
 const MARKER: f32 = 5.0;
 
 /// Shows the panel.
-pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector) {
+pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector, commands: &mut Vec<Command>) {
     state.is_visible = true;
     let shaders = viewer.session.shaders.clone().unwrap_or_default();
     header(ui, state, &shaders.modes);
@@ -44,7 +47,12 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector) {
         Page::Values => {
             ui.add(TextEdit::singleline(&mut state.search).hint_text("Search values").desired_width(f32::INFINITY));
             let features = viewer.session.features();
-            values::show(ui, reading, &state.search, &shaders.modes, features, &mut viewer.session.settings.mode);
+            if let Some(search) = &state.search_not_finite {
+                not_finite::show(ui, search, viewer.shader.location.is_some(), commands);
+            }
+            let with = |ui: &mut Ui| texels::show(ui, &reading.texels, &state.search, commands);
+            let mode = &mut viewer.session.settings.mode;
+            values::show(ui, reading, &state.search, &shaders.modes, features, mode, with);
         }
         Page::Lobe => {
             let chosen = viewer.session.settings.lights.chosen;
@@ -90,12 +98,13 @@ fn copy(ui: &mut Ui, state: &Inspector, modes: &[crate::shader::Mode]) {
     ui.add_enabled_ui(state.reading.is_some(), |ui| {
         let menu = ui.menu_button("Copy", |ui| {
             let Some(reading) = &state.reading else { return };
+            let found = state.search_not_finite.as_ref().and_then(|search| search.found.as_ref());
             if ui.button("All values as text").clicked() {
-                ui.ctx().copy_text(text::table(reading, modes));
+                ui.ctx().copy_text(text::table(reading, modes, found));
                 ui.close();
             }
             if ui.button("All values as JSON").on_hover_text("In the form of `specula probe --json`").clicked() {
-                ui.ctx().copy_text(serde_json::to_string_pretty(&text::json(reading)).unwrap_or_default());
+                ui.ctx().copy_text(serde_json::to_string_pretty(&text::json(reading, found)).unwrap_or_default());
                 ui.close();
             }
         });

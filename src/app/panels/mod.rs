@@ -247,7 +247,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
     }
     if panel == Panel::Inspector {
         let mut state = std::mem::take(&mut viewer.panels.inspector);
-        inspector::show(ui, viewer, &mut state);
+        inspector::show(ui, viewer, &mut state, commands);
         viewer.panels.inspector = state;
         return;
     }

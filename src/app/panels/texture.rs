@@ -4,13 +4,12 @@
 use egui::{Color32, Label, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
 use super::QUIET;
-use super::scene::material::slot_name;
 use super::scene::tree::textures;
 use crate::app::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::frame::Scene;
 use crate::render::tools::{TextureView, UvMesh};
-use crate::scene::{Mip, Model, TextureSource, Wrap, mips};
+use crate::scene::{Mip, Model, TextureSource, Wrap, mips, slot_name};
 
 /// Texture view that the panel requests from the screen.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use super::sets::{BoundSets, Shown, shown, time_to_rest};
 use crate::app::viewer::Viewer;
 use crate::frame::{TargetFormat, mode_sets};
 use crate::gpu::{Encoder, Frames, GpuError, SetLayouts};
-use crate::render::{PixelModes, Thumbnails};
+use crate::render::{PixelModes, TexelReadback, Thumbnails, texel_places};
 use crate::shader::{Mode, ShaderSet};
 
 /// Draws of sets of modes in one frame. On a GPU each takes less than a millisecond.
@@ -43,6 +43,8 @@ pub(super) struct PixelReader {
     /// The sets, by the slugs of their modes, whose pipelines the worker was asked for since the last change.
     asked: HashSet<String>,
     pending: Vec<Pending>,
+    /// The texels that are copied with the first draw of a picture: the slot of its frame, and the picture.
+    texels: Option<(usize, u64, TexelReadback)>,
     /// The pixel under the mouse when it was last over the picture.
     under_mouse: Option<[u32; 2]>,
     /// Nothing is drawn until something changes: memory is short, or a loop did not end.
@@ -58,6 +60,7 @@ impl PixelReader {
     /// Forgets draws whose commands were not submitted.
     pub(super) fn forget(&mut self) {
         self.pending.clear();
+        self.texels = None;
         self.drawn.clear();
         self.stopped = true;
         if let Some(renderer) = &mut self.renderer {
@@ -69,6 +72,9 @@ impl PixelReader {
     pub(super) fn take(&mut self, frames: &Frames, begun: Option<usize>, viewer: &mut Viewer) {
         let Some(renderer) = &self.renderer else { return };
         let is_finished = |slot: usize| begun == Some(slot) || frames.is_finished(slot);
+        if let Some((_, picture, readback)) = self.texels.take_if(|(slot, ..)| is_finished(*slot)) {
+            viewer.take_texels(picture, readback.finish());
+        }
         let (finished, pending) =
             std::mem::take(&mut self.pending).into_iter().partition(|draw| is_finished(draw.slot));
         self.pending = pending;
@@ -131,7 +137,7 @@ impl PixelReader {
         let is_stale = |set: &Vec<&Mode>| set.iter().any(|mode| !self.drawn.contains(&mode.slug));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(is_stale).collect();
         if stale.is_empty() {
-            if self.pending.is_empty() {
+            if self.pending.is_empty() && self.texels.is_none() {
                 // The panel shows them with the next frame.
                 return Ok(viewer.values_complete(self.picture).then_some(Duration::ZERO));
             }
@@ -173,7 +179,11 @@ impl PixelReader {
         };
         let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
         for (place, (set, frame)) in ready.iter().take(draws).enumerate() {
-            viewer.begin_values(self.picture, *at, &frame.state);
+            if viewer.begin_values(self.picture, *at, &frame.state) {
+                let places = texel_places(&frame.state, (at[0], at[1]));
+                let readback = TexelReadback::record(&viewer.gpu, encoder, &viewer.resources, places)?;
+                self.texels = Some((slot, self.picture, readback));
+            }
             renderer.draw(encoder, slot * DRAWS_PER_FRAME + place, frame, (at[0], at[1]))?;
             let slugs: Vec<String> = set.iter().map(|mode| mode.slug.clone()).collect();
             self.drawn.extend(slugs.iter().cloned());

@@ -3,11 +3,14 @@
 use std::sync::Arc;
 
 use super::Viewer;
-use crate::app::inspector::{Asked, Page, Reading, Shown, text};
+use crate::app::inspector::{Asked, NotFiniteSearch, Page, Reading, Shown, text};
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
+use crate::render::Texel;
 use crate::scene::pick;
+use crate::shader::not_finite::NotFinite;
 use crate::shader::{PixelValue, ShaderSet};
+use crate::threads::finder::FindRequest;
 use crate::threads::measurer::{CurvesRequest, Measured};
 
 /// A click within this many pixels of the pinned one unpins it: the radius of its marker.
@@ -28,10 +31,14 @@ impl Viewer {
     }
 
     /// Begins to read the values of a pixel: picture number `picture`, which `state` draws. Earlier values stay until newer ones come.
-    pub(in crate::app) fn begin_values(&mut self, picture: u64, at: [u32; 2], state: &FrameState) {
+    /// Returns whether the picture is new.
+    pub(in crate::app) fn begin_values(&mut self, picture: u64, at: [u32; 2], state: &FrameState) -> bool {
         let inspector = &mut self.panels.inspector;
         if inspector.reading.as_ref().is_some_and(|reading| reading.picture == picture) {
-            return;
+            return false;
+        }
+        if inspector.search_not_finite.take().is_some() {
+            self.threads.finder.cancel();
         }
         let before = inspector.reading.take().map(|reading| reading.values).unwrap_or_default();
         let is_known = |slug: &str| state.shaders.modes.iter().any(|mode| mode.slug == slug);
@@ -45,7 +52,16 @@ impl Viewer {
             camera: state.camera,
             lights: state.lights.clone(),
             names: names(state, at),
+            texels: Vec::new(),
         });
+        true
+    }
+
+    /// Takes the texels at the pixel of picture number `picture`.
+    pub(in crate::app) fn take_texels(&mut self, picture: u64, texels: Vec<Texel>) {
+        if let Some(reading) = self.panels.inspector.reading.as_mut().filter(|reading| reading.picture == picture) {
+            reading.texels = texels;
+        }
     }
 
     /// Takes values of picture number `picture`.
@@ -66,7 +82,7 @@ impl Viewer {
             reading.values.retain(|_, (_, of)| *of == picture);
             let hit = reading.is_hit();
             if !hit {
-                reading.names = None;
+                (reading.names, reading.texels) = (None, Vec::new());
             }
             let [node, material] = match &reading.names {
                 Some(names) => names.each_ref().map(|name| Some(name.as_str())),
@@ -75,10 +91,52 @@ impl Viewer {
             let values = reading.values.iter();
             let modes = values.map(|(slug, (value, _))| (slug.clone(), text::json_value(value))).collect();
             let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
-            emit(&self.events, &Event::Inspected { pixel: reading.at, generation, hit, node, material, modes });
+            let textures = reading.texels.iter().map(Texel::json).collect();
+            let event = Event::Inspected { pixel: reading.at, generation, hit, node, material, modes, textures };
+            emit(&self.events, &event);
         }
+        self.search_not_finite();
         self.request_curves();
         is_new
+    }
+
+    /// Has the first statement found that makes NaN or infinity at the pinned pixel, if there is any: in the mode on screen, else in the
+    /// final picture, else in the first mode that has one.
+    fn search_not_finite(&mut self) {
+        let inspector = &self.panels.inspector;
+        let is_wanted = inspector.is_pinned() && inspector.search_not_finite.is_none() && !self.is_cut_short();
+        let Some(reading) = inspector.reading.as_ref().filter(|reading| is_wanted && reading.is_complete) else {
+            return;
+        };
+        let Some((shaders, state)) = self.session.shaders.clone().zip(self.shown()) else { return };
+        let values = || shaders.modes.iter().filter_map(|mode| Some((mode, &reading.values.get(&mode.slug)?.0)));
+        let current = values().find(|(mode, value)| mode.slug == self.session.settings.mode && value.not_finite);
+        let Some(mode) = current.map(|(mode, _)| mode).or_else(|| NotFinite::mode_of(values())) else { return };
+        let (size, at) = (state.size, (reading.at[0], reading.at[1]));
+        let request = FindRequest {
+            compiler: self.compiler.clone(),
+            settings: self.session.settings.clone(),
+            scene: self.session.scene(),
+            revisions: self.session.revisions,
+            resources: self.resources.clone(),
+            size,
+            at,
+            mode: mode.clone(),
+            source: self.source.clone(),
+            shaders: shaders.clone(),
+        };
+        let mode = mode.slug.clone();
+        let number = self.threads.finder.find(request);
+        self.panels.inspector.search_not_finite = Some(NotFiniteSearch { number, mode, found: None });
+    }
+
+    /// Takes the result of the newest search.
+    pub(super) fn on_not_finite(&mut self, number: u64, found: NotFinite) {
+        let search = self.panels.inspector.search_not_finite.as_mut().filter(|search| search.number == number);
+        let Some(search) = search else { return };
+        let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+        emit(&self.events, &Event::NotFinite { generation, not_finite: found.json() });
+        search.found = Some(found);
     }
 
     /// Has the curves of the inspected material measured, while the page that shows them is in sight. Values are complete then, so the

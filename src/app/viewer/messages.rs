@@ -48,6 +48,7 @@ impl Viewer {
             Message::EndlessLoop(words, diagnostic) => self.show_endless_loop(words, diagnostic.map(|found| *found)),
             Message::FilesChanged(paths) => self.on_files_changed(&paths),
             Message::Curves(measured) => self.on_curves(*measured),
+            Message::NotFinite(number, found) => self.on_not_finite(number, *found),
             Message::Pictures(pictures) => self.panels.open_gallery.take(pictures),
             Message::Say(text) => self.say(text),
             Message::Tools(tools) => self.on_tools(tools),
@@ -337,6 +338,10 @@ impl Viewer {
                     inspector.curves = Some(Shown { of: asked.material, now, before: None });
                 }
                 "measuring"
+            }
+            Role::Finder => {
+                self.panels.inspector.fail_search();
+                "finding"
             }
             Role::Capturer(number) => {
                 self.controlled.captures.ended(number);

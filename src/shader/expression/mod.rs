@@ -6,9 +6,9 @@
 
 mod follow;
 mod overlay;
-mod place;
+pub(in crate::shader) mod place;
 mod scope;
-mod syntax;
+pub(in crate::shader) mod syntax;
 
 use std::fmt;
 

@@ -48,6 +48,11 @@ impl<'a> Code<'a> {
         (number as usize).checked_sub(1).and_then(|index| self.starts.get(index)).copied().unwrap_or_default()
     }
 
+    /// The number of the line that holds a byte, from 1.
+    pub fn number_at(&self, byte: usize) -> u32 {
+        u32::try_from(self.starts.partition_point(|start| *start <= byte)).unwrap_or(u32::MAX)
+    }
+
     /// Whether a line belongs to a preprocessor directive.
     pub fn is_directive(&self, number: u32) -> bool {
         (number as usize).checked_sub(1).and_then(|index| self.directives.get(index)).copied().unwrap_or_default()

@@ -83,6 +83,20 @@ impl Stage {
         self.specialized.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Compiles a stage as a whole, of a text that takes the place of another with these dependencies.
+    pub(in crate::shader) fn compile(
+        compiler: &Compiler,
+        snapshot: &Snapshot<'_>,
+        path: &TreePath,
+        dependencies: &BTreeSet<TreePath>,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let spirv = compiler.compile(snapshot, path).result?;
+        let reflection = Reflection::of(&spirv);
+        let kind = StageKind::of(path).ok_or_else(Vec::new)?;
+        let (path, dependencies) = (path.clone(), dependencies.clone());
+        Ok(Self { path, kind, spirv, reflection, dependencies, specialized: Mutex::default() })
+    }
+
     /// The stage's source text, for messages.
     pub(super) fn texts<'a>(&'a self, snapshot: &'a Snapshot<'a>) -> Texts<'a> {
         Texts { snapshot, stage: &self.path, dependencies: &self.dependencies }

@@ -282,6 +282,7 @@ mod tests {
             exposure: 1.0,
             camera,
             lights: Vec::new(),
+            texels: Vec::new(),
             names: None,
         }
     }

@@ -9,13 +9,13 @@ use crate::app::inspector::{Reading, text};
 use crate::shader::{Mode, PixelValue};
 
 /// Height of a row, points.
-const HEIGHT: f32 = 18.0;
+pub(super) const HEIGHT: f32 = 18.0;
 /// Width and height of a swatch, points.
-const SWATCH: f32 = 12.0;
+pub(super) const SWATCH: f32 = 12.0;
 /// Width of the column of units, points.
 const UNIT: f32 = 34.0;
 
-/// Shows the rows. `features` are those of the model: modes for which it has no data are folded away, and those without data at the pixel.
+/// Shows the rows, and `more` rows after them. `features` are those of the model: modes for which it has no data are folded away, and those without data at the pixel.
 pub(super) fn show(
     ui: &mut Ui,
     reading: &Reading,
@@ -23,6 +23,7 @@ pub(super) fn show(
     modes: &[Mode],
     features: Option<u32>,
     current: &mut String,
+    more: impl FnOnce(&mut Ui),
 ) {
     let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let is_found = |mode: &Mode| {
@@ -61,6 +62,7 @@ pub(super) fn show(
                 header.header_response.on_hover_text("This pixel has no data for these modes");
             }
         }
+        more(ui);
         let left = unread.iter().filter(|mode| is_found(mode)).count();
         if left > 0 && reading.is_complete {
             ui.add_space(8.0);

@@ -12,8 +12,7 @@ use crate::app::panels::{ACCENT, QUIET, WARNING};
 use crate::app::selection::Selected;
 use crate::app::viewer::Viewer;
 use crate::frame::Scene;
-use crate::interface::TEXTURES;
-use crate::scene::{AlphaMode, Material, factor};
+use crate::scene::{AlphaMode, Material, factor, slot_name};
 use crate::settings::{Factor, FactorValue, Settings, factor_path};
 
 /// Shows the material with this index. Values that are set are stored under its name.
@@ -174,12 +173,6 @@ fn is_used(factor: Factor, material: &Material) -> bool {
     }
 }
 
-/// The name of a texture slot, as `metallic roughness`.
-pub(in crate::app::panels) fn slot_name(slot: usize) -> String {
-    let name = TEXTURES.get(slot).map_or("", |texture| texture.name);
-    name.trim_start_matches("TEXTURE_").to_lowercase().replace('_', " ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,12 +196,5 @@ mod tests {
             row(ui, &mut settings, "Paint", &Material::default(), Factor::Roughness);
         });
         assert_eq!(settings, before);
-    }
-
-    #[test]
-    fn slots_have_names() {
-        assert_eq!(slot_name(0), "base color");
-        assert_eq!(slot_name(1), "metallic roughness");
-        assert!((0..TEXTURES.len()).all(|slot| !slot_name(slot).is_empty()));
     }
 }

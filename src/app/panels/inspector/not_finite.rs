@@ -1,0 +1,59 @@
+//! The first statement that makes NaN or infinity at the pixel. A click opens its line in the editor.
+
+use std::path::PathBuf;
+
+use egui::{CursorIcon, Label, RichText, Sense, Ui};
+
+use super::super::theme::{ACCENT, ERROR, QUIET};
+use crate::app::command::Command;
+use crate::app::editor::Place;
+use crate::app::inspector::NotFiniteSearch;
+use crate::shader::not_finite::ELSEWHERE;
+use crate::shader::{FirstNotFinite, Site};
+
+/// Shows the search or its result. `has_files`: the tree is on disk, so an editor can open it.
+pub(super) fn show(ui: &mut Ui, search: &NotFiniteSearch, has_files: bool, commands: &mut Vec<Command>) {
+    let mode = &search.mode;
+    let quiet = |ui: &mut Ui, text: String| drop(ui.label(RichText::new(text).small().color(QUIET)));
+    match search.found.as_ref().map(|found| &found.found) {
+        None => {
+            ui.horizontal(|ui| {
+                ui.spinner();
+                quiet(ui, format!("Looking for the first line with NaN or Inf in {mode}…"));
+            });
+        }
+        Some(Ok(Some(FirstNotFinite { first, value, nan }))) => {
+            line(ui, first, value, mode, has_files, commands);
+            if let Some(nan) = nan {
+                line(ui, nan, "NaN", mode, has_files, commands);
+            }
+        }
+        Some(Ok(None)) => quiet(ui, format!("NaN or Inf in {mode}: {ELSEWHERE}")),
+        Some(Err(message)) => quiet(ui, format!("NaN or Inf in {mode}: {message}")),
+    }
+}
+
+fn line(ui: &mut Ui, site: &Site, value: &str, mode: &str, has_files: bool, commands: &mut Vec<Command>) {
+    let Site { file, line, column, code } = site;
+    let text = RichText::new(format!("{value}  {file}:{line}  {code}")).small().color(ERROR);
+    let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
+    if label.clicked() {
+        match has_files {
+            true => {
+                let (line, column) = (Some(*line), Some(*column));
+                commands.push(Command::Edit(Place { file: PathBuf::from(file), line, column }));
+            }
+            false => ui.ctx().copy_text(format!("{file}:{line}:{column}: {code}")),
+        }
+    }
+    let hint = if has_files { "Click to open it in the editor" } else { "Click to copy it" };
+    label.on_hover_cursor(CursorIcon::PointingHand).on_hover_ui(|ui| {
+        ui.set_max_width(480.0);
+        ui.label(RichText::new(format!("{file}:{line}")).strong());
+        ui.label(RichText::new(code).monospace());
+        ui.label(format!(
+            "The first statement in {mode} that makes {value} at this pixel, in the order in which the fragment executes"
+        ));
+        ui.label(RichText::new(hint).small().color(ACCENT));
+    });
+}

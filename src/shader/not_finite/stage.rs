@@ -1,0 +1,86 @@
+//! The text of a stage that writes the number of a statement in place of a color, and the functions that its statements call.
+
+use std::fmt::Write as _;
+
+use super::types::{FLOATS, OTHERS};
+use crate::shader::contract;
+use crate::shader::expression::syntax::{Code, functions};
+use crate::shader::source::TreePath;
+use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::lines;
+
+/// The function that values pass through.
+pub(super) const FUNCTION: &str = "trace_finite";
+/// Path that replaces the first include of the stage.
+pub(super) const LIBRARY: &str = ".not_finite.glsl";
+/// The blue channel of a pixel with numbers of statements.
+pub(super) const MARK: f32 = 4242.0;
+
+/// The text of the stage, and of the file that it includes first. `text` already calls the functions.
+pub(super) fn texts(text: &str, host: &TreePath, snapshot: &Snapshot<'_>) -> Result<(String, String), String> {
+    let code = Code::new(text);
+    let tokens = code.tokens();
+    let bodies: Vec<_> = functions(&tokens).into_iter().map(|function| function.body.bytes).collect();
+    let is_outside = |at: usize| !bodies.iter().any(|body| body.contains(&at));
+    let main =
+        tokens.windows(2).find(|pair| pair[0].text == "main" && pair[1].text == "(" && is_outside(pair[0].bytes.start));
+    let main = main.ok_or_else(|| format!("{host} has no main()"))?[0].bytes.clone();
+    let color = tokens
+        .windows(3)
+        .find(|three| three[0].text == "out" && three[1].text == "vec4" && is_outside(three[0].bytes.start));
+    let color = color.ok_or_else(|| format!("{host} has no `out vec4` color"))?[2].text;
+    let (name, include) = first_include(text).ok_or_else(|| format!("{host} includes no file"))?;
+    let found = host.sibling(&name).filter(|path| snapshot.read(path).is_ok());
+    let name = found.map_or(name, |path| path.to_string());
+
+    let mut stage = text.to_owned();
+    let mut edits = [(main, "traced_main"), (include, LIBRARY)];
+    edits.sort_by_key(|(bytes, _)| std::cmp::Reverse(bytes.start));
+    edits.into_iter().for_each(|(bytes, new)| stage.replace_range(bytes, new));
+    let _ = write!(
+        stage,
+        "\nvoid main() {{ traced_main(); {color} = trace_first != 0u ? vec4(trace_first, trace_first_nan, {MARK:?}, 1.0) : vec4(0.0); }}\n"
+    );
+    let mut library = String::new();
+    let interface = TreePath::from(contract::INTERFACE_FILE);
+    if snapshot.read(&interface).is_ok() {
+        let _ = writeln!(library, "#include \"{interface}\"");
+    }
+    library += &tracing_functions();
+    if name != interface.as_str() {
+        let _ = writeln!(library, "#include \"{name}\"");
+    }
+    Ok((stage, library))
+}
+
+/// The name of the first file that a text includes, and the bytes of the name.
+fn first_include(text: &str) -> Option<(String, std::ops::Range<usize>)> {
+    let code = Code::new(text);
+    lines(text).into_iter().find_map(|line| {
+        let directive = line.code.trim_start().strip_prefix('#')?.trim_start();
+        let (open, close) = (line.raw.find('"')?, line.raw.rfind('"')?);
+        let start = code.start(line.number);
+        (directive.starts_with("include") && close > open)
+            .then(|| (line.raw[open + 1..close].to_owned(), start + open + 1..start + close))
+    })
+}
+
+/// For each type, a function that returns its value and remembers the first statements that made NaN or infinity.
+fn tracing_functions() -> String {
+    let mut out = "uint trace_first = 0u;\nuint trace_first_nan = 0u;\n\
+        float trace_finite(uint site, float value) {\n    \
+        uint bits = floatBitsToUint(value) & 0x7fffffffu;\n    \
+        if (bits >= 0x7f800000u && trace_first == 0u) trace_first = site;\n    \
+        if (bits > 0x7f800000u && trace_first_nan == 0u) trace_first_nan = site;\n    return value;\n}\n"
+        .to_owned();
+    for kind in FLOATS.iter().skip(1) {
+        let columns = kind.trim_start_matches(|c: char| c.is_ascii_alphabetic()).split('x').next().unwrap_or("1");
+        let columns: usize = columns.parse().unwrap_or(1);
+        let calls: String = (0..columns).map(|at| format!("{FUNCTION}(site, value[{at}]); ")).collect();
+        let _ = writeln!(out, "{kind} {FUNCTION}(uint site, {kind} value) {{ {calls}return value; }}");
+    }
+    for kind in OTHERS {
+        let _ = writeln!(out, "{kind} {FUNCTION}(uint site, {kind} value) {{ return value; }}");
+    }
+    out
+}
