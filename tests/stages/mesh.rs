@@ -223,7 +223,7 @@ fn the_picture_can_have_a_mesh_stage() {
         return;
     }
     let mut session = session(16, &[]);
-    let modes = ["final", "triangle-id", "normals", "depth"];
+    let modes = ["final", "triangle-id", "geometric-normal", "depth"];
     let plain = modes.map(|mode| session.mode(mode));
     ready(&session.save("pbr.mesh", &mesh("", "")));
     for (mode, plain) in modes.iter().zip(&plain) {
