@@ -38,7 +38,10 @@ layout(triangles, max_vertices = 3 * GROUP_TRIANGLES, max_primitives = GROUP_TRI
 
 layout(location = 0) out Fragment fragments[];
 
-// All that a triangle has besides its corners. Members that are declared must be written.
+// The built-in outputs. All that are declared must be written.
+out gl_MeshPerVertexEXT {
+    vec4 gl_Position;
+} gl_MeshVerticesEXT[];
 out perprimitiveEXT gl_MeshPerPrimitiveEXT {
     int gl_PrimitiveID;
     bool gl_CullPrimitiveEXT;

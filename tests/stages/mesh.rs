@@ -51,7 +51,7 @@ fn mesh_stages_are_refused_by_devices_without_them() {
     let text = mesh("", "");
     let reload = session.save(MESH, &text);
     let told = lines(failed(&reload)).join("\n");
-    assert_eq!(told, format!("{}:4:6: error: {LACKS} mesh stage needs", shown(&session, MESH)));
+    assert_eq!(told, format!("{}:3:6: error: {LACKS} mesh stage needs", shown(&session, MESH)));
     let full: String = failed(&reload).iter().map(|diagnostic| diagnostic.render()).collect();
     assert!(full.contains("the pass works with passes/mine.vert"), "{full}");
     assert_same(&plain, &session.render(), "the pass as it was");
@@ -131,9 +131,13 @@ fn errors_of_mesh_stages_have_their_line() {
         layout(triangles, max_vertices = 3, max_primitives = 1) out;\nvoid main() { SetMeshOutputsEXT(0, 0); }\n";
     let [(_, task), (_, after)] = both("true");
     let pass = ("passes/mine.frag", FRAGMENT);
-    let cases: [(&[(&str, &str)], &str); 10] = [
+    let cases: [(&[(&str, &str)], &str); 11] = [
         (&[pass, (MESH, &broken)], &format!("mine.mesh:{line}:")),
-        (&[pass, (MESH, "")], "mine.mesh: error: "),
+        (&[pass, (MESH, "")], "mine.mesh: error: a mesh stage begins with `#version 460`"),
+        (
+            &[pass, (MESH, "\n#version 310 es\nvoid main() {}\n")],
+            "mine.mesh:2: error: a mesh stage begins with `#version 460`",
+        ),
         (
             &[("passes/mine.frag", full_screen), (MESH, &good)],
             "mine.mesh:3:6: error: the pass `mine` draws no model, so it has no mesh stage",

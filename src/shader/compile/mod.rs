@@ -184,7 +184,10 @@ impl Compiler {
             return failed(Diagnostic::error(file(), message));
         };
         match snapshot.read(stage) {
-            Ok(text) => self.compile_text(snapshot, stage, &text, kind),
+            Ok(text) => match unknown_version(&file(), &text, kind) {
+                Some(error) => failed(error),
+                None => self.compile_text(snapshot, stage, &text, kind),
+            },
             Err(error) => failed(Diagnostic::error(file(), format!("{} {error}", file()))),
         }
     }
@@ -286,7 +289,27 @@ impl Compiler {
     }
 }
 
-/// The layouts of primitives that a stage of this kind must declare, without those that a library declares itself.
+/// An error about a task or mesh stage in a version of GLSL that has no such stages. glslang would print its built-in declarations
+/// to the standard output.
+fn unknown_version(file: &str, text: &str, kind: StageKind) -> Option<Diagnostic> {
+    if !kind.is_of_mesh_pipeline() {
+        return None;
+    }
+    let lines = lines(text);
+    let first = lines.iter().find(|line| !line.code.trim().is_empty());
+    let mut words = first.map(|line| line.code.split_whitespace()).into_iter().flatten();
+    let is_known = words.next() == Some("#version")
+        && words.next().is_some_and(|version| matches!(version, "450" | "460"))
+        && words.next().is_none_or(|profile| profile == "core");
+    let error = || {
+        let error = Diagnostic::error(file, format!("a {} stage begins with `#version 460`", kind.name()));
+        first.map_or(error.clone(), |line| error.on_line(line.number, Some(line.raw)))
+    };
+    (!is_known).then(error)
+}
+
+/// What a stage of this kind must declare: the layouts of its primitives, and the extension of its kind. Leaves out the layouts that
+/// a library declares itself.
 fn library_layouts(snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> impl Iterator<Item = String> {
     let needed: &[(&str, &str)] = match kind {
         StageKind::TessellationControl => &[("vertices = 3", "out")],
@@ -302,7 +325,9 @@ fn library_layouts(snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind)
         texts.iter().any(|text| lines(text).iter().any(|line| is_layout(line.code.trim())))
     };
     let missing = needed.iter().filter(move |(_, direction)| !declares(direction));
-    missing.map(|(layout, direction)| format!("layout({layout}) {direction};\n"))
+    let layouts = missing.map(|(layout, direction)| format!("layout({layout}) {direction};\n"));
+    let extension = "#extension GL_EXT_mesh_shader : require\n".to_owned();
+    kind.is_of_mesh_pipeline().then_some(extension).into_iter().chain(layouts)
 }
 
 /// Reports the first unbalanced conditional of each file. It may be the cause of all other errors of the stage. A stage that
