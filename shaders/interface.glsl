@@ -276,6 +276,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Ver
     Vertex at[];
 };
 
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Indices {
+    uint at[];
+};
+
 struct BvhNode {
     vec3 min_ws;                       // Smallest corner, world space.
     uint first;                        // Leaf: its first triangle. Otherwise the first of its two children, which are neighbors.
@@ -327,6 +331,9 @@ layout(push_constant, scalar) uniform Draw {
     uint attributes;                   // ATTRIBUTE_* bits of the mesh.
     uint primitive_id;                 // Index of the primitive, for the id modes.
     uint node_id;                      // Index of the node, for the id modes.
+    Indices indices;                   // Device address of the first index, for mesh stages.
+    uint triangle_count;               // Mesh stages: triangles of the primitive.
+    uint first_triangle;               // Mesh stages: number of the first triangle that this draw gives. Not 0 if the primitive takes several draws.
 } draw;
 
 #endif

@@ -36,7 +36,7 @@ impl FileKind {
             "hdr" | "exr" => Self::Environment,
             "binary" | "bin" => Self::Measured,
             "toml" | "png" => Self::Look,
-            "glsl" | "vert" | "tesc" | "tese" | "geom" | "frag" | "fs" | "comp" => Self::Shader,
+            "glsl" | "vert" | "tesc" | "tese" | "geom" | "task" | "mesh" | "frag" | "fs" | "comp" => Self::Shader,
             _ => Self::Other,
         }
     }

@@ -30,8 +30,8 @@ pub const SET_FRAME: u32 = 0;
 pub const SET_MATERIAL: u32 = 1;
 /// Set 2: the images and buffers that a stage declares by name. It has no bindings in the contract.
 pub const SET_PASS: u32 = 2;
-/// The first binding in [`SET_PASS`] of a vertex stage. Those of tessellation control, tessellation evaluation and geometry stages
-/// begin at two, three and four times this number, those of other stages at 0, so that the stages of a pipeline share a set.
+/// The first binding in [`SET_PASS`] of a vertex stage. Those of tessellation control, tessellation evaluation, geometry, task and
+/// mesh stages begin at two to six times this number, those of other stages at 0, so that the stages of a pipeline share a set.
 pub const VERTEX_BINDINGS: u32 = 256;
 /// Set 3: the inputs and outputs of a compute task.
 pub const SET_TASK: u32 = 3;

@@ -2,7 +2,7 @@
 
 mod support;
 
-use specula::headless::{Headless, Sequence};
+use specula::headless::{Headless, HeadlessError, Sequence};
 use specula::shader::embedded::Example;
 use specula::shader::{Library, Source, check};
 use support::process::run;
@@ -30,6 +30,7 @@ fn examples_change_the_picture_and_repeat_themselves() {
             "hatching",
             "hull",
             "life",
+            "meshlets",
             "normals",
             "raymarch",
             "reaction",
@@ -39,12 +40,32 @@ fn examples_change_the_picture_and_repeat_themselves() {
     );
     for name in names {
         let example = Example::named(name);
+        if name == "meshlets" && gpu().optional_stages().mesh.is_none() {
+            assert_refused(example);
+            continue;
+        }
         let first = draw(example, 8);
         assert_differ(&plain, &first, name);
         assert_same(&first, &draw(example, 8), name);
         assert!(first.raw_at(SIZE.0 / 2, SIZE.1 / 2).unwrap().iter().all(|v| v.is_finite()), "{name}");
     }
     assert_validated();
+}
+
+/// Fails unless the device refuses the example, which has a mesh stage.
+#[track_caller]
+fn assert_refused(example: Option<Example>) {
+    let (ball, source) = (model("shader-ball"), Source::Embedded(example));
+    match Headless::new(gpu(), compiler(), source, ball, settings(&["view.msaa=1"]), SIZE).map(|_| ()) {
+        Err(HeadlessError::Shaders(told)) => {
+            let told = lines(&told).join("\n");
+            let expected =
+                "meshlets.mesh:11:6: error: this device lacks VK_EXT_mesh_shader, which this mesh stage needs";
+            assert!(told.contains(expected), "{told}");
+            println!("the picture of the example `meshlets` is skipped: the device lacks VK_EXT_mesh_shader");
+        }
+        other => panic!("{other:?}"),
+    }
 }
 
 #[test]

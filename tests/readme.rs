@@ -80,6 +80,15 @@ fn the_geometry_stage_of_the_readme() {
     passes_check(&session);
 }
 
+/// It compiles and fits the pass of the page. `tests/stages.rs` draws the same stage, where the device can.
+#[test]
+fn the_mesh_stage_of_the_readme() {
+    let session = session();
+    session.tree.write("passes/glow.frag", &snippet("//@pass glow"));
+    session.tree.write("passes/glow.mesh", &snippet("model.mesh.glsl"));
+    passes_check(&session);
+}
+
 #[test]
 fn the_parameters_and_constants_of_the_shader_readme() {
     let mut session = session();

@@ -23,6 +23,7 @@ pub use commands::upload::upload_images;
 pub use device::adapter::{AdapterInfo, adapters};
 pub use device::gpu::{Gpu, GpuOptions, OptionalStages};
 pub use device::memory_use::{Heap, MemoryUse};
+pub use device::optional::MeshLimits;
 pub use device::pipeline_cache::PipelineStore;
 pub use error::GpuError;
 pub use heap::{return_freed_memory, return_large_blocks};

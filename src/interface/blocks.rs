@@ -56,6 +56,8 @@ mod types {
     pub type mat4x3 = [[f32; 3]; 4];
     /// A `buffer_reference`: a device address.
     pub type Vertices = u64;
+    /// The same for indices.
+    pub type Indices = u64;
 }
 use types::*;
 
@@ -405,6 +407,12 @@ blocks! {
         primitive_id: uint,
         /// Index of the node, for the id modes.
         node_id: uint,
+        /// Device address of the first index, for mesh stages.
+        indices: Indices,
+        /// Mesh stages: triangles of the primitive.
+        triangle_count: uint,
+        /// Mesh stages: number of the first triangle that this draw gives. Not 0 if the primitive takes several draws.
+        first_triangle: uint,
     }
 }
 

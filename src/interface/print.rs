@@ -80,4 +80,8 @@ const VERTICES: &str = "
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vertices {
     Vertex at[];
 };
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Indices {
+    uint at[];
+};
 ";

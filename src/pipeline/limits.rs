@@ -1,10 +1,11 @@
 //! Errors about declarations that this device cannot have, each with its line.
 
-use crate::gpu::{Gpu, OptionalStages};
+use crate::gpu::{Gpu, MeshLimits, OptionalStages};
 use crate::shader::annotation::pass::PassSize;
 use crate::shader::contract::Texts;
+use crate::shader::graph::stage_beside;
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::{Diagnostic, ShaderSet, Source, StageKind};
+use crate::shader::{Diagnostic, ShaderSet, Source, Stage, StageKind};
 
 /// Passes whose images are too large for the device, stages that it lacks, and buffers that a stage cannot write. `source` is the tree of the shaders.
 pub fn beyond_limits(gpu: &Gpu, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
@@ -36,7 +37,7 @@ fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source
     for stage in shaders.stages.values() {
         let name = match stage.kind {
             StageKind::Fragment if !stores.1 => stage.kind.name(),
-            kind if kind.is_pre_rasterization() && !stores.0 => kind.name(),
+            kind if kind.is_pre_rasterization() && !kind.is_of_mesh_pipeline() && !stores.0 => kind.name(),
             _ => continue,
         };
         let texts = Texts { snapshot: &snapshot, stage: &stage.path, dependencies: &stage.dependencies };
@@ -53,6 +54,7 @@ fn unwritable_buffers(stores: (bool, bool), shaders: &ShaderSet, source: &Source
 fn missing_stages(has: OptionalStages, shaders: &ShaderSet, source: &Source) -> Vec<Diagnostic> {
     const TESSELLATION_POINT_SIZE: u32 = 23;
     const GEOMETRY_POINT_SIZE: u32 = 24;
+    const MESH_SHADING: u32 = 5283;
     let mut out = Vec::new();
     let snapshot = Snapshot::new(source);
     for stage in shaders.stages.values() {
@@ -62,6 +64,8 @@ fn missing_stages(has: OptionalStages, shaders: &ShaderSet, source: &Source) -> 
         if is_tessellation && !has.tessellation {
             let message = "this device has no tessellation stages (tessellationShader)".to_owned();
             out.push(texts.error(&["main", "void"], message).with_help("delete the .tesc and the .tese file"));
+        } else if stage.reflection.capabilities.contains(&MESH_SHADING) {
+            out.extend(beyond_mesh(has.mesh, stage, texts));
         } else if !has.point_size
             && capabilities.any(|number| matches!(*number, TESSELLATION_POINT_SIZE | GEOMETRY_POINT_SIZE))
         {
@@ -72,6 +76,36 @@ fn missing_stages(has: OptionalStages, shaders: &ShaderSet, source: &Source) -> 
         }
     }
     out
+}
+
+/// An error about a stage that uses VK_EXT_mesh_shader, on a device that lacks it or has smaller limits.
+fn beyond_mesh(limits: Option<MeshLimits>, stage: &Stage, texts: Texts<'_>) -> Option<Diagnostic> {
+    let (name, path) = (stage.kind.name(), stage.path.as_str());
+    let Some(limits) = limits else {
+        let message = format!("this device lacks VK_EXT_mesh_shader, which this {name} stage needs");
+        return Some(match stage.kind.is_of_mesh_pipeline() {
+            true => {
+                let vertex = stage_beside(path, StageKind::Vertex);
+                let help = format!("delete this file: the pass works with {vertex}, or with the model's vertex stage");
+                texts.error(&["main", "void"], message).with_help(help)
+            }
+            false => texts.error(&["GL_EXT_mesh_shader"], message),
+        });
+    };
+    let invocations = stage.reflection.local_size.iter().product();
+    let [vertices, primitives] = stage.reflection.mesh_outputs;
+    let rows: &[(u32, u32, &str, &str)] = match stage.kind {
+        StageKind::Task => &[(invocations, limits.task_invocations, "invocations", "local_size_x")],
+        StageKind::Mesh => &[
+            (invocations, limits.mesh_invocations, "invocations", "local_size_x"),
+            (vertices, limits.vertices, "vertices", "max_vertices"),
+            (primitives, limits.primitives, "primitives", "max_primitives"),
+        ],
+        _ => &[],
+    };
+    let (found, most, of, word) = rows.iter().find(|(found, most, ..)| found > most)?;
+    let message = format!("a workgroup has {found} {of}; this device has at most {most} in a {name} stage");
+    Some(texts.error(&[word], message))
 }
 
 #[cfg(test)]
@@ -119,7 +153,7 @@ mod tests {
         let update = library.update(&Change::All);
         let Update::Ready(shaders, _) = &update else { panic!("{update:?}") };
         let found = |tessellation: bool, point_size: bool| -> Vec<String> {
-            let has = OptionalStages { tessellation, point_size };
+            let has = OptionalStages { tessellation, point_size, mesh: None };
             missing_stages(has, shaders, &source).iter().map(Diagnostic::one_line).collect()
         };
         assert_eq!(found(true, true), [""; 0]);
@@ -133,5 +167,39 @@ mod tests {
                 "g.geom:6:5: error: this device has no gl_PointSize in a geometry stage (shaderTessellationAndGeometryPointSize)"
             ]
         );
+    }
+
+    #[test]
+    fn mesh_stages_beyond_the_device_have_their_line() {
+        let mesh = "#version 460\n#extension GL_EXT_mesh_shader : require\nlayout(local_size_x = 64) in;\n\
+            layout(triangles, max_vertices = 90, max_primitives = 30) out;\nvoid main() { SetMeshOutputsEXT(0, 0); }\n";
+        let source = Source::memory([("m.mesh", mesh)]);
+        let mut library = Library::new(source.clone(), Arc::new(Compiler::new().unwrap()), &["m.mesh"]);
+        let update = library.update(&Change::All);
+        let Update::Ready(shaders, _) = &update else { panic!("{update:?}") };
+        let found = |mesh: Option<MeshLimits>| -> Vec<String> {
+            let has = OptionalStages { tessellation: true, point_size: true, mesh };
+            missing_stages(has, shaders, &source).iter().map(Diagnostic::one_line).collect()
+        };
+        let limits = MeshLimits { task_invocations: 1, mesh_invocations: 64, vertices: 90, primitives: 30 };
+        assert_eq!(found(Some(limits)), [""; 0]);
+        let too_few = [
+            (None, "5:6: error: this device lacks VK_EXT_mesh_shader, which this mesh stage needs"),
+            (
+                Some(MeshLimits { mesh_invocations: 32, ..limits }),
+                "3:8: error: a workgroup has 64 invocations; this device has at most 32 in a mesh stage",
+            ),
+            (
+                Some(MeshLimits { vertices: 89, ..limits }),
+                "4:19: error: a workgroup has 90 vertices; this device has at most 89 in a mesh stage",
+            ),
+            (
+                Some(MeshLimits { primitives: 3, ..limits }),
+                "4:38: error: a workgroup has 30 primitives; this device has at most 3 in a mesh stage",
+            ),
+        ];
+        for (limits, expected) in too_few {
+            assert_eq!(found(limits), [format!("m.mesh:{expected}")]);
+        }
     }
 }

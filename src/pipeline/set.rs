@@ -12,12 +12,12 @@ use rayon::prelude::*;
 use crate::frame::{PipelineKey, PipelineRequest, pass_format};
 use crate::gpu::{
     ComputePipeline, Gpu, GpuError, PassBinding, PassBindings, PassLayout, Pipeline, PipelineDesc, SetLayouts,
-    ShaderModule, Specialization,
+    ShaderModule, Specialization, vk,
 };
 use crate::pipeline::bounds::{module_of_modes, shader_module};
 use crate::pipeline::textures::PassTextures;
 use crate::shader::graph::{Input, Inputs, Part};
-use crate::shader::{GraphPass, ShaderSet, Stage};
+use crate::shader::{GraphPass, ShaderSet, Stage, StageKind};
 pub use report::{InPipeline, StageReport};
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -336,8 +336,8 @@ impl PipelineSet {
         let pass = &key.pass.0;
         let is_on_display = matches!(pass.part, Part::Tonemap | Part::Display);
         let module = |path: &str| shader_module(&self.gpu, self.stage(path)?, &key.specialization, is_on_display);
-        let front = &pass.front;
-        let vertex = module(&front.vertex)?;
+        let front = pass.front.stages().map(|path| Ok((flag_of(self.stage(path)?.kind), module(path)?)));
+        let front = front.collect::<Result<Vec<_>, GpuError>>()?;
         let fragment = match &*key.modes {
             [] => module(&pass.note.stage)?,
             modes => {
@@ -345,17 +345,8 @@ impl PipelineSet {
                 several.ok_or_else(|| GpuError::NoStage(format!("{} in several modes", pass.note.stage)))??
             }
         };
-        let geometry = front.geometry.as_deref().map(module).transpose()?;
-        let tessellation = match &front.tessellation {
-            Some([control, evaluation]) => Some([module(control)?, module(evaluation)?]),
-            None => None,
-        };
-        let modules: Vec<&ShaderModule> = [&vertex, &fragment]
-            .into_iter()
-            .chain(&geometry)
-            .chain(tessellation.iter().flatten())
-            .map(|m| &**m)
-            .collect();
+        let front: Vec<_> = front.iter().map(|(flag, module)| (*flag, &**module)).collect();
+        let modules: Vec<&ShaderModule> = front.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
         let draws_model = pass.note.model.is_some();
         let layout = self.layout(&pass.inputs, &modules, draws_model);
         let layout = layout.map_err(|error| of_pass(pass, error))?;
@@ -363,9 +354,7 @@ impl PipelineSet {
         let modes = key.modes.iter().skip(1).map(|_| key.format);
         let colors: Vec<_> = std::iter::once(key.format).chain(more).chain(modes).collect();
         let desc = PipelineDesc {
-            vertex: &vertex,
-            tessellation: tessellation.as_ref().map(|[control, evaluation]| [&**control, &**evaluation]),
-            geometry: geometry.as_deref(),
+            front: &front,
             fragment: &fragment,
             colors: &colors,
             depth: draws_model || pass.part == Part::Model,
@@ -375,6 +364,20 @@ impl PipelineSet {
             layout,
         };
         then(&desc)
+    }
+}
+
+fn flag_of(kind: StageKind) -> vk::ShaderStageFlags {
+    use vk::ShaderStageFlags as S;
+    match kind {
+        StageKind::Vertex => S::VERTEX,
+        StageKind::TessellationControl => S::TESSELLATION_CONTROL,
+        StageKind::TessellationEvaluation => S::TESSELLATION_EVALUATION,
+        StageKind::Geometry => S::GEOMETRY,
+        StageKind::Task => S::TASK_EXT,
+        StageKind::Mesh => S::MESH_EXT,
+        StageKind::Fragment => S::FRAGMENT,
+        StageKind::Compute => S::COMPUTE,
     }
 }
 

@@ -42,6 +42,12 @@ impl Counter {
         self.counts.draws += 1;
         self.counts.triangles += u64::from(triangles) * u64::from(instances);
     }
+
+    /// Counts a draw of a mesh pipeline.
+    pub(super) fn draw_mesh(&mut self, triangles: u32, instances: u32) {
+        self.counts.draws += 1;
+        self.counts.triangles += u64::from(triangles) * u64::from(instances);
+    }
 }
 
 #[cfg(test)]

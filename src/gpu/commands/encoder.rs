@@ -242,12 +242,18 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_bind_pipeline(self.raw, vk::PipelineBindPoint::GRAPHICS, pipeline.raw) };
     }
 
-    /// Sets the dynamic state of a pipeline with a depth target.
+    /// Sets the dynamic state of a pipeline with a depth target and a vertex stage.
     pub fn set_raster(&mut self, topology: vk::PrimitiveTopology, cull: vk::CullModeFlags, front: vk::FrontFace) {
         self.counter.set_topology(topology);
         // SAFETY: this encoder records the command buffer.
+        unsafe { self.gpu.device.cmd_set_primitive_topology(self.raw, topology) };
+        self.set_facing(cull, front);
+    }
+
+    /// Sets the dynamic state of a pipeline with a depth target and a mesh stage.
+    pub fn set_facing(&mut self, cull: vk::CullModeFlags, front: vk::FrontFace) {
+        // SAFETY: this encoder records the command buffer.
         unsafe {
-            self.gpu.device.cmd_set_primitive_topology(self.raw, topology);
             self.gpu.device.cmd_set_cull_mode(self.raw, cull);
             self.gpu.device.cmd_set_front_face(self.raw, front);
         }
@@ -302,6 +308,15 @@ impl Encoder {
         self.counter.draw_indexed(count, instances);
         // SAFETY: this encoder records the command buffer; the loader has checked that the indices are in range.
         unsafe { self.gpu.device.cmd_draw_indexed(self.raw, count, instances, first, 0, 0) };
+    }
+
+    /// Starts `workgroups` times `instances` workgroups of the first stage of a mesh pipeline, which draw this many triangles. Does
+    /// nothing on a device without mesh stages.
+    pub fn draw_mesh(&mut self, workgroups: u32, instances: u32, triangles: u32) {
+        let Some(extension) = &self.gpu.mesh_shader else { return };
+        self.counter.draw_mesh(triangles, instances);
+        // SAFETY: this encoder records the command buffer; the stages read within the buffers that the push constants name.
+        unsafe { extension.cmd_draw_mesh_tasks(self.raw, workgroups, instances, 1) };
     }
 
     /// SYNC: makes the writes of earlier copies visible to all later commands, and to the CPU after the fence.

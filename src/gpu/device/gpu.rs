@@ -9,7 +9,7 @@ use raw_window_handle::RawDisplayHandle;
 
 use super::adapter::{AdapterInfo, choose, graphics_family};
 use super::instance::Instance;
-use super::optional::Optional;
+use super::optional::{MeshLimits, Optional};
 use super::pipeline_cache::{PipelineCache, PipelineStore};
 use crate::gpu::GpuError;
 use crate::gpu::error::Context;
@@ -27,13 +27,15 @@ pub struct GpuOptions {
     pub pipelines: Option<&'static dyn PipelineStore>,
 }
 
-/// Features of tessellation and geometry stages that not every device has. Each device that Specula takes has geometry stages.
+/// Stages before the rasterizer, and features of them, that not every device has. Each device that Specula takes has geometry stages.
 #[derive(Clone, Copy, Debug)]
 pub struct OptionalStages {
     /// Whether there are tessellation stages.
     pub tessellation: bool,
     /// Whether tessellation and geometry stages can use `gl_PointSize`.
     pub point_size: bool,
+    /// The limits of task and mesh stages; `None` without VK_EXT_mesh_shader.
+    pub mesh: Option<MeshLimits>,
 }
 
 /// An open device with one graphics queue and one allocator.
@@ -47,6 +49,8 @@ pub struct Gpu {
     queue: Mutex<vk::Queue>,
     pub(in crate::gpu) surface: Option<khr::surface::Instance>,
     pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
+    /// Draws with mesh stages, where the device has them.
+    pub(in crate::gpu) mesh_shader: Option<ext::mesh_shader::Device>,
     pub(in crate::gpu) debug_utils: Option<ext::debug_utils::Device>,
     /// Asks the driver about pipelines, where it tells anything.
     pub(in crate::gpu) executables: Option<khr::pipeline_executable_properties::Device>,
@@ -102,6 +106,7 @@ impl Gpu {
             executables: optional
                 .executables
                 .then(|| khr::pipeline_executable_properties::Device::new(&instance.raw, &device)),
+            mesh_shader: optional.mesh.map(|_| ext::mesh_shader::Device::new(&instance.raw, &device)),
             has_memory_budget: optional.memory_budget,
             debug_utils: instance.has_debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device)),
             allocator: Arc::new(Mutex::new(allocator)),
@@ -118,6 +123,7 @@ impl Gpu {
             optional_stages: OptionalStages {
                 tessellation: supported.tessellation_shader == vk::TRUE,
                 point_size: supported.shader_tessellation_and_geometry_point_size == vk::TRUE,
+                mesh: optional.mesh,
             },
             vertex_stores: supported.vertex_pipeline_stores_and_atomics == vk::TRUE,
             fragment_stores: supported.fragment_stores_and_atomics == vk::TRUE,
@@ -153,7 +159,7 @@ impl Gpu {
         properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR)
     }
 
-    /// Reports whether the device supports tessellation and geometry stages.
+    /// Reports which optional stages the device supports.
     pub fn optional_stages(&self) -> OptionalStages {
         self.optional_stages
     }
@@ -288,6 +294,7 @@ fn create_device(
         .shader_terminate_invocation(true);
     let mut executables =
         vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default().pipeline_executable_info(true);
+    let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default().task_shader(true).mesh_shader(true);
     let mut info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)
@@ -296,6 +303,9 @@ fn create_device(
         .push_next(&mut v13);
     if optional.executables {
         info = info.push_next(&mut executables);
+    }
+    if optional.mesh.is_some() {
+        info = info.push_next(&mut mesh);
     }
     // SAFETY: `adapter::choose` and `Optional::of` have checked every feature and extension that is enabled here.
     unsafe { instance.create_device(physical, &info, None) }.context("opening the device")

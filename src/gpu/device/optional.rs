@@ -11,6 +11,42 @@ pub(in crate::gpu) struct Optional {
     pub(in crate::gpu) executables: bool,
     /// The driver tells how much memory the process may use.
     pub(in crate::gpu) memory_budget: bool,
+    /// Task and mesh stages.
+    pub(in crate::gpu) mesh: Option<MeshLimits>,
+}
+
+/// The largest numbers that task and mesh stages can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshLimits {
+    /// Invocations of a workgroup of a task stage.
+    pub task_invocations: u32,
+    /// Invocations of a workgroup of a mesh stage.
+    pub mesh_invocations: u32,
+    /// Vertices that a workgroup of a mesh stage gives.
+    pub vertices: u32,
+    /// Primitives that a workgroup of a mesh stage gives.
+    pub primitives: u32,
+}
+
+/// The limits of task and mesh stages, if the device has both. It must have the extension.
+fn mesh_limits(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<MeshLimits> {
+    let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default();
+    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut mesh);
+    // SAFETY: `physical` comes from this live instance; the chain is valid for the call.
+    unsafe { instance.get_physical_device_features2(physical, &mut features) };
+    if mesh.task_shader == vk::FALSE || mesh.mesh_shader == vk::FALSE {
+        return None;
+    }
+    let mut limits = vk::PhysicalDeviceMeshShaderPropertiesEXT::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut limits);
+    // SAFETY: as above.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    Some(MeshLimits {
+        task_invocations: limits.max_task_work_group_invocations,
+        mesh_invocations: limits.max_mesh_work_group_invocations,
+        vertices: limits.max_mesh_output_vertices,
+        primitives: limits.max_mesh_output_primitives,
+    })
 }
 
 impl Optional {
@@ -27,6 +63,7 @@ impl Optional {
         Self {
             executables: executables.pipeline_executable_info == vk::TRUE,
             memory_budget: has(ext::memory_budget::NAME),
+            mesh: has(ext::mesh_shader::NAME).then(|| mesh_limits(instance, physical)).flatten(),
         }
     }
 
@@ -35,6 +72,7 @@ impl Optional {
         let all = [
             (self.executables, khr::pipeline_executable_properties::NAME),
             (self.memory_budget, ext::memory_budget::NAME),
+            (self.mesh.is_some(), ext::mesh_shader::NAME),
         ];
         all.into_iter().filter(|(has, _)| *has).map(|(_, name)| name.as_ptr())
     }

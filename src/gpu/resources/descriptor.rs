@@ -13,7 +13,7 @@ use crate::gpu::error::Context;
 use crate::gpu::{Gpu, GpuError, fault};
 use crate::interface::{self, BindingKind};
 
-pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::VERTEX.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_CONTROL.as_raw()
         | vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw()
@@ -22,13 +22,19 @@ pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         | vk::ShaderStageFlags::COMPUTE.as_raw(),
 );
 
+/// The stages of the device.
+pub(super) fn stages(gpu: &Gpu) -> vk::ShaderStageFlags {
+    let mesh = vk::ShaderStageFlags::TASK_EXT | vk::ShaderStageFlags::MESH_EXT;
+    if gpu.mesh_shader.is_some() { STAGES | mesh } else { STAGES }
+}
+
 /// The stages that may read a set. A device need not offer more than 32 samplers to one stage (lavapipe 22.3 does not), and all
 /// sets together have more.
-fn stages_of(set: u32) -> vk::ShaderStageFlags {
+fn stages_of(gpu: &Gpu, set: u32) -> vk::ShaderStageFlags {
     match set {
         interface::SET_TASK => vk::ShaderStageFlags::COMPUTE,
-        interface::SET_MATERIAL | interface::SET_PASS => STAGES & !vk::ShaderStageFlags::COMPUTE,
-        _ => STAGES,
+        interface::SET_MATERIAL | interface::SET_PASS => stages(gpu) & !vk::ShaderStageFlags::COMPUTE,
+        _ => stages(gpu),
     }
 }
 
@@ -59,7 +65,7 @@ impl SetLayouts {
                         .binding(b.binding)
                         .descriptor_type(descriptor_type(b.kind))
                         .descriptor_count(1)
-                        .stage_flags(stages_of(set))
+                        .stage_flags(stages_of(gpu, set))
                 })
                 .collect();
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
@@ -69,7 +75,8 @@ impl SetLayouts {
             gpu.name(layout, set_name(set));
             layouts.sets.push(layout);
         }
-        let ranges = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
+        let (stage_flags, size) = (stages(gpu), interface::PUSH_CONSTANT_SIZE);
+        let ranges = [vk::PushConstantRange { stage_flags, offset: 0, size }];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts.sets).push_constant_ranges(&ranges);
         // SAFETY: the set layouts are live.
         layouts.pipeline =
@@ -79,7 +86,7 @@ impl SetLayouts {
     }
 
     pub(in crate::gpu) fn push_stages(&self) -> vk::ShaderStageFlags {
-        STAGES
+        stages(&self.gpu)
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::buffer::Buffer;
-use super::descriptor::{DescriptorSet, STAGES, SetLayouts};
+use super::descriptor::{DescriptorSet, SetLayouts, stages};
 use super::image::Image;
 use super::sampler::Sampler;
 use crate::gpu::error::Context;
@@ -92,12 +92,13 @@ impl PassLayout {
         let null = vk::DescriptorSetLayout::null();
         let pipeline = vk::PipelineLayout::null();
         let mut this = Self { gpu: gpu.clone(), layouts: layouts.clone(), bindings, empty: null, own: null, pipeline };
+        let stage_flags = stages(gpu);
         let own: Vec<_> = this
             .bindings
             .iter()
             .map(|(binding, kind)| {
                 let layout = vk::DescriptorSetLayoutBinding::default().binding(*binding);
-                layout.descriptor_type(kind.vulkan()).descriptor_count(1).stage_flags(STAGES)
+                layout.descriptor_type(kind.vulkan()).descriptor_count(1).stage_flags(stage_flags)
             })
             .collect();
         let set_layout = |bindings: &[vk::DescriptorSetLayoutBinding<'_>]| {
@@ -114,7 +115,7 @@ impl PassLayout {
             sets[interface::SET_MATERIAL as usize] = this.empty;
         }
         sets[interface::SET_PASS as usize] = this.own;
-        let ranges = [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
+        let ranges = [vk::PushConstantRange { stage_flags, offset: 0, size: interface::PUSH_CONSTANT_SIZE }];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&ranges);
         // SAFETY: the set layouts are live.
         this.pipeline =

@@ -125,12 +125,9 @@ pub enum Raster {
 
 /// Stages and fixed state of a graphics pipeline.
 pub struct PipelineDesc<'a> {
-    /// Vertex stage.
-    pub vertex: &'a ShaderModule,
-    /// Tessellation control and tessellation evaluation. The primitives are patches of three vertices then.
-    pub tessellation: Option<[&'a ShaderModule; 2]>,
-    /// Geometry stage.
-    pub geometry: Option<&'a ShaderModule>,
+    /// The stages before the rasterizer, in the order in which they run. With tessellation, the primitives are patches of three
+    /// vertices. With a mesh stage, there is no vertex stage.
+    pub front: &'a [(vk::ShaderStageFlags, &'a ShaderModule)],
     /// Fragment stage.
     pub fragment: &'a ShaderModule,
     /// Formats of the color targets, by location.
@@ -157,14 +154,11 @@ impl PipelineDesc<'_> {
 
     /// The modules, in the order in which the stages run.
     fn modules(&self) -> impl Iterator<Item = (vk::ShaderStageFlags, &ShaderModule)> {
-        use vk::ShaderStageFlags as S;
-        let tessellation = [S::TESSELLATION_CONTROL, S::TESSELLATION_EVALUATION];
-        let tessellation = self.tessellation.into_iter().flat_map(move |modules| tessellation.into_iter().zip(modules));
-        let geometry = self.geometry.map(|module| (S::GEOMETRY, module));
-        std::iter::once((S::VERTEX, self.vertex))
-            .chain(tessellation)
-            .chain(geometry)
-            .chain([(S::FRAGMENT, self.fragment)])
+        self.front.iter().copied().chain([(vk::ShaderStageFlags::FRAGMENT, self.fragment)])
+    }
+
+    fn has(&self, stage: vk::ShaderStageFlags) -> bool {
+        self.front.iter().any(|(kind, _)| *kind == stage)
     }
 }
 
@@ -223,9 +217,10 @@ impl Pipeline {
         };
         let stages: Vec<_> = desc.modules().map(|(kind, module)| stage(kind, module)).collect();
 
+        let has_tessellation = desc.has(vk::ShaderStageFlags::TESSELLATION_CONTROL);
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(match desc.class {
-            _ if desc.tessellation.is_some() => vk::PrimitiveTopology::PATCH_LIST,
+            _ if has_tessellation => vk::PrimitiveTopology::PATCH_LIST,
             PrimitiveClass::Points => vk::PrimitiveTopology::POINT_LIST,
             PrimitiveClass::Lines => vk::PrimitiveTopology::LINE_LIST,
             PrimitiveClass::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
@@ -257,11 +252,11 @@ impl Pipeline {
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let mut dynamic_states = vec![vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         if desc.depth {
-            dynamic_states.extend([
-                vk::DynamicState::CULL_MODE,
-                vk::DynamicState::FRONT_FACE,
-                vk::DynamicState::PRIMITIVE_TOPOLOGY,
-            ]);
+            dynamic_states.extend([vk::DynamicState::CULL_MODE, vk::DynamicState::FRONT_FACE]);
+            // A mesh stage says which primitives it gives.
+            if !desc.has(vk::ShaderStageFlags::MESH_EXT) {
+                dynamic_states.push(vk::DynamicState::PRIMITIVE_TOPOLOGY);
+            }
         }
         if desc.raster == Raster::Averaged {
             dynamic_states.push(vk::DynamicState::BLEND_CONSTANTS);
@@ -284,7 +279,7 @@ impl Pipeline {
             .dynamic_state(&dynamic)
             .layout(desc.layout.pipeline)
             .push_next(&mut rendering);
-        let info = if desc.tessellation.is_some() { info.tessellation_state(&tessellation) } else { info };
+        let info = if has_tessellation { info.tessellation_state(&tessellation) } else { info };
         let mut parts = vec![vk::PipelineCreationFeedback::default(); stages.len()];
         let mut whole = vk::PipelineCreationFeedback::default();
         let mut feedback = vk::PipelineCreationFeedbackCreateInfo::default()

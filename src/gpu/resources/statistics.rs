@@ -130,6 +130,8 @@ fn kinds(stages: vk::ShaderStageFlags) -> Vec<&'static str> {
         (S::TESSELLATION_CONTROL, "tessellation control"),
         (S::TESSELLATION_EVALUATION, "tessellation evaluation"),
         (S::GEOMETRY, "geometry"),
+        (S::TASK_EXT, "task"),
+        (S::MESH_EXT, "mesh"),
         (S::FRAGMENT, "fragment"),
         (S::COMPUTE, "compute"),
     ];

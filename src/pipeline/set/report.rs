@@ -161,6 +161,8 @@ fn name_of(kind: StageKind) -> &'static str {
         StageKind::TessellationControl => "tessellation control",
         StageKind::TessellationEvaluation => "tessellation evaluation",
         StageKind::Geometry => "geometry",
+        StageKind::Task => "task",
+        StageKind::Mesh => "mesh",
         StageKind::Fragment => "fragment",
         StageKind::Compute => "compute",
     }

@@ -100,12 +100,12 @@ impl GpuModel {
             _ => Ok(own.clone()),
         };
         let materials: Vec<_> = self.materials.iter().enumerate().map(&mut of_material).collect::<Result<_, _>>()?;
-        let vertices = self.vertices.address();
+        let addresses = [self.vertices.address(), self.indices.address()];
         let draw = |(index, instance): (usize, &Instance)| {
             let appearance = scene.appearance(instance, replacement.as_ref());
             let own = appearance.material.and_then(|index| materials.get(index));
             let set = own.or(replacement_set.as_ref())?.clone();
-            let draw = draw(&self.model, instance, &self.ranges[instance.primitive], vertices, &appearance, set);
+            let draw = draw(&self.model, instance, &self.ranges[instance.primitive], addresses, &appearance, set);
             Some(GpuDraw { instance: index, ..draw })
         };
         let draws = scene.numbered_instances().filter_map(draw).collect();
@@ -124,7 +124,7 @@ fn draw(
     model: &Model,
     instance: &Instance,
     range: &Range,
-    vertices: u64,
+    [vertices, indices]: [u64; 2],
     appearance: &Appearance,
     material: Arc<DescriptorSet>,
 ) -> GpuDraw {
@@ -141,6 +141,13 @@ fn draw(
             attributes: appearance.attributes,
             primitive_id: instance.primitive as u32,
             node_id: instance.node as u32,
+            indices: indices + u64::from(range.first_index) * size_of::<u32>() as u64,
+            triangle_count: if primitive.topology == Topology::Triangles {
+                primitive.indices.len() as u32 / 3
+            } else {
+                0
+            },
+            first_triangle: 0,
         },
         first_index: range.first_index,
         index_count: primitive.indices.len() as u32,

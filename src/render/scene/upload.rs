@@ -65,7 +65,9 @@ pub(super) fn upload(gpu: &Arc<Gpu>, model: &mut Model) -> Result<Uploaded, Uplo
     let vertices: Vec<&[Vertex]> = model.primitives.iter().map(|p| p.vertices.as_slice()).collect();
     let vertices = staging.buffer("vertices", &vertices, vertex_usage)?;
     let indices: Vec<&[u32]> = model.primitives.iter().map(|p| p.indices.as_slice()).collect();
-    let indices = staging.buffer("indices", &indices, Usage::INDEX_BUFFER)?;
+    // Mesh stages read them by address.
+    let index_usage = Usage::INDEX_BUFFER | Usage::STORAGE_BUFFER | Usage::SHADER_DEVICE_ADDRESS;
+    let indices = staging.buffer("indices", &indices, index_usage)?;
     Ok(Uploaded { vertices, indices, ranges, textures })
 }
 

@@ -70,9 +70,7 @@ impl Tools {
                     gpu,
                     layouts,
                     &PipelineDesc {
-                        vertex,
-                        tessellation: None,
-                        geometry: None,
+                        front: &[(vk::ShaderStageFlags::VERTEX, vertex)],
                         fragment,
                         colors: &[format],
                         depth: false,

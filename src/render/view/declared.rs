@@ -12,7 +12,7 @@ mod sets;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::passes::{ModelDraws, instances};
+use super::model_draws::{ModelDraws, instances};
 use crate::frame::PipelineKey;
 use crate::gpu::{
     Attachments, DescriptorSet, Encoder, Gpu, GpuError, Image, PassLayout, PassResource, Sampler, SetLayouts,

@@ -4,6 +4,7 @@
 mod capture;
 mod declared;
 mod limits;
+mod model_draws;
 mod passes;
 mod pixel_modes;
 mod survey;

@@ -7,14 +7,13 @@ use glam::Vec3;
 
 use super::Output;
 use super::declared::PassSets;
+use super::model_draws::{ModelDraws, instances};
 use super::targets::Targets;
 use crate::frame::{MaterialVariant, PipelineKey, PipelineRequest};
 use crate::gpu::{Attachments, Encoder, Image, Pipeline, Rect, SetLayouts, Use, vk};
-use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION, MAX_LIGHT_VIEWS};
+use crate::interface::{ALPHA_BLEND, FEATURE_TRANSMISSION};
 use crate::render::bound_frame::BoundFrame;
 use crate::render::scene::{GpuDraw, GpuScene};
-use crate::shader::GraphPass;
-use crate::shader::annotation::pass::{Cull, Instances};
 
 /// The arguments of all passes of a frame.
 pub(super) struct Passes<'a> {
@@ -262,66 +261,6 @@ impl Passes<'_> {
         let instances = instances(self.frame, pass);
         let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
         model.draw(encoder, draws.iter().copied(), |material| key(self.request(), material));
-    }
-}
-
-/// Draws of a frame's model.
-pub(super) struct ModelDraws<'a> {
-    pub(super) layouts: &'a Arc<SetLayouts>,
-    pub(super) frame: &'a BoundFrame,
-    pub(super) sets: &'a PassSets,
-    /// How often each is drawn.
-    pub(super) instances: u32,
-    pub(super) pass: &'a GraphPass,
-}
-
-impl ModelDraws<'_> {
-    /// Draws with the pipelines that `key` selects by material.
-    pub(super) fn draw<'d>(
-        &self,
-        encoder: &mut Encoder,
-        draws: impl IntoIterator<Item = &'d GpuDraw>,
-        key: impl Fn(MaterialVariant) -> Option<PipelineKey>,
-    ) {
-        let Some(scene) = &self.frame.scene else { return };
-        encoder.keep(&scene.vertices);
-        encoder.bind_indices(&scene.indices);
-        for draw in draws {
-            if let Some(pipeline) = key(draw.variant).and_then(|key| self.frame.pipelines.get(&key)) {
-                encoder.bind_set(self.layouts, &draw.material);
-                self.sets.bind(encoder, pipeline);
-                self.draw_one(encoder, draw);
-            }
-        }
-    }
-
-    fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
-        encoder.push(self.layouts, &draw.push);
-        // A blended double-sided surface is drawn back faces first, since they lie behind.
-        let passes: &[vk::CullModeFlags] = match (self.pass.note.cull, draw.double_sided, draw.variant.alpha) {
-            (Some(Cull::None), ..) => &[vk::CullModeFlags::NONE],
-            (Some(Cull::Front), ..) => &[vk::CullModeFlags::FRONT],
-            (None, true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
-            (None, true, _) => &[vk::CullModeFlags::NONE],
-            (Some(Cull::Back), ..) | (None, false, _) => &[vk::CullModeFlags::BACK],
-        };
-        let topology = match self.pass.front.tessellation {
-            Some(_) => vk::PrimitiveTopology::PATCH_LIST,
-            None => draw.topology,
-        };
-        for cull in passes {
-            encoder.set_raster(topology, *cull, draw.front);
-            encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
-        }
-    }
-}
-
-/// How often a pass draws the model; 0 if it does not.
-pub(super) fn instances(frame: &BoundFrame, pass: &GraphPass) -> u32 {
-    match pass.note.model {
-        Some(Instances::Count(count)) => count,
-        Some(Instances::Lights) => frame.state.lights.len().min(MAX_LIGHT_VIEWS) as u32,
-        None => 0,
     }
 }
 

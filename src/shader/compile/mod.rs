@@ -32,6 +32,10 @@ pub enum StageKind {
     TessellationEvaluation,
     /// `.geom`
     Geometry,
+    /// `.task`
+    Task,
+    /// `.mesh`
+    Mesh,
     /// `.frag`
     Fragment,
     /// `.comp`
@@ -46,15 +50,18 @@ impl StageKind {
             "tesc" => Some(Self::TessellationControl),
             "tese" => Some(Self::TessellationEvaluation),
             "geom" => Some(Self::Geometry),
+            "task" => Some(Self::Task),
+            "mesh" => Some(Self::Mesh),
             "frag" => Some(Self::Fragment),
             "comp" => Some(Self::Compute),
             _ => None,
         }
     }
 
-    /// The stages between the vertices of the mesh and the rasterizer, in the order in which they run.
-    pub const PRE_RASTERIZATION: [Self; 4] =
-        [Self::Vertex, Self::TessellationControl, Self::TessellationEvaluation, Self::Geometry];
+    /// The stages before the rasterizer, in the order in which they run. A pipeline has some of the first four, or some of the last
+    /// two.
+    pub const PRE_RASTERIZATION: [Self; 6] =
+        [Self::Vertex, Self::TessellationControl, Self::TessellationEvaluation, Self::Geometry, Self::Task, Self::Mesh];
 
     /// The name in messages.
     pub fn name(self) -> &'static str {
@@ -63,6 +70,8 @@ impl StageKind {
             Self::TessellationControl => "tessellation control",
             Self::TessellationEvaluation => "tessellation evaluation",
             Self::Geometry => "geometry",
+            Self::Task => "task",
+            Self::Mesh => "mesh",
             Self::Fragment => "fragment",
             Self::Compute => "compute",
         }
@@ -75,6 +84,8 @@ impl StageKind {
             Self::TessellationControl => "tesc",
             Self::TessellationEvaluation => "tese",
             Self::Geometry => "geom",
+            Self::Task => "task",
+            Self::Mesh => "mesh",
             Self::Fragment => "frag",
             Self::Compute => "comp",
         }
@@ -83,6 +94,11 @@ impl StageKind {
     /// Whether its output goes to the rasterizer or to another stage before it.
     pub fn is_pre_rasterization(self) -> bool {
         Self::PRE_RASTERIZATION.contains(&self)
+    }
+
+    /// Whether it is one of VK_EXT_mesh_shader.
+    pub fn is_of_mesh_pipeline(self) -> bool {
+        matches!(self, Self::Task | Self::Mesh)
     }
 
     /// The first binding of what the stage reads by name, so that the stages of a pipeline share a set.
@@ -96,6 +112,8 @@ impl StageKind {
             Self::TessellationControl => ShaderKind::TessControl,
             Self::TessellationEvaluation => ShaderKind::TessEvaluation,
             Self::Geometry => ShaderKind::Geometry,
+            Self::Task => ShaderKind::Task,
+            Self::Mesh => ShaderKind::Mesh,
             Self::Fragment => ShaderKind::Fragment,
             Self::Compute => ShaderKind::Compute,
         }
@@ -161,11 +179,15 @@ impl Compiler {
         let failed =
             |diagnostic| Compiled { result: Err(vec![diagnostic]), warnings: Vec::new(), dependencies, ms: 0.0 };
         let Some(kind) = StageKind::of(stage) else {
-            let message = "not a shader stage: the extension must be .vert, .tesc, .tese, .geom, .frag or .comp";
+            let message =
+                "not a shader stage: the extension must be .vert, .tesc, .tese, .geom, .task, .mesh, .frag or .comp";
             return failed(Diagnostic::error(file(), message));
         };
         match snapshot.read(stage) {
-            Ok(text) => self.compile_text(snapshot, stage, &text, kind),
+            Ok(text) => match unknown_version(&file(), &text, kind) {
+                Some(error) => failed(error),
+                None => self.compile_text(snapshot, stage, &text, kind),
+            },
             Err(error) => failed(Diagnostic::error(file(), format!("{} {error}", file()))),
         }
     }
@@ -267,13 +289,34 @@ impl Compiler {
     }
 }
 
-/// The layouts of primitives that a stage of this kind must declare, without those that a library declares itself.
+/// An error about a task or mesh stage in a version of GLSL that has no such stages. glslang would print its built-in declarations
+/// to the standard output.
+fn unknown_version(file: &str, text: &str, kind: StageKind) -> Option<Diagnostic> {
+    if !kind.is_of_mesh_pipeline() {
+        return None;
+    }
+    let lines = lines(text);
+    let first = lines.iter().find(|line| !line.code.trim().is_empty());
+    let mut words = first.map(|line| line.code.split_whitespace()).into_iter().flatten();
+    let is_known = words.next() == Some("#version")
+        && words.next().is_some_and(|version| matches!(version, "450" | "460"))
+        && words.next().is_none_or(|profile| profile == "core");
+    let error = || {
+        let error = Diagnostic::error(file, format!("a {} stage begins with `#version 460`", kind.name()));
+        first.map_or(error.clone(), |line| error.on_line(line.number, Some(line.raw)))
+    };
+    (!is_known).then(error)
+}
+
+/// What a stage of this kind must declare: the layouts of its primitives, and the extension of its kind. Leaves out the layouts that
+/// a library declares itself.
 fn library_layouts(snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> impl Iterator<Item = String> {
     let needed: &[(&str, &str)] = match kind {
         StageKind::TessellationControl => &[("vertices = 3", "out")],
         StageKind::TessellationEvaluation => &[("triangles", "in")],
         StageKind::Geometry => &[("triangles", "in"), ("points, max_vertices = 1", "out")],
-        StageKind::Vertex | StageKind::Fragment | StageKind::Compute => &[],
+        StageKind::Mesh => &[("triangles, max_vertices = 3, max_primitives = 1", "out")],
+        StageKind::Vertex | StageKind::Task | StageKind::Fragment | StageKind::Compute => &[],
     };
     let texts = include::files_of(snapshot, library).into_iter().filter_map(|path| snapshot.read(&path).ok());
     let texts: Vec<_> = texts.filter(|_| !needed.is_empty()).collect();
@@ -282,7 +325,9 @@ fn library_layouts(snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind)
         texts.iter().any(|text| lines(text).iter().any(|line| is_layout(line.code.trim())))
     };
     let missing = needed.iter().filter(move |(_, direction)| !declares(direction));
-    missing.map(|(layout, direction)| format!("layout({layout}) {direction};\n"))
+    let layouts = missing.map(|(layout, direction)| format!("layout({layout}) {direction};\n"));
+    let extension = "#extension GL_EXT_mesh_shader : require\n".to_owned();
+    kind.is_of_mesh_pipeline().then_some(extension).into_iter().chain(layouts)
 }
 
 /// Reports the first unbalanced conditional of each file. It may be the cause of all other errors of the stage. A stage that

@@ -17,6 +17,7 @@ const AVAILABLE: &[u32] = &[
     50,   // ImageQuery: textureSize, textureQueryLevels
     51,   // DerivativeControl: dFdxFine
     61,   // GroupNonUniform: subgroupElect
+    5283, // MeshShadingEXT: `pipeline::limits` asks the device
     5301, // ShaderNonUniform
     5347, // PhysicalStorageBufferAddresses: buffer_reference
 ];

@@ -27,7 +27,7 @@ use super::source::{SourceError, TreePath};
 use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
 use contradiction::contradiction;
-pub use pre_rasterization::{PreRasterization, at_main, stage_beside, unlike_neighbors};
+pub use pre_rasterization::{MeshStages, PreRasterization, at_main, stage_beside, unlike_neighbors};
 pub use roles::missing_passes;
 use textures::read_texture;
 pub use textures::{Texture, TextureFile, TextureKind};

@@ -16,21 +16,38 @@ use crate::shader::spirv::primitive::Primitive;
 /// The stages of a pass before the rasterizer, by their paths.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct PreRasterization {
-    /// Its own vertex stage, that of the model, or [`FULL_SCREEN`].
+    /// Its own vertex stage, that of the model, or [`FULL_SCREEN`]. It does not run if there is a mesh stage.
     pub vertex: String,
     /// Tessellation control and tessellation evaluation.
     pub tessellation: Option<[String; 2]>,
     /// The geometry stage.
     pub geometry: Option<String>,
+    /// The stages that run in place of all of these.
+    pub mesh: Option<MeshStages>,
     /// The only primitives of the model that the stages take; `None` for all.
     pub takes: Option<Primitive>,
+}
+
+/// The stages of a mesh pipeline, by their paths, and how the triangles of the model are divided among their workgroups.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+pub struct MeshStages {
+    /// The task stage.
+    pub task: Option<String>,
+    /// The mesh stage.
+    pub mesh: String,
+    /// Triangles of a group: as many as a workgroup of the mesh stage has invocations.
+    pub triangles: u32,
+    /// Groups of each workgroup that a draw starts: as many as a workgroup of the task stage has invocations, or 1 without one.
+    pub groups: u32,
 }
 
 impl PreRasterization {
     /// The paths, in the order in which the stages run.
     pub fn stages(&self) -> impl Iterator<Item = &str> {
         let between = self.tessellation.iter().flatten().chain(&self.geometry);
-        std::iter::once(&self.vertex).chain(between).map(String::as_str)
+        let vertex = std::iter::once(&self.vertex).chain(between).filter(|_| self.mesh.is_none());
+        let mesh = self.mesh.iter().flat_map(|mesh| mesh.task.iter().chain([&mesh.mesh]));
+        vertex.chain(mesh).map(String::as_str)
     }
 
     /// The stages of a full-screen pass.
@@ -39,10 +56,12 @@ impl PreRasterization {
     }
 
     /// Finds the files of a pass. Stages that lie beside its own stage are its own. A pass that draws the model takes what it
-    /// lacks from `model`, the stage of the model's pass: all stages if it has none of its own, otherwise the vertex stage.
+    /// lacks from `model`, the stage of the model's pass: all stages if it has none of its own, otherwise the vertex stage. A mesh
+    /// stage goes before a vertex stage.
     ///
     /// # Errors
-    /// A pass that draws no model has a tessellation or geometry stage, or half of the tessellation is missing.
+    /// A pass that draws no model has another stage than a vertex stage, a stage lacks the one that it needs beside it, or has
+    /// one beside it that a mesh pipeline does not have.
     pub(super) fn find(note: &PassNote, model: Option<&str>, snapshot: &Snapshot<'_>) -> Result<Self, Box<Diagnostic>> {
         let own = |stage: &str, kind| Some(stage_beside(stage, kind)).filter(|path| exists(path, snapshot));
         let has_own = StageKind::PRE_RASTERIZATION.iter().any(|kind| own(&note.stage, *kind).is_some());
@@ -50,9 +69,10 @@ impl PreRasterization {
             (true, Some(model)) => (if has_own { &note.stage } else { model }, Some(model)),
             _ => (note.stage.as_str(), None),
         };
-        let [vertex, control, evaluation, geometry] = StageKind::PRE_RASTERIZATION.map(|kind| own(stage, kind));
+        let [vertex, control, evaluation, geometry, task, mesh] =
+            StageKind::PRE_RASTERIZATION.map(|kind| own(stage, kind));
         if note.model.is_none()
-            && let Some(path) = [&control, &evaluation, &geometry].into_iter().flatten().next()
+            && let Some(path) = [&control, &evaluation, &geometry, &task, &mesh].into_iter().flatten().next()
         {
             let (name, kind) = (&note.name, stage_name(path));
             let message = format!("the pass `{name}` draws no model, so it has no {kind} stage");
@@ -67,14 +87,31 @@ impl PreRasterization {
             (None, Some(found)) => return Err(half(&found, StageKind::TessellationControl, snapshot)),
         };
         let vertex = vertex.unwrap_or(Self::full_screen().vertex);
-        Ok(Self { vertex, tessellation, geometry, takes: None })
+        let mesh = match (task, mesh) {
+            (task, Some(mesh)) => Some(MeshStages { task, mesh, ..MeshStages::default() }),
+            (Some(task), None) => return Err(half(&task, StageKind::Mesh, snapshot)),
+            (None, None) => None,
+        };
+        let front = Self { vertex, tessellation, geometry, mesh, takes: None };
+        let unused = front.tessellation.iter().flatten().chain(&front.geometry).next();
+        match front.mesh.as_ref().zip(unused) {
+            Some((MeshStages { mesh, .. }, path)) => {
+                let message = format!("{mesh} replaces this {} stage", stage_name(path));
+                Err(Box::new(at_main(path, message, snapshot).with_help("delete one of the two files")))
+            }
+            None => Ok(front),
+        }
     }
 
-    /// Sets which primitives the stages take. `stages`: the compiled stages.
+    /// Sets which primitives the stages take, and how many. `stages`: the compiled stages.
     ///
     /// # Errors
-    /// The geometry stage takes other primitives than it gets.
+    /// The geometry stage takes other primitives than it gets, or the message of the task stage is not that of the mesh stage.
     pub(super) fn connect(&mut self, stages: &BTreeMap<String, PassStage<'_>>) -> Result<(), Box<Diagnostic>> {
+        if let Some(mesh) = &mut self.mesh {
+            self.takes = Some(Primitive::Triangles);
+            return mesh.connect(stages);
+        }
         let geometry = self.geometry.as_ref().and_then(|path| stages.get(path));
         let taken = geometry.and_then(|stage| stage.reflection.takes);
         let given = self.tessellation.as_ref().and_then(|[_, path]| stages.get(path)?.reflection.gives.zip(Some(path)));
@@ -101,6 +138,28 @@ impl PreRasterization {
     }
 }
 
+impl MeshStages {
+    fn connect(&mut self, stages: &BTreeMap<String, PassStage<'_>>) -> Result<(), Box<Diagnostic>> {
+        let Some(mesh) = stages.get(&self.mesh) else { return Ok(()) };
+        let task = self.task.as_ref().and_then(|path| stages.get(path));
+        let invocations = |stage: &PassStage<'_>| stage.reflection.local_size.iter().product::<u32>().max(1);
+        (self.triangles, self.groups) = (invocations(mesh), task.map_or(1, invocations));
+        let gives = task.is_some_and(|task| task.reflection.has_payload);
+        let (message, help) = match (gives, mesh.reflection.has_payload) {
+            (true, false) => (
+                format!("the stage does not read what {} gives", self.task.as_deref().unwrap_or_default()),
+                "write `#define AFTER_TASK` before including common/model.mesh.glsl",
+            ),
+            (false, true) => (
+                format!("the stage reads what a task stage gives, {}", stage_beside(&self.mesh, StageKind::Task)),
+                "write that file, or delete `#define AFTER_TASK`",
+            ),
+            _ => return Ok(()),
+        };
+        Err(Box::new(mesh.texts.error(&["main", "void"], message).with_help(help)))
+    }
+}
+
 /// Errors of stages whose inputs are not the outputs of the stage before. `paths`: those of a pipeline, in their order.
 pub fn unlike_neighbors<'p>(
     paths: impl Iterator<Item = &'p str>,
@@ -111,11 +170,14 @@ pub fn unlike_neighbors<'p>(
     for pair in all.windows(2) {
         let [writer, reader] = [pair[0], pair[1]].map(|stage| (stage.reflection, stage.texts));
         errors.extend(check_pair(writer, reader));
-        let (is_geometry, reads) = (pair[0].kind == StageKind::Geometry, pair[1].reflection.reads_primitive_id);
-        if is_geometry && reads && !pair[0].reflection.writes_primitive_id {
+        let help = match pair[0].kind {
+            StageKind::Geometry => "write `gl_PrimitiveID = gl_PrimitiveIDIn;` before EmitVertex()",
+            StageKind::Mesh => "write `gl_MeshPrimitivesEXT[i].gl_PrimitiveID` of each triangle",
+            _ => continue,
+        };
+        if pair[1].reflection.reads_primitive_id && !pair[0].reflection.writes_primitive_id {
             let message = format!("{} reads gl_PrimitiveID, which this stage does not write", reader.1.stage);
-            let error = writer.1.error(&["main", "void"], message);
-            errors.push(error.with_help("write `gl_PrimitiveID = gl_PrimitiveIDIn;` before EmitVertex()"));
+            errors.push(writer.1.error(&["main", "void"], message).with_help(help));
         }
     }
     errors

@@ -1,4 +1,4 @@
-//! The stages that lie beside the stages of passes: vertex, tessellation and geometry stages. Their files declare them.
+//! The stages that lie beside the stages of passes: all those before the rasterizer. Their files declare them.
 
 use std::collections::BTreeSet;
 
@@ -6,18 +6,15 @@ use super::Library;
 use super::slot::Slot;
 use crate::shader::compile::StageKind;
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::graph::{at_main, stage_beside};
+use crate::shader::graph::stage_beside;
 use crate::shader::source::snapshot::Snapshot;
 use crate::shader::source::{SourceError, TreePath};
 
-/// The extensions of mesh pipelines.
-const MESH: [&str; 2] = ["task", "mesh"];
-
-/// Whether the file of a stage that needs a pass beside it, or of one that is not supported. A vertex stage may also be for the
-/// stages that Specula itself draws with.
+/// Whether the file of a stage that needs a pass beside it. A vertex stage may also be for the stages that Specula itself draws
+/// with.
 pub(super) fn may_be_beside(path: &TreePath) -> bool {
     let kind = StageKind::of(path).filter(|kind| *kind != StageKind::Vertex);
-    kind.is_some_and(StageKind::is_pre_rasterization) || is_mesh(path)
+    kind.is_some_and(StageKind::is_pre_rasterization)
 }
 
 /// The stage that declares the pass of a stage: itself, or the fragment stage beside one that runs before the rasterizer.
@@ -30,10 +27,6 @@ pub(super) fn fragment_of(path: &TreePath) -> TreePath {
 
 fn beside(path: &TreePath, kind: StageKind) -> TreePath {
     TreePath::from(stage_beside(path.as_str(), kind).as_str())
-}
-
-fn is_mesh(path: &TreePath) -> bool {
-    path.extension().is_some_and(|extension| MESH.contains(&extension))
 }
 
 impl Library {
@@ -60,31 +53,19 @@ impl Library {
         }
     }
 
-    /// A warning for each tessellation or geometry stage in `passes/` that has no pass beside it.
+    /// A warning for each tessellation, geometry, task or mesh stage in `passes/` that has no pass beside it.
     pub(super) fn stray_warnings(&self, snapshot: &Snapshot<'_>) -> impl Iterator<Item = Diagnostic> {
         let is_pass = |path: &TreePath| self.slots.iter().any(|slot| slot.path == *path);
         let has_pass = move |path: &TreePath| {
             [StageKind::Fragment, StageKind::Compute].iter().any(|kind| is_pass(&beside(path, *kind)))
         };
-        let stray = self.beside.iter().filter(|path| path.as_str().starts_with("passes/") && !is_mesh(path));
+        let stray = self.beside.iter().filter(|path| path.as_str().starts_with("passes/"));
         stray.filter(move |path| !has_pass(path)).map(|path| {
             let fragment = beside(path, StageKind::Fragment);
             let message = format!("nothing draws with this file: {fragment} declares no pass");
             let name = path.stem().rsplit('/').next().unwrap_or_default();
             let help = format!("begin {fragment} with `//@pass {name} draw=model to=picture`");
             Diagnostic::warning(snapshot.display_path(path), message).with_help(help)
-        })
-    }
-
-    /// An error for each task or mesh stage in `passes/` or beside a stage of a pass.
-    pub(super) fn mesh_stages(&self, snapshot: &Snapshot<'_>) -> impl Iterator<Item = Diagnostic> {
-        let is_slot = |path: &TreePath| self.slots.iter().any(|slot| slot.path == *path);
-        let is_for_pass =
-            move |path: &TreePath| path.as_str().starts_with("passes/") || is_slot(&beside(path, StageKind::Fragment));
-        self.beside.iter().filter(move |path| is_mesh(path) && is_for_pass(path)).map(|path| {
-            let message = "task and mesh stages are not supported".to_owned();
-            at_main(path.as_str(), message, snapshot)
-                .with_help("a pass with draw=model can have a vertex, a geometry and two tessellation stages: .vert, .geom, .tesc, .tese")
         })
     }
 }

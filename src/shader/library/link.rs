@@ -38,7 +38,6 @@ impl Library {
         let mut warnings = snapshot.source().refusals();
         warnings.extend(self.idle_warnings(snapshot));
         warnings.extend(self.stray_warnings(snapshot));
-        errors.extend(self.mesh_stages(snapshot));
         let mut files = BTreeSet::new();
         let mut modules: BTreeMap<&TreePath, &Stage> = BTreeMap::new();
         // A stage that has never compiled adds the annotations of its files. One that draws an image of its own adds them once it
@@ -202,7 +201,7 @@ const COVERING: &str = "pass.glsl";
 fn includes_covering(pass: &GraphPass, texts: Texts<'_>) -> Diagnostic {
     let message = format!(
         "{COVERING} is for passes that cover their image: it reads `uv`, which {} does not write",
-        pass.front.vertex
+        pass.front.stages().last().unwrap_or_default()
     );
     let help = "this pass draws the model (draw=model), so include what the vertex stage of the model writes:\n\
         #include \"interface.glsl\"\n#include \"common/fragment.glsl\"\n\

@@ -239,6 +239,8 @@ pub(super) fn build(
     base: Option<&Built>,
 ) -> Done {
     let start = Instant::now();
+    // The linker does not know what the capabilities of a mesh pipeline depend on.
+    let base = base.filter(|base| !base.stage.kind.is_of_mesh_pipeline());
     let files = base.and_then(|base| cache.files(snapshot, &base.stage.dependencies));
     let rebuilt = base.zip(files.as_ref()).and_then(|(base, files)| {
         let old = (base.stage.spirv.as_slice(), base.files.as_ref()?);

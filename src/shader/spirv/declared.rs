@@ -1,6 +1,8 @@
 //! Parses the declarations of a SPIR-V module: types, names, decorations, variables. The SPIR-V specification, sections
 //! 3.52.2 to 3.52.9, lists the opcodes.
 
+mod locations;
+
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::interface::BindingKind;
@@ -25,6 +27,7 @@ mod decoration {
     pub const BINDING: u32 = 33;
     pub const DESCRIPTOR_SET: u32 = 34;
     pub const OFFSET: u32 = 35;
+    pub const PER_PRIMITIVE: u32 = 5271;
 }
 
 mod storage {
@@ -34,10 +37,13 @@ mod storage {
     pub const OUTPUT: u32 = 3;
     pub const PUSH_CONSTANT: u32 = 9;
     pub const STORAGE_BUFFER: u32 = 12;
+    pub const TASK_PAYLOAD: u32 = 5402;
 }
 
-/// SPIR-V's execution mode LocalSize.
+/// SPIR-V's execution modes LocalSize, OutputVertices and OutputPrimitivesEXT.
 const LOCAL_SIZE: u32 = 17;
+const OUTPUT_VERTICES: u32 = 26;
+const OUTPUT_PRIMITIVES: u32 = 5270;
 
 /// SPIR-V's value of the image format Rgba16f.
 const RGBA16F: u32 = 2;
@@ -56,6 +62,7 @@ pub struct Module {
     interface: Vec<Id>,
     capabilities: Vec<u32>,
     local_size: [u32; 3],
+    mesh_outputs: [u32; 2],
     /// The execution model, and the execution modes.
     model: u32,
     modes: Vec<u32>,
@@ -118,7 +125,14 @@ impl Module {
                 self.interface = operands.get(2 + words..)?.to_vec();
             }
             op::EXECUTION_MODE if at(1) == Some(LOCAL_SIZE) => self.local_size = [at(2)?, at(3)?, at(4)?],
-            op::EXECUTION_MODE => self.modes.push(at(1)?),
+            op::EXECUTION_MODE => {
+                match at(1)? {
+                    OUTPUT_VERTICES => self.mesh_outputs[0] = at(2)?,
+                    OUTPUT_PRIMITIVES => self.mesh_outputs[1] = at(2)?,
+                    _ => {}
+                }
+                self.modes.push(at(1)?);
+            }
             op::CAPABILITY => self.capabilities.push(at(0)?),
             op::DECORATE => {
                 self.decorations.insert((at(0)?, at(1)?), at(2).unwrap_or(0));
@@ -153,6 +167,7 @@ impl Module {
         let mut out = Reflection {
             capabilities: self.capabilities.clone(),
             local_size: self.local_size,
+            mesh_outputs: self.mesh_outputs,
             takes: primitive::taken(self.model, &self.modes),
             gives: primitive::given(self.model, &self.modes),
             ..Reflection::default()
@@ -163,13 +178,14 @@ impl Module {
                 storage::UNIFORM_CONSTANT | storage::UNIFORM | storage::STORAGE_BUFFER => {
                     out.descriptors.extend(self.descriptor(*variable, *to, *class));
                 }
+                storage::TASK_PAYLOAD => out.has_payload |= self.interface.contains(variable),
                 storage::PUSH_CONSTANT => out.push_constants = self.block(*to),
                 storage::INPUT if self.interface.contains(variable) => {
-                    out.reads_primitive_id |= self.is_primitive_id(*variable);
+                    out.reads_primitive_id |= self.is_primitive_id(*variable, *to);
                     self.locations(*variable, *to, primitive::has_arrays_of_inputs(self.model), &mut out.inputs);
                 }
                 storage::OUTPUT if self.interface.contains(variable) => {
-                    out.writes_primitive_id |= self.is_primitive_id(*variable);
+                    out.writes_primitive_id |= self.is_primitive_id(*variable, *to);
                     self.locations(*variable, *to, primitive::has_arrays_of_outputs(self.model), &mut out.outputs);
                 }
                 _ => {}
@@ -279,55 +295,6 @@ impl Module {
             _ => return None,
         };
         Some(SpecConstant { id: self.decoration(id, decoration::SPEC_ID)?, name: self.name(id), scalar, default })
-    }
-
-    fn is_primitive_id(&self, variable: Id) -> bool {
-        const PRIMITIVE_ID: u32 = 7;
-        self.decoration(variable, decoration::BUILT_IN) == Some(PRIMITIVE_ID)
-    }
-
-    /// Adds a variable's locations: one, or one per member of a block. `has_array`: the variable has an element for each vertex,
-    /// unless it is one of a whole patch.
-    fn locations(&self, variable: Id, to: Id, has_array: bool, out: &mut Vec<Location>) {
-        let of_member = (to, 0, decoration::PATCH);
-        let is_patch =
-            self.decoration(variable, decoration::PATCH).is_some() || self.member_decorations.contains_key(&of_member);
-        let to = match self.types.get(&to) {
-            Some(Type::Array { of, .. }) if has_array && !is_patch => *of,
-            _ => to,
-        };
-        let patch = if is_patch { "patch " } else { "" };
-        let Some(Type::Struct { members }) = self.types.get(&to) else {
-            let Some(location) = self.decoration(variable, decoration::LOCATION) else { return };
-            out.push(Location {
-                location,
-                name: self.name(variable),
-                type_name: patch.to_owned() + &self.type_name(to),
-            });
-            return;
-        };
-        let mut next = self.decoration(variable, decoration::LOCATION);
-        for (index, member) in (0..).zip(members) {
-            if self.member_decorations.contains_key(&(to, index, decoration::BUILT_IN)) {
-                return;
-            }
-            let own = self.member_decorations.get(&(to, index, decoration::LOCATION)).copied();
-            let Some(location) = own.or(next) else { return };
-            next = Some(location.saturating_add(self.location_count(*member)));
-            let member_name = self.member_names.get(&(to, index)).cloned().unwrap_or_default();
-            let name = format!("{}.{member_name}", self.name(to));
-            out.push(Location { location, name, type_name: patch.to_owned() + &self.type_name(*member) });
-        }
-    }
-
-    fn location_count(&self, id: Id) -> u32 {
-        match self.types.get(&id) {
-            Some(Type::Matrix { count, .. }) => *count,
-            Some(Type::Array { of, length }) => {
-                self.constants.get(length).copied().unwrap_or(1).saturating_mul(self.location_count(*of))
-            }
-            _ => 1,
-        }
     }
 
     /// The type as GLSL spells it.

@@ -77,8 +77,11 @@ pub const UNREACHABLE: u32 = 255;
 pub const NO_LINE: u32 = 317;
 pub const COPY_LOGICAL: u32 = 400;
 pub const TERMINATE_INVOCATION: u32 = 4416;
+pub const EMIT_MESH_TASKS: u32 = 5294;
 pub const DEMOTE_TO_HELPER_INVOCATION: u32 = 5380;
 
-/// Opcodes within functions that have no result id: stores, merges, branches, emitted vertices, barriers.
-pub const WITHOUT_RESULT: [u32; 22] =
-    [0, 8, 62, 63, 99, 218, 219, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 254, 255, 317, 4416, 5380];
+/// Opcodes within functions that have no result id: stores, merges, branches, emitted vertices and mesh workgroups,
+/// barriers.
+pub const WITHOUT_RESULT: [u32; 24] = [
+    0, 8, 62, 63, 99, 218, 219, 224, 225, 228, 246, 247, 249, 250, 251, 252, 253, 254, 255, 317, 4416, 5294, 5295, 5380,
+];

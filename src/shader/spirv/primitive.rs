@@ -1,4 +1,4 @@
-//! The primitives that tessellation and geometry stages take and give, which their modules declare as execution modes (SPIR-V
+//! The primitives that stages before the rasterizer take and give, which their modules declare as execution modes (SPIR-V
 //! specification, section 3.6).
 
 use serde::Serialize;
@@ -33,6 +33,7 @@ impl Primitive {
 const CONTROL: u32 = 1;
 const EVALUATION: u32 = 2;
 const GEOMETRY: u32 = 3;
+const MESH: u32 = 5365;
 
 /// The primitives that a geometry stage takes.
 pub(super) fn taken(model: u32, modes: &[u32]) -> Option<Primitive> {
@@ -46,13 +47,13 @@ pub(super) fn taken(model: u32, modes: &[u32]) -> Option<Primitive> {
     found.filter(|_| model == GEOMETRY)
 }
 
-/// The primitives that a geometry stage or a tessellation evaluation stage gives.
+/// The primitives that a tessellation evaluation, a geometry or a mesh stage gives.
 pub(super) fn given(model: u32, modes: &[u32]) -> Option<Primitive> {
     const POINT_MODE: u32 = 10;
     let of = |mode: &u32| match (model, mode) {
-        (GEOMETRY, 27) => Some(Primitive::Points),
-        (EVALUATION, 25) | (GEOMETRY, 28) => Some(Primitive::Lines),
-        (EVALUATION, 22 | 24) | (GEOMETRY, 29) => Some(Primitive::Triangles),
+        (GEOMETRY | MESH, 27) => Some(Primitive::Points),
+        (EVALUATION, 25) | (GEOMETRY, 28) | (MESH, 5269) => Some(Primitive::Lines),
+        (EVALUATION, 22 | 24) | (GEOMETRY, 29) | (MESH, 5298) => Some(Primitive::Triangles),
         _ => None,
     };
     match model {
@@ -66,7 +67,7 @@ pub(super) fn has_arrays_of_inputs(model: u32) -> bool {
     matches!(model, CONTROL | EVALUATION | GEOMETRY)
 }
 
-/// Whether a stage's outputs have an element for each vertex.
+/// Whether a stage's outputs have an element for each vertex, or for each primitive.
 pub(super) fn has_arrays_of_outputs(model: u32) -> bool {
-    model == CONTROL
+    matches!(model, CONTROL | MESH)
 }

@@ -113,9 +113,13 @@ pub struct Reflection {
     pub capabilities: Vec<u32>,
     /// Invocations of a workgroup along x, y and z; 0 in stages without workgroups.
     pub local_size: [u32; 3],
+    /// The largest numbers of vertices and primitives that a workgroup of a mesh stage gives.
+    pub mesh_outputs: [u32; 2],
+    /// Whether the stage is a task stage with a message for mesh stages (`taskPayloadSharedEXT`), or a mesh stage that takes one.
+    pub has_payload: bool,
     /// The primitives that a geometry stage takes.
     pub takes: Option<Primitive>,
-    /// The primitives that a geometry stage or a tessellation evaluation stage gives.
+    /// The primitives that a tessellation evaluation, a geometry or a mesh stage gives.
     pub gives: Option<Primitive>,
     /// Whether the stage reads `gl_PrimitiveID`, or `gl_PrimitiveIDIn`.
     pub reads_primitive_id: bool,
@@ -273,6 +277,33 @@ mod tests {
         assert_eq!((triangles.takes, triangles.gives), (None, Some(Primitive::Triangles)));
         assert_eq!(evaluation("isolines").gives, Some(Primitive::Lines));
         assert_eq!(evaluation("quads, point_mode").gives, Some(Primitive::Points));
+    }
+
+    #[test]
+    fn stages_of_a_mesh_pipeline() {
+        let names = |list: &[Location]| -> Vec<String> {
+            list.iter().map(|l| format!("{} {} {}", l.location, l.type_name, l.name)).collect()
+        };
+        let head = "#version 460\n#extension GL_EXT_mesh_shader : require\nstruct Sent { uint a; };\n\
+            taskPayloadSharedEXT Sent sent;\nlayout(local_size_x = 16) in;\n";
+        let mesh = reflect(
+            "m.mesh",
+            &format!(
+                "{head}struct S {{ vec3 a; vec2 b; }};
+                 layout(triangles, max_vertices = 9, max_primitives = 3) out;
+                 layout(location = 0) out S to[]; layout(location = 4) perprimitiveEXT out vec4 all[];
+                 void main() {{
+                     SetMeshOutputsEXT(9, 3); to[1].a = vec3(sent.a); all[0] = vec4(1.0); gl_MeshPrimitivesEXT[0].gl_PrimitiveID = 7;
+                 }}"
+            ),
+        );
+        assert_eq!(names(&mesh.outputs), ["0 vec3 S.a", "1 vec2 S.b", "4 perprimitiveEXT vec4 all"]);
+        assert_eq!((mesh.local_size, mesh.mesh_outputs), ([16, 1, 1], [9, 3]));
+        assert_eq!((mesh.gives, mesh.takes), (Some(Primitive::Triangles), None));
+        assert!(mesh.has_payload && mesh.writes_primitive_id && mesh.inputs.is_empty());
+        let task = reflect("m.task", &format!("{head}void main() {{ sent.a = 5u; EmitMeshTasksEXT(1, 1, 1); }}"));
+        assert!(task.has_payload && task.outputs.is_empty());
+        assert_eq!(task.local_size, [16, 1, 1]);
     }
 
     #[test]

@@ -195,7 +195,7 @@ impl Module {
     ) {
         let ends = |block: &Block| match block.body.last().map(|i| opcode(i)) {
             Some(op::RETURN) => is_main && (report.is_some() || mark.is_some()),
-            Some(op::KILL | op::TERMINATE_INVOCATION) => report.is_some(),
+            Some(op::KILL | op::TERMINATE_INVOCATION | op::EMIT_MESH_TASKS) => report.is_some(),
             _ => false,
         };
         let mut index = 0;

@@ -144,3 +144,18 @@ fn garbage_stays() {
         assert_eq!(bounded, words);
     }
 }
+
+#[test]
+fn a_task_stage_names_its_loop_before_it_starts_mesh_workgroups() {
+    let text = "#version 460\n#extension GL_EXT_mesh_shader : require\nlayout(local_size_x = 1) in;\n\
+        void main() { uint n = gl_WorkGroupID.x; while (n != 7u) n = 5u * n + 1u; EmitMeshTasksEXT(n, 1u, 1u); }\n";
+    let source = Source::memory([("m.task", text)]);
+    let words = Compiler::new().unwrap().compile(&Snapshot::new(&source), &"m.task".into()).result.unwrap();
+    let mut bounded = specialize(&words, &[]);
+    assert!(bound(&mut bounded, &words, &Bounds { mark: None, ..BOUNDS }));
+    let all: Vec<u32> = instructions(&bounded).expect("whole instructions").iter().map(|i| opcode(i)).collect();
+    let place = |code: u32| all.iter().position(|found| *found == code);
+    assert!(place(op::ATOMIC_COMPARE_EXCHANGE) < place(op::EMIT_MESH_TASKS), "{all:?}");
+    assert_eq!(all.iter().filter(|code| **code == op::ATOMIC_COMPARE_EXCHANGE).count(), 1);
+    assert_eq!(crate::shader::spirv::optimize(bounded.clone()), bounded, "the optimizer leaves it as it is");
+}

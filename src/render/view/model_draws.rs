@@ -1,0 +1,98 @@
+//! Draws the model with the pipelines of a pass: with vertices and indices, or with mesh stages.
+
+use std::sync::Arc;
+
+use super::declared::PassSets;
+use crate::frame::{MaterialVariant, PipelineKey};
+use crate::gpu::{Encoder, SetLayouts, vk};
+use crate::interface::{ALPHA_BLEND, Draw, MAX_LIGHT_VIEWS};
+use crate::render::bound_frame::BoundFrame;
+use crate::render::scene::GpuDraw;
+use crate::shader::GraphPass;
+use crate::shader::annotation::pass::{Cull, Instances};
+use crate::shader::graph::MeshStages;
+
+/// Workgroups of task or mesh stages that every device can start along x, and in all.
+const MOST_ALONG_X: u32 = 65_535;
+const MOST_WORKGROUPS: u32 = 1 << 22;
+
+/// Draws of a frame's model.
+pub(super) struct ModelDraws<'a> {
+    pub(super) layouts: &'a Arc<SetLayouts>,
+    pub(super) frame: &'a BoundFrame,
+    pub(super) sets: &'a PassSets,
+    /// How often each is drawn.
+    pub(super) instances: u32,
+    pub(super) pass: &'a GraphPass,
+}
+
+impl ModelDraws<'_> {
+    /// Draws with the pipelines that `key` selects by material.
+    pub(super) fn draw<'d>(
+        &self,
+        encoder: &mut Encoder,
+        draws: impl IntoIterator<Item = &'d GpuDraw>,
+        key: impl Fn(MaterialVariant) -> Option<PipelineKey>,
+    ) {
+        let Some(scene) = &self.frame.scene else { return };
+        encoder.keep(&scene.vertices);
+        encoder.bind_indices(&scene.indices);
+        for draw in draws {
+            if let Some(pipeline) = key(draw.variant).and_then(|key| self.frame.pipelines.get(&key)) {
+                encoder.bind_set(self.layouts, &draw.material);
+                self.sets.bind(encoder, pipeline);
+                self.draw_one(encoder, draw);
+            }
+        }
+    }
+
+    fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
+        if self.pass.front.mesh.is_none() {
+            encoder.push(self.layouts, &draw.push);
+        }
+        // A blended double-sided surface is drawn back faces first, since they lie behind.
+        let passes: &[vk::CullModeFlags] = match (self.pass.note.cull, draw.double_sided, draw.variant.alpha) {
+            (Some(Cull::None), ..) => &[vk::CullModeFlags::NONE],
+            (Some(Cull::Front), ..) => &[vk::CullModeFlags::FRONT],
+            (None, true, ALPHA_BLEND) => &[vk::CullModeFlags::FRONT, vk::CullModeFlags::BACK],
+            (None, true, _) => &[vk::CullModeFlags::NONE],
+            (Some(Cull::Back), ..) | (None, false, _) => &[vk::CullModeFlags::BACK],
+        };
+        let topology = match self.pass.front.tessellation {
+            Some(_) => vk::PrimitiveTopology::PATCH_LIST,
+            None => draw.topology,
+        };
+        for cull in passes {
+            if let Some(mesh) = &self.pass.front.mesh {
+                encoder.set_facing(*cull, draw.front);
+                self.draw_mesh(encoder, draw, mesh);
+            } else {
+                encoder.set_raster(topology, *cull, draw.front);
+                encoder.draw_indexed(draw.index_count, draw.first_index, self.instances);
+            }
+        }
+    }
+
+    /// Draws the triangles of a primitive with mesh stages, in as many draws as a device may require.
+    fn draw_mesh(&self, encoder: &mut Encoder, draw: &GpuDraw, mesh: &MeshStages) {
+        let each = mesh.triangles.saturating_mul(mesh.groups).max(1);
+        let workgroups = (MOST_WORKGROUPS / self.instances.max(1)).clamp(1, MOST_ALONG_X);
+        let (most, all) = (workgroups.saturating_mul(each), draw.push.triangle_count);
+        let mut first_triangle = 0;
+        while first_triangle < all {
+            let triangles = most.min(all - first_triangle);
+            encoder.push(self.layouts, &Draw { first_triangle, ..draw.push });
+            encoder.draw_mesh(triangles.div_ceil(each), self.instances, triangles);
+            first_triangle += triangles;
+        }
+    }
+}
+
+/// How often a pass draws the model; 0 if it does not.
+pub(super) fn instances(frame: &BoundFrame, pass: &GraphPass) -> u32 {
+    match pass.note.model {
+        Some(Instances::Count(count)) => count,
+        Some(Instances::Lights) => frame.state.lights.len().min(MAX_LIGHT_VIEWS) as u32,
+        None => 0,
+    }
+}
