@@ -110,8 +110,8 @@ impl Viewer {
         };
         let Some((shaders, state)) = self.session.shaders.clone().zip(self.shown()) else { return };
         let values = || shaders.modes.iter().filter_map(|mode| Some((mode, &reading.values.get(&mode.slug)?.0)));
-        let current = values().find(|(mode, value)| mode.slug == self.session.settings.mode && value.not_finite);
-        let Some(mode) = current.map(|(mode, _)| mode).or_else(|| NotFinite::mode_of(values())) else { return };
+        let current = values().filter(|(mode, _)| mode.slug == self.session.settings.mode);
+        let Some(mode) = NotFinite::mode_of(current).or_else(|| NotFinite::mode_of(values())) else { return };
         let (size, at) = (state.size, (reading.at[0], reading.at[1]));
         let request = FindRequest {
             compiler: self.compiler.clone(),

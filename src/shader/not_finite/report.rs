@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::FirstNotFinite;
-use crate::shader::{Mode, PixelValue};
+use crate::shader::{Mode, PixelValue, expression};
 
 /// The result of a search for the first statement that makes NaN or infinity in a mode.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +19,11 @@ pub const ELSEWHERE: &str =
     "no statement of the stage makes it at this pixel: look at passes after the model and random paths";
 
 impl NotFinite {
-    /// The mode to search in, if one of these values is not finite: the final picture, or else the first.
+    /// The mode to search in, if one of these values is not finite: the final picture, or else the first. The stage of a watched
+    /// expression is not searched.
     pub fn mode_of<'a, 'b>(values: impl Iterator<Item = (&'a Mode, &'b PixelValue)>) -> Option<&'a Mode> {
-        let mut broken = values.filter(|(_, value)| value.not_finite).map(|(mode, _)| mode).peekable();
+        let is_broken = |(mode, value): &(&Mode, &PixelValue)| value.not_finite && mode.slug != expression::MODE;
+        let mut broken = values.filter(is_broken).map(|(mode, _)| mode).peekable();
         let first = broken.peek().copied();
         broken.find(|mode| mode.id == crate::interface::MODE_FINAL).or(first)
     }
