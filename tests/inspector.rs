@@ -80,13 +80,11 @@ fn values_of_layered_materials_are_those_of_probe() {
 /// Intermediate results of the built-in shaders are finite, so the first line with NaN is the user's.
 #[test]
 fn a_search_at_a_finite_pixel_finds_nothing() {
-    for (name, pixels) in [("shader-ball", [(48, 30), (30, 40)]), ("clearcoat", [(31, 32), (62, 33)])] {
+    for (name, at) in [("shader-ball", (48, 30)), ("clearcoat", (31, 32))] {
         let mut headless = renderer(model(name), settings(&["view.msaa=1", "environment.name=none"]), SIZE);
-        for mode in modes(&headless, &["final", "d", "base-color", "direct-specular"]) {
-            for at in pixels {
-                let found = headless.first_not_finite(at, &mode).unwrap();
-                assert_eq!(found, None, "{name} at {at:?} in {}", mode.slug);
-            }
+        for mode in modes(&headless, &["final", "direct-specular"]) {
+            let found = headless.first_not_finite(at, &mode).unwrap();
+            assert_eq!(found, None, "{name} at {at:?} in {}", mode.slug);
         }
     }
     assert_validated();

@@ -33,9 +33,14 @@ pub(super) fn show(ui: &mut Ui, search: &NotFiniteSearch, has_files: bool, comma
     }
 }
 
+/// The last folder and the name of a file.
+fn short(file: &str) -> &str {
+    file.rmatch_indices('/').nth(1).map_or(file, |(at, _)| &file[at + 1..])
+}
+
 fn line(ui: &mut Ui, site: &Site, value: &str, mode: &str, has_files: bool, commands: &mut Vec<Command>) {
     let Site { file, line, column, code } = site;
-    let text = RichText::new(format!("{value}  {file}:{line}  {code}")).small().color(ERROR);
+    let text = RichText::new(format!("{value}  {}:{line}  {code}", short(file))).small().color(ERROR);
     let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
     if label.clicked() {
         match has_files {

@@ -114,7 +114,12 @@ mod tests {
             texel: [1, 0],
         };
         let texels = vec![Texel { place, stored: [255, 0, 128, 255] }];
-        let first = Site { file: "brdf/ndf.glsl".into(), line: 20, column: 5, code: "return a2 / 0.0;".into() };
+        let first = Site {
+            file: "/home/me/shaders/brdf/ndf.glsl".into(),
+            line: 20,
+            column: 5,
+            code: "return a2 / 0.0;".into(),
+        };
         let found = FirstNotFinite { first, value: "Inf", nan: None };
         let found = Some(NotFinite { mode: "final".into(), found: Ok(Some(found)) });
         let search = NotFiniteSearch { number: 1, mode: "final".into(), found };

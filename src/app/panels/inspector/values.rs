@@ -15,7 +15,7 @@ pub(super) const SWATCH: f32 = 12.0;
 /// Width of the column of units, points.
 const UNIT: f32 = 34.0;
 
-/// Shows the rows, and `more` rows after them. `features` are those of the model: modes for which it has no data are folded away, and those without data at the pixel.
+/// Shows the rows, and `more` rows after those of the material. `features` are those of the model: modes for which it has no data are folded away, and those without data at the pixel.
 pub(super) fn show(
     ui: &mut Ui,
     reading: &Reading,
@@ -40,6 +40,7 @@ pub(super) fn show(
             ui.label(RichText::new(none).small().color(QUIET));
         }
         ui.spacing_mut().item_spacing.y = 0.0;
+        let mut more = Some(more);
         for modes in found.chunk_by(|a, b| a.group == b.group) {
             let has_data = |mode: &&Mode| reading.value(&mode.slug).is_some_and(|value| has_data(&value));
             let (shown, folded): (Vec<&Mode>, Vec<&Mode>) = modes.iter().copied().partition(has_data);
@@ -61,8 +62,13 @@ pub(super) fn show(
                 });
                 header.header_response.on_hover_text("This pixel has no data for these modes");
             }
+            if let Some(more) = more.take_if(|_| group == "Material") {
+                more(ui);
+            }
         }
-        more(ui);
+        if let Some(more) = more {
+            more(ui);
+        }
         let left = unread.iter().filter(|mode| is_found(mode)).count();
         if left > 0 && reading.is_complete {
             ui.add_space(8.0);
