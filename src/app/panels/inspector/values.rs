@@ -15,7 +15,8 @@ pub(super) const SWATCH: f32 = 12.0;
 /// Width of the column of units, points.
 const UNIT: f32 = 34.0;
 
-/// Shows the rows, and `more` rows after those of the material. `features` are those of the model: modes for which it has no data are folded away, and those without data at the pixel.
+/// Shows the rows, and `more` rows after those of the material. Modes for which the model (`features`) or the pixel has no data are
+/// folded away.
 pub(super) fn show(
     ui: &mut Ui,
     reading: &Reading,
