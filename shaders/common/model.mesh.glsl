@@ -79,7 +79,7 @@ void begin_group() {
 
 // Corner i of this invocation's triangle, as the vertex stage of the model gives it.
 Fragment load_corner(int i) {
-    Vertex vertex = draw.vertices.at[draw.indices.at[3u * triangle_number() + uint(i)]];
+    Vertex vertex = draw.vertices.at[draw.indices.at[triangle_number()].vertex[i]];
     user_vertex(vertex);
     Fragment f = fragment_of(vertex);
     f.to_eye_ws = frame.eye_ws - f.position_ws;

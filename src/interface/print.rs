@@ -81,7 +81,12 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Ver
     Vertex at[];
 };
 
+// Vertices of a triangle. A struct: of two arrays of plain uint in one module, an edit could not tell which is meant.
+struct Corners {
+    uint vertex[3];
+};
+
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Indices {
-    uint at[];
+    Corners at[];
 };
 ";

@@ -21,7 +21,7 @@ pub struct Reloader {
     layouts: Arc<SetLayouts>,
     library: Library,
     current: Option<Arc<PipelineSet>>,
-    unbuilt: bool,
+    unbuilt: Option<Report>,
 }
 
 /// The result of a reload.
@@ -75,7 +75,7 @@ impl Reloader {
     }
 
     fn with(gpu: &Arc<Gpu>, layouts: &Arc<SetLayouts>, library: Library) -> Self {
-        Self { gpu: gpu.clone(), layouts: layouts.clone(), library, current: None, unbuilt: false }
+        Self { gpu: gpu.clone(), layouts: layouts.clone(), library, current: None, unbuilt: None }
     }
 
     /// Reads another tree, or the same one as if for the first time. Compiles nothing yet.
@@ -163,11 +163,11 @@ impl Reloader {
                 return Reload { report, pipelines: 0, pipeline_ms: 0.0, outcome: Outcome::Failed(diagnostics) };
             }
             Update::Ready(shaders, report) => {
-                self.unbuilt = true;
+                self.unbuilt = Some(report.clone());
                 (shaders, report)
             }
             Update::Unchanged { cleared } => match self.library.set() {
-                Some(shaders) if self.unbuilt => (shaders.clone(), Report::default()),
+                Some(shaders) if self.unbuilt.is_some() => (shaders.clone(), self.unbuilt.clone().unwrap_or_default()),
                 _ => {
                     let outcome = Outcome::Unchanged { cleared };
                     return Reload { report: Report::default(), pipelines: 0, pipeline_ms: 0.0, outcome };
@@ -192,7 +192,7 @@ impl Reloader {
         let pipeline_ms = start.elapsed().as_secs_f64() * 1e3;
         let (outcome, pipelines) = match built {
             Ok((set, pipelines)) => {
-                self.unbuilt = false;
+                self.unbuilt = None;
                 self.current = Some(set.clone());
                 (Outcome::Ready(set), pipelines)
             }

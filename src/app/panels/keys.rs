@@ -15,7 +15,7 @@ const KEYS: &[(&str, &str)] = &[
     ("Alt+drag", "turn the environment"),
     ("wheel", "zoom"),
     ("right button + W A S D Q E", "look around and fly"),
-    ("click", "select what is there; its outline shows in the window only"),
+    ("click", "read this pixel in the Inspector, and select what is there"),
     ("Ctrl+H, Alt+H", "hide the selection; draw everything again"),
     ("/", "draw the selection alone; again draws everything"),
     ("Ctrl+drag on a light", "change the distance of the light; a plain drag turns it around the model"),

@@ -17,10 +17,12 @@ use crate::threads::measurer::{CurvesRequest, Measured};
 const MARKER: u32 = 6;
 
 impl Viewer {
-    /// Pins a pixel while the inspector is in sight, or unpins it if it is the pinned one.
+    /// Pins a pixel, or unpins it if it is the pinned one and its marker is in sight.
     pub(super) fn inspect(&mut self, at: [u32; 2]) {
         let inspector = &mut self.panels.inspector;
+        // The panel reads the pixel once it is open.
         if !inspector.is_visible {
+            inspector.pin = Some(at);
             return;
         }
         let is_near = |pin: [u32; 2]| pin[0].abs_diff(at[0]) <= MARKER && pin[1].abs_diff(at[1]) <= MARKER;

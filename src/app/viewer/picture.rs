@@ -9,6 +9,7 @@ use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat};
 use crate::gpu::{Gpu, GpuError};
 use crate::render::{BoundFrame, PixelAt, View};
 use crate::settings::Settings;
+use crate::shader::expression;
 use crate::threads::worker::Snapshot;
 
 impl Viewer {
@@ -151,6 +152,8 @@ impl Viewer {
         // The thumbnail of the newest version waits until its lighting is complete.
         let is_settled = self.is_complete && self.settled == Some(newest);
         let shown = self.shown.as_ref().filter(|shown| is_settled && shown.scene.is_some());
+        // A watched expression is no look of the version.
+        let shown = shown.filter(|shown| shown.settings.mode != expression::MODE);
         let lacks = self.versions.without_thumbnail();
         if !self.panels.timeline.is_visible {
             return None;

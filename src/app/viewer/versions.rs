@@ -117,9 +117,9 @@ impl Versions {
         }
     }
 
-    /// Takes the times of a version's first frame.
+    /// Takes the times of a version's first frame. Those of the first frame with another watched expression are not the version's.
     pub(super) fn time(&mut self, number: u64, first_frame_ms: f64, device_ms: Option<f64>) {
-        if let Some(version) = self.get_mut(number) {
+        if let Some(version) = self.get_mut(number).filter(|version| version.reload.first_frame_ms == 0.0) {
             (version.reload.first_frame_ms, version.device_ms) = (first_frame_ms, device_ms);
         }
     }

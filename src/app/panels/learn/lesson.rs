@@ -1,12 +1,12 @@
 //! An exercise: its text, its goals with what was measured, hints and the solution.
 
-use egui::{Color32, Frame, Label, Margin, RichText, Ui};
+use egui::{Frame, Label, Margin, RichText, Ui};
 
 use super::mark;
 use crate::app::command::Command;
 use crate::app::difference::Kind;
 use crate::app::learn::{LearnCommand, Learning, Measured};
-use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, TEXT, WARNING};
+use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING};
 use crate::learn::{Exercise, Finding};
 
 /// Shows the exercise. `is_broken`: the newest edit does not compile.
@@ -78,7 +78,7 @@ fn text(ui: &mut Ui, text: &str) {
                     ui,
                     |ui| {
                         ui.set_width(ui.available_width());
-                        ui.add(Label::new(RichText::new(lines).monospace().color(Color32::WHITE)).wrap());
+                        ui.add(Label::new(RichText::new(lines).monospace().color(STRONG)).wrap());
                     },
                 );
             }
