@@ -122,7 +122,7 @@ fn assigned(part: &[Token<'_>], types: &Types, opaque: &BTreeSet<String>) -> Opt
     let is_made = is_made(value, types).is_some();
     let last = target.iter().rposition(|token| is_name(token.text) || token.text == "]")?;
     let is_traced = match (target[last].text, last.checked_sub(1).map(|at| target[at].text)) {
-        // An element of an array of structs, or a number of a vector.
+        // A number of a vector; an element of an array may be a struct.
         ("]", _) => target.iter().find(|token| is_name(token.text)).is_none_or(|name| !opaque.contains(name.text)),
         (name, Some(".")) => !types.members.contains(name),
         (name, _) => !opaque.contains(name) && !types.globals.contains(name),
