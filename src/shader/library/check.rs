@@ -26,8 +26,6 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
     let snapshot = Snapshot::new(library.source());
     let known: BTreeSet<&TreePath> = library.stages().collect();
     let is_ours = |path: &TreePath| path.extension() == Some("glsl") || StageKind::of(path).is_some();
-    let rest: Vec<TreePath> =
-        library.source().list().into_iter().filter(|path| is_ours(path) && !known.contains(path)).collect();
     let compiler = library.compiler();
     // A file that only stages of one kind include may use what only that kind has, as gl_VertexIndex or barrier(). The includes
     // are those in the texts, since a stage with an error has not compiled.
@@ -43,6 +41,12 @@ pub fn check(library: &mut Library) -> Vec<Diagnostic> {
         (None, Some([first, others @ ..])) if others.iter().all(|kind| kind == first) => *first,
         _ => StageKind::Fragment,
     };
+    // A library of mesh stages that no stage includes is left out: it calls `user_vertex`, which may use what only vertex stages have.
+    let is_unused = |path: &TreePath| {
+        StageKind::of(&path.stem().into()).is_some_and(StageKind::is_of_mesh_pipeline) && !kinds.contains_key(path)
+    };
+    let all = library.source().list().into_iter();
+    let rest: Vec<TreePath> = all.filter(|path| is_ours(path) && !known.contains(path) && !is_unused(path)).collect();
     let found: Vec<Diagnostic> = rest
         .par_iter()
         .flat_map_iter(|path| {
