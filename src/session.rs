@@ -88,15 +88,19 @@ impl Session {
         size: (u32, u32),
         target: TargetFormat,
     ) -> FrameState {
-        FrameState::new(&FrameInputs {
-            settings: &self.settings,
-            shaders,
-            scene: self.scene().as_ref(),
-            revisions: self.revisions,
-            clock,
-            size,
-            target,
-        })
+        FrameState::new(&self.inputs(shaders, self.scene().as_ref(), clock, size, target))
+    }
+
+    /// The inputs of a picture of the settings with these shaders. `scene`: [`Session::scene`].
+    pub fn inputs<'a>(
+        &'a self,
+        shaders: &'a Arc<ShaderSet>,
+        scene: Option<&'a Scene>,
+        clock: Clock,
+        size: (u32, u32),
+        target: TargetFormat,
+    ) -> FrameInputs<'a> {
+        FrameInputs { settings: &self.settings, shaders, scene, revisions: self.revisions, clock, size, target }
     }
 
     /// The absolute path of the environment's file; empty for a built-in environment.

@@ -84,7 +84,7 @@ pub struct AppOptions {
     pub device: Option<String>,
     /// Whether to enable the validation layers.
     pub validation: bool,
-    /// What to compare the picture with.
+    /// The file or shader tree to compare the picture with.
     pub compare: Option<OtherPicture>,
     /// Whether models may read files outside their folder.
     pub allow_outside: bool,

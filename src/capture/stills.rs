@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::label::Labels;
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
-use crate::frame::{Clock, FrameState};
+use crate::frame::{Clock, FrameState, TargetFormat};
 use crate::gpu::{Frames, Gpu, GpuError, Image, Use};
 use crate::headless::{HeadlessError, Search, first_not_finite};
 use crate::pipeline::PipelineSet;
@@ -102,13 +102,9 @@ impl Stills {
         let mode = NotFinite::mode_of(values.iter().map(|(mode, value)| (*mode, value)))?;
         let scene = self.session.scene();
         let shaders = self.session.shaders.clone()?;
+        let target = TargetFormat::full(1);
         let search = Search {
-            settings: &self.session.settings,
-            shaders: &shaders,
-            scene: scene.as_ref(),
-            revisions: self.session.revisions,
-            clock: self.clock,
-            size,
+            picture: self.session.inputs(&shaders, scene.as_ref(), self.clock, size, target),
             at,
             mode,
             source,
@@ -162,7 +158,7 @@ impl Stills {
     }
 
     /// Full floats, so that what is read back is what the shaders wrote.
-    fn target(&self) -> Result<crate::frame::TargetFormat, HeadlessError> {
+    fn target(&self) -> Result<TargetFormat, HeadlessError> {
         View::target_format(&self.gpu, self.session.settings.view.msaa, true).map_err(HeadlessError::Settings)
     }
 

@@ -147,7 +147,7 @@ mod tests {
         let small = scaled_display(&board, (8, 8));
         let center = small.get_pixel(4, 4).0[0];
         assert!((186..=189).contains(&center), "{center}");
-        // What nothing covers has no color.
+        // Transparent pixels have no color.
         let half = RgbaImage::from_fn(2, 1, |x, _| image::Rgba([[200, 0, 0, 255], [0, 255, 0, 0]][x as usize]));
         let large = scaled_display(&half, (8, 4));
         assert!(large.pixels().all(|pixel| pixel[1] == 0 && (pixel[3] == 0 || pixel[0].abs_diff(200) <= 1)));

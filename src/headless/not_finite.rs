@@ -3,26 +3,16 @@
 use std::sync::Arc;
 
 use super::{Headless, HeadlessError};
-use crate::frame::{Clock, FrameInputs, FrameState, Revisions, Scene, TargetFormat, mode_sets};
+use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
 use crate::gpu::{Frames, Gpu};
 use crate::render::{PixelModes, Resources};
 use crate::settings::Settings;
-use crate::shader::{Compiler, FirstNotFinite, Mode, ShaderSet, Source, TracedShaders};
+use crate::shader::{Compiler, FirstNotFinite, Mode, Source, TracedShaders};
 
 /// Where to search: a pixel of a picture.
 pub struct Search<'a> {
-    /// The settings of the picture. Their mode does not count.
-    pub settings: &'a Settings,
-    /// The shaders that draw it.
-    pub shaders: &'a Arc<ShaderSet>,
-    /// The model.
-    pub scene: Option<&'a Scene>,
-    /// As in [`FrameInputs`].
-    pub revisions: Revisions,
-    /// The time of the picture.
-    pub clock: Clock,
-    /// Width and height, pixels.
-    pub size: (u32, u32),
+    /// The picture. Its mode and target do not count.
+    pub picture: FrameInputs<'a>,
     /// The pixel, from the upper left corner.
     pub at: (u32, u32),
     /// The mode whose value is not finite.
@@ -45,22 +35,16 @@ pub fn first_not_finite(
     (resources, frames): (&mut Resources, &mut Frames),
     search: &Search<'_>,
 ) -> Result<Option<FirstNotFinite>, String> {
-    let Search { settings, shaders, scene, revisions, clock, size, mode, .. } = *search;
+    let Search { picture, mode, .. } = *search;
+    let shaders = picture.shaders;
     if mode_sets([mode], 1).is_empty() {
         return Ok(None);
     }
     let set = resources.pipelines().filter(|set| Arc::ptr_eq(&set.shaders, shaders)).cloned();
     let set = set.ok_or("the shaders have changed")?;
-    let settings = Settings { mode: mode.slug.clone(), ..settings.clone() };
-    let inputs = |shaders| FrameInputs {
-        settings: &settings,
-        shaders,
-        scene,
-        revisions,
-        clock,
-        size,
-        target: TargetFormat::full(1),
-    };
+    let settings = Settings { mode: mode.slug.clone(), ..picture.settings.clone() };
+    let target = TargetFormat::full(1);
+    let inputs = |shaders| FrameInputs { settings: &settings, shaders, target, ..picture };
     let plain = FrameState::of_modes(&inputs(shaders), &[mode]);
     let traced = TracedShaders::new(shaders, &plain.pipelines.stage, compiler, search.source)?;
     let check = || if (search.is_canceled)() { Err("canceled") } else { Ok(()) };
@@ -94,12 +78,7 @@ impl Headless {
         let (shaders, scene) = (self.shaders(), self.session.scene());
         let library = self.reloader.library();
         let search = Search {
-            settings: &self.session.settings,
-            shaders: &shaders,
-            scene: scene.as_ref(),
-            revisions: self.session.revisions,
-            clock: self.clock,
-            size: self.size,
+            picture: self.session.inputs(&shaders, scene.as_ref(), self.clock, self.size, TargetFormat::full(1)),
             at,
             mode,
             source: library.source(),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Headless, HeadlessError};
-use crate::frame::{FrameInputs, FrameState, TargetFormat, mode_sets};
+use crate::frame::{FrameState, TargetFormat, mode_sets};
 use crate::gpu::{Buffer, Memory, Use, vk};
 use crate::render::{BoundFrame, Thumbnails};
 use crate::shader::Mode;
@@ -62,15 +62,7 @@ impl Headless {
         target: TargetFormat,
     ) -> Result<BoundFrame, HeadlessError> {
         let (shaders, scene) = (self.shaders(), self.session.scene());
-        let inputs = FrameInputs {
-            settings: &self.session.settings,
-            shaders: &shaders,
-            scene: scene.as_ref(),
-            revisions: self.session.revisions,
-            clock: self.clock,
-            size,
-            target,
-        };
+        let inputs = self.session.inputs(&shaders, scene.as_ref(), self.clock, size, target);
         let state = Arc::new(FrameState::of_modes(&inputs, set));
         self.resources.provide(&state).map_err(|error| self.explained(error.into()))
     }

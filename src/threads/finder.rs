@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::{Message, Outbox, Role};
-use crate::frame::{Clock, Revisions, Scene};
+use crate::frame::{Clock, FrameInputs, Revisions, Scene, TargetFormat};
 use crate::gpu::{Frames, Gpu};
 use crate::headless::{Search, first_not_finite};
 use crate::render::Resources;
@@ -98,17 +98,15 @@ fn find(
     is_canceled: &dyn Fn() -> bool,
 ) -> Result<Option<FirstNotFinite>, String> {
     let mut frames = Frames::new(gpu, 1).map_err(|error| error.to_string())?;
-    let search = Search {
+    let picture = FrameInputs {
         settings: &request.settings,
         shaders: &request.shaders,
         scene: request.scene.as_ref(),
         revisions: request.revisions,
         clock: Clock::default(),
         size: request.size,
-        at: request.at,
-        mode: &request.mode,
-        source: &request.source,
-        is_canceled,
+        target: TargetFormat::full(1),
     };
+    let search = Search { picture, at: request.at, mode: &request.mode, source: &request.source, is_canceled };
     first_not_finite(gpu, &request.compiler, (&mut request.resources, &mut frames), &search)
 }

@@ -55,7 +55,7 @@ pub(crate) enum Message {
     PictureRead(u64, Result<Arc<Picture>, String>),
     /// The same picture, scaled to the window's picture.
     PictureFits(u64, Result<Arc<Still>, String>),
-    /// What the thread of the second shader tree with this number has done.
+    /// A result of the thread of the second shader tree with this number.
     SecondTree(u64, SecondTreeMessage),
     /// The texts of a version of the shaders have been written to its files, or why not.
     VersionWritten(u64, Result<String, String>),

@@ -14,11 +14,11 @@ use crate::pipeline::{Outcome, PipelineSet, Reloader};
 use crate::render::{BoundFrame, Resources};
 use crate::shader::{Batch, Change, Compiler, Diagnostic, ShaderSet, Source, Watcher};
 
-/// What a second shader tree has done.
+/// A result of the thread of a second shader tree.
 pub(crate) enum SecondTreeMessage {
     /// The tree was compiled: its pipelines, unless the picture's stages have errors, and the errors of all stages.
     Compiled(Option<Arc<PipelineSet>>, Vec<Diagnostic>),
-    /// What [`SecondTree::provide`] has asked for, or why it cannot be.
+    /// The frame that [`SecondTree::provide`] has asked for, or the reason why there is none.
     Provided(Result<Box<BoundFrame>, String>),
 }
 

@@ -1,4 +1,4 @@
-//! What the picture is compared with, and how much both differ: the first lines of the panel Timeline.
+//! The other side of the comparison, and how much both sides differ: the first lines of the panel Timeline.
 
 use egui::{Label, RichText, Ui};
 

@@ -28,7 +28,7 @@ const REPLACED: &str = "the comparison was ended or replaced before it was shown
 /// The other picture, and how much of it is shown.
 pub(in crate::app) struct Compare {
     with: Option<With>,
-    /// What is being read or compiled. It takes the place of `with` when it is there; if it cannot be, `with` stays.
+    /// The file or tree that is being read or compiled. It replaces `with` once it is ready; after a failure, `with` stays.
     opening: Option<Opening>,
     /// The number of the last request to read, scale or compile.
     number: u64,
@@ -71,7 +71,7 @@ enum With {
     Tree(Box<TreePicture>),
 }
 
-/// What the comparison will be with.
+/// The other side of the comparison while it is being opened.
 enum Opening {
     /// A file that is being read, and the number of the request.
     File(u64, PathBuf),

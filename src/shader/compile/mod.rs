@@ -308,8 +308,8 @@ fn unknown_version(file: &str, text: &str, kind: StageKind) -> Option<Diagnostic
     (!is_known).then(error)
 }
 
-/// What a stage of this kind must declare: the layouts of its primitives, and the extension of its kind. Leaves out the layouts that
-/// a library declares itself.
+/// Returns the declarations that a stage of this kind needs: the layouts of its primitives, and the extension of its kind. Leaves out
+/// the layouts that a library declares itself.
 fn library_layouts(snapshot: &Snapshot<'_>, library: &TreePath, kind: StageKind) -> impl Iterator<Item = String> {
     let needed: &[(&str, &str)] = match kind {
         StageKind::TessellationControl => &[("vertices = 3", "out")],

@@ -105,7 +105,7 @@ impl TracedShaders {
         Err(format!("the values of {stage} cannot be traced: {failure}"))
     }
 
-    /// What a pixel that these shaders have drawn says. `None` if every value was finite.
+    /// Decodes a pixel that these shaders have drawn. `None` if every value was finite.
     pub fn found(&self, pixel: &PixelValue) -> Option<FirstNotFinite> {
         let [first, nan, mark, _] = pixel.value;
         let site = |number: f32| self.sites.get((number as usize).checked_sub(1)?).cloned();

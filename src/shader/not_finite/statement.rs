@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::types::{FLOATS, OTHERS, Types, is_name};
 use crate::shader::expression::syntax::Token;
 
-/// What is traced.
+/// The target of a trace call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Traced {
     /// The value of these bytes, which become the argument of a call.
@@ -66,7 +66,7 @@ fn is_made<'a>(value: &'a [Token<'a>], types: &Types) -> Option<&'a str> {
     }
 }
 
-/// What is traced of `return e;`. `kind` is the type that the function returns.
+/// Finds the traced value of `return e;`. `kind` is the type that the function returns.
 pub(super) fn of_return(tokens: &[Token<'_>], kind: &str, types: &Types) -> Vec<Found> {
     let [first, value @ .., _] = tokens else { return Vec::new() };
     if first.text != "return" || !(FLOATS.contains(&kind) || is_made(value, types) == Some(kind)) {
@@ -76,7 +76,7 @@ pub(super) fn of_return(tokens: &[Token<'_>], kind: &str, types: &Types) -> Vec<
     vec![Found { traced: Traced::Value(bytes), shown: first.bytes.start..tokens[tokens.len() - 1].bytes.end }]
 }
 
-/// What is traced of a declaration, an assignment or a call, with its `;`. `opaque`: variables that are structs or arrays.
+/// Finds the traced values of a declaration, an assignment or a call, with its `;`. `opaque`: variables that are structs or arrays.
 pub(super) fn of_simple(
     tokens: &[Token<'_>],
     is_in_block: bool,

@@ -18,7 +18,7 @@ pub(super) struct PictureFile {
     number: u64,
     /// The newest scaled picture, with the number of the request that made it.
     still: Option<(u64, Arc<Still>)>,
-    /// What `still` was made of: [`Self::number`] and the size. After a failure, what could not be made.
+    /// [`Self::number`] and the size that `still` was made of, or that a failed scaling asked for.
     scaled: Option<(u64, (u32, u32))>,
     /// The number of the scaling that is under way.
     scaling: Option<u64>,
