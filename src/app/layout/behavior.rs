@@ -1,7 +1,12 @@
 //! Appearance of the tiles, and behavior of their tabs.
 
-use egui::{Color32, Margin, Rect, Response, Stroke, Ui, Visuals, WidgetText};
-use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabState, Tile, TileId, Tiles, UiResponse};
+use std::sync::Arc;
+
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Color32, Galley, Margin, Rect, Response, Stroke, TextStyle, Ui, Visuals, WidgetText};
+use egui_tiles::{
+    Behavior, EditAction, ResizeState, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, UiResponse,
+};
 
 use super::{Panel, SIMPLIFY};
 use crate::app::panels::theme::{ACCENT, EDGE, PANEL, QUIET};
@@ -10,6 +15,10 @@ use crate::app::panels::theme::{ACCENT, EDGE, PANEL, QUIET};
 pub(super) const GAP: f32 = 2.0;
 /// Height of the tabs of a tile, in points.
 pub(super) const TAB_BAR: f32 = 24.0;
+/// Space at both sides of a tab's title, in points: the least in a narrow tile, and the most.
+const MARGIN: std::ops::RangeInclusive<f32> = 3.0..=8.0;
+/// Points that a cut title keeps at least.
+const LEAST_TITLE: f32 = 8.0;
 
 /// The tiles in one frame.
 pub(super) struct Dock<'a> {
@@ -24,6 +33,69 @@ pub(super) struct Dock<'a> {
     pub(super) is_selected: bool,
     /// The panel that the user has closed.
     pub(super) closed: Option<Panel>,
+    /// The titles of the tabs that are being shown.
+    pub(super) tabs: TabTitles,
+}
+
+/// How the titles of a tile's tabs fit into its width. The title of the active tab is never cut.
+pub(super) struct TabTitles {
+    /// Space at both sides of a title, in points.
+    margin: f32,
+    /// The titles that are cut.
+    cut: Vec<(TileId, Arc<Galley>)>,
+}
+
+impl Default for TabTitles {
+    fn default() -> Self {
+        Self { margin: *MARGIN.end(), cut: Vec::new() }
+    }
+}
+
+impl TabTitles {
+    /// Fits the titles of `tabs` into the width of `ui`: in a narrow tile the margins shrink first, then the longest titles of the
+    /// inactive tabs.
+    fn fit(ui: &Ui, tiles: &Tiles<Panel>, tabs: &Tabs) -> Self {
+        let layout = |id: TileId, width: f32| {
+            let font = TextStyle::Button.resolve(ui.style());
+            let mut job = LayoutJob::simple_singleline(titles(tiles, id).join(", "), font, Color32::PLACEHOLDER);
+            job.wrap = TextWrapping::truncate_at_width(width);
+            ui.painter().layout_job(job)
+        };
+        let ids: Vec<TileId> = tabs.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
+        let widths: Vec<f32> = ids.iter().map(|id| layout(*id, f32::INFINITY).size().x).collect();
+        // A point for rounding.
+        let room = ui.available_width() - 1.0;
+        let sides = 2.0 * ids.len().max(1) as f32;
+        let margin = ((room - widths.iter().sum::<f32>()) / sides).clamp(*MARGIN.start(), *MARGIN.end());
+        let (mut inactive, mut room) = (Vec::new(), room - sides * margin);
+        for (id, width) in ids.into_iter().zip(widths) {
+            match tabs.is_active(id) {
+                true => room -= width,
+                false => inactive.push((id, width)),
+            }
+        }
+        let most = widest(inactive.iter().map(|(_, width)| *width).collect(), room).max(LEAST_TITLE);
+        let cut = inactive.into_iter().filter(|(_, width)| *width > most).map(|(id, _)| (id, layout(id, most)));
+        Self { margin, cut: cut.collect() }
+    }
+
+    /// The title of a tab, if it is cut.
+    fn cut(&self, id: TileId) -> Option<&Arc<Galley>> {
+        self.cut.iter().find(|(tile, _)| *tile == id).map(|(_, galley)| galley)
+    }
+}
+
+/// The largest width that titles can have so that all of them fit into `room` points.
+fn widest(mut widths: Vec<f32>, mut room: f32) -> f32 {
+    widths.sort_by(f32::total_cmp);
+    for (index, width) in widths.iter().enumerate() {
+        let share = room / (widths.len() - index) as f32;
+        if *width > share {
+            return share;
+        }
+        room -= width;
+    }
+    f32::INFINITY
 }
 
 /// The titles of the panels in a tile.
@@ -59,7 +131,19 @@ impl Behavior<Panel> for Dock<'_> {
     }
 
     fn tab_title_for_tile(&mut self, tiles: &Tiles<Panel>, id: TileId) -> WidgetText {
-        titles(tiles, id).join(", ").into()
+        match self.tabs.cut(id) {
+            Some(title) => title.clone().into(),
+            None => titles(tiles, id).join(", ").into(),
+        }
+    }
+
+    fn tab_title_spacing(&self, _: &Visuals) -> f32 {
+        self.tabs.margin
+    }
+
+    /// Called before the tabs of a tile are shown.
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<Panel>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
+        self.tabs = TabTitles::fit(ui, tiles, tabs);
     }
 
     fn on_tab_button(&mut self, tiles: &mut Tiles<Panel>, id: TileId, tab: Response) -> Response {
@@ -77,7 +161,11 @@ impl Behavior<Panel> for Dock<'_> {
         if closes {
             self.closed = Some(*panel);
         }
-        tab.on_hover_text("Drag to dock elsewhere; middle click closes")
+        let hint = "Drag to dock elsewhere; middle-click to close";
+        match self.tabs.cut(id) {
+            Some(_) => tab.on_hover_text(format!("{}\n{hint}", panel.title())),
+            None => tab.on_hover_text(hint),
+        }
     }
 
     fn gap_width(&self, _: &egui::Style) -> f32 {
@@ -127,5 +215,18 @@ impl Behavior<Panel> for Dock<'_> {
         self.is_dropped |= action == EditAction::TileDropped;
         self.is_edited |= matches!(action, EditAction::TileDropped | EditAction::TileResized);
         self.is_selected |= action == EditAction::TabSelected;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::widest;
+
+    #[test]
+    fn long_titles_are_cut_first() {
+        assert_eq!(widest(vec![30.0, 60.0, 40.0], 130.0), f32::INFINITY);
+        assert_eq!(widest(vec![30.0, 60.0, 40.0], 120.0), 50.0);
+        assert_eq!(widest(vec![30.0, 60.0, 40.0], 100.0), 35.0);
+        assert_eq!(widest(Vec::new(), 10.0), f32::INFINITY);
     }
 }

@@ -12,7 +12,7 @@ use egui::{Rect, Ui, Vec2};
 use egui_tiles::{Container, LinearDir, SimplificationOptions, Tile, TileId, Tree};
 use serde::{Deserialize, Serialize};
 
-use behavior::Dock;
+use behavior::{Dock, TabTitles};
 use fit::Fit;
 pub(super) use preset::Preset;
 use repair::repair;
@@ -228,8 +228,9 @@ impl Layout {
     pub(super) fn show(&mut self, ui: &mut Ui, panels: &mut dyn FnMut(&mut Ui, Panel)) -> Rect {
         let area = ui.available_rect_before_wrap();
         self.fit.apply(&mut self.tree, area.size());
+        let (picture, tabs) = (None, TabTitles::default());
         let mut dock =
-            Dock { panels, picture: None, is_edited: false, is_dropped: false, is_selected: false, closed: None };
+            Dock { panels, picture, is_edited: false, is_dropped: false, is_selected: false, closed: None, tabs };
         // The background fills the gaps between tiles, but not the picture.
         let background = ui.painter().add(egui::Shape::Noop);
         self.tree.ui(&mut dock, ui);

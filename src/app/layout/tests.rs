@@ -138,3 +138,25 @@ fn handles_lie_only_between_the_picture_and_panels() {
     let free = fit::without_handles(picture, area, 10.0);
     assert_eq!(free, picture.with_min_x(250.0));
 }
+
+#[test]
+fn the_active_tab_shows_its_whole_title() {
+    let (egui, mut layout) = (egui::Context::default(), unstored(Preset::Debug));
+    crate::app::panels::theme::apply(&egui);
+    for panel in Panel::GROUPS.concat() {
+        layout.open(panel);
+        // The second frame has the widths of the first.
+        for _ in 0..2 {
+            layout.is_changed = false;
+            shown(&mut layout, &egui, Vec2::new(1280.0, 720.0));
+        }
+        let tiles = &layout.tree.tiles;
+        let pane = tiles.find_pane(&panel).unwrap();
+        let tile = tiles.rect(tiles.parent_of(pane).unwrap()).unwrap();
+        let tab = egui.read_response(pane.egui_id(layout.tree.id())).unwrap().rect;
+        let font = egui::TextStyle::Button.resolve(&egui.global_style());
+        let title = panel.title().to_owned();
+        let width = egui.fonts_mut(|fonts| fonts.layout_no_wrap(title, font, egui::Color32::WHITE).size().x);
+        assert!(tab.width() >= width && tile.x_range().contains(tab.max.x), "{panel:?}: {tab:?} in {tile:?}");
+    }
+}
