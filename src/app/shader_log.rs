@@ -20,11 +20,11 @@ pub(super) struct Edit {
 }
 
 impl Edit {
-    /// The times of the steps: `4 ms + 9 ms + 16 ms` to compile, for the pipelines, and for the first frame.
+    /// The times of the steps: `4 + 9 + 16 ms` to compile, for the pipelines, and for the first frame.
     pub(super) fn times(&self) -> String {
         let ReloadEvent { compile_ms, pipeline_ms, first_frame_ms, ok, .. } = &self.reload;
         match ok {
-            true => format!("{compile_ms:.0} ms + {pipeline_ms:.0} ms + {first_frame_ms:.0} ms"),
+            true => format!("{compile_ms:.0} + {pipeline_ms:.0} + {first_frame_ms:.0} ms"),
             false => format!("failed after {compile_ms:.0} ms"),
         }
     }

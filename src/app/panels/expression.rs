@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
+use super::rows::elided;
 use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::difference::{Kind, Line};
@@ -186,7 +187,7 @@ fn line(ui: &mut Ui, shown: &mut Shown, state: &mut ExpressionState) {
         }
     });
     let text = RichText::new(shown.before.trim()).monospace().size(11.5);
-    ui.add(Label::new(text).truncate()).on_hover_text(shown.before.trim());
+    ui.add(elided(text)).on_hover_text(shown.before.trim());
 }
 
 /// The variables that the line offers, and which evaluation counts.

@@ -9,7 +9,7 @@ mod values;
 
 use egui::{Color32, Id, LayerId, Order, Rect, RichText, Stroke, TextEdit, Ui, pos2, vec2};
 
-use super::rows::choose;
+use super::rows::{choose, elided};
 use super::theme::{ACCENT, QUIET};
 use crate::app::command::Command;
 use crate::app::inspector::{Inspector, Page, text};
@@ -90,7 +90,7 @@ fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
         None => String::new(),
     };
     let hover = "Node and material of the nearest surface under the pixel. A surface that a mask or alpha makes invisible counts too";
-    ui.add(egui::Label::new(RichText::new(about).small().color(QUIET)).truncate()).on_hover_text(hover);
+    ui.add(elided(RichText::new(&about).small().color(QUIET))).on_hover_text(format!("{about}\n{hover}").trim_start());
 }
 
 /// The menu that copies all values.

@@ -82,7 +82,7 @@ impl Row<'_> {
                 ui.add_space(INDENT);
             }
             // The hover text begins with the whole name.
-            ui.add(Label::new(text).truncate().show_tooltip_when_elided(false).selectable(false).sense(Sense::click()))
+            ui.add(elided(text).selectable(false).sense(Sense::click()))
         };
         ui.allocate_ui_with_layout(size, Layout::left_to_right(egui::Align::Center), label).inner
     }
@@ -119,6 +119,12 @@ impl Row<'_> {
 /// An option of the command line. The font of the other texts shows two hyphens as one dash.
 pub(super) fn option_text(option: &str) -> RichText {
     RichText::new(option).monospace().size(11.5)
+}
+
+/// A text in one line that ends with an ellipsis where there is no room, for a widget that has a hover text: egui's own hover text
+/// would stand beside it.
+pub(super) fn elided(text: impl Into<egui::WidgetText>) -> Label {
+    Label::new(text).truncate().show_tooltip_when_elided(false)
 }
 
 /// A heading above rows.

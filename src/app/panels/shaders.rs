@@ -6,8 +6,9 @@ mod files;
 mod problems;
 mod stages;
 
-use egui::{Align, Label, Layout, RichText, Ui};
+use egui::{Align, Layout, RichText, Ui};
 
+use super::rows::elided;
 use super::{ACCENT, ERROR, QUIET, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
@@ -86,7 +87,7 @@ fn head(
             let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
             let (text, hover) = words(status, generation, errors, cut_short);
             let text = if errors > 0 && !status.compiling { text.color(ERROR) } else { text };
-            ui.add(Label::new(text).truncate()).on_hover_text(hover);
+            ui.add(elided(text)).on_hover_text(hover);
         });
     };
     ui.horizontal(|ui| ui.with_layout(Layout::right_to_left(Align::Center), bar));
@@ -110,10 +111,10 @@ fn words(status: &ShaderStatus, generation: u64, errors: usize, cut_short: bool)
 fn tree(ui: &mut Ui, status: &ShaderStatus, commands: &mut Vec<Command>) {
     let text = RichText::new(&status.tree).small();
     let Some(folder) = &status.location else {
-        ui.add(Label::new(text.color(QUIET)).truncate()).on_hover_text(&status.tree);
+        ui.add(elided(text.color(QUIET))).on_hover_text(&status.tree);
         return;
     };
-    let label = ui.add(Label::new(text.color(ACCENT)).truncate().sense(egui::Sense::click()));
+    let label = ui.add(elided(text.color(ACCENT)).sense(egui::Sense::click()));
     if label.clicked() {
         commands.push(Command::Edit(Place { file: folder.clone(), line: None, column: None }));
     }

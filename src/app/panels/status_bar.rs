@@ -1,7 +1,8 @@
 //! The bar below the picture: the state of the shaders, the last reload, and the time of a frame.
 
-use egui::{Align, Label, Layout, RichText, Ui};
+use egui::{Align, Layout, RichText, Ui};
 
+use super::rows::elided;
 use super::theme::{EDGE, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
 use super::{plural, shaders};
 use crate::app::stages::StageRow;
@@ -65,7 +66,7 @@ fn state(ui: &mut Ui, status: &Status<'_>) {
     if let Some(last) = &status.shader.last {
         let (edit, times, hover) = shaders::lines(last);
         let text = RichText::new(format!("{edit}  {times}")).monospace().small();
-        ui.add(Label::new(text).truncate()).on_hover_text(hover);
+        ui.add(elided(text)).on_hover_text(hover);
     }
 }
 

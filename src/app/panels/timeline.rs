@@ -2,6 +2,7 @@
 
 use egui::{Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
+use super::rows::elided;
 use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT};
 use super::{EDGE, ERROR, WARNING, comparison};
 use crate::app::command::{Command, CompareWith};
@@ -79,6 +80,25 @@ impl Entry<'_> {
         self.viewer.versions.can_show(self.version, self.newest)
     }
 
+    /// Number and files.
+    fn title(&self) -> String {
+        let now = if self.version.number == self.newest { " (now)" } else { "" };
+        format!("{}{now}  {}", self.version.number, self.version.title())
+    }
+
+    /// The times of the reload in words.
+    fn times(&self) -> String {
+        let Version { reload, since, device_ms, .. } = self.version;
+        let gpu = device_ms.map_or_else(String::new, |ms| format!("\nThe first frame took {ms:.1} ms on the GPU"));
+        format!(
+            "{}: {:.0} ms to compile, {:.0} ms for the pipelines, {:.0} ms for the first frame{gpu}",
+            since.format("%H:%M:%S"),
+            reload.compile_ms,
+            reload.pipeline_ms,
+            reload.first_frame_ms
+        )
+    }
+
     /// In a list: the picture on the left, the texts on the right.
     fn row(&self, ui: &mut Ui) -> Response {
         let size = IN_LIST * THUMBNAIL;
@@ -117,20 +137,18 @@ impl Entry<'_> {
 
     /// Number and files, the times of the reload, and when it was.
     fn texts(&self, ui: &mut Ui, rect: Rect) {
-        let Version { number, reload, since, device_ms, .. } = self.version;
+        let Version { reload, since, device_ms, .. } = self.version;
         ui.scope_builder(
             egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::top_down(egui::Align::Min)),
             |ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 let quiet = if self.is_chosen() { STRONG } else { QUIET };
-                let now = if *number == self.newest { "  (now)" } else { "" };
-                let title = format!("{number}  {}{now}", self.version.title());
-                ui.add(Label::new(RichText::new(title).strong()).truncate().selectable(false));
+                ui.add(elided(RichText::new(self.title()).strong()).selectable(false));
                 let times =
                     format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
-                let gpu = device_ms.map_or_else(String::new, |ms| format!("  {ms:.0} ms GPU"));
+                let gpu = device_ms.map_or_else(String::new, |ms| format!(" {ms:.0} ms GPU"));
                 for line in [times, format!("{}{gpu}", since.format("%H:%M:%S"))] {
-                    ui.add(Label::new(monospace(line).color(quiet)).truncate().selectable(false));
+                    ui.add(elided(monospace(line).color(quiet)).selectable(false));
                 }
             },
         );
@@ -165,13 +183,16 @@ impl Entry<'_> {
             (false, true) => "The picture on screen",
             (false, false) => "A loop did not end in this version, so it is not shown again",
         };
-        response.on_hover_ui(|ui| hover(ui, hint, viewer.versions.difference(version)));
+        let about = [self.title(), self.times()];
+        response.on_hover_ui(|ui| hover(ui, &about, hint, viewer.versions.difference(version)));
     }
 }
 
-/// The hover text: what a click does, and the difference from the version before.
-fn hover(ui: &mut Ui, hint: &str, lines: &[Line]) {
+/// The hover text: title and times of a version, what a click does, and the difference from the version before.
+fn hover(ui: &mut Ui, [title, times]: &[String; 2], hint: &str, lines: &[Line]) {
     ui.set_max_width(560.0);
+    ui.label(RichText::new(title).strong());
+    ui.label(times);
     ui.label(RichText::new(hint).small().color(QUIET));
     for Line { kind, text } in lines.iter().take(MOST_LINES) {
         let color = match kind {

@@ -6,6 +6,7 @@ mod table;
 
 use egui::{Grid, Label, RichText, Ui};
 
+use super::rows::elided;
 use super::theme::{GOOD, QUIET, WARNING};
 use crate::app::timing::MemoryClock;
 use crate::app::viewer::Viewer;
@@ -25,7 +26,7 @@ pub(in crate::app) struct TimingState {
 
 pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut TimingState, device: &str) {
     state.is_visible = true;
-    ui.add(Label::new(RichText::new(device).small().color(QUIET)).truncate()).on_hover_text(device);
+    ui.add(elided(RichText::new(device).small().color(QUIET))).on_hover_text(device);
     let timing = &viewer.timing;
     let names = table::names(timing);
     graph::passes(ui, timing, &names);

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use egui::{CursorIcon, Label, RichText, Sense, Ui};
+use egui::{CursorIcon, RichText, Sense, Ui};
 
+use super::super::rows::elided;
 use super::super::theme::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::editor::Place;
@@ -41,7 +42,7 @@ fn short(file: &str) -> &str {
 fn line(ui: &mut Ui, site: &Site, value: &str, mode: &str, has_files: bool, commands: &mut Vec<Command>) {
     let Site { file, line, column, code } = site;
     let text = RichText::new(format!("{value}  {}:{line}  {code}", short(file))).small().color(ERROR);
-    let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
+    let label = ui.add(elided(text).sense(Sense::click()));
     if label.clicked() {
         match has_files {
             true => {

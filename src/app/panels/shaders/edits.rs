@@ -1,7 +1,8 @@
 //! The last edits: which file reached which stages, and how long each step took.
 
-use egui::{Label, RichText, ScrollArea, Ui};
+use egui::{RichText, ScrollArea, Ui};
 
+use super::super::rows::elided;
 use super::super::{ERROR, QUIET};
 use super::lines;
 use crate::app::shader_log::{ShaderLog, reached};
@@ -17,14 +18,15 @@ pub(super) fn show(ui: &mut Ui, log: &ShaderLog) {
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, HEIGHT, edits.len(), |ui, range| {
         for edit in &edits[range] {
             let at = edit.at.format("%H:%M:%S");
-            let text = RichText::new(format!("{at}  {}  {}", reached(&edit.reload), edit.times())).monospace().small();
+            // A narrow column cuts the end off, and the times are what one looks for.
+            let text = RichText::new(format!("{at}  {}  {}", edit.times(), reached(&edit.reload))).monospace().small();
             let text = if edit.reload.ok { text } else { text.color(ERROR) };
             let (_, _, mut hover) = lines(&edit.reload);
             if let Some(rest) = &edit.rest {
                 hover +=
                     &format!("\nThen, behind the picture: {} in {:.0} ms", in_short(&rest.stages), rest.compile_ms);
             }
-            ui.add(Label::new(text).truncate()).on_hover_text(hover);
+            ui.add(elided(text)).on_hover_text(hover);
         }
     });
 }

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use egui::{CursorIcon, Label, RichText, ScrollArea, Sense, Ui};
+use egui::{CursorIcon, RichText, ScrollArea, Sense, Ui};
 
+use super::super::rows::elided;
 use super::super::{ACCENT, ERROR, QUIET, WARNING, plural};
 use crate::app::command::Command;
 use crate::app::editor::Place;
@@ -47,7 +48,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, commands: &mut Vec<Command>) {
             match line {
                 Line::File(file, count) => {
                     let text = RichText::new(format!("{file}   {}", plural(*count, "problem"))).small().strong();
-                    ui.add(Label::new(text).truncate()).on_hover_text(*file);
+                    ui.add(elided(text)).on_hover_text(*file);
                 }
                 Line::Diagnostic(diagnostic) => one(ui, diagnostic, has_files, commands),
             }
@@ -66,7 +67,7 @@ fn one(ui: &mut Ui, diagnostic: &Diagnostic, has_files: bool, commands: &mut Vec
         ui.add_space(10.0);
         ui.label(RichText::new(place).monospace().small().color(if has_files { ACCENT } else { QUIET }));
         let text = RichText::new(&diagnostic.message).small().color(color);
-        let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
+        let label = ui.add(elided(text).sense(Sense::click()));
         if label.clicked() {
             let Diagnostic { file, line, column, .. } = diagnostic;
             match has_files {

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Color32, CursorIcon, Grid, Label, RichText, ScrollArea, Sense, Ui};
+use egui::{Color32, CursorIcon, Grid, RichText, ScrollArea, Sense, Ui};
 
+use super::super::rows::elided;
 use super::super::theme::{ERROR, GOOD, QUIET, WARNING};
 use crate::app::stages::{StageRow, StageState};
 use crate::app::viewer::Viewer;
@@ -87,7 +88,7 @@ fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
     let (name, meaning) = row.state.words();
     let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, LINE), Sense::hover());
     ui.painter().circle_filled(rect.center(), 3.5, color(row.state));
-    let label = Label::new(RichText::new(&row.path).small()).truncate().selectable(false).sense(Sense::click());
+    let label = elided(RichText::new(&row.path).small()).selectable(false).sense(Sense::click());
     let left = egui::Layout::left_to_right(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(egui::vec2(width.max(60.0), LINE), left, |ui| {
         ui.set_min_width(width.max(60.0));
@@ -123,9 +124,10 @@ fn numbers(ui: &mut Ui, row: &StageRow) -> bool {
     if times.is_empty() {
         return false;
     }
-    let text = RichText::new(format!("· {}", times.join(" + "))).monospace().small().color(QUIET);
-    let label = ui.add(Label::new(text).truncate().sense(Sense::click()));
-    let hover = "Time of the last compilation to SPIR-V, and the driver's time to build the pipeline";
+    let times = times.join(" + ");
+    let text = RichText::new(format!("· {times}")).monospace().small().color(QUIET);
+    let label = ui.add(elided(text).sense(Sense::click()));
+    let hover = format!("{times}: the last compilation to SPIR-V, and the driver's time to build the pipeline");
     label.on_hover_text(hover).clicked()
 }
 
