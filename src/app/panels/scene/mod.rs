@@ -77,7 +77,10 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
         area = area.vertical_scroll_offset((at as f32 * height - 0.4 * ui.available_height()).max(0.0));
     }
     let (mut toggled, chosen_part) = (None, state.tree.part_of(&scene, selected));
+    // Leaves room for the scroll bar also while there is none, so that the switches stay in place.
+    let width = ui.available_width() - ui.spacing().scroll.allocated_width();
     area.show_rows(ui, row::HEIGHT, rows, |ui, range| {
+        ui.set_max_width(width);
         for at in range {
             let row = &state.tree.rows()[at];
             let shown = row::State {
