@@ -79,6 +79,22 @@ impl Selected {
             Self::Light(LightId::Model(light)) => light < model.lights.len(),
         }
     }
+
+    /// Whether both versions of a model have it, under the same name. After a file has changed, an index may mean another part.
+    pub(super) fn is_same(self, before: &Model, after: &Model) -> bool {
+        self.is_in(before) && self.is_in(after) && self.name(before) == self.name(after)
+    }
+
+    fn name(self, model: &Model) -> Option<String> {
+        match self {
+            Self::Nothing | Self::Light(LightId::Orbit(_) | LightId::Rectangle) => None,
+            Self::Node(_) | Self::Instance(_) => self.key(model),
+            Self::Material(material) => Some(model.material_key(material)),
+            Self::Texture(source) => source.image(model).map(|image| image.name.clone()),
+            Self::Camera(camera) => Some(model.cameras[camera].name.clone()),
+            Self::Light(LightId::Model(light)) => Some(model.lights[light].name.clone()),
+        }
+    }
 }
 
 /// The material that all of these instances have.
@@ -117,5 +133,17 @@ mod tests {
         }
         assert!(Selected::Nothing.instances(&scene).is_empty());
         assert_eq!(common_material(&scene, &[]), None);
+    }
+
+    #[test]
+    fn a_part_stays_selected_while_its_name_is_the_same() {
+        let before = built_in(BUILT_IN[0]).unwrap().unwrap();
+        let mut after = before.clone();
+        after.materials[1].name = "another".into();
+        assert!(Selected::Material(1).is_same(&before, &before) && !Selected::Material(1).is_same(&before, &after));
+        assert!(Selected::Instance(0).is_same(&before, &after));
+        after.instances.clear();
+        assert!(!Selected::Instance(0).is_same(&before, &after));
+        assert!(Selected::Light(LightId::Orbit(0)).is_same(&before, &after));
     }
 }

@@ -10,6 +10,7 @@ use crate::app::command::Command;
 use crate::app::editor::Place;
 use crate::app::layout::{Panel, Preset};
 use crate::app::learn::{LearnCommand, Measured};
+use crate::app::selection::Selected;
 use crate::events::{Event, emit};
 use crate::learn::{Exercise, exercise_of, exercises, prepare};
 use crate::settings::Settings;
@@ -70,6 +71,7 @@ impl Viewer {
             return self.say(message);
         }
         self.session.settings = settings;
+        self.select(Selected::Nothing);
         self.execute(Command::OpenTree(folder));
         let model = PathBuf::from(&exercise.model);
         let is_default = exercise.model == crate::scene::BUILT_IN[0] && self.model.requested.is_none();

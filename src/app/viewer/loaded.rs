@@ -38,7 +38,8 @@ impl Viewer {
                     self.session.settings.scene = SceneSettings::default();
                     self.session.settings.materials.clear();
                 }
-                if is_other || !self.selected.is_in(model) {
+                let keeps_selection = |before| !is_other && self.selected.is_same(before, model);
+                if !self.session.model().is_some_and(|before| keeps_selection(before)) {
                     self.select(Selected::Nothing);
                 }
                 if !is_restored && (is_other || self.session.model().is_none()) {
