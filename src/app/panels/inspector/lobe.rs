@@ -137,11 +137,11 @@ fn legend(ui: &mut Ui, has_before: bool) {
             (
                 SUM,
                 "sum",
-                "f NoV: the part of the irradiance that leaves per steradian, 1/sr. Its integral is the albedo",
+                "f NoV: the part of the irradiance that leaves per steradian, 1/sr. Its integral over the hemisphere is the albedo",
             ),
             (DIFFUSE, "diffuse", "k_d times the selected diffuse model"),
             (SPECULAR, "specular", "D V F: single scattering between microfacets"),
-            (MULTIPLE, "multiple", "Multiple scattering between microfacets"),
+            (MULTIPLE, "multiple scattering", "Multiple scattering between microfacets"),
         ];
         for (color, name, doc) in names {
             ui.label(RichText::new(name).small().color(color)).on_hover_text(doc);
@@ -194,11 +194,11 @@ fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, d
         plot::name(painter, disk.direction(deg, at * disk.radius), name, color);
     };
     arrow(-of.light_deg, WARNING.color(), ("light", 0.8), true);
-    let name = if directions.is_in_plane() { "eye" } else { "eye (aside)" };
+    let name = if directions.is_in_plane() { "eye" } else { "eye (out of plane)" };
     arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT.color(), (name, 0.5), false);
     response.on_hover_text(
         "The lobe in the plane of incidence: in each direction to the eye, f NoV in 1/sr as luminance. The light comes from the left. \
-         The arrow of the eye has this pixel's angle; if the eye is aside, it lies outside of this plane",
+         The arrow of the eye has this pixel's angle; out of plane: the eye lies outside this plane",
     );
 }
 
