@@ -65,7 +65,7 @@ fn row(ui: &mut Ui, texel: &Texel) -> Response {
 
 /// Hover text that describes a texel.
 fn about(ui: &mut Ui, texel: &Texel) {
-    ui.set_max_width(340.0);
+    ui.set_max_width(400.0);
     let place = &texel.place;
     let [[x, y], [width, height], [u, v], [mesh_u, mesh_v]] = [
         place.texel.map(|number| number.to_string()),
