@@ -2,7 +2,7 @@
 
 use crate::interface::Frame;
 use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};
-use crate::shader::{Encode, Mode};
+use crate::shader::{Encode, Mode, expression};
 
 /// How the display maps the values of a mode to colors. The mapping changes no value, so it needs no new render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,7 +43,9 @@ impl Display {
             ViewRange::Fixed(low, high) => Range::Fixed(low, high),
             ViewRange::Fit => Range::Measured { is_signed, keeps_unit: false },
             ViewRange::Auto if !mode.tonemap && mode.range.is_none() && may_leave => {
-                Range::Measured { is_signed, keeps_unit: mode.unit.is_empty() }
+                // Most variables of a shader fill only a small part of 0..1.
+                let keeps_unit = mode.unit.is_empty() && mode.slug != expression::MODE;
+                Range::Measured { is_signed, keeps_unit }
             }
             ViewRange::Auto | ViewRange::Mode => own,
         };
@@ -142,6 +144,9 @@ mod tests {
         let depth = display(&data("m"), ViewRange::Auto);
         assert_eq!(depth.limits(Some((0.2, 0.9)), None), Some((0.2, 0.9)));
         assert_eq!(depth.limits(None, None), None, "nothing is measured yet");
+        let watched = Mode { slug: expression::MODE.into(), ..data("") };
+        assert_eq!(display(&watched, ViewRange::Auto).limits(Some((0.2, 0.9)), None), Some((0.2, 0.9)));
+        assert_eq!(display(&watched, ViewRange::Mode).limits(Some((0.2, 0.9)), None), None);
         let light = Mode { tonemap: true, unit: "cd/m^2".into(), ..Mode::default() };
         assert_eq!(display(&light, ViewRange::Auto).limits(Some((0.0, 9.0)), None), None);
         assert_eq!(display(&light, ViewRange::Fit).limits(Some((0.0, 9.0)), None), Some((0.0, 9.0)));

@@ -94,7 +94,7 @@ const DESCRIBED_WITH_RANGE: &[(&str, &str, &str, &str)] = &[
         "view.range",
         "",
         "mode, auto, fit or LOW..HIGH",
-        "Values that are black and white: as the mode stores them, those of the picture where that helps (auto) or always (fit)",
+        "The values shown as black and white: as the mode stores them, fit to the picture where that helps (auto) or always (fit)",
     ),
     ("view.msaa", "samples", "1 or 4", "Samples of each pixel"),
     ("view.frames", "frames", "1 to 100000", "Frames that `render` averages in modes that accumulate"),

@@ -14,7 +14,8 @@ pub enum ViewRange {
     /// `mode`: as the mode stores its values. Data 0..1, vectors -1..1, light by exposure and tone map.
     #[default]
     Mode,
-    /// `auto`: the range of the picture's values, in modes whose values have a unit or leave 0..1. Light stays exposed.
+    /// `auto`: the range of the picture's values, in modes whose values have a unit or leave 0..1, and of a watched expression. Light
+    /// stays exposed.
     Auto,
     /// `fit`: the range of the picture's values, in every mode.
     Fit,

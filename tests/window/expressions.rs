@@ -17,7 +17,7 @@ fn is_color(shot: &RgbaImage, color: [u8; 3]) -> bool {
 fn an_expression_is_watched_by_the_palette() {
     let tree = Tree::new();
     std::fs::write(tree.beside("model.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    let mut viewer = Viewer::open(tree, &["model.glb"]);
+    let mut viewer = Viewer::open(tree, &["model.glb", "--set", "view.range=mode"]);
     viewer.running.event("ready");
     let picture = viewer.screenshot();
     let original = viewer.tree.read(USER);

@@ -55,8 +55,9 @@ fn list<T: ValueEnum + PartialEq + Copy>(ui: &mut Ui, id: &str, value: &mut T) -
 
 /// The range, with both ends where the user sets them.
 fn range(ui: &mut Ui, view: &mut ViewSettings, default: ViewRange) {
-    let doc = "Values that are black and white. auto: those of the picture, in modes whose values have a unit or leave 0..1; mode: as \
-        the mode stores them; fit: those of the picture in every mode, in place of exposure and tone map; set: two numbers";
+    let doc = "The values shown as black and white. auto: fit to the picture, in modes whose values have a unit or leave 0..1, and for a \
+        watched expression; mode: as the mode stores them; fit: fit to the picture in every mode, in place of exposure and tone map; \
+        set: two numbers";
     setting(ui, ("Range", doc, "view.range"), &mut view.range, default, |ui, range| {
         let name = match &*range {
             ViewRange::Fixed(..) => "set".to_owned(),

@@ -142,17 +142,17 @@ fn range(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings) {
     let (name, doc) = match (view.range, legend.of.limits) {
         (ViewRange::Mode, _) => ("mode", "The range of the mode, as `render` stores it"),
         (ViewRange::Auto, Some(_)) if legend.of.mode.range.is_none() => {
-            ("auto", "The range follows the picture: 1 % of its values lie below, 1 % above")
+            ("auto", "The range follows the picture: 1 % of the values lie below it, 1 % above")
         }
-        (ViewRange::Auto, _) => ("auto", "The range of the mode, which this picture fits"),
-        (ViewRange::Fit, _) => ("fit", "The range follows the picture, also in modes that have their own"),
+        (ViewRange::Auto, _) => ("auto", "The range of the mode"),
+        (ViewRange::Fit, _) => ("fit", "The range follows the picture, even in modes that have a range of their own"),
         (ViewRange::Fixed(..), _) => ("set", "The range that you set"),
     };
     let menu = ui.menu_button(RichText::new(name).small(), |ui| {
         for (range, text, doc) in [
-            (ViewRange::Auto, "Automatic", "Follow the picture where values have a unit or leave 0 to 1"),
-            (ViewRange::Mode, "As the mode says", "0 to 1, vectors -1 to 1, light exposed: what `render` writes"),
-            (ViewRange::Fit, "Fit to this picture", "Follow the picture in every mode, light too"),
+            (ViewRange::Auto, "Automatic", "Fit to the picture where values have a unit or leave 0 to 1, and for a watched expression"),
+            (ViewRange::Mode, "As the mode stores it", "0 to 1, vectors -1 to 1, light exposed: as `render` writes them"),
+            (ViewRange::Fit, "Fit to this picture", "Fit to the picture in every mode, light too"),
         ] {
             if ui.selectable_label(view.range == range, text).on_hover_text(doc).clicked() {
                 view.range = range;
@@ -187,7 +187,7 @@ fn bar(ui: &mut Ui, legend: &Legend<'_>) {
     }
     ui.painter().add(mesh);
     response
-        .on_hover_text("Colors of the values between both numbers. The readout at the mouse still shows the raw value");
+        .on_hover_text("The colors of the values between the two numbers. The readout at the mouse still shows the raw value");
 }
 
 /// Switches of the channels, the colormap and the histogram.
