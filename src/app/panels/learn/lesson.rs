@@ -7,7 +7,7 @@ use crate::app::command::Command;
 use crate::app::difference::Kind;
 use crate::app::learn::{LearnCommand, Learning, Measured};
 use crate::app::panels::theme::{ACCENT, EDGE, ERROR, GOOD, QUIET, STRONG, TEXT, WARNING};
-use crate::learn::{Exercise, Finding};
+use crate::learn::{Exercise, Finding, exercises};
 
 /// Shows the exercise. `is_broken`: the newest edit does not compile.
 pub(super) fn show(
@@ -34,7 +34,9 @@ pub(super) fn show(
         }
     });
     ui.separator();
-    goals(ui, learning, exercise, is_broken);
+    if goals(ui, learning, exercise, is_broken) {
+        ask(LearnCommand::Open(exercise.number + 1));
+    }
     ui.separator();
     ui.horizontal_wrapped(|ui| {
         let most = exercise.hints.len();
@@ -106,8 +108,8 @@ fn blocks(text: &str) -> Vec<Block> {
     blocks
 }
 
-/// The goals, each gray before it is measured, then green or red with what was found.
-fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool) {
+/// The goals, each gray before it is measured, then green or red with what was found. Returns whether the user wants the next exercise.
+fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool) -> bool {
     let findings: &[Finding] = match &learning.measured {
         Measured::Findings(findings) => findings,
         _ => &[],
@@ -143,10 +145,15 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool)
     if let Measured::Failed(message) = &learning.measured {
         ui.add(Label::new(RichText::new(message).small().color(ERROR)).wrap());
     }
-    if is_solved {
-        ui.add_space(2.0);
-        ui.label(RichText::new("Solved. Well done!").strong().color(GOOD));
+    if !is_solved {
+        return false;
     }
+    ui.add_space(2.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Solved. Well done!").strong().color(GOOD));
+        exercise.number < exercises().len() && ui.button("Next").on_hover_text("Open the next exercise").clicked()
+    })
+    .inner
 }
 
 /// The difference between the files and the solution. Returns whether the user wants it written.
