@@ -3,10 +3,10 @@
 //!
 //! The child has the same arguments, terminal and process group. Its standard input is a pipe: it closes when this process ends,
 //! however it ends, and then the child ends too. With `--events json`, the commands that come on this process's standard input go
-//! through the pipe, also to the child that takes the place of a lost one.
+//! through the pipe line by line. A command that arrives while one child takes the place of another waits for the new one.
 
 use std::fs::DirBuilder;
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, BufRead as _, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -15,6 +15,9 @@ use specula::message;
 use specula::recovery::{GoodTexts, HUNG, LOST, MOST_LOSSES, State, VARIABLE, remove_folder};
 
 use crate::commands::Failure;
+
+/// Longer lines are forwarded in parts. The child refuses them anyway.
+const LONGEST_LINE: u64 = 1 << 21;
 
 /// Exit code of a process whose main thread has panicked.
 const PANICKED: i32 = 101;
@@ -132,9 +135,6 @@ struct Input(Arc<(Mutex<Lead>, Condvar)>);
 struct Lead {
     pipe: Option<ChildStdin>,
     is_read: bool,
-    /// Whether the child before got the beginning of a line. The next one does not get the rest.
-    skips: bool,
-    is_within_line: bool,
 }
 
 impl Input {
@@ -144,9 +144,7 @@ impl Input {
 
     /// Leads the input to another child, or lets it wait.
     fn lead_to(&self, pipe: Option<ChildStdin>) {
-        let mut lead = self.lock();
-        lead.skips |= pipe.is_some() && lead.is_within_line;
-        lead.pipe = pipe;
+        self.lock().pipe = pipe;
         self.0.1.notify_all();
     }
 
@@ -157,36 +155,25 @@ impl Input {
         }
         let input = self.clone();
         let read = move || {
-            let mut bytes = [0; 1 << 14];
-            loop {
-                match io::stdin().read(&mut bytes) {
-                    Ok(0) => return,
-                    Ok(count) => input.pass(&bytes[..count]),
-                    Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                    Err(_) => return,
-                }
+            let (mut lines, mut line) = (io::stdin().lock(), Vec::new());
+            while (&mut lines).take(LONGEST_LINE).read_until(b'\n', &mut line).is_ok_and(|count| count > 0) {
+                input.pass(&line);
+                line.clear();
             }
         };
         // Without the thread, the window gets no commands and works as ever.
         let _ = std::thread::Builder::new().name("specula-input".to_owned()).spawn(read);
     }
 
-    /// Passes bytes on to the child that there is, or to the next one.
-    fn pass(&self, mut bytes: &[u8]) {
+    /// Passes a line on to the child, or to the next one if the child has ended. What a child has not read at its end is lost.
+    fn pass(&self, line: &[u8]) {
         let mut lead = self.lock();
-        while lead.pipe.is_none() {
-            lead = self.0.1.wait(lead).unwrap_or_else(PoisonError::into_inner);
-        }
-        if lead.skips {
-            let end = bytes.iter().position(|byte| *byte == b'\n');
-            bytes = end.map_or(&[], |end| &bytes[end + 1..]);
-            lead.skips = end.is_none();
-        }
-        let Some(last) = bytes.last() else { return };
-        lead.is_within_line = *last != b'\n';
-        if let Some(pipe) = &mut lead.pipe {
-            // Fails when the child is ending. A command that it has not carried out is lost with it.
-            let _ = pipe.write_all(bytes);
+        loop {
+            match lead.pipe.as_mut().map(|pipe| pipe.write_all(line)) {
+                Some(Ok(())) => return,
+                Some(Err(_)) => lead.pipe = None,
+                None => lead = self.0.1.wait(lead).unwrap_or_else(PoisonError::into_inner),
+            }
         }
     }
 }
@@ -239,5 +226,26 @@ fn end_like(status: ExitStatus) -> Result<(), Failure> {
         Some(0) => Ok(()),
         Some(code) => Err(Failure::Window(u8::try_from(code).unwrap_or(1))),
         None => Err(Failure::Printed),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_for_a_child_that_has_ended_goes_to_the_next() {
+        let spawn = |program: &str| Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let (input, mut ended) = (Input::default(), spawn("true"));
+        let pipe = ended.stdin.take();
+        ended.wait().unwrap();
+        input.lead_to(pipe);
+        let forwards = input.clone();
+        let forwarding = std::thread::spawn(move || forwards.pass(b"a command\n"));
+        let mut next = spawn("cat");
+        input.lead_to(next.stdin.take());
+        forwarding.join().unwrap();
+        input.lead_to(None);
+        assert_eq!(next.wait_with_output().unwrap().stdout, b"a command\n");
     }
 }
