@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::{Align, Button, ComboBox, DragValue, Layout, ProgressBar, Response, RichText, Ui, vec2};
 
 use super::QUIET;
-use super::rows::{Row, heading};
+use super::rows::{Row, elided, heading};
 use crate::app::command::Command;
 use crate::app::control::Captures;
 use crate::capture::Turn;
@@ -34,6 +34,8 @@ pub(super) struct CaptureState {
     fps: f32,
     turn: Turn,
     animation: &'static str,
+    /// The working directory, where the files go.
+    folder: String,
 }
 
 impl Default for CaptureState {
@@ -47,6 +49,7 @@ impl Default for CaptureState {
             fps: 25.0,
             turn: Turn::Camera,
             animation: "webp",
+            folder: std::env::current_dir().unwrap_or_default().display().to_string(),
         }
     }
 }
@@ -59,71 +62,72 @@ pub(super) fn show(
     (shown, versions): ((u32, u32), usize),
     commands: &mut Vec<Command>,
 ) {
-    progress(ui, captures, commands);
+    progress(ui, captures, &state.folder, commands);
     let mut ask = |request: Request| commands.push(Command::Ask(Box::new(request)));
     heading(ui, "Picture");
-    row(
-        ui,
-        "Size",
-        "Size of the file in pixels. Any size is possible: the picture in the window does not change",
-        |ui| size(ui, &mut state.size, shown),
-    );
-    row(
-        ui,
-        "Format",
-        "PNG: as displayed, with all settings in its metadata. EXR: the raw floats before exposure and tone map",
-        |ui| {
-            ui.selectable_value(&mut state.is_exr, false, "PNG").union(ui.selectable_value(
-                &mut state.is_exr,
-                true,
-                "EXR",
-            ))
-        },
-    );
+    if let Some(capture) = picture(ui, state, shown) {
+        ask(Request::Capture(capture));
+    }
+    heading(ui, "Sheet of modes");
+    if let Some(sheet) = sheet(ui, state) {
+        ask(Request::Sheet(sheet));
+    }
+    heading(ui, "Animation");
+    animation(ui, state);
+    if let Some(turntable) = turntable(ui, state) {
+        ask(Request::Turntable(turntable));
+    }
+    if let Some(timeline) = timeline(ui, state, versions) {
+        ask(Request::Timeline(timeline));
+    }
+}
+
+/// Shows the rows of a picture. Returns the picture that the user asks for.
+fn picture(ui: &mut Ui, state: &mut CaptureState, shown: (u32, u32)) -> Option<Capture> {
+    let doc = "Size of the file in pixels. Any size is possible: the picture in the window does not change";
+    row(ui, "Size", doc, |ui| size(ui, &mut state.size, shown));
+    let doc = "PNG: as displayed, with all settings in its metadata. EXR: the raw floats before exposure and tone map";
+    row(ui, "Format", doc, |ui| {
+        let png = ui.selectable_value(&mut state.is_exr, false, "PNG");
+        png.union(ui.selectable_value(&mut state.is_exr, true, "EXR"))
+    });
     let is_plain = !state.is_exr && state.size.is_none();
     row(ui, "With panels", "The whole window, as it is on screen: a PNG of the window's size", |ui| {
         ui.add_enabled(is_plain, egui::Checkbox::without_text(&mut state.with_panels))
     });
-    if button(
-        ui,
-        "Capture picture",
-        "Write the picture to specula-N in the working directory (F12 writes it as it is on screen)",
-    ) {
-        let ending = if state.is_exr { "exr" } else { "png" };
-        let file = Some(numbered_as("specula", ending));
-        ask(Request::Capture(Capture {
-            file,
-            size: state.size,
-            ui: state.with_panels && is_plain,
-            ..Capture::default()
-        }));
-    }
+    let about = "Write the picture as specula-N (F12 writes it as it is on screen)";
+    button(ui, "Capture picture", about).then(|| Capture {
+        file: Some(numbered_as("specula", if state.is_exr { "exr" } else { "png" })),
+        size: state.size,
+        ui: state.with_panels && is_plain,
+        ..Capture::default()
+    })
+}
 
-    heading(ui, "Sheet of modes");
-    row(ui, "Modes", "A small picture of each mode with its name: of those with data in this model, or of all", |ui| {
+/// Shows the rows of a contact sheet. Returns the sheet that the user asks for.
+fn sheet(ui: &mut Ui, state: &mut CaptureState) -> Option<Sheet> {
+    row(ui, "Modes", "A small picture of each mode with its name: only modes with data in this model, or all", |ui| {
         let some = ui.selectable_value(&mut state.all_modes, false, "With data");
         some.union(ui.selectable_value(&mut state.all_modes, true, "All"))
     });
-    if button(ui, "Write sheet", "Write specula-sheet-N.png in the working directory") {
+    button(ui, "Write sheet", "Write specula-sheet-N.png").then(|| {
         let modes = Some(if state.all_modes { "all" } else { "modes" }.into());
-        ask(Request::Sheet(Sheet { file: numbered_as("specula-sheet", "png"), modes, ..Sheet::default() }));
-    }
+        Sheet { file: numbered_as("specula-sheet", "png"), modes, ..Sheet::default() }
+    })
+}
 
-    heading(ui, "Animation");
-    row(
-        ui,
-        "Format",
-        "MP4: a video, small, for any player. WebP: lossless. GIF: 256 colors a frame. PNGs: numbered frames, for other programs",
-        |ui| {
-            let formats = [("mp4", "MP4"), ("webp", "WebP"), ("gif", "GIF"), ("png", "PNGs")];
-            let choices = formats.map(|(ending, name)| ui.selectable_value(&mut state.animation, ending, name));
-            choices.into_iter().reduce(|all, choice| all.union(choice)).unwrap_or_else(|| ui.label(""))
-        },
-    );
+/// Shows the rows of an animation.
+fn animation(ui: &mut Ui, state: &mut CaptureState) {
+    let doc = "MP4: a small video for any player. WebP: lossless. GIF: 256 colors a frame. PNGs: numbered frames, for other programs";
+    row(ui, "Format", doc, |ui| {
+        let formats = [("mp4", "MP4"), ("webp", "WebP"), ("gif", "GIF"), ("png", "PNGs")];
+        let choices = formats.map(|(ending, name)| ui.selectable_value(&mut state.animation, ending, name));
+        choices.into_iter().reduce(|all, choice| all.union(choice)).unwrap_or_else(|| ui.label(""))
+    });
     row(ui, "Frames", "Frames of a full turn", |ui| {
         ui.add(DragValue::new(&mut state.frames).range(2..=1000).speed(1.0))
     });
-    row(ui, "Speed", "Frames a second", |ui| {
+    row(ui, "Speed", "Frames per second", |ui| {
         ui.add(DragValue::new(&mut state.fps).range(1.0..=60.0).speed(0.2).max_decimals(1).suffix(" fps"))
     });
     row(ui, "Turns", "What turns: the camera, the light around the model, or the model in its light", |ui| {
@@ -141,44 +145,45 @@ pub(super) fn show(
         })
         .response
     });
-    if button(
-        ui,
-        "Write turntable",
-        "Write a full turn to specula-turntable-N in the working directory, at the size chosen above",
-    ) {
-        let file = animation_file("specula-turntable", state.animation);
-        let turn = Some(format!("{:?}", state.turn).to_lowercase());
-        let (frames, fps, size) = (Some(state.frames), Some(state.fps), state.size);
-        ask(Request::Turntable(Turntable { file, frames, fps, size, turn }));
-    }
-    let about = "Write all shader versions of this session to specula-timeline-N, drawn with the current settings";
-    if ui
-        .add_enabled(versions > 1, Button::new("Write timeline"))
-        .on_hover_text(about)
-        .on_disabled_hover_text("No edit has been shown yet")
-        .clicked()
-    {
-        let file = animation_file("specula-timeline", state.animation);
-        ask(Request::Timeline(Timeline { file, fps: None, size: state.size }));
-    }
+}
+
+/// Shows the button of a turntable. Returns the turntable that the user asks for.
+fn turntable(ui: &mut Ui, state: &CaptureState) -> Option<Turntable> {
+    let about = "Write a full turn as specula-turntable-N, at the size chosen above";
+    button(ui, "Write turntable", about).then(|| Turntable {
+        file: animation_file("specula-turntable", state.animation),
+        frames: Some(state.frames),
+        fps: Some(state.fps),
+        size: state.size,
+        turn: Some(format!("{:?}", state.turn).to_lowercase()),
+    })
+}
+
+/// Shows the button of an animation of all versions. Returns the animation that the user asks for.
+fn timeline(ui: &mut Ui, state: &CaptureState, versions: usize) -> Option<Timeline> {
+    let about = "Write all shader versions of this session as specula-timeline-N, drawn with the current settings";
+    let button = ui.add_enabled(versions > 1, Button::new("Write timeline")).on_hover_text(about);
+    let is_clicked = button.on_disabled_hover_text("No edit has been shown yet").clicked();
+    let file = || animation_file("specula-timeline", state.animation);
+    is_clicked.then(|| Timeline { file: file(), fps: None, size: state.size })
 }
 
 /// Shows what is under way, in a line that is always there, so that nothing below it moves when a capture begins or ends.
-fn progress(ui: &mut Ui, captures: &Captures, commands: &mut Vec<Command>) {
+fn progress(ui: &mut Ui, captures: &Captures, folder: &str, commands: &mut Vec<Command>) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     let center = Layout::left_to_right(Align::Center);
     if captures.iter().next().is_none() {
-        let about = RichText::new("Files go to the working directory").small().color(QUIET);
+        let about = format!("Files are written to {folder}");
         ui.allocate_ui_with_layout(size, center, |ui| {
             ui.set_min_height(size.y);
-            ui.label(about)
+            ui.add(elided(RichText::new(&about).small().color(QUIET))).on_hover_text(about);
         });
     }
     for running in captures.iter() {
         let part = if running.of > 0 { running.done as f32 / running.of as f32 } else { 0.0 };
         let text = match (running.is_canceled(), running.of) {
-            (true, _) => format!("{}: ends", running.title),
-            (false, 0) => format!("{}: waits", running.title),
+            (true, _) => format!("{}: ending", running.title),
+            (false, 0) => format!("{}: waiting", running.title),
             (false, of) => format!("{}: {} of {of}", running.title, running.done),
         };
         ui.allocate_ui_with_layout(size, center, |ui| {
@@ -208,7 +213,7 @@ fn size(ui: &mut Ui, size: &mut Option<[u32; 2]>, shown: (u32, u32)) -> Response
     let as_shown = format!("{} × {}, as on screen", shown.0, shown.1);
     let named = |size: &[u32; 2]| SIZES.iter().find(|(_, known)| known == size).map(|(name, _)| (*name).to_owned());
     let text =
-        size.as_ref().map_or_else(|| "as on screen".to_owned(), |size| named(size).unwrap_or_else(|| "own".to_owned()));
+        size.as_ref().map_or_else(|| "as on screen".to_owned(), |size| named(size).unwrap_or_else(|| "custom".to_owned()));
     ui.vertical(|ui| {
         let list = ComboBox::from_id_salt("capture size").selected_text(text);
         list.show_ui(ui, |ui| {
