@@ -5,6 +5,8 @@ use egui::{RichText, Ui, vec2};
 
 use super::theme::icon;
 use super::{PanelState, QUIET, mode_tile};
+use crate::app::gallery::GalleryState;
+use crate::app::grid::Grid;
 use crate::shader::annotation::Mode;
 use crate::shader::{PATHS_STAGE, ShaderSet};
 
@@ -25,13 +27,54 @@ pub(super) fn show(
         return false;
     };
     let PanelState { search, scrolled_to, gallery, grid, .. } = state;
+    search_bar(ui, search, gallery, shaders.modes.len());
+    if grid.is_on() {
+        side_by_side(ui, grid);
+    }
+    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
+    let is_found = |mode: &Mode| words.iter().all(|word| text_of(mode).contains(word));
+    let found: Vec<(usize, &Mode)> = shaders.modes.iter().enumerate().filter(|(_, mode)| is_found(mode)).collect();
+    if found.is_empty() {
+        ui.label(RichText::new(format!("No mode matches \"{}\".", search.trim())).small().color(QUIET));
+    }
+    // A search shows modes without data too, and the selected mode is never folded away.
+    let has_data = |mode: &Mode| {
+        let has_feature = mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
+        has_feature || !words.is_empty() || *current == mode.slug
+    };
+    let clicked = egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let (columns, size) = mode_tile::columns(ui.available_width());
+        gallery.size = size;
+        let mut list = List { current, scrolled_to, gallery, columns, clicked: None };
+        for modes in found.chunk_by(|a, b| a.1.group == b.1.group) {
+            let group = &modes[0].1.group;
+            let (shown, folded): (Vec<_>, Vec<_>) = modes.iter().copied().partition(|(_, mode)| has_data(mode));
+            ui.add_space(6.0);
+            ui.label(RichText::new(group).small().color(QUIET));
+            list.show(ui, &shown);
+            if !folded.is_empty() {
+                let title = RichText::new(format!("{} without data", folded.len())).small().color(QUIET);
+                let header = egui::CollapsingHeader::new(title).id_salt(("without data", group));
+                let header = header.show_unindented(ui, |ui| list.show(ui, &folded)).header_response;
+                header.on_hover_text("The scene has no data for these modes");
+            }
+        }
+        list.clicked
+    });
+    let Some(mode) = clicked.inner else { return false };
+    if ui.input(|input| input.modifiers.command) {
+        return mode.stage == PATHS_STAGE || mode.accumulate || !grid.toggle(&mode.slug, current);
+    }
+    current.clone_from(&mode.slug);
+    false
+}
+
+/// The search, and the button that switches between gallery and list.
+fn search_bar(ui: &mut Ui, search: &mut String, gallery: &mut GalleryState, modes: usize) {
     ui.horizontal(|ui| {
         let width = ui.available_width() - TOGGLE - if search.is_empty() { 0.0 } else { 24.0 };
-        ui.add(
-            egui::TextEdit::singleline(search)
-                .hint_text(format!("{}  Search {} modes", icon::MAGNIFYING_GLASS, shaders.modes.len()))
-                .desired_width(width),
-        );
+        let hint = format!("{}  Search {modes} modes", icon::MAGNIFYING_GLASS);
+        ui.add(egui::TextEdit::singleline(search).hint_text(hint).desired_width(width));
         if !search.is_empty() && ui.small_button(icon::X).on_hover_text("Show all modes").clicked() {
             search.clear();
         }
@@ -41,77 +84,58 @@ pub(super) fn show(
             gallery.is_on = !gallery.is_on;
         }
     });
-    if grid.is_on() {
-        let text = format!("{}  {} modes side by side", icon::SQUARES_FOUR, grid.modes().len());
-        let close = egui::Button::new(RichText::new(text).small()).right_text(icon::X);
-        let hint = "Click to show the selected mode alone (Esc). Ctrl+click adds a mode or takes it away";
-        if ui.add(close.min_size(vec2(ui.available_width(), 18.0))).on_hover_text(hint).clicked() {
-            grid.end();
+}
+
+/// The button that shows the selected mode alone again.
+fn side_by_side(ui: &mut Ui, grid: &mut Grid) {
+    let text = format!("{}  {} modes side by side", icon::SQUARES_FOUR, grid.modes().len());
+    let close = egui::Button::new(RichText::new(text).small()).right_text(icon::X);
+    let hint = "Click to show only the selected mode (Esc). Ctrl+click a mode to add or remove it";
+    if ui.add(close.min_size(vec2(ui.available_width(), 18.0))).on_hover_text(hint).clicked() {
+        grid.end();
+    }
+}
+
+/// The list of modes.
+struct List<'a, 'm> {
+    /// Slug of the selected mode.
+    current: &'a str,
+    scrolled_to: &'a mut String,
+    gallery: &'a mut GalleryState,
+    /// Tiles in a row of the gallery.
+    columns: usize,
+    clicked: Option<&'m Mode>,
+}
+
+impl<'m> List<'_, 'm> {
+    /// Shows modes, each with its index in the shaders.
+    fn show(&mut self, ui: &mut Ui, modes: &[(usize, &'m Mode)]) {
+        match self.gallery.is_on {
+            true => mode_tile::grid(ui, self.columns, modes, |ui, mode| self.item(ui, *mode)),
+            false => modes.iter().for_each(|mode| self.item(ui, *mode)),
         }
     }
-    let adds = ui.input(|input| input.modifiers.command);
-    let mut added = None;
-    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
-    let is_found = |mode: &Mode| words.iter().all(|word| text_of(mode).contains(word));
-    let found: Vec<(usize, &Mode)> = shaders.modes.iter().enumerate().filter(|(_, mode)| is_found(mode)).collect();
-    if found.is_empty() {
-        ui.label(RichText::new("No mode has these words").small().color(QUIET));
-    }
-    // Who searches for a mode sees it, and the selected mode is never folded away.
-    let has_data = |mode: &Mode| {
-        let has_feature = mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
-        has_feature || !words.is_empty() || *current == mode.slug
-    };
-    let mut chosen = None;
-    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let (columns, size) = mode_tile::columns(ui.available_width());
-        gallery.size = size;
-        let is_gallery = gallery.is_on;
-        for modes in found.chunk_by(|a, b| a.1.group == b.1.group) {
-            let group = &modes[0].1.group;
-            let (shown, folded): (Vec<_>, Vec<_>) = modes.iter().copied().partition(|(_, mode)| has_data(mode));
-            ui.add_space(6.0);
-            ui.label(RichText::new(group).small().color(QUIET));
-            let mut list = |ui: &mut Ui, modes: &[(usize, &Mode)]| {
-                let mut item = |ui: &mut Ui, (index, mode): &(usize, &Mode)| {
-                    let is_current = *current == mode.slug;
-                    let response = match is_gallery {
-                        true => mode_tile::show(ui, mode, keys(*index, mode).first().copied(), is_current, gallery),
-                        false => row(ui, *index, mode, is_current),
-                    };
-                    let hint = "Ctrl+click shows it beside the others";
-                    let response = response.on_hover_text(format!("{}\n\n--mode {}\n{hint}", mode.doc, mode.slug));
-                    if is_current && *scrolled_to != mode.slug {
-                        scrolled_to.clone_from(&mode.slug);
-                        response.scroll_to_me(None);
-                    }
-                    // Random paths take seconds on a software device.
-                    if response.hovered() && !mode.accumulate && !mode.traces {
-                        gallery.hover(&mode.slug);
-                    }
-                    if response.clicked() {
-                        *(if adds { &mut added } else { &mut chosen }) = Some(mode.slug.clone());
-                    }
-                };
-                match is_gallery {
-                    true => mode_tile::grid(ui, columns, modes, &mut item),
-                    false => modes.iter().for_each(|mode| item(ui, mode)),
-                }
-            };
-            list(ui, &shown);
-            if !folded.is_empty() {
-                let title = RichText::new(format!("{} without data", folded.len())).small().color(QUIET);
-                let header = egui::CollapsingHeader::new(title).id_salt(("without data", group));
-                let header = header.show_unindented(ui, |ui| list(ui, &folded)).header_response;
-                header.on_hover_text("The scene has no data for these modes");
-            }
+
+    fn item(&mut self, ui: &mut Ui, (index, mode): (usize, &'m Mode)) {
+        let is_current = self.current == mode.slug;
+        let response = match self.gallery.is_on {
+            true => mode_tile::show(ui, mode, keys(index, mode).first().copied(), is_current, self.gallery),
+            false => row(ui, index, mode, is_current),
+        };
+        let hint = "Ctrl+click to show it beside the others";
+        let response = response.on_hover_text(format!("{}\n\n--mode {}\n{hint}", mode.doc, mode.slug));
+        if is_current && *self.scrolled_to != mode.slug {
+            self.scrolled_to.clone_from(&mode.slug);
+            response.scroll_to_me(None);
         }
-    });
-    if let Some(slug) = chosen {
-        *current = slug;
+        // Random paths take seconds on a software device.
+        if response.hovered() && !mode.accumulate && !mode.traces {
+            self.gallery.hover(&mode.slug);
+        }
+        if response.clicked() {
+            self.clicked = Some(mode);
+        }
     }
-    let added = added.and_then(|slug| shaders.modes.iter().find(|mode| mode.slug == slug));
-    added.is_some_and(|mode| mode.stage == PATHS_STAGE || mode.accumulate || !grid.toggle(&mode.slug, current))
 }
 
 /// Shows a mode with its keys at the right.
