@@ -28,7 +28,7 @@ pub(super) fn show(
         if let Some((done, next)) = progress {
             ui.add(egui::ProgressBar::new(*done).desired_height(16.0).text(RichText::new(next).small()));
         } else if is_lit && report.total_ms > 0.0 {
-            let from = if report.cached { "Read from the disk" } else { "Baked" };
+            let from = if report.cached { "Light loaded from cache" } else { "Light baked" };
             ui.label(RichText::new(format!("{from} in {:.0} ms", report.total_ms)).small().color(QUIET));
         }
     });

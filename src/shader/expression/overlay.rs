@@ -139,15 +139,16 @@ impl Overlay {
             let hint = did_you_mean(unknown, self.names.iter().map(String::as_str));
             let names = match self.names.as_slice() {
                 _ if self.is_outside => {
-                    "this line is outside of every function, so it offers only what is declared outside too".to_owned()
+                    "this line is outside any function, so only global declarations are in scope".to_owned()
                 }
                 [] => {
-                    "the line declares no number or vector; a member of a struct is watched as `s.roughness`".to_owned()
+                    "no number or vector is in scope on this line; watch a member of a struct as `s.roughness`".to_owned()
                 }
-                names => format!("the line offers {}", names.join(", ")),
+                names => format!("in scope on this line: {}", names.join(", ")),
             };
             let hint = hint.trim().trim_end_matches('?').replacen("Did", "did", 1);
-            let help = if hint.is_empty() { names } else { format!("{hint}? Else, {names}") };
+            let (first, rest) = names.split_at(1);
+            let help = if hint.is_empty() { names } else { format!("{hint}? {}{rest}", first.to_uppercase()) };
             error = error.with_help(help);
         } else if (&first.file, first.line) != (&error.file, error.line) {
             error = error.with_note(first.one_line());
@@ -377,8 +378,8 @@ mod tests {
             let said = Diagnostic::error("a.glsl", "'y' : undeclared identifier");
             overlay(expression).explained(&[said])[0].help.clone().unwrap_or_default()
         };
-        assert!(unknown("a.glsl:2:y").contains("the line offers x"));
-        assert!(unknown("pbr.frag:6:y").contains("declares no number or vector"));
-        assert!(unknown("pbr.frag:5:y").contains("outside of every function"));
+        assert!(unknown("a.glsl:2:y").contains("in scope on this line: x"));
+        assert!(unknown("pbr.frag:6:y").contains("no number or vector is in scope"));
+        assert!(unknown("pbr.frag:5:y").contains("outside any function"));
     }
 }

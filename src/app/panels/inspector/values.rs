@@ -37,7 +37,10 @@ pub(super) fn show(
     let found: Vec<&Mode> = read.into_iter().filter(|mode| is_found(mode)).collect();
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if found.is_empty() {
-            let none = if words.is_empty() { "Reading the pixel…" } else { "No value has these words" };
+            let none = match words.is_empty() {
+                true => "Reading the pixel…".to_owned(),
+                false => format!("No value matches \"{}\".", search.trim()),
+            };
             ui.label(RichText::new(none).small().color(QUIET));
         }
         ui.spacing_mut().item_spacing.y = 0.0;

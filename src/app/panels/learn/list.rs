@@ -42,7 +42,7 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
     }
     ui.add_space(8.0);
     let folder = learning.parent();
-    let text = format!("The folders lie in {}", folder.display());
+    let text = format!("Exercises are stored in {}", folder.display());
     ui.label(RichText::new(text).small().color(QUIET))
         .on_hover_text("`specula learn --dir FOLDER` chooses another place");
 }

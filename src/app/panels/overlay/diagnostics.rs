@@ -69,7 +69,7 @@ pub(super) fn show(
                 }
                 let picture = match cut_short {
                     true => "Where the picture is magenta, it was cut short.",
-                    false => "The picture is the last good one.",
+                    false => "Showing the last version that compiled.",
                 };
                 if failed {
                     ui.label(RichText::new(picture).small().color(QUIET));
