@@ -160,7 +160,7 @@ pub(super) fn open_as(path: PathBuf) -> Result<Command, String> {
         FileKind::Look => Ok(Command::OpenLook(path)),
         FileKind::Shader | FileKind::Other => Err(format!(
             "{}: expected a .gltf or .glb model, an .hdr or .exr environment, a measured .binary or .bin, a look file (.toml or \
-             a .png of Specula), or a folder with a shader tree",
+             a .png that Specula wrote), or a folder with a shader tree",
             path.display()
         )),
     }

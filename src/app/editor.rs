@@ -49,7 +49,7 @@ impl Editor {
         let is_failure = !status.success() && self.start.elapsed() < OPENING;
         is_failure.then(|| {
             format!(
-                "the editor `{}` ended with {status} and has not opened the file. SPECULA_EDITOR chooses another editor",
+                "the editor `{}` ended with {status} and did not open the file. Set SPECULA_EDITOR to use another editor",
                 self.program
             )
         })

@@ -51,7 +51,7 @@ impl Inspector {
     /// Learns that the search has failed. The same search would fail again, so it is not repeated.
     pub(super) fn fail_search(&mut self) {
         if let Some(search) = &mut self.search_not_finite {
-            let found = Err("the search has failed".to_owned());
+            let found = Err("the search failed".to_owned());
             search.found = Some(NotFinite { mode: search.mode.clone(), found });
         }
     }

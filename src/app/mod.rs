@@ -108,7 +108,7 @@ pub enum OtherPicture {
 pub enum AppError {
     /// No display.
     #[error(
-        "no display to open a window on: {0}. Without one, `specula render --watch` writes a PNG again at every save"
+        "no display to open a window on: {0}. Without one, `specula render --watch` writes a new PNG at every save"
     )]
     NoDisplay(String),
     /// A device error.

@@ -36,7 +36,7 @@ pub(super) fn reached(reload: &ReloadEvent) -> String {
     let changed: Vec<String> = reload.changed.iter().map(name).collect();
     match (changed.as_slice(), reload.stages.as_slice()) {
         // A save that repairs a failed one compiles nothing if the text is the last good one again.
-        ([], []) => "repaired: the last good text again".to_owned(),
+        ([], []) => "repaired: back to the last version that compiled".to_owned(),
         ([], stages) => format!("start -> {}", in_short(stages)),
         (changed, stages) => format!("{} -> {}", changed.join(" "), in_short(stages)),
     }

@@ -26,11 +26,13 @@ pub(super) enum StageState {
 impl StageState {
     pub(super) fn words(self) -> (&'static str, &'static str) {
         match self {
-            Self::Failed => ("failed", "Its newest text does not compile. The last good version stays"),
+            Self::Failed => {
+                ("failed", "Its newest version does not compile. The last version that compiled stays in use")
+            }
             Self::OnScreen => ("on screen", "It draws the picture"),
             Self::Pending => ("pending", "It compiles once the picture with the edit is on screen"),
             Self::Bakes => ("bakes", "It computes light or tables, once for each environment and edit"),
-            Self::Off => ("off", "The picture does not use it: another mode or a pass that is off does"),
+            Self::Off => ("off", "The picture does not use it; another mode or a disabled pass does"),
         }
     }
 }

@@ -42,7 +42,9 @@ impl Viewer {
             }),
             Some(Value::Number(number)) => {
                 let number = number.as_u64().filter(|number| showable(*number));
-                Some(CompareWith::Version(number.ok_or("this version is not kept; `versions` lists those that are")?))
+                Some(CompareWith::Version(
+                    number.ok_or("this version is no longer kept; `versions` lists those that are")?,
+                ))
             }
             Some(other) => {
                 return Err(format!("cannot compare with {other}; it can be nothing, picture, previous or a number"));
@@ -52,7 +54,7 @@ impl Viewer {
             let ends = with == CompareWith::Nothing;
             self.execute(Command::Compare(with));
             if !ends && !self.compare.is_on() {
-                return Err("there is no whole picture to keep".to_owned());
+                return Err("there is no complete picture to keep".to_owned());
             }
         }
         if let Some(file) = file {

@@ -40,8 +40,8 @@ impl Viewer {
                 pixel[3] = 255;
             }
             let file = file.unwrap_or_else(picture::numbered);
-            let written =
-                RgbaImage::from_raw(width, height, bgra).ok_or_else(|| "the window was not read whole".to_owned());
+            let written = RgbaImage::from_raw(width, height, bgra)
+                .ok_or_else(|| "the window could not be read completely".to_owned());
             let written = written.and_then(|image| picture::write_image(&DynamicImage::ImageRgba8(image), &file));
             match written {
                 Ok(()) => reply.done(json!({ "file": path_text(&file), "width": width, "height": height })),

@@ -55,7 +55,7 @@ impl Viewer {
             Request::Versions(Some(number)) => {
                 if self.files_of_version(number).is_empty() {
                     return Err(format!(
-                        "version {number} differs in no file on disk from what is on screen, or is not kept"
+                        "version {number} has the same files as the picture on screen, or is no longer kept"
                     ));
                 }
                 self.execute(Command::WriteVersion(number));

@@ -31,7 +31,7 @@ pub(in crate::app) static ROTATION: Number = Number::new(
 pub(in crate::app) static INTENSITY: Number = Number::new(
     ("environment.intensity", "Intensity"),
     ((0.0, 8.0), 2, "×"),
-    "Factor on the map, whose values are cd/m²",
+    "Multiplies the map, whose values are in cd/m²",
     |settings, _| &mut settings.environment.intensity,
 )
 .when(|settings| settings.environment.is_lit());
@@ -86,7 +86,7 @@ pub(in crate::app) static RECTANGLE: [Number; 6] = [
     Number::new(
         ("lights.rect.strength", "Luminance"),
         ((0.0, 60.0), 1, " cd/m²"),
-        "Luminance of a white rectangle. It does not depend on the size",
+        "Luminance of a white rectangle, independent of its size",
         |settings, _| &mut settings.lights.rect.strength,
     )
     .when(has_rectangle),
@@ -129,7 +129,7 @@ pub(in crate::app) static RECTANGLE: [Number; 6] = [
 pub(in crate::app) static AMBIENT: Number = Number::new(
     ("lights.ambient_strength", "Luminance"),
     ((0.0, 2.0), 2, " cd/m²"),
-    "Luminance of every direction. An environment replaces the ambient light",
+    "Luminance from every direction. An environment replaces the ambient light",
     |settings, _| &mut settings.lights.ambient_strength,
 )
 .when(|settings| !settings.environment.is_lit());
@@ -163,25 +163,25 @@ pub(in crate::app) static TRANSFORM: [Number; 7] = [
     Number::new(
         ("model.rotation.0", "Rotation X"),
         (TURN, 0, "°"),
-        "Rotation about the model's X axis, after that about Z",
+        "Rotation about the model's X axis, applied after Z",
         |settings, _| &mut settings.model.rotation[0],
     ),
     Number::new(
         ("model.rotation.1", "Rotation Y"),
         (TURN, 0, "°"),
-        "Rotation about the vertical axis, after those about Z and X",
+        "Rotation about the vertical axis, applied after Z and X",
         |settings, _| &mut settings.model.rotation[1],
     ),
     Number::new(
         ("model.rotation.2", "Rotation Z"),
         (TURN, 0, "°"),
-        "Rotation about the model's Z axis, before the others",
+        "Rotation about the model's Z axis, applied first",
         |settings, _| &mut settings.model.rotation[2],
     ),
     Number::new(
         ("model.scale", "Scale"),
         ((0.01, 100.0), 2, "×"),
-        "Factor on all lengths. The camera frames the model again unless it was moved; lights follow its size",
+        "Scales all lengths. The camera frames the model again unless it was moved; lights follow its size",
         |settings, _| &mut settings.model.scale,
     )
     .logarithmic(),

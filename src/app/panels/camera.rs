@@ -17,8 +17,8 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands
         commands.push(Command::FrameModel);
     }
     for (index, camera) in model.cameras.iter().enumerate() {
-        let name = if camera.name.is_empty() { "Camera of the model" } else { &camera.name };
-        if ui.add(Button::new(name).truncate()).on_hover_text("Look through this camera of the model").clicked() {
+        let name = if camera.name.is_empty() { "Unnamed camera" } else { &camera.name };
+        if ui.add(Button::new(name).truncate()).on_hover_text("Look through this camera").clicked() {
             commands.push(Command::LookThrough(index));
         }
     }
@@ -37,7 +37,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, model: &Model, commands
 
 /// The cameras that the user has kept.
 fn bookmarks(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
-    heading(ui, "Kept cameras");
+    heading(ui, "Saved cameras");
     ui.horizontal_wrapped(|ui| {
         for number in 1..=9_u32 {
             let is_kept = settings.bookmarks.contains_key(&number.to_string());
@@ -45,7 +45,7 @@ fn bookmarks(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) 
             let button = ui.add(Button::new(if is_kept { text.color(ACCENT) } else { text.color(QUIET) }));
             let hint = match is_kept {
                 true => {
-                    format!("Return to this camera (Ctrl+{number}). Shift+click replaces it with the current camera")
+                    format!("Return to this camera (Ctrl+{number}). Shift+click to replace it with the current camera")
                 }
                 false => format!("Store the current camera as {number} (Ctrl+Shift+{number})"),
             };

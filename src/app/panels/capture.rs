@@ -212,8 +212,9 @@ fn button(ui: &mut Ui, title: &str, about: &str) -> bool {
 fn size(ui: &mut Ui, size: &mut Option<[u32; 2]>, shown: (u32, u32)) -> Response {
     let as_shown = format!("{} × {}, as on screen", shown.0, shown.1);
     let named = |size: &[u32; 2]| SIZES.iter().find(|(_, known)| known == size).map(|(name, _)| (*name).to_owned());
-    let text =
-        size.as_ref().map_or_else(|| "as on screen".to_owned(), |size| named(size).unwrap_or_else(|| "custom".to_owned()));
+    let text = size
+        .as_ref()
+        .map_or_else(|| "as on screen".to_owned(), |size| named(size).unwrap_or_else(|| "custom".to_owned()));
     ui.vertical(|ui| {
         let list = ComboBox::from_id_salt("capture size").selected_text(text);
         list.show_ui(ui, |ui| {

@@ -25,7 +25,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
     let compare = &mut viewer.compare;
     if compare.shows_map {
         map(&painter, compare, picture);
-        return name(&painter, bottom, Align2::CENTER_BOTTOM, "FLIP: black is equal, white as different as can be");
+        return name(&painter, bottom, Align2::CENTER_BOTTOM, "FLIP: black is equal, white is the largest difference");
     }
     let x = picture.min.x + compare.wipe * picture.width();
     let strip = Rect::from_center_size(pos2(x, picture.center().y), vec2(GRIP, picture.height()));

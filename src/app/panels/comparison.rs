@@ -9,8 +9,8 @@ use crate::app::dialog::Dialog;
 use crate::app::viewer::{Compare, Difference};
 
 /// The meaning of the numbers of a comparison.
-const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different both pictures look when one is flipped to the other, \
-    0.7 m from a 4K screen. And the largest difference of a channel of the display";
+const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different the pictures look to a viewer who flips between \
+    them, 0.7 m from a 4K screen. Largest: the largest difference of a channel of the display";
 
 /// Shows the buttons that begin and end a comparison, and its numbers.
 pub(super) fn show(ui: &mut Ui, compare: &mut Compare, commands: &mut Vec<Command>) {
@@ -20,22 +20,22 @@ pub(super) fn show(ui: &mut Ui, compare: &mut Compare, commands: &mut Vec<Comman
                 commands.push(Command::Compare(CompareWith::Nothing));
             }
             ui.toggle_value(&mut compare.shows_map, "Difference").on_hover_text(
-                "Cover the picture with FLIP of each pixel: black is equal, white as different as can be",
+                "Show the FLIP of each pixel over the picture: black is equal, white is the largest difference",
             );
             ui.label(monospace(difference_text(compare.difference.as_ref()))).on_hover_text(FLIP);
         } else {
-            let hint = "Keep the picture as it is now, with all settings, and compare what follows with it (Ctrl+K)";
+            let hint = "Keep the current picture with all its settings, and compare later pictures with it (Ctrl+K)";
             if ui.button("Keep this picture").on_hover_text(hint).clicked() {
                 commands.push(Command::Compare(CompareWith::ThisPicture));
             }
         }
         ui.menu_button("Compare with…", |ui| {
-            let picture = "A PNG, JPEG, HDR or EXR. The comparison follows the file";
+            let picture = "A PNG, JPEG, HDR or EXR file. The comparison updates when the file changes";
             if ui.button("A picture…").on_hover_text(picture).clicked() {
                 commands.push(Command::Choose(Dialog::Picture));
                 ui.close();
             }
-            let tree = "The same picture, drawn with other shaders. The comparison follows their files";
+            let tree = "The same picture drawn with other shaders. The comparison updates when their files change";
             if ui.button("A shader tree…").on_hover_text(tree).clicked() {
                 commands.push(Command::Choose(Dialog::SecondTree));
                 ui.close();

@@ -126,7 +126,7 @@ fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
         let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         edit.on_hover_text(
             "FILE:LINE and a variable or an expression of the shaders. Enter shows its value over the model, as a mode. \
-             `return` is what the line returns",
+             `return` is the value that the line returns",
         );
         let is_shown = is_on && settings.mode == MODE && state.field == settings.expression.at;
         let (name, hint) = match is_shown {
@@ -181,7 +181,9 @@ fn line(ui: &mut Ui, shown: &mut Shown, state: &mut ExpressionState) {
         let mut number = shown.line;
         let last = u32::try_from(shown.text.lines().count()).unwrap_or(u32::MAX);
         let drag = ui.add(DragValue::new(&mut number).range(1..=last.max(1)).speed(0.2).prefix("line "));
-        if drag.on_hover_text("The line whose variables and numbers are below. Drag to step through the file").changed()
+        if drag
+            .on_hover_text("The line whose variables and numbers are listed below. Drag to step through the file")
+            .changed()
         {
             state.show_line(shown.path.as_str(), number);
         }
@@ -217,7 +219,7 @@ fn offered(ui: &mut Ui, settings: &mut Settings, shown: &Shown, state: &mut Expr
             };
             let parse = |text: &str| if text.trim() == "last" { Some(0.0) } else { text.trim().parse().ok() };
             let drag = DragValue::new(value).range(0..=100_000).speed(0.05).custom_formatter(text).custom_parser(parse);
-            let hint = "Which evaluation of the line in a pixel is shown, where it runs more than once: in a loop, or for each \
+            let hint = "Which evaluation of the line is shown where it runs more than once in a pixel: in a loop, or for each \
                 light. `lights.chosen` selects one light";
             ui.add(drag).on_hover_text(hint).on_disabled_hover_text(hint);
         });
@@ -239,7 +241,7 @@ fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut Shown, commands: &mut Vec<C
                 let drag =
                     if literal.is_whole { drag.range(0.0..=f64::from(u32::MAX)).fixed_decimals(0) } else { drag };
                 let hint = format!(
-                    "{} in the file. Drag to see the picture with another number; Write keeps it",
+                    "{} in the file. Drag to see the picture with another number; Write saves it",
                     literal.text
                 );
                 let drag = ui.add_enabled(draft.is_none() || is_own, drag).on_hover_text(hint);
@@ -261,7 +263,7 @@ fn numbers(ui: &mut Ui, viewer: &Viewer, shown: &mut Shown, commands: &mut Vec<C
         }
         let write = ui.add_enabled(viewer.has_folder(), Button::new("Write"));
         let changes: Vec<String> = draft.edits.iter().map(|edit| format!("{} -> {}", edit.old(), edit.new)).collect();
-        let hint = format!("Write into the file: {}", changes.join(", "));
+        let hint = format!("Write to the file: {}", changes.join(", "));
         if write.on_hover_text(hint).on_disabled_hover_text(NO_FOLDER).clicked() {
             commands.push(Command::WriteEdits(draft.edits.clone()));
         }
@@ -279,7 +281,7 @@ fn suggestions(ui: &mut Ui, viewer: &Viewer, state: &mut ExpressionState) {
     let newest = viewer.versions.iter().next_back();
     let edited = newest.map(|version| edited_lines(viewer.versions.difference(version))).unwrap_or_default();
     let text = match edited.is_empty() {
-        true => "Type a file and a line to see the variables and numbers that it offers.",
+        true => "Type a file and a line to see its variables and numbers.",
         false => "Lines of the last edit:",
     };
     ui.label(RichText::new(text).small().color(QUIET));
@@ -287,7 +289,10 @@ fn suggestions(ui: &mut Ui, viewer: &Viewer, state: &mut ExpressionState) {
         for (path, line) in edited {
             let name = path.rsplit('/').next().unwrap_or(&path);
             let text = RichText::new(format!("{name}:{line}")).monospace().size(11.5).color(ACCENT);
-            if ui.add(Button::new(text).frame(false)).on_hover_text(format!("Show what {path}:{line} offers")).clicked()
+            if ui
+                .add(Button::new(text).frame(false))
+                .on_hover_text(format!("Show the variables and numbers of {path}:{line}"))
+                .clicked()
             {
                 state.show_line(&path, line);
             }

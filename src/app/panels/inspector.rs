@@ -80,7 +80,7 @@ fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             copy(ui, state, modes);
             let follow = ui.checkbox(&mut state.follows, "Follow mouse");
-            follow.on_hover_text("While no pixel is pinned, read the pixel under the mouse once the mouse rests");
+            follow.on_hover_text("While no pixel is pinned, read the pixel under the mouse when the mouse stops");
         });
     });
     let Some(reading) = &state.reading else { return };
@@ -89,7 +89,7 @@ fn header(ui: &mut Ui, state: &mut Inspector, modes: &[crate::shader::Mode]) {
         None if reading.is_complete => "The model does not cover this pixel".to_owned(),
         None => String::new(),
     };
-    let hover = "Node and material of the nearest surface under the pixel. A surface that a mask or alpha makes invisible counts too";
+    let hover = "Node and material of the nearest surface under the pixel. This includes surfaces that a mask or alpha makes invisible";
     ui.add(elided(RichText::new(&about).small().color(QUIET))).on_hover_text(format!("{about}\n{hover}").trim_start());
 }
 

@@ -48,12 +48,12 @@ fn bar(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>) {
             let exists = |n: &usize| (1..=all.len()).contains(n);
             if number.is_some() {
                 let next = button(ui, "Next", "Open the next exercise", after.filter(exists));
-                let previous = button(ui, "Previous", "Open the exercise before", before.filter(exists));
+                let previous = button(ui, "Previous", "Open the previous exercise", before.filter(exists));
                 next.or(previous).into_iter().for_each(|number| ask(LearnCommand::Open(number)));
             }
             let is_toggle = learning.exercise.is_some();
             let text = if learning.shows_list { "Back" } else { "All" };
-            if is_toggle && ui.button(text).on_hover_text("The list of all exercises").clicked() {
+            if is_toggle && ui.button(text).on_hover_text("List all exercises").clicked() {
                 ask(LearnCommand::List);
             }
         });

@@ -65,8 +65,8 @@ fn terms(ui: &mut Ui, lights: &mut LightSettings, in_model: usize) {
     let name = |light: u32| {
         if light == 0 { "All (D to V·H: light 1)".to_owned() } else { format!("Light {light}") }
     };
-    let doc = "Light whose BRDF terms the modes show. With all, the lobes are the sum over all lights; D, G, V, F, weights and cosines have \
-        a direction to one light, and are those of light 1";
+    let doc = "Light whose BRDF terms the modes show. All: the lobes are summed over all lights. D, G, V, F, weights and cosines depend on the \
+        direction to a single light, so they are those of light 1";
     let count = if lights.source == LightSource::Model { in_model.min(4) as u32 } else { 3 };
     setting(ui, ("Terms of", doc, "lights.chosen"), &mut lights.chosen, 0, |ui, chosen| {
         choose(ui, "terms", name(*chosen), |ui| {
@@ -81,7 +81,7 @@ fn titled(ui: &mut Ui, title: &str, light: LightId, commands: &mut Vec<Command>)
     ui.horizontal(|ui| {
         ui.add(egui::Label::new(RichText::new(title).small().color(QUIET)).selectable(false));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let hint = "Show its handle in the picture, and drag it there";
+            let hint = "Show its handle in the picture, where you can drag it";
             if ui.small_button("Move in view").on_hover_text(hint).clicked() {
                 commands.push(match light {
                     LightId::Rectangle => Command::PlaceRectangle,

@@ -293,7 +293,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
         Panel::Expression | Panel::Inspector | Panel::Capture | Panel::Scene | Panel::Texture => {}
         Panel::Modes => {
             if modes::show(ui, shaders.as_deref(), features, &mut settings.mode, &mut viewer.panels) {
-                let text = "Nine modes fit side by side, and modes of random paths are shown alone";
+                let text = "At most nine modes fit side by side. Modes of random paths can only be shown alone";
                 commands.push(Command::Say(text.into()));
             }
         }

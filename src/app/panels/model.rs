@@ -44,7 +44,8 @@ pub(super) fn show(
 
 /// The list of models.
 fn list(ui: &mut Ui, model: &Model, status: &ModelStatus, recent: &[PathBuf], commands: &mut Vec<Command>) {
-    let doc = "Built-in models, and files that were open. Drop a .gltf or .glb file on the window, or press Ctrl+O, to open another";
+    let doc =
+        "Built-in models and recent files. To open another, drop a .gltf or .glb file on the window or press Ctrl+O";
     let row = Row { name: "Model", doc, option: String::new(), is_changed: false, is_indented: false };
     row.show(ui, |ui| {
         let shown = if status.loading { "loading…" } else { model.name.as_str() };
@@ -91,7 +92,7 @@ fn channel(ui: &mut Ui, settings: &mut Settings, of: MaterialChannel, row: impl 
         let mut is_on = settings.material.replaces(of);
         let switch = ui.add_enabled(!settings.material.enabled, Checkbox::without_text(&mut is_on));
         let hint = format!(
-            "Replace this channel of all materials, without its texture. All else stays\n--set material.override={}",
+            "Replace this channel and its texture in all materials. Everything else stays\n--set material.override={}",
             of.name()
         );
         if switch.on_hover_text(hint).changed() {
@@ -106,7 +107,7 @@ fn place(ui: &mut Ui, settings: &mut Settings) {
     let is_moved = settings.model != ModelSettings::default();
     heading(ui, "Transform");
     TRANSFORM.iter().for_each(|row| number(ui, settings, row));
-    if is_moved && ui.small_button("Reset").on_hover_text("Return to the transform of the file").clicked() {
+    if is_moved && ui.small_button("Reset").on_hover_text("Return to the transform in the file").clicked() {
         settings.model = ModelSettings::default();
     }
 }

@@ -97,7 +97,7 @@ fn contents(ui: &mut Ui, viewer: &mut Viewer, state: &OpenGallery, height: f32, 
         {
             commands.push(Command::Choose(Dialog::File));
         }
-        if ui.button("Shader tree…").on_hover_text("A folder that `specula new` has written").clicked() {
+        if ui.button("Shader tree…").on_hover_text("A folder written by `specula new`").clicked() {
             commands.push(Command::Choose(Dialog::Tree));
         }
         ui.label(RichText::new("or drop a file on the window").small().color(QUIET));

@@ -13,7 +13,7 @@ use crate::settings::{Settings, Tonemap, ViewSettings};
 pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
     number(ui, settings, &EXPOSURE);
     let view = &mut settings.view;
-    let doc = "Curve from exposed light to the range of the display";
+    let doc = "Curve that maps exposed light to the range of the display";
     setting(ui, ("Tone map", doc, "view.tonemap"), &mut view.tonemap, Tonemap::default(), |ui, tonemap| {
         choose(ui, "tonemap", choice_name(tonemap), |ui| {
             for choice in Tonemap::value_variants() {
@@ -23,18 +23,18 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Comm
     });
     background(ui, view);
     range::show(ui, view);
-    let doc = "Multisampling: samples of each pixel";
+    let doc = "Multisampling: samples per pixel";
     setting(ui, ("Samples", doc, "view.msaa"), &mut view.msaa, ViewSettings::default().msaa, |ui, samples| {
         ui.selectable_value(samples, 1, "1×").union(ui.selectable_value(samples, 4, "4×"))
     });
     if ui.button("Copy as look file").on_hover_text("Copy all settings as TOML, for --look").clicked() {
         ui.ctx().copy_text(settings.to_toml());
-        commands.push(Command::Say("copied: all settings as TOML".into()));
+        commands.push(Command::Say("Copied all settings as TOML".into()));
     }
 }
 
 fn background(ui: &mut Ui, view: &mut ViewSettings) {
-    let doc = "Color behind the model: none (transparent), or the environment if that is visible";
+    let doc = "Color behind the model: none (transparent), or the environment if it is visible";
     let default = Settings::of_window().view.background;
     setting(ui, ("Background", doc, "view.background"), &mut view.background, default, |ui, background| {
         if background == "env" {

@@ -45,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, shaders: &ShaderSet, values: &mut Values) {
     let constants: Vec<&Constant> =
         constants.into_iter().filter(|c| is_found([&c.label, &c.name, &c.group, &c.doc])).collect();
     if constants.is_empty() && parameters.is_empty() {
-        ui.label(RichText::new("No parameter matches").small().color(QUIET));
+        ui.label(RichText::new(format!("No parameter matches \"{}\".", words.join(" "))).small().color(QUIET));
     }
     // Without a group first, then group by group in the order in which the tree names them.
     let mut groups = vec![""];
@@ -80,7 +80,7 @@ fn search(ui: &mut Ui) -> Vec<String> {
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     let hint = format!("{}  Search parameters", icon::MAGNIFYING_GLASS);
     let field = egui::TextEdit::singleline(&mut text).hint_text(hint).desired_width(f32::INFINITY);
-    ui.add(field).on_hover_text("Words of a name, a group or a description");
+    ui.add(field).on_hover_text("Searches names, groups and descriptions");
     let words = text.to_lowercase().split_whitespace().map(str::to_owned).collect();
     ui.data_mut(|data| data.insert_temp(id, text));
     words

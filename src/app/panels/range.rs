@@ -28,19 +28,19 @@ impl Value for Colormap {
 pub(super) fn show(ui: &mut Ui, view: &mut ViewSettings) {
     let default = Settings::of_window().view;
     range(ui, view, default.range);
-    let doc = "Channels that the picture shows. A single one is gray; a is coverage";
+    let doc = "Channels that the picture shows. A single channel is shown in gray; a is coverage";
     setting(ui, ("Channels", doc, "view.channels"), &mut view.channels, default.channels, |ui, channels| {
         list(ui, "channels", channels)
     });
-    let doc = "Colors that stand for a number, in modes with one component and for a single channel. None: those of the mode. \
-        Viridis and magma have even steps of lightness (van der Walt and Smith 2015), turbo many hues (Mikhailov 2019), \
-        coolwarm a middle (Moreland 2009)";
+    let doc = "Colors that stand for a number, in modes with one component and for a single channel. None: the colors of the \
+        mode. Viridis and magma have even steps of lightness (van der Walt and Smith 2015), turbo has many hues (Mikhailov 2019), \
+        and coolwarm diverges from a neutral middle (Moreland 2009)";
     setting(ui, ("Colormap", doc, "view.colormap"), &mut view.colormap, default.colormap, |ui, colormap| {
         list(ui, "colormap", colormap)
     });
     let doc = "Draw the edges of the triangles over the picture, in every mode";
     setting(ui, ("Wireframe", doc, "view.wireframe"), &mut view.wireframe, default.wireframe, check);
-    let doc = "Noise of half a step of 8 bits, which hides bands in smooth light. Data and EXR files never have it";
+    let doc = "Noise of half an 8-bit step, which hides banding in smooth light. Data and EXR files never have it";
     setting(ui, ("Dither", doc, "view.dither"), &mut view.dither, default.dither, check);
 }
 

@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut ShadersState, c
             count => format!("Problems {count}"),
         };
         let tabs = [
-            (Tab::Stages, "Stages", "What each stage costs, and how the last edit has changed that"),
+            (Tab::Stages, "Stages", "What each stage costs, and how the last edit changed that"),
             (Tab::Files, "Files", "The files of the tree, and which includes which"),
             (Tab::Problems, &problems, "Errors and warnings, by file"),
             (Tab::Edits, "Edits", "The last edits: what they reached, and how long each step took"),
@@ -118,7 +118,7 @@ fn tree(ui: &mut Ui, status: &ShaderStatus, commands: &mut Vec<Command>) {
     if label.clicked() {
         commands.push(Command::Edit(Place { file: folder.clone(), line: None, column: None }));
     }
-    let hint = format!("{}\nSave a file here, and the picture follows. Click to open it in the editor", status.tree);
+    let hint = format!("{}\nSave a file here and the picture updates. Click to open it in the editor", status.tree);
     label.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text(hint);
 }
 
@@ -133,7 +133,7 @@ pub(super) fn lines(last: &ReloadEvent) -> (String, String, String) {
         false => format!("failed after {:.0} ms", last.compile_ms),
     };
     let hover = format!(
-        "{}\n-> {stages}\n{times}\nSeen {:.1} ms after the first file event. The frame is the first with the new shaders.",
+        "{}\n-> {stages}\n{times}\nDetected {:.1} ms after the first file event. The frame is the first one with the new shaders.",
         if last.changed.is_empty() { "start".to_owned() } else { last.changed.join("\n") },
         last.detect_ms
     );

@@ -23,8 +23,8 @@ pub(in crate::app) struct TextureRequest {
 
 /// The channels that can be looked at, with their hover texts.
 const CHANNELS: [(&str, &str); 6] = [
-    ("RGB", "Colors, whatever their alpha"),
-    ("RGBA", "Colors over a checkerboard, by their alpha"),
+    ("RGB", "Colors, ignoring alpha"),
+    ("RGBA", "Colors blended over a checkerboard by alpha"),
     ("R", "The red channel: occlusion, where it shares a texture with metallic and roughness"),
     ("G", "The green channel: roughness"),
     ("B", "The blue channel: metallic"),
@@ -88,7 +88,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TextureState) {
             ui.selectable_value(&mut state.source, Some(*other), label);
         }
     });
-    list.response.on_hover_text("Texture to look at. The panel Scene lists them by material");
+    list.response.on_hover_text("The texture to show. The Scene panel lists textures by material");
     controls(ui, state, mips::count(width, height));
     let about = about(model, source, uses, (width, height));
     let text_height = 4.0 * 14.0;

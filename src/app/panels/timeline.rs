@@ -57,7 +57,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut TimelineState, 
                 entry.respond(response, &mut state.asked, commands);
             }
             if viewer.versions.iter().next().is_none() {
-                ui.label(RichText::new("Each edit that is shown appears here").color(QUIET));
+                ui.label(RichText::new("Your edits appear here once they are shown").color(QUIET));
             }
         });
     });
@@ -217,7 +217,7 @@ pub(super) fn monospace(text: impl Into<String>) -> RichText {
 fn ask(ui: &mut Ui, viewer: &Viewer, number: u64, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
     let files = viewer.files_of_version(number);
     let names: Vec<&str> = files.iter().filter_map(|(path, _)| path.file_name()?.to_str()).collect();
-    let question = format!("Replace what is on disk with version {number} of {}?", names.join(", "));
+    let question = format!("Overwrite the files on disk with version {number} of {}?", names.join(", "));
     ui.add(Label::new(RichText::new(question).color(WARNING)).wrap());
     ui.horizontal(|ui| {
         if ui.add_enabled(!files.is_empty(), egui::Button::new("Write")).clicked() {

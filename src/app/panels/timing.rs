@@ -95,12 +95,8 @@ fn counts(ui: &mut Ui, viewer: &Viewer) {
     Grid::new("counts").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         let all = [
             ("Draws", counts.draws, "Draws of the last picture in all of its passes, without the panels"),
-            ("Triangles", counts.triangles, "Triangles in these draws, of all instances and passes"),
-            (
-                "Pipelines",
-                pipelines as u64,
-                "Pipelines that are kept: those of the newest 64 pictures, of bakes and of thumbnails",
-            ),
+            ("Triangles", counts.triangles, "Triangles in these draws, over all instances and passes"),
+            ("Pipelines", pipelines as u64, "Pipelines kept for the newest 64 pictures, for bakes and for thumbnails"),
         ];
         for (name, value, hint) in all {
             row(ui, (name, QUIET.color()), &grouped(value as f64), hint);
@@ -119,7 +115,7 @@ fn memory(ui: &mut Ui, (device, process): (&MemoryUse, Option<u64>)) {
             let (value, hint) = match heap.used_of {
                 Some([used, budget]) => (
                     format!("{} of {}", mib(used), mib(budget)),
-                    "What the driver counts for this process, and what it may take (VK_EXT_memory_budget)",
+                    "What this process uses and what it may use, as reported by the driver (VK_EXT_memory_budget)",
                 ),
                 None => (mib(heap.size), "Size of the heap. This driver does not report how much is in use"),
             };

@@ -192,7 +192,7 @@ impl Viewer {
             CompareWith::ThisPicture => {
                 let is_whole = !self.is_cut_short();
                 let Some(shown) = self.shown.as_ref().filter(|shown| is_whole && shown.scene.is_some()) else {
-                    return self.say("There is no whole picture to keep");
+                    return self.say("There is no complete picture to keep");
                 };
                 let mode = shown.frame.state.mode().map_or("", |mode| mode.name.as_str());
                 let label = format!("{mode}, kept");

@@ -14,8 +14,8 @@ use crate::threads::Message;
 use crate::write_back;
 
 /// Message for a shader tree that has no folder on disk.
-pub(in crate::app) const NO_FOLDER: &str = "These shaders are no folder on disk: `specula new DIR` writes them to one, which you can \
-    open and edit";
+pub(in crate::app) const NO_FOLDER: &str = "These shaders are not in a folder on disk. `specula new DIR` writes them to a folder that you \
+    can open and edit";
 
 /// Changes of the shaders that are under way.
 #[derive(Default)]

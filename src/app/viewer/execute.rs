@@ -37,11 +37,11 @@ impl Viewer {
             Command::KeepCamera(number) => {
                 let settings = &mut self.session.settings;
                 settings.bookmarks.insert(number.to_string(), settings.camera.clone());
-                self.say(format!("Kept this camera as {number}. Ctrl+{number} returns to it"));
+                self.say(format!("Saved this camera as {number}. Ctrl+{number} returns to it"));
             }
             Command::RecallCamera(number) => match self.session.settings.bookmarks.get(&number.to_string()).cloned() {
                 Some(camera) => self.session.settings.camera = camera,
-                None => self.say(format!("No camera is kept as {number}. Ctrl+Shift+{number} keeps this one")),
+                None => self.say(format!("No camera is saved as {number}. Ctrl+Shift+{number} saves the current one")),
             },
             Command::Screenshot => self.screenshot = true,
             Command::Pick(at) => {

@@ -194,5 +194,5 @@ fn names(state: &FrameState, at: [u32; 2]) -> Option<[String; 2]> {
     };
     let named = |name: &str, instead: &str| if name.is_empty() { instead.to_owned() } else { name.to_owned() };
     let primitive = model.primitives.get(instance.primitive)?;
-    Some([named(&instance.node_name, &primitive.name), named(&material, "material without a name")])
+    Some([named(&instance.node_name, &primitive.name), named(&material, "unnamed material")])
 }

@@ -47,7 +47,7 @@ impl Viewer {
                 learning.asks = false;
                 let shaders = self.session.shaders.as_deref();
                 let files = files_to_restore(exercise, shaders);
-                self.write_exercise(files, "The exercise starts again");
+                self.write_exercise(files, "Restored the original files");
             }
             (LearnCommand::Edit, Some(exercise)) => self.edit_exercise(exercise),
             (_, None) => {}

@@ -218,8 +218,9 @@ impl Viewer {
         self.names_checked |= is_complete;
         if is_complete && self.session.mode().is_none() {
             let mode = &self.session.settings.mode;
-            problems
-                .push(format!("there is no mode '{mode}', so you see the final picture; `specula modes` lists all"));
+            problems.push(format!(
+                "there is no mode '{mode}', so the final picture is shown; `specula modes` lists all modes"
+            ));
         }
         if !problems.is_empty() {
             self.say(problems.join("\n"));
@@ -334,7 +335,7 @@ impl Viewer {
                 // The same question would panic again, so it stays asked until another one comes.
                 let inspector = &mut self.panels.inspector;
                 if let Some(asked) = &inspector.asked {
-                    let now = Err("the measurement has failed".to_owned());
+                    let now = Err("the measurement failed".to_owned());
                     inspector.curves = Some(Shown { of: asked.material, now, before: None });
                 }
                 "measuring"

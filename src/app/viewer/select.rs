@@ -72,7 +72,7 @@ impl Viewer {
         let model = self.session.model().cloned()?;
         let key = self.selected.key(&model);
         if key.is_none() {
-            self.say("Select a node or a primitive first: click it in the picture or in the panel Scene");
+            self.say("Select a node or a primitive first: click it in the picture or in the Scene panel");
         }
         key
     }
@@ -128,8 +128,8 @@ impl Viewer {
         self.select(Selected::Light(LightId::Rectangle));
     }
 
-    /// Lets a new model shine by the lights of its file, or by the orbiting ones if it has none, as long as the user has not said which
-    /// lights shine. A file that has lights was made to be seen in them, and other viewers show them too.
+    /// Switches on the lights of a new model's file, or the orbiting ones if it has none, as long as the user has not chosen a source of
+    /// lights. A file that has lights was made to be seen in them, and other viewers show them too.
     pub(super) fn follow_lights(&mut self, model: &Model) {
         let lights = &mut self.session.settings.lights;
         // The user has chosen others since.
@@ -141,12 +141,10 @@ impl Viewer {
         let source = if count > 0 { LightSource::Model } else { LightSource::default() };
         (lights.source, self.followed_source) = (source, source);
         if count > 0 {
-            let lights = if count == 1 {
-                "light of its file shines".to_owned()
-            } else {
-                format!("{count} lights of its file shine")
-            };
-            self.say(format!("The {lights} instead of the orbiting lights. Lights > Source changes that"));
+            let lights = if count == 1 { "light".to_owned() } else { format!("{count} lights") };
+            self.say(format!(
+                "Using the {lights} of the model's file instead of the orbiting lights (Lights > Source)"
+            ));
         }
     }
 

@@ -27,7 +27,7 @@ impl Viewer {
     pub(super) fn on_tools(&mut self, tools: Result<Arc<Tools>, String>) {
         match tools {
             Ok(tools) => self.tools.made = Some(tools),
-            Err(message) => self.say(format!("Selections have no outline, and textures no picture: {message}")),
+            Err(message) => self.say(format!("Selections have no outline, and textures cannot be shown: {message}")),
         }
     }
 }

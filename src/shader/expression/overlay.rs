@@ -129,7 +129,7 @@ impl Overlay {
         let Some(first) = errors.first() else { return Vec::new() };
         let is_type = first.message.contains(FUNCTION) && first.message.contains("no matching overloaded function");
         let why = if is_type {
-            "it has no value of a number, vector, matrix or bool; watch a member or an element".to_owned()
+            "its value is no number, vector, matrix or bool; watch a member or an element".to_owned()
         } else {
             first.message.clone()
         };
@@ -141,9 +141,8 @@ impl Overlay {
                 _ if self.is_outside => {
                     "this line is outside any function, so only global declarations are in scope".to_owned()
                 }
-                [] => {
-                    "no number or vector is in scope on this line; watch a member of a struct as `s.roughness`".to_owned()
-                }
+                [] => "no number or vector is in scope on this line; watch a member of a struct as `s.roughness`"
+                    .to_owned(),
                 names => format!("in scope on this line: {}", names.join(", ")),
             };
             let hint = hint.trim().trim_end_matches('?').replacen("Did", "did", 1);

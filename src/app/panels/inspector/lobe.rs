@@ -75,7 +75,8 @@ pub(super) fn show(
     let doc = "The same for a base color of white. 1: the surface reflects all light. More: it gains energy. Less: it loses energy";
     chart(ui, "White furnace", doc, |curves| &curves.furnace);
     if let Some(hemisphere) = &curves.hemisphere {
-        let doc = "f NoV over the hemisphere of directions to the eye: a length in each direction. Drag to turn it";
+        let doc =
+            "f NoV over the hemisphere of directions to the eye, drawn as a length in each direction. Drag to turn it";
         ui.label(RichText::new("Lobe in space").small().color(QUIET)).on_hover_text(doc);
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TALL), Sense::drag());
         *turn_deg = (*turn_deg - 0.7 * response.drag_delta().x).rem_euclid(360.0);
@@ -91,9 +92,9 @@ fn why_not(reading: &Reading, light: u32) -> String {
     let missing = ["position", "shading-normal", "base-color", "metallic", "roughness"];
     let missing: Vec<&str> = missing.into_iter().filter(|slug| reading.numbers(slug).is_none()).collect();
     match missing.as_slice() {
-        [] if reading.lights.is_empty() => "There is no light: choose some in the panel Lights".to_owned(),
+        [] if reading.lights.is_empty() => "There is no light. Turn lights on in the Lights panel".to_owned(),
         [] => format!("Light {} has no direction here", light.max(1)),
-        missing => format!("The pixel has no value of {}, which the curves need", missing.join(", ")),
+        missing => format!("The curves need {}, which this pixel does not have", missing.join(", ")),
     }
 }
 
@@ -102,7 +103,7 @@ fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Re
     let [r, g, b] = material.base_color;
     let Material { metallic, roughness, .. } = material;
     let text = format!("Base {r:.3} {g:.3} {b:.3}, metallic {metallic:.2}, roughness {roughness:.3}");
-    let doc = "Base color (linear RGB), metallic and roughness of this pixel, which the curves are measured with";
+    let doc = "The curves are measured with the base color (linear RGB), metallic and roughness of this pixel";
     ui.label(RichText::new(text).small()).on_hover_text(doc);
     let Directions { light_deg, eye_deg, azimuth_deg } = directions;
     let text = format!("Light {light_deg:.1}°, eye {eye_deg:.1}°, azimuth of the eye {azimuth_deg:.0}°");
@@ -115,7 +116,7 @@ fn about(ui: &mut Ui, material: &Material, directions: &Directions, reading: &Re
     }
     let left_out = left_out(reading);
     if !left_out.is_empty() {
-        let text = format!("The curves leave out: {}", left_out.join(", "));
+        let text = format!("Not in the curves: {}", left_out.join(", "));
         let doc =
             "The measured surface has base color, metallic and roughness. All other properties have glTF's defaults";
         ui.label(RichText::new(text).small().color(WARNING)).on_hover_text(doc);
@@ -197,7 +198,7 @@ fn polar(ui: &mut Ui, curves: &Curves, before: Option<&Curves>, of: &Material, d
     let name = if directions.is_in_plane() { "eye" } else { "eye (out of plane)" };
     arrow(directions.in_plane_deg().clamp(-90.0, 90.0), ACCENT.color(), (name, 0.5), false);
     response.on_hover_text(
-        "The lobe in the plane of incidence: in each direction to the eye, f NoV in 1/sr as luminance. The light comes from the left. \
+        "The lobe in the plane of incidence: the luminance of f NoV, 1/sr, in each direction to the eye. The light comes from the left. \
          The arrow of the eye has this pixel's angle; out of plane: the eye lies outside this plane",
     );
 }
@@ -299,7 +300,7 @@ mod tests {
         let known = [("position", [0.0; 3]), ("shading-normal", [0.0, 0.0, 1.0]), ("metallic", [0.0; 3])];
         assert_eq!(
             why_not(&reading(&known), 0),
-            "The pixel has no value of base-color, roughness, which the curves need"
+            "The curves need base-color, roughness, which this pixel does not have"
         );
         let all = [&known[..], &[("base-color", [1.0; 3]), ("roughness", [0.5; 3])]].concat();
         assert!(why_not(&reading(&all), 0).contains("no light"));

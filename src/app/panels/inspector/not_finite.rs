@@ -58,7 +58,7 @@ fn line(ui: &mut Ui, site: &Site, value: &str, mode: &str, has_files: bool, comm
         ui.label(RichText::new(format!("{file}:{line}")).strong());
         ui.label(RichText::new(code).monospace());
         ui.label(format!(
-            "The first statement in {mode} that makes {value} at this pixel, in the order in which the fragment executes"
+            "The first statement in {mode} that produces {value} at this pixel, in the order of execution"
         ));
         ui.label(RichText::new(hint).small().color(ACCENT));
     });

@@ -83,7 +83,7 @@ fn about(ui: &mut Ui, texel: &Texel) {
         stored(texel)
     );
     ui.label(RichText::new(lines).monospace());
-    ui.label("The nearest texel of level 0, as the image has it. The shader itself filters texels and mip levels.");
+    ui.label("The nearest texel of level 0, as stored in the image. The shader filters texels and mip levels.");
     ui.label(RichText::new("Click to show the texture").small().color(ACCENT));
 }
 

@@ -76,10 +76,10 @@ pub(super) fn show(
         let left = unread.iter().filter(|mode| is_found(mode)).count();
         if left > 0 && reading.is_complete {
             ui.add_space(8.0);
-            let text = format!("{left} modes of random paths and passes are not read here");
+            let text = format!("{left} modes of random paths and passes are not listed here");
             let names = unread.iter().map(|mode| mode.name.as_str()).collect::<Vec<_>>().join(", ");
             let doc =
-                format!("Show one of them: its value is in the corner of the picture, under the mouse.\n\n{names}");
+                format!("Select one of them to see its value under the mouse in the corner of the picture.\n\n{names}");
             ui.label(RichText::new(text).small().color(QUIET)).on_hover_text(doc);
         }
     });
@@ -128,7 +128,7 @@ fn about(ui: &mut Ui, mode: &Mode, value: &PixelValue) {
     ui.label(&mode.doc);
     ui.label(RichText::new(value.text(mode).trim().to_owned()).monospace());
     if value.not_finite {
-        ui.label(RichText::new("The shader has computed NaN or infinity here").color(ERROR));
+        ui.label(RichText::new("The shader computed NaN or infinity here").color(ERROR));
     }
     ui.label(RichText::new("Click to show this mode").small().color(QUIET));
     ui.label(option_text(&format!("--mode {}", mode.slug)).color(ACCENT));

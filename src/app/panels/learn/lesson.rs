@@ -28,7 +28,7 @@ pub(super) fn show(
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
         let hover =
-            format!("{}\nOpens it at the line that matters", learning.folder.join(&exercise.open.file).display());
+            format!("{}\nOpens the file at the line to look at", learning.folder.join(&exercise.open.file).display());
         if ui.button(format!("Open {}", exercise.open.file)).on_hover_text(hover).clicked() {
             ask(LearnCommand::Edit);
         }
@@ -43,18 +43,23 @@ pub(super) fn show(
         let text = format!("Hint ({} of {most})", (record.hints + 1).min(most));
         let is_left = record.hints < most;
         let text = if is_left { text } else { "No more hints".to_owned() };
-        let hint =
-            ui.add_enabled(is_left, egui::Button::new(text)).on_hover_text("From a nudge to almost the solution");
+        let hint = ui
+            .add_enabled(is_left, egui::Button::new(text))
+            .on_hover_text("The first hint is a nudge; the last one is almost the solution");
         if hint.clicked() {
             ask(LearnCommand::Hint);
         }
         let text = if learning.solution.is_some() { "Hide the solution" } else { "Show the solution" };
-        if ui.button(text).on_hover_text("The lines that it changes. Your files stay as they are").clicked() {
+        if ui
+            .button(text)
+            .on_hover_text("Shows the lines that the solution changes. Your files stay as they are")
+            .clicked()
+        {
             ask(LearnCommand::Solution);
         }
         let (text, hover) = match learning.asks {
-            true => ("Discard my edits", "Writes the files of the start over yours"),
-            false => ("Start over", "Asks before it writes the files of the start over yours"),
+            true => ("Discard my edits", "Overwrites your files with the original ones"),
+            false => ("Start over", "Restores the original files. Asks before it overwrites yours"),
         };
         if ui.button(text).on_hover_text(hover).clicked() {
             ask(LearnCommand::StartOver);
@@ -125,7 +130,7 @@ fn goals(ui: &mut Ui, learning: &Learning, exercise: &Exercise, is_broken: bool)
             _ => "measured",
         };
         ui.label(RichText::new(state).small().color(QUIET)).on_hover_text(
-            "Specula renders and measures your shaders after every save, beside the picture, and never delays it",
+            "Specula measures your shaders in the background after every save. The picture does not wait for it",
         );
     });
     for (index, goal) in exercise.goals.iter().enumerate() {
@@ -161,7 +166,7 @@ fn solution(ui: &mut Ui, learning: &Learning) -> bool {
     let Some(lines) = &learning.solution else { return false };
     ui.add_space(4.0);
     if lines.is_empty() {
-        ui.label(RichText::new("Your files are those of the solution.").color(GOOD));
+        ui.label(RichText::new("Your files match the solution.").color(GOOD));
         return false;
     }
     Frame::new().fill(EDGE.color()).corner_radius(4).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {

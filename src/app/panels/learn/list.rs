@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
             let title = RichText::new(format!("{}  {}", exercise.number, exercise.title));
             let title = if next == Some(exercise.number) { title.color(ACCENT).strong() } else { title };
             let button = Button::new(title).frame(false);
-            let hover = format!("Opens it: {}", exercise.idea);
+            let hover = format!("Open the exercise: {}", exercise.idea);
             open |= ui.add(button).on_hover_text(hover).clicked();
             let level = match exercise.level {
                 Level::Easy => "easy",
@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
                 Level::Hard => "hard",
             };
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(RichText::new(level).small().color(QUIET)).on_hover_text("How hard it is");
+                ui.label(RichText::new(level).small().color(QUIET)).on_hover_text("Difficulty");
             });
         });
         if open {
@@ -44,5 +44,5 @@ pub(super) fn show(ui: &mut Ui, learning: &Learning, commands: &mut Vec<Command>
     let folder = learning.parent();
     let text = format!("Exercises are stored in {}", folder.display());
     ui.label(RichText::new(text).small().color(QUIET))
-        .on_hover_text("`specula learn --dir FOLDER` chooses another place");
+        .on_hover_text("`specula learn --dir FOLDER` chooses another folder");
 }

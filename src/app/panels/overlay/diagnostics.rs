@@ -68,7 +68,7 @@ pub(super) fn show(
                     one(ui, diagnostic, files.is_file(&diagnostic.file), commands);
                 }
                 let picture = match cut_short {
-                    true => "Where the picture is magenta, it was cut short.",
+                    true => "Magenta marks where the picture was cut short.",
                     false => "Showing the last version that compiled.",
                 };
                 if failed {

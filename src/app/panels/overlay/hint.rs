@@ -28,20 +28,19 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
             ui.set_max_width((picture.width() - 60.0).clamp(200.0, 400.0));
             match tree {
                 Some(folder) => {
-                    ui.label(RichText::new("Edit a shader, save it, and the picture follows").strong());
+                    ui.label(RichText::new("Edit a shader and save it: the picture updates").strong());
                     ui.label(RichText::new(folder.display().to_string()).monospace().small().color(ACCENT));
                     ui.label(RichText::new("user.glsl is the file to start with.").color(QUIET));
                     buttons(ui, commands, &mut is_done, |ui| {
-                        let hover =
-                            "Opens the folder with $SPECULA_EDITOR, $VISUAL, $EDITOR or an editor that is installed";
+                        let hover = "Opens the folder with $SPECULA_EDITOR, $VISUAL, $EDITOR or an installed editor";
                         let is_clicked = ui.button("Open in the editor").on_hover_text(hover).clicked();
                         is_clicked.then_some(Command::Edit(Place { file: folder, line: None, column: None }))
                     });
                 }
                 None => {
-                    ui.label(RichText::new("You see the shaders inside the program").strong());
+                    ui.label(RichText::new("You are looking at the built-in shaders").strong());
                     let text =
-                        "Write them to a folder of your own, edit a file there and save it: the picture follows.";
+                        "Write them to a folder of your own, edit a file there and save it: the picture updates.";
                     ui.label(RichText::new(text).color(QUIET));
                     let standard = viewer.panels.hint.folder.clone();
                     buttons(ui, commands, &mut is_done, |ui| {

@@ -150,8 +150,16 @@ fn range(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings) {
     };
     let menu = ui.menu_button(RichText::new(name).small(), |ui| {
         for (range, text, doc) in [
-            (ViewRange::Auto, "Automatic", "Fit to the picture where values have a unit or leave 0 to 1, and for a watched expression"),
-            (ViewRange::Mode, "As the mode stores it", "0 to 1, vectors -1 to 1, light exposed: as `render` writes them"),
+            (
+                ViewRange::Auto,
+                "Automatic",
+                "Fit to the picture where values have a unit or leave 0 to 1, and for a watched expression",
+            ),
+            (
+                ViewRange::Mode,
+                "As the mode stores it",
+                "0 to 1, vectors -1 to 1, light exposed: as `render` writes them",
+            ),
             (ViewRange::Fit, "Fit to this picture", "Fit to the picture in every mode, light too"),
         ] {
             if ui.selectable_label(view.range == range, text).on_hover_text(doc).clicked() {
@@ -186,8 +194,9 @@ fn bar(ui: &mut Ui, legend: &Legend<'_>) {
         }
     }
     ui.painter().add(mesh);
-    response
-        .on_hover_text("The colors of the values between the two numbers. The readout at the mouse still shows the raw value");
+    response.on_hover_text(
+        "The colors of the values between the two numbers. The readout at the mouse still shows the raw value",
+    );
 }
 
 /// Switches of the channels, the colormap and the histogram.
@@ -198,7 +207,7 @@ fn channels(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings, state: &m
         (Channels::R, "R", "The first channel: red, or x"),
         (Channels::G, "G", "The second channel: green, or y"),
         (Channels::B, "B", "The third channel: blue, or z"),
-        (Channels::A, "A", "Coverage: 1 where the model covers a pixel whole"),
+        (Channels::A, "A", "Coverage: 1 where the model covers the whole pixel"),
     ] {
         let button = Button::selectable(view.channels == channel, RichText::new(name).small().monospace());
         let response = ui.add(button);
@@ -211,7 +220,7 @@ fn channels(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings, state: &m
     ui.add_enabled_ui(is_number, |ui| {
         let menu = ui.menu_button(RichText::new(choice_name(&legend.of.colormap)).small(), |ui| {
             for map in Colormap::value_variants() {
-                let name = if *map == Colormap::None { "none (as the mode)".to_owned() } else { choice_name(map) };
+                let name = if *map == Colormap::None { "none (as in the mode)".to_owned() } else { choice_name(map) };
                 if ui.selectable_label(view.colormap == *map, name).clicked() {
                     view.colormap = *map;
                     ui.close();

@@ -24,11 +24,11 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
                     commands.push(Command::RestoreSession);
                 }
                 let hint =
-                    "Restore it, and from now on at each start without a model and options. The menu Open changes that";
+                    "Restore it now, and at every start without a model or options. The Open menu can change that";
                 if ui.button("Always").on_hover_text(hint).clicked() {
                     commands.extend([Command::RestoreAlways(true), Command::RestoreSession]);
                 }
-                if ui.button("Not now").on_hover_text("You can still restore it from the menu Open").clicked() {
+                if ui.button("Not now").on_hover_text("You can still restore it from the Open menu").clicked() {
                     viewer.offers_session = false;
                 }
             });

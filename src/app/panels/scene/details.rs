@@ -39,7 +39,7 @@ pub(super) fn show(
         Selected::Texture(source) => {
             let image = source.image(model);
             title(ui, "Texture", image.map_or("", |image| &image.name));
-            if ui.button("Show it").on_hover_text("Open the panel Texture").clicked() {
+            if ui.button("Show it").on_hover_text("Open the Texture panel").clicked() {
                 commands.push(Command::OpenPanel(Panel::Texture));
             }
         }
@@ -147,11 +147,11 @@ fn parts(
     }
 }
 
-/// Offers lights that do not shine.
+/// Offers to switch on lights that are off.
 fn use_source(ui: &mut Ui, viewer: &mut Viewer, source: LightSource, text: &str) {
     let now = &mut viewer.session.settings.lights.source;
     if *now != source
-        && ui.button(text).on_hover_text("This light is off: another source of lights is selected").clicked()
+        && ui.button(text).on_hover_text("This light is off because another light source is selected").clicked()
     {
         *now = source;
     }
@@ -176,7 +176,7 @@ fn show_light(ui: &mut Ui, viewer: &mut Viewer, model: &Model, light: LightId) {
             let [r, g, b] = light.intensity.to_array();
             let [x, y, z] = light.position.to_array();
             let text =
-                format!("{r:.2} {g:.2} {b:.2} {unit}\nat {x:.2} {y:.2} {z:.2} m\nIts place is that of the file.");
+                format!("{r:.2} {g:.2} {b:.2} {unit}\nat {x:.2} {y:.2} {z:.2} m\nIts position comes from the file.");
             ui.label(RichText::new(text).small().color(QUIET));
             return;
         }

@@ -24,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, scene: &Scene, index: usize
     ui.horizontal(|ui| {
         title(ui, "Material", &key);
         if settings.materials.get(&key).is_some_and(|values| !values.is_empty())
-            && ui.small_button("Reset").on_hover_text("All factors as in the file").clicked()
+            && ui.small_button("Reset").on_hover_text("Reset all factors to those in the file").clicked()
         {
             settings.materials.remove(&key);
         }

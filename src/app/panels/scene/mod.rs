@@ -66,7 +66,9 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
     state.tree.update(&scene, &state.search);
     let rows = state.tree.rows().len();
     if rows == 0 {
-        ui.label(RichText::new(format!("Nothing in the scene matches \"{}\".", state.search.trim())).small().color(QUIET));
+        ui.label(
+            RichText::new(format!("Nothing in the scene matches \"{}\".", state.search.trim())).small().color(QUIET),
+        );
         return;
     }
     let height = row::HEIGHT + ui.spacing().item_spacing.y;

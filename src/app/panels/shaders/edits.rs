@@ -12,7 +12,7 @@ use crate::events::in_short;
 const HEIGHT: f32 = 15.0;
 
 pub(super) fn show(ui: &mut Ui, log: &ShaderLog) {
-    let hint = "Compile + pipelines + first frame, after detecting the save";
+    let hint = "Times: compile + pipelines + first frame";
     ui.label(RichText::new(hint).small().color(QUIET));
     let edits: Vec<_> = log.edits().collect();
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, HEIGHT, edits.len(), |ui, range| {

@@ -127,7 +127,7 @@ impl Mark {
     fn words(self) -> (Color32, &'static str) {
         match self {
             Self::Wrong => (ERROR.color(), "Has an error"),
-            Self::Waiting => (WARNING.color(), "Edited; the edit waits until the errors of other files are repaired"),
+            Self::Waiting => (WARNING.color(), "Edited, but not used until the errors in other files are fixed"),
             Self::Edited => (ACCENT.color(), "Edited since the tree was opened"),
             Self::None => (QUIET.color(), "As it was when the tree was opened"),
         }
@@ -144,7 +144,7 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut FilesState, command
         .on_hover_text("Files that no stage includes are not listed");
     let rows = rows(&state.graph, &state.search, &state.closed, &state.unfolded);
     if rows.is_empty() {
-        ui.label(RichText::new("No file matches").small().color(QUIET));
+        ui.label(RichText::new(format!("No file matches \"{}\".", state.search.trim())).small().color(QUIET));
     }
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, ROW, rows.len(), |ui, range| {
@@ -260,8 +260,7 @@ fn open_on_click(response: egui::Response, display: &str, commands: &mut Vec<Com
         match is_on_disk {
             true => commands.push(Command::Edit(Place { file: PathBuf::from(display), line: None, column: None })),
             false => commands.push(Command::Say(
-                "this file is in the program. `specula new DIR` writes the tree to a folder, in which you can edit it"
-                    .into(),
+                "this file is built in. `specula new DIR` writes the tree to a folder where you can edit it".into(),
             )),
         }
     }
@@ -288,7 +287,7 @@ fn about(ui: &mut Ui, shaders: &ShaderSet, graph: &IncludeGraph, path: &TreePath
     ui.label(RichText::new(meaning).small().color(color));
     let included_by = graph.included_by(path).map(TreePath::as_str).collect();
     let includes = graph.includes(path).iter().map(TreePath::as_str).collect();
-    for (title, names) in [("Includes", includes), ("Included by", included_by), ("An edit compiles", reaches)] {
+    for (title, names) in [("Includes", includes), ("Included by", included_by), ("An edit recompiles", reaches)] {
         ui.label(RichText::new(format!("{title}: {}", list(names))).small());
     }
 }

@@ -94,7 +94,7 @@ fn title(ui: &mut Ui, row: &StageRow, width: f32) -> bool {
         ui.set_min_width(width.max(60.0));
         ui.add(label)
     });
-    let hover = format!("{}: {meaning}\nClick for all that is known of it", row.path);
+    let hover = format!("{}: {meaning}\nClick for details", row.path);
     let clicked = response.inner.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(hover).clicked();
     ui.label(RichText::new(name).small().color(color(row.state))).on_hover_text(meaning);
     clicked
@@ -182,10 +182,12 @@ fn details(ui: &mut Ui, row: &StageRow) {
             "Driver time to build the pipeline with all of its stages",
         ));
         if let Some(ms) = largest.driver_ms {
-            lines.push(("This stage in it", format!("{ms:.1} ms"), "As the driver tells it"));
+            lines.push(("This stage in it", format!("{ms:.1} ms"), "As reported by the driver"));
         }
     }
-    lines.extend(row.compile_ms.map(|ms| ("Compiled in", format!("{ms:.1} ms"), "GLSL to SPIR-V, the last time")));
+    lines.extend(
+        row.compile_ms.map(|ms| ("Compiled in", format!("{ms:.1} ms"), "The last compilation from GLSL to SPIR-V")),
+    );
     Grid::new((&row.path, "lines")).num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
         for (name, value, meaning) in lines {
             ui.label(RichText::new(name).small().color(QUIET)).on_hover_text(meaning);

@@ -45,7 +45,7 @@ pub(super) fn show(ui: &mut Ui, timing: &Timing, names: &[String]) {
             match is_kept {
                 true => ui
                     .label(RichText::new(format!("{:>9}", "kept")).monospace().small().color(QUIET))
-                    .on_hover_text("Not drawn: nothing that it reads has changed, so its image is the same"),
+                    .on_hover_text("Not drawn, because nothing that it reads has changed"),
                 false => ui.label(RichText::new(format!("{ms:6.2} ms")).monospace().small()),
             };
             if has_history {
@@ -62,8 +62,9 @@ pub(super) fn show(ui: &mut Ui, timing: &Timing, names: &[String]) {
             if let Some((row, change)) = row.and_then(|row| Some((row, row.change()?))) {
                 let color = if change > 0.0 { WARNING } else { GOOD };
                 let text = |ms: Option<f64>| ms.map_or("none".to_owned(), |ms| format!("{ms:.2} ms"));
-                ui.label(RichText::new(format!("{change:+.2}")).monospace().small().color(color))
-                    .on_hover_text(format!("By the last edit: {} before, {} after", text(row.before), text(row.after)));
+                ui.label(RichText::new(format!("{change:+.2}")).monospace().small().color(color)).on_hover_text(
+                    format!("Change by the last edit: {} before, {} after", text(row.before), text(row.after)),
+                );
             }
             ui.end_row();
         }

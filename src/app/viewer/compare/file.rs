@@ -51,11 +51,11 @@ impl PictureFile {
         let scaled = self.scaled_size().map(|(to_width, to_height)| {
             format!(
                 "The file has {width} x {height} pixels, scaled to {to_width} x {to_height} in the middle of the picture. FLIP is \
-                 that of the scaled picture, where it covers this one."
+                 measured where the scaled picture covers this one."
             )
         });
         let light = matches!(*self.picture, Picture::Raw(_))
-            .then(|| "Its light goes through the exposure and the tone map of the picture.".to_owned());
+            .then(|| "Shown with the exposure and tone map of the picture.".to_owned());
         scaled.into_iter().chain(light).collect::<Vec<_>>().join(" ")
     }
 }

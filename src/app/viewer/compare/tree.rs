@@ -169,7 +169,7 @@ impl Viewer {
     /// Ends the comparison with a second tree whose thread has panicked.
     pub(in crate::app::viewer) fn second_tree_failed(&mut self, number: u64) {
         if self.compare.tree(number).is_some() {
-            self.comparison_failed("the thread of the second shader tree has failed");
+            self.comparison_failed("the thread of the second shader tree failed");
             self.compare.end();
         }
     }
