@@ -3,7 +3,7 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::rows::elided;
-use super::theme::{EDGE, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
+use super::theme::{BAR, ERROR, GOOD, QUIET, TEXT, Tone, WARNING};
 use super::{plural, shaders};
 use crate::app::stages::StageRow;
 use crate::app::status::ShaderStatus;
@@ -29,7 +29,7 @@ pub(super) struct Status<'a> {
 }
 
 pub(super) fn show(ui: &mut Ui, status: &Status<'_>) {
-    let frame = egui::Frame::new().fill(EDGE.color()).inner_margin(egui::Margin::symmetric(8, 2));
+    let frame = egui::Frame::new().fill(BAR.color()).inner_margin(egui::Margin::symmetric(8, 2));
     let bar = egui::Panel::bottom("status").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

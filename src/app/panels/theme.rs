@@ -46,6 +46,9 @@ const fn opaque(hex: u32) -> Color32 {
 pub(in crate::app) const PANEL: Tone = Tone::new(0x181b1f, 0xf5f6f8);
 /// Between the panels, and behind their tabs.
 pub(in crate::app) const EDGE: Tone = Tone::new(0x121417, 0xdfe3e8);
+/// The bars above and below the panels. The renderer of egui blends the edges of shapes so that a light button on the light [`EDGE`]
+/// has a white rim.
+pub(in crate::app) const BAR: Tone = Tone::new(0x121417, 0xf5f6f8);
 /// Buttons, fields and what lies above a panel.
 pub(in crate::app) const RAISED: Tone = Tone::new(0x282d33, 0xe3e7ec);
 /// The same under the mouse.
@@ -157,7 +160,7 @@ mod tests {
     fn text_has_contrast_in_both_themes() {
         for theme in [Theme::Dark, Theme::Light] {
             for text in [STRONG, TEXT, QUIET, ACCENT, ERROR, WARNING, GOOD] {
-                for back in [PANEL, EDGE, CARD] {
+                for back in [PANEL, EDGE, BAR, CARD] {
                     let ratio = contrast(text.of(theme), back.of(theme));
                     assert!(ratio >= 4.5, "{theme:?}: {text:?} on {back:?} {ratio}");
                 }

@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, Ui, vec2};
 
-use super::theme::{EDGE, QUIET, icon};
+use super::theme::{BAR, QUIET, icon};
 use super::{PanelState, theme};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
@@ -13,7 +13,7 @@ use crate::app::recent::Kind;
 pub(super) const HEIGHT: f32 = 30.0;
 
 pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
-    let frame = egui::Frame::new().fill(EDGE.color()).inner_margin(egui::Margin::symmetric(8, 3));
+    let frame = egui::Frame::new().fill(BAR.color()).inner_margin(egui::Margin::symmetric(8, 3));
     let bar = egui::Panel::top("bar").frame(frame).exact_size(HEIGHT).resizable(false).show_separator_line(false);
     bar.show(ui, |ui| {
         ui.horizontal_centered(|ui| {
