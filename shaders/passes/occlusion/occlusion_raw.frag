@@ -30,19 +30,38 @@ vec3 point_at(vec2 half_size, vec2 at, float distance_m) {
     return distance_m * vec3((2.0 * at - 1.0) * vec2(half_size.x, -half_size.y), -1.0);
 }
 
+// From the point to the neighbor on the side where the surface goes on: where the distance changes less. View space, meters.
+vec3 along(vec2 half_size, vec3 position, ivec2 texel, float here_m, ivec2 step) {
+    bool is_first = any(lessThan(texel, step));
+    bool is_last = any(greaterThanEqual(texel + step, ivec2(pass.size_px)));
+    float before = is_first ? 0.0 : texelFetch(geometry, texel - step, 0).r;
+    float after = is_last ? 0.0 : texelFetch(geometry, texel + step, 0).r;
+    bool is_after = abs(after - here_m) < abs(before - here_m);
+    float sign_of = is_after ? 1.0 : -1.0;
+    vec2 at = uv + sign_of * vec2(step) / pass.size_px;
+    return sign_of * (point_at(half_size, at, is_after ? after : before) - position);
+}
+
+// Normal of the surface without normal maps, view space, unit: what hides the sky is the geometry. Points and lines face the eye.
+vec3 normal_at(vec2 half_size, vec3 position, ivec2 texel, float here_m) {
+    vec3 x = along(half_size, position, texel, here_m, ivec2(1, 0));
+    vec3 y = along(half_size, position, texel, here_m, ivec2(0, 1));
+    return safe_normalize(cross(y, x), safe_normalize(-position, vec3(0.0, 0.0, 1.0)));
+}
+
 void main() {
-    vec4 here = texelFetch(geometry, ivec2(gl_FragCoord.xy), 0);
-    color = vec4(0.0, here.a, 0.0, 0.0);
-    if (here.a <= 0.0) return;
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    float here_m = texelFetch(geometry, texel, 0).r;
+    color = vec4(0.0, here_m, 0.0, 0.0);
+    if (here_m <= 0.0) return;
 
     vec2 half_size = half_size_at_1m();
-    vec3 position = point_at(half_size, uv, here.a);
+    vec3 position = point_at(half_size, uv, here_m);
     vec3 v = normalize(-position);
-    // Points and lines have no normal.
-    vec3 n = dot(here.xyz, here.xyz) > 0.0 ? mat3(frame.view_from_world) * here.xyz : v;
+    vec3 n = normal_at(half_size, position, texel, here_m);
     float radius_m = occlusion_radius * frame.scene_radius;
     // Radius in the image, 0..1 of its height.
-    float radius = min(radius_m / (2.0 * here.a * half_size.y), 0.5);
+    float radius = min(radius_m / (2.0 * here_m * half_size.y), 0.5);
     vec2 scale = vec2(pass.size_px.y / pass.size_px.x, 1.0) * radius;
 
     // Each pixel of a pattern of 4 x 4 has a direction of its own. The next pass averages them.
@@ -50,6 +69,7 @@ void main() {
     float turn = float(4 * ((pixel.x + 2 * pixel.y) & 3) + pixel.y) / 16.0;
     float shift = (float((pixel.x ^ pixel.y) & 3) + 0.5) / 4.0;
 
+    int samples = here_m > 0.0 ? 2 * STEPS : 0;
     float open = 0.0;
     for (int slice = 0; slice < SLICES; ++slice) {
         float angle = PI * (float(slice) + turn) / float(SLICES);
@@ -63,22 +83,21 @@ void main() {
         float sin_gamma = projected.y / max(weight, 1e-6);
         // Cosines of the horizons' angles from v, on both sides. They stay within the hemisphere around the normal.
         vec2 horizons = vec2(sin_gamma, -sin_gamma);
-        for (int i = 0; i < STEPS; ++i) {
-            float part = (float(i) + shift) / float(STEPS);
-            vec2 offset = direction * scale * part * part;
+        // Both sides in turn. Pixels without a surface take no step, which a software device would compute all the same.
+        for (int i = 0; i < samples; ++i) {
+            bool is_first = (i & 1) == 0;
+            float part = (float(i >> 1) + shift) / float(STEPS);
             // Not nearer than the neighboring pixel.
-            offset += direction / pass.size_px;
-            for (int side = 0; side < 2; ++side) {
-                vec2 at = uv + (side == 0 ? -offset : offset);
-                vec2 place = clamp(at, 0.0, 1.0) * (pass.size_px - 1.0) + 0.5;
-                float distance_m = texelFetch(geometry, ivec2(place), 0).a;
-                if (distance_m <= 0.0) continue;
-                vec3 to = point_at(half_size, at, distance_m) - position;
-                float per_m = inversesqrt(max(dot(to, to), 1e-12));
-                // Beyond the radius nothing hides; between, it fades.
-                float near = saturate(2.0 - 2.0 / (per_m * radius_m));
-                horizons[side] = max(horizons[side], mix(-1.0, dot(to, v) * per_m, near));
-            }
+            vec2 offset = direction * scale * part * part + direction / pass.size_px;
+            vec2 at = uv + (is_first ? -offset : offset);
+            vec2 place = clamp(at, 0.0, 1.0) * (pass.size_px - 1.0) + 0.5;
+            float distance_m = texelFetch(geometry, ivec2(place), 0).r;
+            vec3 to = point_at(half_size, at, distance_m) - position;
+            float per_m = inversesqrt(max(dot(to, to), 1e-12));
+            // Beyond the radius nothing hides; between, it fades.
+            float near = distance_m > 0.0 ? saturate(2.0 - 2.0 / (per_m * radius_m)) : 0.0;
+            float horizon = mix(-1.0, dot(to, v) * per_m, near);
+            horizons = max(horizons, is_first ? vec2(horizon, -1.0) : vec2(-1.0, horizon));
         }
         horizons = min(horizons, 1.0);
         // Integral of max(cos(angle - gamma), 0) |sin(angle)| between the horizons h (eq. 7 there): for each,
