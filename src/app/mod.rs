@@ -192,7 +192,9 @@ impl App {
         let mut attributes = Window::default_attributes()
             .with_title("Specula")
             .with_inner_size(PhysicalSize::new(options.size.0, options.size.1))
-            .with_min_inner_size(PhysicalSize::new(320, 240));
+            .with_min_inner_size(PhysicalSize::new(320, 240))
+            // A screen reader wants to know of a window before it is shown.
+            .with_visible(false);
         if let Some((x, y)) = options.at {
             attributes = attributes.with_position(PhysicalPosition::new(x, y));
         }
@@ -207,7 +209,9 @@ impl App {
             pipelines: (!options.recorder.is_careful()).then_some(&disk_cache::Pipelines as &dyn PipelineStore),
         })?;
         let layouts = SetLayouts::new(&gpu)?;
-        let screen = Screen::new(&gpu, &layouts, &window)?;
+        let mut screen = Screen::new(&gpu, &layouts, &window)?;
+        screen.init_accessibility(event_loop, &window, &self.outbox);
+        window.set_visible(true);
         let viewer = Viewer::new(&gpu, &layouts, options, early, &self.outbox)?;
         Ok(Open { viewer, screen, gpu, window })
     }
@@ -262,7 +266,10 @@ impl ApplicationHandler<Message> for App {
 
     fn user_event(&mut self, _: &ActiveEventLoop, message: Message) {
         let Some(open) = &mut self.open else { return };
-        open.viewer.on_message(message);
+        match message {
+            Message::Accessibility(event) => open.screen.on_accessibility(event.window_event),
+            message => open.viewer.on_message(message),
+        }
         open.window.request_redraw();
     }
 

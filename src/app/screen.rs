@@ -18,7 +18,9 @@ mod ui;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use egui_winit::accesskit_winit;
 use winit::event::WindowEvent;
+use winit::event_loop::ActiveEventLoop;
 use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::Window;
 
@@ -32,6 +34,7 @@ use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRender
 use crate::render::tools::Outline;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
+use crate::threads::Outbox;
 use error_map::ErrorMap;
 use gallery::Gallery;
 use inspector::PixelReader;
@@ -173,6 +176,19 @@ impl Screen {
             last_frame: Instant::now(),
             cpu: CpuTimes::default(),
         })
+    }
+
+    /// Offers the window to screen readers. Nothing is made for them until one comes.
+    pub(super) fn init_accessibility(&mut self, event_loop: &ActiveEventLoop, window: &Window, outbox: &Outbox) {
+        self.input.init_accesskit(event_loop, window, outbox.proxy());
+    }
+
+    pub(super) fn on_accessibility(&mut self, event: accesskit_winit::WindowEvent) {
+        match event {
+            accesskit_winit::WindowEvent::InitialTreeRequested => self.egui.enable_accesskit(),
+            accesskit_winit::WindowEvent::ActionRequested(request) => self.input.on_accesskit_action_request(request),
+            accesskit_winit::WindowEvent::AccessibilityDeactivated => self.egui.disable_accesskit(),
+        }
     }
 
     pub(super) fn on_window_event(&mut self, window: &Window, event: &WindowEvent) -> egui_winit::EventResponse {

@@ -83,6 +83,8 @@ pub(crate) enum Message {
     Checked(Checked),
     /// A command from outside.
     Asked(Box<Asked>),
+    /// A screen reader has come, wants something done, or has gone.
+    Accessibility(egui_winit::accesskit_winit::Event),
     /// Pictures that are done, and of how many, of the capture with this number.
     Captures(u64, u64, u64),
     /// The capture with this number has ended.
@@ -91,6 +93,12 @@ pub(crate) enum Message {
     Tools(Result<Arc<Tools>, String>),
     /// A thread has panicked, with this message.
     Panicked(Role, String),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for Message {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Accessibility(event)
+    }
 }
 
 /// The work of a thread, with its number or key.
@@ -150,6 +158,11 @@ impl Outbox {
 
     pub(crate) fn send(&self, message: Message) {
         let _ = self.0.send_event(message);
+    }
+
+    /// Wakes the window, as `send` does.
+    pub(crate) fn proxy(&self) -> EventLoopProxy<Message> {
+        self.0.clone()
     }
 
     /// Sends the commands from outside, on a thread that lasts as long as the process.

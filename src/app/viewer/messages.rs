@@ -64,6 +64,8 @@ impl Viewer {
                 self.look_read(&Err(message));
             }
             Message::Asked(asked) => self.on_asked(*asked),
+            // The screen has taken it.
+            Message::Accessibility(_) => {}
             Message::Captures(number, done, of) => self.controlled.captures.progress(number, done, of),
             Message::Captured(number) => self.controlled.captures.ended(number),
             Message::Compared(number, compared) => self.on_compared(number, compared),
