@@ -7,6 +7,7 @@ use std::sync::Arc;
 use egui::{Button, DragValue, Key, Label, RichText, TextEdit, Ui, vec2};
 
 use super::rows::elided;
+use super::spoken::named;
 use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
 use crate::app::difference::{Kind, Line};
@@ -119,7 +120,7 @@ fn field(ui: &mut Ui, settings: &mut Settings, state: &mut ExpressionState) {
     ui.horizontal(|ui| {
         let room = ui.available_width() - 62.0;
         let edit = TextEdit::singleline(&mut state.field).desired_width(room).font(egui::TextStyle::Monospace);
-        let edit = ui.add(edit.hint_text("brdf/ndf.glsl:20 a2"));
+        let edit = named(ui.add(edit.hint_text("brdf/ndf.glsl:20 a2")), "Expression");
         if std::mem::take(&mut state.takes_focus) {
             edit.request_focus();
         }

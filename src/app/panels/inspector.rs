@@ -10,6 +10,7 @@ mod values;
 use egui::{Color32, Id, LayerId, Order, Rect, RichText, Stroke, TextEdit, Ui, pos2, vec2};
 
 use super::rows::{choose, elided};
+use super::spoken::named;
 use super::theme::{ACCENT, QUIET};
 use crate::app::command::Command;
 use crate::app::inspector::{Inspector, Page, text};
@@ -45,7 +46,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut Inspector, comm
     });
     match state.page {
         Page::Values => {
-            ui.add(TextEdit::singleline(&mut state.search).hint_text("Search values").desired_width(f32::INFINITY));
+            let hint = "Search values";
+            named(ui.add(TextEdit::singleline(&mut state.search).hint_text(hint).desired_width(f32::INFINITY)), hint);
             let features = viewer.session.features();
             if let Some(search) = &state.search_not_finite {
                 not_finite::show(ui, search, viewer.shader.location.is_some(), commands);

@@ -27,6 +27,7 @@ mod range;
 pub(super) mod rows;
 pub(super) mod scene;
 mod shaders;
+mod spoken;
 mod status_bar;
 #[cfg(test)]
 mod tests;

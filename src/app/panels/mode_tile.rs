@@ -42,6 +42,7 @@ pub(super) fn show(
 ) -> Response {
     let size = gallery.size;
     let (rect, response) = ui.allocate_exact_size(size + vec2(0.0, NAME), Sense::click());
+    super::spoken::button(&response, &mode.name);
     if !ui.is_rect_visible(rect) {
         return response;
     }

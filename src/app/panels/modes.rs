@@ -3,6 +3,7 @@
 
 use egui::{RichText, Ui, vec2};
 
+use super::spoken::named;
 use super::theme::icon;
 use super::{PanelState, QUIET, mode_tile};
 use crate::app::gallery::GalleryState;
@@ -74,7 +75,7 @@ fn search_bar(ui: &mut Ui, search: &mut String, gallery: &mut GalleryState, mode
     ui.horizontal(|ui| {
         let width = ui.available_width() - TOGGLE - if search.is_empty() { 0.0 } else { 24.0 };
         let hint = format!("{}  Search {modes} modes", icon::MAGNIFYING_GLASS);
-        ui.add(egui::TextEdit::singleline(search).hint_text(hint).desired_width(width));
+        named(ui.add(egui::TextEdit::singleline(search).hint_text(hint).desired_width(width)), "Search modes");
         if !search.is_empty() && ui.small_button(icon::X).on_hover_text("Show all modes").clicked() {
             search.clear();
         }

@@ -151,7 +151,7 @@ fn grid<'a>(ui: &mut Ui, state: &OpenGallery, tiles: &[Tile<'a>]) -> Option<&'a 
                 let color = if *is_shown { ACCENT.color() } else { ui.visuals().text_color() };
                 let at = pos2(area.left() + 2.0, area.bottom() + NAME / 2.0);
                 ui.painter().text(at, Align2::LEFT_CENTER, name, FontId::proportional(12.0), color);
-                response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, *name));
+                super::spoken::button(&response, name);
                 if response.on_hover_text(option).clicked() {
                     clicked = Some(*name);
                 }

@@ -6,6 +6,7 @@ use egui::{Response, RichText, Ui};
 
 use super::passes::is_of_pass;
 use super::rows::{self, Row, edit_number, heading, set_option, short};
+use super::spoken::named;
 use super::theme::icon;
 use super::{QUIET, defaults};
 use crate::app::numbers::{component, of_constant, of_parameter};
@@ -80,7 +81,7 @@ fn search(ui: &mut Ui) -> Vec<String> {
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     let hint = format!("{}  Search parameters", icon::MAGNIFYING_GLASS);
     let field = egui::TextEdit::singleline(&mut text).hint_text(hint).desired_width(f32::INFINITY);
-    ui.add(field).on_hover_text("Searches names, groups and descriptions");
+    named(ui.add(field), "Search parameters").on_hover_text("Searches names, groups and descriptions");
     let words = text.to_lowercase().split_whitespace().map(str::to_owned).collect();
     ui.data_mut(|data| data.insert_temp(id, text));
     words

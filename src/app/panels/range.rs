@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use egui::{DragValue, Ui};
 
 use super::rows::{Value, check, choice_name, choose, setting};
+use super::spoken::named;
 use crate::settings::{Channels, Colormap, Settings, ViewRange, ViewSettings};
 
 impl Value for ViewRange {
@@ -78,8 +79,8 @@ fn range(ui: &mut Ui, view: &mut ViewSettings, default: ViewRange) {
         let speed = f64::from(high - low) / 200.0;
         let first = ui.add(DragValue::new(&mut low).speed(speed).prefix("from ").max_decimals(4));
         let last = ui.add(DragValue::new(&mut high).speed(speed).prefix("to ").max_decimals(4));
-        first.on_hover_text("The value that is black");
-        last.on_hover_text("The value that is white");
+        named(first, "Black").on_hover_text("The value that is black");
+        named(last, "White").on_hover_text("The value that is white");
     });
     if low < high {
         view.range = ViewRange::Fixed(low, high);

@@ -8,6 +8,7 @@ use egui::{
     Button, Checkbox, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui, vec2,
 };
 
+use super::spoken::named;
 use super::theme::{ACCENT, QUIET};
 use crate::app::numbers::{Number, Scale};
 use crate::settings::{LightSource, Settings, Tonemap};
@@ -254,7 +255,7 @@ pub(super) fn edit_number(ui: &mut Ui, number: &mut f64, scale: &Scale) -> Respo
         let digits = 10_f64.powi(scale.decimals as i32);
         *number = if scale.is_squared { (place * place * digits).round() / digits } else { place };
     }
-    response.union(drag(ui, number, scale, VALUE))
+    response.union(named(drag(ui, number, scale, VALUE), "Value"))
 }
 
 /// A number that is dragged or typed, of this width in points.

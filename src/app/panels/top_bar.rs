@@ -2,6 +2,7 @@
 
 use egui::{Button, RichText, Ui, vec2};
 
+use super::spoken::named;
 use super::theme::{BAR, QUIET, icon};
 use super::{PanelState, theme};
 use crate::app::command::Command;
@@ -32,12 +33,12 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
                 state.layout.arrange_own();
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.button(icon::QUESTION).on_hover_text("Keys (F1, ?)").clicked() {
+                if named(ui.button(icon::QUESTION), "Keys").on_hover_text("Keys (F1, ?)").clicked() {
                     state.show_keys ^= true;
                 }
                 let is_light = state.layout.is_light();
                 let (symbol, hint) = if is_light { (icon::MOON, "Dark theme") } else { (icon::SUN, "Light theme") };
-                if ui.button(symbol).on_hover_text(hint).clicked() {
+                if named(ui.button(symbol), hint).on_hover_text(hint).clicked() {
                     state.layout.set_light(!is_light);
                 }
                 let width = (ui.available_width() - 8.0).min(300.0);
@@ -46,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
                         .color(QUIET);
                     let keys = RichText::new("Ctrl+P").small().monospace().color(QUIET);
                     let button = Button::new(text).right_text(keys).min_size(vec2(width, 20.0)).truncate();
-                    if ui.add(button).on_hover_text("Command palette").clicked() {
+                    if named(ui.add(button), "Command palette").on_hover_text("Command palette").clicked() {
                         state.palette.open();
                     }
                 }
@@ -102,7 +103,7 @@ fn open(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Command>) {
             }
         }
     });
-    menu.response.on_hover_text("Open a model, an environment or shaders");
+    named(menu.response, "Open").on_hover_text("Open a model, an environment or shaders");
 }
 
 /// The menu that opens and closes panels.

@@ -8,7 +8,7 @@ use super::*;
 use crate::shader::Source;
 use crate::shader::compile::StageKind;
 use crate::shader::spirv::reflect::Reflection;
-use crate::shader::spirv::{behavior_hash, specialize};
+use crate::shader::spirv::{behavior_hash, optimize, specialize};
 use scan::Function;
 
 type Texts = BTreeMap<TreePath, String>;
@@ -300,4 +300,21 @@ fn comments_compile_nothing() {
         let rebuilt = rebuild(compiler(), &snapshot, &stage, (&base.spirv, &base.files), &files);
         assert!(matches!(rebuilt, Some(Rebuilt::Same)), "{from} -> {to}: {rebuilt:?}");
     }
+}
+
+#[test]
+fn an_edit_and_its_reversal_give_the_driver_as_many_words_as_before() {
+    let stage = TreePath::from("pbr.frag");
+    let texts = shipped();
+    let before = whole(&texts, &stage).unwrap();
+    let mut edited = texts.clone();
+    let file = edited.get_mut(&TreePath::from("brdf/ndf.glsl")).unwrap();
+    let text = file.replacen("alpha * alpha", "alpha", 1);
+    assert_ne!(text, *file);
+    *file = text;
+    let given = |spirv: &[u32]| optimize(specialize(spirv, &[])).len();
+    let linked = incremental(&edited, &stage, &before).unwrap();
+    assert_eq!(given(&linked.spirv), given(&whole(&edited, &stage).unwrap().spirv), "edited");
+    let back = incremental(&texts, &stage, &linked).unwrap();
+    assert_eq!(given(&back.spirv), given(&before.spirv), "reversed");
 }

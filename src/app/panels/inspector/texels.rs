@@ -7,6 +7,7 @@ use super::super::theme::{ACCENT, EDGE, QUIET};
 use super::values::{HEIGHT, SWATCH};
 use crate::app::command::Command;
 use crate::app::layout::Panel;
+use crate::app::panels::spoken;
 use crate::app::selection::Selected;
 use crate::render::Texel;
 
@@ -39,7 +40,7 @@ fn row(ui: &mut Ui, texel: &Texel) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     let (slot, stored) = (texel.place.slot_name(), stored(texel));
     let label = format!("{slot} texel {stored}");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &label));
+    spoken::button(&response, &label);
     if ui.is_rect_visible(rect) {
         let painter = ui.painter();
         if response.hovered() {

@@ -6,6 +6,7 @@ use egui::{Align2, Color32, FontId, Rect, Response, RichText, Sense, Stroke, Str
 use super::super::rows::option_text;
 use super::super::theme::{ACCENT, EDGE, ERROR, QUIET};
 use crate::app::inspector::{Reading, text};
+use crate::app::panels::spoken;
 use crate::shader::{Mode, PixelValue};
 
 /// Height of a row, points.
@@ -93,6 +94,7 @@ fn has_data(value: &PixelValue) -> bool {
 /// A row: swatch, name, numbers and unit.
 fn row(ui: &mut Ui, reading: &Reading, mode: &Mode, is_current: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    spoken::button(&response, &mode.name);
     let Some(value) = reading.value(&mode.slug).filter(|_| ui.is_rect_visible(rect)) else { return response };
     let painter = ui.painter();
     if response.hovered() {

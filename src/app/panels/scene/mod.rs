@@ -8,6 +8,7 @@ pub(super) mod tree;
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
 use super::QUIET;
+use super::spoken::named;
 use crate::app::command::Command;
 use crate::app::layout::Panel;
 use crate::app::selection::Selected;
@@ -53,9 +54,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, state: &mut SceneState, com
         let settings = &viewer.session.settings.scene;
         let is_whole = settings.hidden.is_empty() && settings.isolated.is_empty();
         let width = ui.available_width() - if is_whole { 0.0 } else { 66.0 };
-        ui.add(
-            TextEdit::singleline(&mut state.search).hint_text("Search nodes, materials, textures").desired_width(width),
-        );
+        let hint = "Search nodes, materials, textures";
+        named(ui.add(TextEdit::singleline(&mut state.search).hint_text(hint).desired_width(width)), hint);
         if !is_whole && ui.small_button("Show all").on_hover_text("Draw everything that is hidden (Alt+H)").clicked() {
             commands.push(Command::ShowAll);
         }

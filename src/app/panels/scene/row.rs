@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::tree::Row;
+use crate::app::panels::spoken;
 use crate::app::panels::theme::STRONG;
 use crate::app::panels::{EDGE, QUIET};
 use crate::app::selection::Selected;
@@ -62,6 +63,7 @@ pub(super) fn show(ui: &mut Ui, row: &Row, state: &State) -> Option<Action> {
         dot(ui.painter(), place.center(), is_drawn, &switch, quiet);
         let text =
             if is_drawn { "Hide it (Ctrl+H hides the selection)" } else { "Draw it again (Alt+H draws everything)" };
+        spoken::button(&switch, &format!("{} {}", if is_drawn { "Hide" } else { "Draw" }, row.name));
         if switch.on_hover_text(text).clicked() {
             action = Some(Action::Show(key.clone(), !is_drawn));
         }

@@ -9,6 +9,7 @@ use egui::{Align2, Color32, CursorIcon, FontId, Rect, RichText, ScrollArea, Sens
 use super::super::theme::{ACCENT, ERROR, QUIET, WARNING};
 use crate::app::command::Command;
 use crate::app::editor::Place;
+use crate::app::panels::spoken;
 use crate::app::viewer::Viewer;
 use crate::shader::{IncludeGraph, Severity, ShaderSet, TreePath};
 
@@ -140,7 +141,8 @@ pub(super) fn show(ui: &mut Ui, viewer: &Viewer, state: &mut FilesState, command
         return;
     };
     state.update(&shaders, &viewer.shader.tree);
-    ui.add(TextEdit::singleline(&mut state.search).hint_text("Search files").desired_width(f32::INFINITY))
+    let hint = "Search files";
+    spoken::named(ui.add(TextEdit::singleline(&mut state.search).hint_text(hint).desired_width(f32::INFINITY)), hint)
         .on_hover_text("Files that no stage includes are not listed");
     let rows = rows(&state.graph, &state.search, &state.closed, &state.unfolded);
     if rows.is_empty() {
@@ -168,6 +170,7 @@ fn show_row(
         Row::Folder { path, depth, is_open, files } => {
             let name = path.rsplit('/').next().unwrap_or(path);
             let response = ui.interact(rect, ui.id().with(("folder", path)), Sense::click());
+            spoken::button(&response, &format!("{path}/"));
             let x = rect.left() + INDENT * *depth as f32;
             arrow(ui, x, rect, *is_open);
             text(ui, x + INDENT, rect, name, ui.visuals().text_color(), response.hovered());
@@ -190,12 +193,14 @@ fn show_row(
             let is_unfolded = state.unfolded.contains(path);
             let fold = Rect::from_min_size(pos2(x, rect.top()), vec2(INDENT, ROW));
             let folds = ui.interact(fold, ui.id().with(("fold", path)), Sense::click());
+            spoken::button(&folds, &format!("Includes of {path}"));
             arrow(ui, x, rect, is_unfolded);
             if folds.on_hover_text("What it includes, and what includes it").clicked() && !state.unfolded.remove(path) {
                 state.unfolded.insert(path.clone());
             }
             let name = path.as_str().rsplit('/').next().unwrap_or_default();
             let response = ui.interact(rect.with_min_x(fold.right()), ui.id().with(("file", path)), Sense::click());
+            spoken::button(&response, path.as_str());
             let color = if mark == Mark::None { ui.visuals().text_color() } else { mark.words().0 };
             text(ui, fold.right(), rect, name, color, response.hovered());
             if mark != Mark::None {
@@ -209,6 +214,7 @@ fn show_row(
             let response = ui.interact(rect, ui.id().with(("include", row_id(row), rect.top() as i32)), Sense::click());
             let word = if *is_included { "includes" } else { "included by" };
             let words = format!("{word} {path}");
+            spoken::button(&response, &words);
             text(ui, x, rect, &words, QUIET.color(), response.hovered());
             let mark = mark(viewer, state, path, &display);
             open_on_click(response, &display, commands, |ui| about(ui, shaders, &state.graph, path, mark));

@@ -229,12 +229,13 @@ impl Module {
         id
     }
 
-    /// Any 32-bit integer constant.
+    /// The least 32-bit integer constant, which other code most likely uses too, in whatever order the module declares them.
     pub(super) fn any_integer(&self) -> Option<Id> {
-        let is_integer = |i: &&Instruction| opcode(i) == op::TYPE_INT && i.get(2) == Some(&32);
-        let kind = self.globals.iter().find(is_integer)?[1];
-        let constant = self.globals.iter().find(|i| opcode(i) == op::CONSTANT && i[1] == kind)?;
-        Some(constant[2])
+        let is_integer = |kind: &Id| {
+            self.globals.iter().any(|i| matches!(i[..], [_, id, 32, _] if id == *kind && opcode(i) == op::TYPE_INT))
+        };
+        let constants = self.globals.iter().filter(|i| opcode(i) == op::CONSTANT && i.len() == 4 && is_integer(&i[1]));
+        constants.min_by_key(|i| i[3]).map(|i| i[2])
     }
 
     /// Private variables: id, type of the value, initial value.

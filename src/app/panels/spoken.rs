@@ -1,0 +1,14 @@
+//! What a screen reader says of a control that shows a symbol or a picture instead of its name.
+
+use egui::{Response, WidgetInfo, WidgetType};
+
+/// Names something that is drawn by hand and can be clicked.
+pub(super) fn button(response: &Response, name: &str) {
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, response.enabled(), name));
+}
+
+/// Names a control of egui's that has no text, or a symbol in it.
+pub(super) fn named(response: Response, name: &str) -> Response {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+    response
+}
