@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde_json::json;
 use specula::learn::{Exercise, Finding, Lab, LearnError, Progress, exercises, find, prepare};
+use specula::message::tell;
 use specula::shader::{Source, is_specula_tree};
 
 use super::common::{Common, check_validation, compiler};
@@ -67,7 +68,11 @@ fn open(mut common: Common, dir: Option<PathBuf>, exercise: &Exercise, start: In
     let mut progress = Progress::load();
     let parent = dir.or_else(|| progress.folder.clone()).unwrap_or_else(|| FOLDER.into());
     let parent = std::path::absolute(&parent).unwrap_or(parent);
+    let is_new = !parent.join(&exercise.name).exists();
     let folder = prepare(&parent, exercise).map_err(Failure::Input)?;
+    if is_new {
+        tell(format_args!("exercise {} is in {}, a folder of your own to edit", exercise.number, folder.display()));
+    }
     progress.folder = Some(parent);
     progress.save();
     common.shaders = Some(folder);
