@@ -19,6 +19,7 @@ use super::{Failure, print_json};
 #[derive(clap::Args)]
 #[command(
     after_help = "Values are in world space, before exposure, tone map and encoding. Color is multiplied by coverage.\n\
+    Where the picture shows a color for each number (triangle, front or back, NaN), the number or its meaning is printed.\n\
     A mode without data at the pixel is null in JSON. A mode whose value is NaN or infinite is the string \"NaN\".\n\
     If there is such a mode, the first statement that made NaN or infinity follows (`not_finite` in JSON).\n\
     The pixel has one sample, in its middle: view.msaa is 1, so that no edge mixes two surfaces.\n\
@@ -74,7 +75,8 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let texels = if hit { headless.texels(args.at)? } else { Vec::new() };
     let not_finite = first_not_finite(&mut headless, args.at, &values);
     if args.json {
-        let modes: Map<String, Value> = values.iter().map(|(mode, pixel)| (mode.slug.clone(), value(pixel))).collect();
+        let modes: Map<String, Value> =
+            values.iter().map(|(mode, pixel)| (mode.slug.clone(), pixel.json(mode))).collect();
         let lights: Vec<Value> = state.lights.iter().map(light).collect();
         let textures: Vec<Value> = texels.iter().map(Texel::json).collect();
         let mut found = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state),
@@ -93,15 +95,6 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     // The layers also report what is found when objects are destroyed.
     drop(headless);
     check_validation(&gpu)
-}
-
-/// The value of a mode in JSON.
-fn value(pixel: &PixelValue) -> Value {
-    match pixel {
-        PixelValue { not_finite: true, .. } => json!("NaN"),
-        PixelValue { no_data: true, .. } => Value::Null,
-        PixelValue { value, .. } => json!(value),
-    }
 }
 
 /// The modes of these slugs, or all.

@@ -33,7 +33,7 @@ impl Headless {
             let settings = Settings { mode: mode.slug.clone(), ..self.session.settings.clone() };
             let scene = Some(scene);
             let (shaders, revisions, target) = (&whole.shaders, self.session.revisions, whole.pipelines.target);
-            FrameState::new(&FrameInputs {
+            let inputs = FrameInputs {
                 settings: &settings,
                 shaders,
                 scene,
@@ -41,7 +41,8 @@ impl Headless {
                 clock: self.clock,
                 size: self.size,
                 target,
-            })
+            };
+            FrameState::new(&inputs).with_numbers()
         };
         let state_of = |mode: &Mode| {
             let state = state_in(mode, &part);
