@@ -110,6 +110,33 @@ fn numbers_that_the_picture_shows_as_colors_are_told_by_their_meaning() {
     assert!(ids.contains(&0) && ids.contains(&1) && ids.iter().all(|id| *id < 2), "{ids:?}");
 }
 
+/// They take seconds each.
+#[test]
+fn modes_of_random_paths_are_printed_only_when_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let of = |more: &[&str]| {
+        let args = [&["quad.glb", "--at", "48,32", "--json", "--set", "lights.source=none"], more].concat();
+        probe(directory.path(), &args)
+    };
+    let told = "modes of random paths; add --paths, or name them with --mode";
+    let plain = of(&[]);
+    let modes = plain.expect(0, &["left out", told]).json()["modes"].as_object().unwrap().clone();
+    assert!(modes.contains_key("roughness") && !modes.contains_key("energy") && !modes.contains_key("monte-carlo"));
+    let named = of(&["--mode", "energy"]);
+    assert!(!named.expect(0, &[]).stderr.contains(told) && named.json()["modes"]["energy"].is_array(), "{named:#?}");
+    let both = of(&["--mode", "all", "--mode", "energy"]);
+    let modes = both.expect(0, &["left out"]).json()["modes"].as_object().unwrap().clone();
+    assert!(modes.contains_key("roughness") && modes.contains_key("energy") && !modes.contains_key("monte-carlo"));
+    let all = of(&["--paths", "--set", "view.frames=1"]);
+    assert!(!all.expect(0, &[]).stderr.contains(told), "{all:#?}");
+    assert!(all.json()["modes"].as_object().unwrap().contains_key("path-traced"), "{all:#?}");
+    of(&["--paths", "--mode", "d"]).expect(2, &["--paths"]);
+    // Nothing is left out where nothing is printed.
+    let corner = probe(directory.path(), &["--at", "0,0"]);
+    assert!(!corner.expect(0, &[]).stderr.contains(told), "{corner:#?}");
+}
+
 #[test]
 fn camera_and_lights_are_told_in_world_space() {
     let directory = tempfile::tempdir().unwrap();

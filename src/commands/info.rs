@@ -49,7 +49,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     print_devices(devices);
     print_model(&model);
     if args.stages {
-        Stages::new(&args.common, model)?.print();
+        let progress = super::progress::Progress::new(!args.common.emits());
+        progress.say("compiling the shaders and building pipelines");
+        let stages = Stages::new(&args.common, model)?;
+        drop(progress);
+        stages.print();
     }
     Ok(())
 }

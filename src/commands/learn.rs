@@ -110,6 +110,8 @@ fn check(args: &Args) -> Result<(), Failure> {
     let exercise = find(name).map_err(Failure::Usage)?;
     let source = Source::open(tree(args.dir.as_deref(), exercise)?);
     let gpu = args.common.gpu()?;
+    let progress = super::progress::Progress::new(!args.common.emits());
+    progress.say("compiling the shaders and measuring the goals");
     let mut lab = Lab::new(&gpu, &compiler()?);
     let findings = lab.check(exercise, &source, || false).map_err(|error| match error {
         LearnError::Shaders(diagnostics) => Failure::Shaders(diagnostics),
@@ -117,6 +119,7 @@ fn check(args: &Args) -> Result<(), Failure> {
         other => Failure::Input(other.to_string()),
     });
     drop(lab);
+    drop(progress);
     let findings = findings?;
     check_validation(&gpu)?;
     if findings.iter().all(|finding| finding.passed) {

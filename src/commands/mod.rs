@@ -17,6 +17,7 @@ mod learn;
 mod modes;
 mod new;
 mod probe;
+mod progress;
 mod render;
 mod signals;
 mod view;
@@ -28,7 +29,7 @@ use std::time::Instant;
 use clap::{Parser, Subcommand};
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
-use specula::message::tell;
+use specula::message::{clear_status, print_error, tell};
 use specula::render::UploadError;
 use specula::shader::Diagnostic;
 
@@ -185,7 +186,17 @@ fn end(failure: &Failure) -> ExitCode {
 /// Prints text to stdout as it is, with a line break. A reader that went away is ignored.
 pub fn print(text: &str) {
     use std::io::Write as _;
+    clear_status();
     let _ = writeln!(std::io::stdout().lock(), "{text}");
+}
+
+/// Says how many modes of random paths a command has left out.
+pub fn tell_left_out(count: usize) {
+    match count {
+        0 => {}
+        1 => tell("left out 1 mode of random paths; add --paths, or name it with --mode"),
+        _ => tell(format_args!("left out {count} modes of random paths; add --paths, or name them with --mode")),
+    }
 }
 
 /// Prints a value as indented JSON. serde escapes ASCII control characters; the others, which some terminals obey too, are escaped
@@ -205,6 +216,6 @@ pub fn print_json(value: &impl serde::Serialize) {
 /// Prints diagnostics to stderr: `file:line: error: message`, which editors parse, then the source line with its caret.
 pub fn print_diagnostics(diagnostics: &[Diagnostic]) {
     for diagnostic in diagnostics {
-        eprintln!("{}", diagnostic.full());
+        print_error(diagnostic.full());
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Headless, HeadlessError};
+use super::{Headless, HeadlessError, Step};
 use crate::frame::{FrameInputs, FrameState, Scene};
 use crate::pipeline::PipelineSet;
 use crate::render::Redraw;
@@ -22,6 +22,19 @@ impl Headless {
     /// # Errors
     /// As [`Headless::render`].
     pub fn pixel(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<PixelValue>, HeadlessError> {
+        self.pixel_with(at, modes, |_| ())
+    }
+
+    /// [`Headless::pixel`], which tells `progress` after each mode how far it is.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn pixel_with(
+        &mut self,
+        at: (u32, u32),
+        modes: &[Mode],
+        progress: impl Fn(&Step),
+    ) -> Result<Vec<PixelValue>, HeadlessError> {
         self.finish_or_fail()?;
         self.provide()?;
         let whole = self.frame_state()?;
@@ -66,6 +79,7 @@ impl Headless {
                     self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
                 }
                 values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
+                progress(&Step { done: values.len() as u64, of: modes.len() as u64, unit: "modes" });
             }
         }
         self.view.probe = None;

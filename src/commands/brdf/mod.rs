@@ -22,6 +22,7 @@ use specula::shader::{Change, Constant, Library, ShaderSet, Update};
 use super::Failure;
 use super::common::parse::number;
 use super::common::{TIMEOUT_S, check_validation, compiler, open_gpu, source};
+use super::progress::Progress;
 
 /// Options of `brdf`.
 #[derive(clap::Args)]
@@ -46,11 +47,13 @@ enum What {
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<(), Failure> {
+    let progress = Progress::new(true);
+    progress.say("compiling the shaders and measuring");
     match args.what {
         What::Furnace(args) => furnace::run(&args),
         What::Reciprocity(args) => reciprocity::run(&args),
         What::Normalization(args) => normalization::run(&args),
-        What::SplitSum(args) => split_sum::run(&args),
+        What::SplitSum(args) => split_sum::run(&args, &progress),
         What::Plot(args) => plot::run(&args),
     }
 }

@@ -30,6 +30,13 @@ pub enum Encode {
     Vector,
 }
 
+impl Mode {
+    /// Whether the value comes from random paths or from rays through the model, which take seconds a frame on a software device.
+    pub fn follows_paths(&self) -> bool {
+        self.accumulate || self.traces || self.stage == PATHS_STAGE
+    }
+}
+
 impl Encode {
     /// The `interface::ENCODE_*` number.
     pub fn id(self) -> u32 {
