@@ -25,11 +25,11 @@ enum What {
     Reload,
     /// Time of a frame, and of the first frame in each debug mode
     Frame,
-    /// Time from the model's file to its first frame
+    /// Time from opening the model's file to its first frame
     Load,
     /// Time to bake an environment, pass by pass, and to read it from the disk cache
     Bake,
-    /// Time to draw a thumbnail of every debug mode: first with their pipelines, then without
+    /// Time to draw a thumbnail of every debug mode: the first time, with building pipelines, and again
     Thumbnails,
 }
 
@@ -39,7 +39,7 @@ const THUMBNAIL: [u32; 2] = [96, 72];
 /// Options of `bench`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The process to measure
+    /// What to measure
     #[arg(value_enum)]
     what: What,
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
@@ -47,7 +47,7 @@ pub struct Args {
     /// Number of samples, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 20, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     samples: u32,
-    /// For reload: the file to edit, from the root of the tree. An edit of a file without `main()` changes nothing on screen
+    /// File to edit for reload, relative to the root of the tree. The edit changes no pixel
     #[arg(long, value_name = "FILE", default_value = "pbr.frag")]
     edit: String,
     /// Print JSON

@@ -18,7 +18,7 @@ use stages::Stages;
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// Also tell of each stage of the picture: words of SPIR-V, times, and the driver's registers, instructions and spills
+    /// Also list the stages of the picture: words of SPIR-V, compile times, and the driver's registers, instructions and spills
     #[arg(long)]
     stages: bool,
     /// Print JSON

@@ -17,16 +17,16 @@ const FOLDER: &str = "specula-learn";
 /// Options of `learn`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Number or name of an exercise [default: the first that is not solved]; or list, check or reset
+    /// Number or name of an exercise to open [default: the first unsolved one]; or list, check or reset
     #[arg(value_name = "EXERCISE|list|check|reset")]
     what: Option<String>,
-    /// For check: number or name of the exercise
+    /// Number or name of the exercise to check
     #[arg(value_name = "EXERCISE")]
     exercise: Option<String>,
-    /// Folder in which the exercises lie, each in a folder of its own; for check, also the tree of the exercise itself
+    /// Folder that holds a folder for each exercise [default: specula-learn, or the last one]. For check, it may be the folder of the exercise itself
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
-    /// For list and check: print JSON
+    /// Print JSON (list and check)
     #[arg(long)]
     json: bool,
     #[command(flatten)]
