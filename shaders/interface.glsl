@@ -194,6 +194,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint has_colormap;                 // Whether colors stand for a number: 0 or 1.
     float dither;                      // Amplitude of the dither in steps of 8 bits: 0 or 1.
     vec3 colormap[COLORMAP_STEPS];     // The colors that stand for the numbers from 0 to 1, at equal steps. Linear RGB.
+    uint gives_numbers;                // Whether modes that show a color for each number give the number itself: 1 where a single pixel is read, else 0.
 } frame;
 
 struct Light {

@@ -3,6 +3,8 @@
 
 use std::any::Any;
 use std::fmt::{Display, Write as _};
+use std::io::Write as _;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Least likeness, 0..1, of a name that is suggested for another.
 const LEAST_LIKENESS: f64 = 0.4;
@@ -39,14 +41,46 @@ fn escape_but(text: &str, kept: &[char]) -> String {
     out
 }
 
+/// Whether a status line is in the terminal.
+static STATUS: Mutex<bool> = Mutex::new(false);
+
+/// Shows a line on stderr, a terminal, in place of the one before: `specula: TEXT`. What is printed next takes its place.
+pub fn show_status(text: &str) {
+    let mut is_shown = STATUS.lock().unwrap_or_else(PoisonError::into_inner);
+    eprint!("\rspecula: {}\u{1b}[K", escape(text));
+    let _ = std::io::stderr().flush();
+    *is_shown = true;
+}
+
+/// Removes the status line, so that other text can be printed.
+pub fn clear_status() {
+    drop(without_status());
+}
+
+/// Removes the status line. None is shown while the guard lives.
+fn without_status() -> MutexGuard<'static, bool> {
+    let mut is_shown = STATUS.lock().unwrap_or_else(PoisonError::into_inner);
+    if std::mem::take(&mut *is_shown) {
+        eprint!("\r\u{1b}[K");
+        let _ = std::io::stderr().flush();
+    }
+    is_shown
+}
+
+/// Prints a line, or several, to stderr as they are.
+pub fn print_error(text: impl Display) {
+    let _guard = without_status();
+    eprintln!("{text}");
+}
+
 /// Prints a message to stderr: `specula: MESSAGE`, with its control characters escaped.
 pub fn tell(message: impl Display) {
-    eprintln!("specula: {}", escape_lines(&message.to_string()));
+    print_error(format_args!("specula: {}", escape_lines(&message.to_string())));
 }
 
 /// Prints a warning to stderr: `specula: warning: MESSAGE`, with its control characters escaped.
 pub fn warn(message: impl Display) {
-    eprintln!("specula: warning: {}", escape_lines(&message.to_string()));
+    print_error(format_args!("specula: warning: {}", escape_lines(&message.to_string())));
 }
 
 /// The candidate most like what was typed, whatever the case of its letters; the first of several that are equally

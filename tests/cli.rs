@@ -310,15 +310,26 @@ fn a_shader_error_is_printed_for_editors_and_ends_render_with_1() {
 fn render_mode_all_writes_each_file() {
     let directory = directory();
     fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
-    render(directory.path(), "quad.glb", &["--mode", "all", "--set", "view.msaa=1", "--set", "view.frames=2"])
-        .expect(0, &[]);
     let modes = run(directory.path(), &["modes", "--json"]).json();
-    for mode in modes.as_array().unwrap() {
+    let modes = modes.as_array().unwrap();
+    let of_paths =
+        |mode: &&Value| mode["accumulate"] == true || mode["traces"] == true || mode["stage"] == "paths.frag";
+    let left_out = modes.iter().filter(of_paths).count();
+    assert!((5..20).contains(&left_out), "{left_out} modes of random paths");
+    let all = ["--mode", "all", "--set", "view.msaa=1", "--set", "view.frames=2"];
+    let paths: &[&str] = &["--paths"];
+    for (more, expected) in [(&[][..], modes.len() - left_out), (paths, modes.len())] {
+        let finished = render(directory.path(), "quad.glb", &[&all[..], more].concat());
+        let told = format!("left out {left_out} modes of random paths; add --paths");
+        assert_eq!(finished.expect(0, &[]).stderr.contains(&told), more.is_empty(), "{finished:#?}");
+        let files = fs::read_dir(directory.path()).unwrap().count();
+        assert_eq!(files, expected + 1, "files beside the modes and the model");
+    }
+    for mode in modes {
         let path = directory.path().join(format!("out.{}.png", mode["slug"].as_str().unwrap().replace(':', "-")));
         assert_eq!(open_image(&path).into_rgba8().dimensions(), (48, 32));
     }
-    let files = fs::read_dir(directory.path()).unwrap().count();
-    assert_eq!(files, modes.as_array().unwrap().len() + 1, "files beside the modes and the model");
+    render(directory.path(), "quad.glb", &["--mode", "d", "--paths"]).expect(2, &["--paths", "--mode all"]);
 }
 
 #[test]

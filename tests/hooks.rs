@@ -3,8 +3,7 @@
 mod support;
 
 use specula::render::Capture;
-use specula::shader::{Library, Source, check};
-use support::{Session, assert_differ, assert_same, compiler, glb, lines, load, ready, settings, srgb};
+use support::{Session, assert_differ, assert_same, glb, load, passes_check, ready, settings, srgb};
 
 const USER: &str = "user.glsl";
 const PARAMS: &str = "user/params.glsl";
@@ -27,14 +26,6 @@ fn fill(session: &mut Session, file: &str, head: &str, code: &str) {
 fn add_parameter(session: &mut Session, declaration: &str) {
     let first = "    float roughness_scale;";
     ready(&session.edit(PARAMS, first, &format!("    {declaration}\n{first}")));
-}
-
-/// Fails unless `specula check` would pass.
-fn passes_check(session: &Session) {
-    let mut library =
-        Library::new(Source::Disk(session.tree.root()), compiler().clone(), &specula::frame::stages::stages());
-    let found = check::check(&mut library);
-    assert!(found.is_empty(), "{}", lines(&found).join("\n"));
 }
 
 /// The raw values on the model, each with its index.

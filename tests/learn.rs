@@ -213,6 +213,22 @@ fn the_list_names_all_exercises() {
     assert_eq!(learn(folder.path(), &["list", "--json"]).json().as_array().unwrap().len(), 12);
 }
 
+/// The folder appears in the directory at hand, perhaps in a repository: the program says where, and hides nothing in it.
+#[test]
+fn a_new_folder_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let open = || {
+        let mut command = specula(folder.path());
+        command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        finish(command.args(["learn", "1"]).env("XDG_STATE_HOME", folder.path().join("state")))
+    };
+    let told = "exercise 1 is in ";
+    open().expect(3, &[told, "specula-learn/01-roughness"]);
+    assert!(!folder.path().join("specula-learn/.gitignore").exists());
+    let again = open();
+    assert!(!again.expect(3, &[]).stderr.contains(told), "{again:#?}");
+}
+
 #[test]
 fn progress_survives_and_is_reset() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,10 +3,9 @@
 mod support;
 
 use specula::render::Capture;
-use specula::shader::{Library, Source, check};
 use support::{
-    SIZE, Session, assert_differ, assert_same, assert_validated, compiler, failed, glb, lines, load, ready, settings,
-    stages,
+    SIZE, Session, assert_differ, assert_same, assert_validated, failed, glb, lines, load, passes_check, ready,
+    settings, stages,
 };
 
 /// A pass that draws the model with `body`; `fragment` is the point of the surface.
@@ -43,13 +42,6 @@ fn sphere() -> Session {
 
 fn at(capture: &Capture, x: f32) -> [f32; 4] {
     capture.raw_at((SIZE.0 as f32 * x) as u32, SIZE.1 / 2).unwrap()
-}
-
-fn passes_check(session: &Session) {
-    let stages = specula::frame::stages::stages();
-    let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &stages);
-    let found = check::check(&mut library);
-    assert!(found.is_empty(), "{}", lines(&found).join("\n"));
 }
 
 #[test]

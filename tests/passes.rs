@@ -8,9 +8,9 @@ mod passes {
 
 use specula::headless::Sequence;
 use specula::render::Capture;
-use specula::shader::{Diagnostic, Library, Source, check};
+use specula::shader::Diagnostic;
 use support::{
-    SIZE, Session, assert_differ, assert_same, compiler, failed, glb, lines, load, ready, settings, srgb, stages,
+    SIZE, Session, assert_differ, assert_same, failed, glb, lines, load, passes_check, ready, settings, srgb, stages,
 };
 
 /// A gray sphere, one sample a pixel, on nothing.
@@ -32,14 +32,6 @@ fn center(capture: &Capture) -> [f32; 4] {
 fn remove(session: &mut Session, file: &str) {
     std::fs::remove_file(session.tree.path(file)).unwrap();
     ready(&session.changed(&[file]));
-}
-
-/// Fails unless `specula check` would pass.
-fn passes_check(session: &Session) {
-    let stages = specula::frame::stages::stages();
-    let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &stages);
-    let found = check::check(&mut library);
-    assert!(found.is_empty(), "{}", lines(&found).join("\n"));
 }
 
 fn sequence(session: &mut Session, frames: u32) -> Capture {

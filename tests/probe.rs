@@ -58,12 +58,12 @@ fn nan_and_missing_data_are_told_apart() {
     let nan = user.replace("radiance += rim_color", "radiance += sqrt(-1.0 - rim_strength) * rim_color");
     assert_ne!(user, nan);
     std::fs::write(tree.join("user.glsl"), nan).unwrap();
-    let modes = ["final", "luminance", "clearcoat", "depth", "d", "uv0"];
+    let modes = ["final", "luminance", "clearcoat", "depth", "d", "uv0", "nan"];
     let args: Vec<&str> = modes.iter().flat_map(|mode| ["--mode", mode]).chain(["--at", "50,30"]).collect();
     let args = [&["--shaders", "tree"], args.as_slice()].concat();
     let found = probe(directory.path(), &[args.as_slice(), &["--json"]].concat()).expect(0, &[]).json();
     let modes = &found["modes"];
-    assert_eq!((&modes["final"], &modes["clearcoat"]), (&json!("NaN"), &Value::Null));
+    assert_eq!((&modes["final"], &modes["clearcoat"], &modes["nan"]), (&json!("NaN"), &Value::Null, &json!("NaN")));
     let depth = numbers(&modes["depth"])[0];
     // The table has one number for a scalar, followed by the unit.
     let table = probe(directory.path(), &args).expect(0, &[]).stdout.clone();
@@ -71,12 +71,70 @@ fn nan_and_missing_data_are_told_apart() {
         let row = table.lines().find(|line| line.trim_start().starts_with(&format!("{slug} ")));
         row.unwrap_or_else(|| panic!("no {slug} in {table}")).split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
     };
-    assert_eq!([row("final"), row("luminance"), row("clearcoat")], ["NaN", "NaN", "no data"]);
+    assert_eq!([row("final"), row("luminance"), row("clearcoat"), row("nan")], ["NaN", "NaN", "no data", "NaN"]);
     assert!(row("depth").ends_with(" m") && row("d").ends_with(" 1/sr"), "{table}");
     assert!((row("depth").split(' ').next().unwrap().parse::<f64>().unwrap() - depth).abs() < 1e-4, "{table}");
     assert_eq!([row("depth"), row("uv0")].map(|row| row.split(' ').count()), [2, 2], "{table}");
     let good = probe(directory.path(), &["--at", "50,30", "--mode", "final"]).expect(0, &[]).stdout.clone();
     assert!(good.contains(" cd/m^2 before exposure"), "{good}");
+}
+
+/// A color of the picture says nothing to a reader: its number does.
+#[test]
+fn numbers_that_the_picture_shows_as_colors_are_told_by_their_meaning() {
+    let directory = tempfile::tempdir().unwrap();
+    let modes = ["nan", "negative", "tangent-sign", "face-orientation", "material-id", "overdraw", "f0-range"];
+    let args: Vec<&str> = modes.iter().flat_map(|mode| ["--mode", mode]).chain(["--at", "50,30"]).collect();
+    let found = probe(directory.path(), &[args.as_slice(), &["--json"]].concat()).expect(0, &[]).json();
+    let of = |slug: &str| &found["modes"][slug];
+    assert_eq!([of("nan"), of("negative"), of("face-orientation")], ["finite", "none", "front"]);
+    assert!(of("tangent-sign") == &json!(1) || of("tangent-sign") == &json!(-1), "{found}");
+    assert!(of("material-id").is_u64() && of("f0-range").is_string(), "{found}");
+    let layers = numbers(of("overdraw"))[0];
+    assert!(layers >= 2.0 && layers.fract() == 0.0, "the ball has a back: {found}");
+    let table = probe(directory.path(), &args).expect(0, &[]).stdout.clone();
+    let row = |slug: &str| {
+        let row = table.lines().find_map(|line| line.trim_start().strip_prefix(&format!("{slug} ")));
+        row.unwrap_or_else(|| panic!("no {slug} in {table}")).trim().to_owned()
+    };
+    assert_eq!([row("nan"), row("face-orientation")], ["finite", "front"]);
+    assert!(["+1", "-1"].contains(&row("tangent-sign").as_str()), "{table}");
+    assert_eq!([row("material-id"), row("overdraw")], [of("material-id").to_string(), format!("{layers} layers")]);
+    // The two triangles of a quad.
+    std::fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let front = ["--eye", "0,0,3", "--target", "0,0,0", "--json", "--mode", "triangle-id"];
+    let ids = ["40,20", "56,44", "56,20", "40,44"].map(|at| {
+        let found = probe(directory.path(), &[&["quad.glb", "--at", at], &front[..]].concat()).expect(0, &[]).json();
+        found["modes"]["triangle-id"].as_u64().unwrap()
+    });
+    assert!(ids.contains(&0) && ids.contains(&1) && ids.iter().all(|id| *id < 2), "{ids:?}");
+}
+
+/// They take seconds each.
+#[test]
+fn modes_of_random_paths_are_printed_only_when_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("quad.glb"), glb::model(&glb::quad(1.0), &glb::gray())).unwrap();
+    let of = |more: &[&str]| {
+        let args = [&["quad.glb", "--at", "48,32", "--json", "--set", "lights.source=none"], more].concat();
+        probe(directory.path(), &args)
+    };
+    let told = "modes of random paths; add --paths, or name them with --mode";
+    let plain = of(&[]);
+    let modes = plain.expect(0, &["left out", told]).json()["modes"].as_object().unwrap().clone();
+    assert!(modes.contains_key("roughness") && !modes.contains_key("energy") && !modes.contains_key("monte-carlo"));
+    let named = of(&["--mode", "energy"]);
+    assert!(!named.expect(0, &[]).stderr.contains(told) && named.json()["modes"]["energy"].is_array(), "{named:#?}");
+    let both = of(&["--mode", "all", "--mode", "energy"]);
+    let modes = both.expect(0, &["left out"]).json()["modes"].as_object().unwrap().clone();
+    assert!(modes.contains_key("roughness") && modes.contains_key("energy") && !modes.contains_key("monte-carlo"));
+    let all = of(&["--paths", "--set", "view.frames=1"]);
+    assert!(!all.expect(0, &[]).stderr.contains(told), "{all:#?}");
+    assert!(all.json()["modes"].as_object().unwrap().contains_key("path-traced"), "{all:#?}");
+    of(&["--paths", "--mode", "d"]).expect(2, &["--paths"]);
+    // Nothing is left out where nothing is printed.
+    let corner = probe(directory.path(), &["--at", "0,0"]);
+    assert!(!corner.expect(0, &[]).stderr.contains(told), "{corner:#?}");
 }
 
 #[test]

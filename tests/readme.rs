@@ -3,8 +3,7 @@
 mod support;
 
 use specula::scene::BUILT_IN;
-use specula::shader::{Library, Source, check};
-use support::{Session, assert_differ, assert_same, compiler, model, ready, settings};
+use support::{Session, assert_differ, assert_same, model, passes_check, ready, settings};
 
 /// The code of the first GLSL block that contains `part`, indented or not.
 fn snippet(part: &str) -> String {
@@ -15,14 +14,6 @@ fn snippet(part: &str) -> String {
 
 fn session() -> Session {
     Session::new(model(BUILT_IN[0]), settings(&["environment.name=none"]))
-}
-
-/// Fails unless `specula check` would pass.
-fn passes_check(session: &Session) {
-    let mut library =
-        Library::new(Source::Disk(session.tree.root()), compiler().clone(), &specula::frame::stages::stages());
-    let found = check::check(&mut library);
-    assert!(found.is_empty(), "{}", support::lines(&found).join("\n"));
 }
 
 #[test]

@@ -6,10 +6,9 @@ mod stages {
 }
 
 use specula::render::Capture;
-use specula::shader::{Library, Source, check};
 use support::{
-    SIZE, Session, assert_differ, assert_same, assert_validated, compiler, failed, glb, line_of, lines, load, ready,
-    settings, stages,
+    SIZE, Session, assert_differ, assert_same, assert_validated, failed, glb, line_of, lines, load, passes_check,
+    ready, settings, stages,
 };
 
 const GEOM: &str = "passes/mine.geom";
@@ -39,12 +38,21 @@ fn tessellation(level: f32, code: &str) -> (String, String) {
     (stage("tesc", &divide), stage("tese", &format!("{layout}{place}")))
 }
 
+/// One sample a pixel, on nothing.
+const PLAIN: [&str; 3] = ["view.msaa=1", "view.background=none", "environment.name=none"];
+
 fn session(rings: u32, assignments: &[&str]) -> Session {
-    let plain = ["view.msaa=1", "view.background=none", "environment.name=none"];
     Session::new(
         load(&glb::model(&glb::sphere(rings, 2 * rings), &glb::gray())),
-        settings(&[&plain, assignments].concat()),
+        settings(&[&PLAIN, assignments].concat()),
     )
+}
+
+/// A sphere of points.
+fn points(assignments: &[&str]) -> Session {
+    let (mut document, bytes) = glb::document(&glb::sphere(8, 16), &glb::gray());
+    document["meshes"][0]["primitives"][0]["mode"] = 0.into();
+    Session::new(load(&glb::container(&document, &bytes)), settings(&[&PLAIN, assignments].concat()))
 }
 
 /// A sphere that is drawn by the pass `mine` alone.
@@ -69,13 +77,6 @@ fn assert_alike(a: &Capture, b: &Capture, why: &str) {
 
 fn at(capture: &Capture, x: f32, y: f32) -> [f32; 4] {
     capture.raw_at((SIZE.0 as f32 * x) as u32, (SIZE.1 as f32 * y) as u32).unwrap()
-}
-
-fn passes_check(session: &Session) {
-    let stages = specula::frame::stages::stages();
-    let mut library = Library::new(Source::Disk(session.tree.root()), compiler().clone(), &stages);
-    let found = check::check(&mut library);
-    assert!(found.is_empty(), "{}", lines(&found).join("\n"));
 }
 
 /// A stage that passes everything on changes no pixel.
@@ -109,13 +110,11 @@ fn a_geometry_stage_is_a_file_beside_the_pass() {
     ready(&session.save(GEOM, &text));
     assert_alike(&plain, &session.render(), "repaired");
     ready(&session.save(GEOM, &swollen));
-    std::fs::remove_file(session.tree.path(GEOM)).unwrap();
-    ready(&session.changed(&[GEOM]));
+    ready(&session.delete(&[GEOM]));
     assert_same(&plain, &session.render(), "deleted");
     // Without its pass, the stage goes, too.
     session.save(GEOM, &swollen);
-    std::fs::remove_file(session.tree.path("passes/mine.frag")).unwrap();
-    let reload = session.changed(&["passes/mine.frag"]);
+    let reload = session.delete(&["passes/mine.frag"]);
     ready(&reload);
     assert_eq!(covered(&session.render()), 0);
     assert_validated();
@@ -203,16 +202,14 @@ fn tessellation_divides_triangles() {
     let isolines = evaluation.replace("layout(triangles)", "layout(isolines)");
     let told = lines(failed(&session.save(TESE, &isolines))).join("\n");
     assert!(told.contains("the geometry stage takes triangles, but passes/mine.tese gives lines"), "{told}");
-    std::fs::remove_file(session.tree.path(GEOM)).unwrap();
-    ready(&session.changed(&[GEOM]));
+    ready(&session.delete(&[GEOM]));
     session.render();
     session.save(TESE, &evaluation);
     std::fs::remove_file(session.tree.path(TESC)).unwrap();
     let told = lines(failed(&session.changed(&[TESC]))).join("\n");
     let expected = "mine.tese:4:6: error: the tessellation evaluation stage needs a tessellation control stage beside it, passes/mine.tesc";
     assert!(told.contains(expected), "{told}");
-    std::fs::remove_file(session.tree.path(TESE)).unwrap();
-    ready(&session.changed(&[TESE]));
+    ready(&session.delete(&[TESE]));
     assert_same(&coarse, &session.render(), "without tessellation");
     assert_validated();
 }
@@ -272,28 +269,15 @@ fn endless_loops_have_their_line() {
             .replace("move_to(", "move_to(x * ")
             .replace("copy_corner(i);", "copy_corner(i); fragment.color.x += x;");
         let text = text.replacen(hook, &endless, 1);
-        ready(&session.save(file, &text));
-        let Err(specula::headless::HeadlessError::Shaders(told)) = session.headless.render().map(|_| ()) else {
-            panic!("{file}: an endless loop is no error")
-        };
-        let told = lines(&told).join("\n");
-        let expected = format!("{file}:{}: error: this loop did not end (", line_of(&text, "while"));
-        assert!(told.contains(&expected), "{told}\nis not\n{expected}");
         let (_, repaired) = good.iter().find(|(known, _)| *known == file).unwrap();
-        ready(&session.save(file, repaired));
-        assert_same(&drawn, &session.render(), file);
+        session.ends_loop(file, (&text, repaired), &drawn);
     }
     assert_validated();
 }
 
 #[test]
 fn models_of_points_and_lines_are_left_out() {
-    let (mut document, bytes) = glb::document(&glb::sphere(8, 16), &glb::gray());
-    document["meshes"][0]["primitives"][0]["mode"] = 0.into();
-    let mut session = Session::new(
-        load(&glb::container(&document, &bytes)),
-        settings(&["view.msaa=1", "view.background=none", "environment.name=none"]),
-    );
+    let mut session = points(&[]);
     let plain = session.render();
     ready(&session.save("passes/mine.frag", FRAGMENT));
     ready(&session.save(GEOM, &geometry("triangle_strip, max_vertices = 3", "")));
@@ -357,20 +341,7 @@ fn errors_have_their_line() {
             "mine.frag reads `vec3 Fragment.position_ws` at location 0, ",
         ),
     ];
-    for (files, expected) in cases {
-        for (file, text) in files {
-            session.tree.write(file, text);
-        }
-        let names: Vec<&str> = files.iter().map(|(file, _)| *file).collect();
-        let told = lines(failed(&session.changed(&names))).join("\n");
-        assert!(told.contains(expected), "{told}\nis not\n{expected}");
-        assert_same(&before, &session.render(), expected);
-        for name in &names {
-            std::fs::remove_file(session.tree.path(name)).unwrap();
-        }
-        session.changed(&names);
-        assert_same(&before, &session.render(), "repaired");
-    }
+    session.refuses(&before, &cases);
     // A stage that nothing draws with is a warning.
     session.save(GEOM, &geom);
     let told = lines(&session.headless.shaders().warnings).join("\n");

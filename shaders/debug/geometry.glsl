@@ -26,6 +26,13 @@ float texel_density_log2(Fragment f) {
     // 1e-20: a triangle may have zero area in UV or world space.
     return 0.5 * log2(max(texels, 1e-20) / max(area, 1e-20));
 }
+
+vec3 tangent_sign(Fragment f) { return f.tangent_ws.w < 0.0 ? number_or_color(0u, BAD) : number_or_color(1u, GOOD); }
+
+vec3 facing() { return gl_FrontFacing ? number_or_color(0u, GOOD) : number_or_color(1u, BAD); }
+
+vec3 id_or_color(uint id) { return number_or_color(id, color_from_id(id)); }
+
 bool debug_geometry(Fragment f, Surface s, vec3 v, out vec3 value) {
     bool has_frame = has_attribute(ATTRIBUTE_TANGENT_FRAME);
     bool has_base_color = has_texture(TEXTURE_BASE_COLOR);
@@ -37,19 +44,19 @@ bool debug_geometry(Fragment f, Surface s, vec3 v, out vec3 value) {
     else if (MODE == MODE_FACET_NORMAL) value = facet_normal(f, v);
     else if (MODE == MODE_TANGENT) value = if_present(has_frame, safe_normalize(f.tangent_ws.xyz, vec3(0.0)));
     else if (MODE == MODE_BITANGENT) value = if_present(has_frame, safe_normalize(bitangent_ws(f), vec3(0.0)));
-    else if (MODE == MODE_TANGENT_SIGN) value = if_present(has_frame, f.tangent_ws.w < 0.0 ? BAD : GOOD);
+    else if (MODE == MODE_TANGENT_SIGN) value = if_present(has_frame, tangent_sign(f));
     else if (MODE == MODE_UV0) value = if_present(has_attribute(ATTRIBUTE_UV0), vec3(f.uv0, 0.0));
     else if (MODE == MODE_UV1) value = if_present(has_attribute(ATTRIBUTE_UV1), vec3(f.uv1, 0.0));
     else if (MODE == MODE_VERTEX_COLOR) value = if_present(has_attribute(ATTRIBUTE_COLOR), f.color.rgb);
-    else if (MODE == MODE_FACE_ORIENTATION) value = gl_FrontFacing ? GOOD : BAD;
-    else if (MODE == MODE_TRIANGLE_ID) value = color_from_id(uint(gl_PrimitiveID));
-    else if (MODE == MODE_MESH_ID) value = color_from_id(draw.primitive_id);
-    else if (MODE == MODE_NODE_ID) value = color_from_id(draw.node_id);
-    else if (MODE == MODE_MATERIAL_ID) value = color_from_id(material.id);
+    else if (MODE == MODE_FACE_ORIENTATION) value = facing();
+    else if (MODE == MODE_TRIANGLE_ID) value = id_or_color(uint(gl_PrimitiveID));
+    else if (MODE == MODE_MESH_ID) value = id_or_color(draw.primitive_id);
+    else if (MODE == MODE_NODE_ID) value = id_or_color(draw.node_id);
+    else if (MODE == MODE_MATERIAL_ID) value = id_or_color(material.id);
     else if (MODE == MODE_MIP_LEVEL) value = if_present(has_base_color, vec3(mip_level(f)));
     else if (MODE == MODE_TEXEL_DENSITY) value = if_present(has_base_color, vec3(texel_density_log2(f)));
     else if (MODE == MODE_WIREFRAME) value = vec3(0.02 + 0.6 * pow(abs(dot(s.n, v)), 3.0));
-    else if (MODE == MODE_OVERDRAW) value = vec3(0.1);
+    else if (MODE == MODE_OVERDRAW) value = vec3(1.0);
     else known = false;
     return known;
 }

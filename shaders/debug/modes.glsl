@@ -3,7 +3,7 @@
 // To add a mode, write an annotation and a constant here, compute its value in `your_mode` below, and save.
 //
 //   @mode SLUG "Name" group="Group" encode=color|data|vector [components=1|2|3] [unit="m"] [stage=debug]
-//         [range=LOW..HIGH] [colormap=viridis|magma|turbo|coolwarm|heat]
+//         [range=LOW..HIGH] [colormap=viridis|magma|turbo|coolwarm|heat] [numbers=index|"NAME|NAME"]
 //         [tonemap] [accumulate] [traces] [through] [draw=lines|layers] [needs=FEATURES] [key=d] doc=""
 //   const uint MODE_NAME = 1000u;
 //
@@ -15,6 +15,8 @@
 //   range     values that the picture shows as 0 and 1; without it those of `encode`. The window fits it to the picture where
 //             values have a unit or leave 0..1 (view.range)
 //   colormap  colors that stand for a number, in a mode with one component
+//   numbers   the picture shows a color for each number (`number_or_color`); where a pixel is read, the number has a meaning:
+//             index: it is one; "front|back": the names of 0, 1, ...
 //   draw      lines: the edges of triangles; layers: the sum of all fragments, hidden or not
 //   tonemap   the value is light, so exposure and tone map apply
 //   accumulate  the value is an estimate from frame.sample_count random paths per pixel; the renderer shows the mean
@@ -54,7 +56,7 @@ const uint MODE_FACET_NORMAL = 204u;
 const uint MODE_TANGENT = 205u;
 //@mode bitangent "Bitangent" group="Geometry" encode=vector doc="cross(normal, tangent) times the sign, world space."
 const uint MODE_BITANGENT = 206u;
-//@mode tangent-sign "Tangent sign" group="Geometry" encode=color doc="Green +1, red -1 (mirrored UVs)."
+//@mode tangent-sign "Tangent sign" group="Geometry" encode=color numbers="-1|+1" doc="Green +1, red -1 (mirrored UVs)."
 const uint MODE_TANGENT_SIGN = 207u;
 //@mode uv0 "UV 0" group="Geometry" encode=data components=2 doc="TEXCOORD_0."
 const uint MODE_UV0 = 208u;
@@ -62,15 +64,15 @@ const uint MODE_UV0 = 208u;
 const uint MODE_UV1 = 209u;
 //@mode vertex-color "Vertex color" group="Geometry" encode=color needs=vertex-color doc="COLOR_0, linear RGB."
 const uint MODE_VERTEX_COLOR = 210u;
-//@mode face-orientation "Face orientation" group="Geometry" encode=color doc="Green front faces, red back faces."
+//@mode face-orientation "Face orientation" group="Geometry" encode=color numbers="front|back" doc="Green front faces, red back faces."
 const uint MODE_FACE_ORIENTATION = 211u;
-//@mode triangle-id "Triangle" group="Geometry" encode=color doc="A color for each triangle of a mesh."
+//@mode triangle-id "Triangle" group="Geometry" encode=color numbers=index doc="A color for each triangle of a mesh."
 const uint MODE_TRIANGLE_ID = 212u;
-//@mode mesh-id "Mesh" group="Geometry" encode=color doc="A color for each primitive."
+//@mode mesh-id "Mesh" group="Geometry" encode=color numbers=index doc="A color for each primitive."
 const uint MODE_MESH_ID = 213u;
-//@mode node-id "Node" group="Geometry" encode=color doc="A color for each node of the scene."
+//@mode node-id "Node" group="Geometry" encode=color numbers=index doc="A color for each node of the scene."
 const uint MODE_NODE_ID = 214u;
-//@mode material-id "Material" group="Geometry" encode=color doc="A color for each material."
+//@mode material-id "Material" group="Geometry" encode=color numbers=index doc="A color for each material."
 const uint MODE_MATERIAL_ID = 215u;
 //@mode mip-level "Mip level" group="Geometry" encode=color components=1 unit="level" range=0..8 colormap=heat doc="Of the base color texture: blue level 0, red 8 and up."
 const uint MODE_MIP_LEVEL = 216u;
@@ -78,7 +80,7 @@ const uint MODE_MIP_LEVEL = 216u;
 const uint MODE_TEXEL_DENSITY = 217u;
 //@mode wireframe "Wireframe" group="Geometry" encode=color draw=lines key=w doc="Edges of the triangles."
 const uint MODE_WIREFRAME = 218u;
-//@mode overdraw "Overdraw" group="Geometry" encode=color draw=layers doc="Each fragment adds 0.1, hidden or not."
+//@mode overdraw "Overdraw" group="Geometry" encode=color components=1 unit="layers" range=0..10 draw=layers doc="Number of fragments, hidden or not; white 10."
 const uint MODE_OVERDRAW = 219u;
 
 //@mode base-color "Base color" group="Material" encode=color key=b doc="Texture times factor times vertex color, linear RGB."
@@ -232,17 +234,17 @@ const uint MODE_MEASURED_SPLIT = 601u;
 //@mode measured-error "Error" group="Measured" encode=color doc="Against the measured BRDF: blue too dark, red too bright."
 const uint MODE_MEASURED_ERROR = 602u;
 
-//@mode nan "NaN, Inf, negative" group="Truth" encode=color key=x doc="NaN magenta, Inf yellow, negative cyan."
+//@mode nan "NaN, Inf, negative" group="Truth" encode=color numbers="finite|NaN|infinite|negative" key=x doc="NaN magenta, Inf yellow, negative cyan."
 const uint MODE_NAN = 500u;
-//@mode negative "Negative" group="Truth" encode=color doc="Channels below 0; valid pixels are dimmed."
+//@mode negative "Negative" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" doc="Channels below 0; valid pixels are dimmed."
 const uint MODE_NEGATIVE = 501u;
-//@mode clipped "Clipped" group="Truth" encode=color doc="Channels above 1 after exposure, before tone mapping."
+//@mode clipped "Clipped" group="Truth" encode=color numbers="none|R|G|RG|B|RB|GB|RGB" doc="Channels above 1 after exposure, before tone mapping."
 const uint MODE_CLIPPED = 502u;
 //@mode false-color "False-color exposure" group="Truth" encode=color components=1 unit="EV" range=-6..6 colormap=heat doc="Stops from middle gray: blue -6, red +6."
 const uint MODE_FALSE_COLOR = 503u;
-//@mode albedo-range "Albedo range" group="Truth" encode=color doc="Blue below sRGB 30, red above 240 (McDermott 2018)."
+//@mode albedo-range "Albedo range" group="Truth" encode=color numbers="plausible|too dark|too bright" doc="Blue below sRGB 30, red above 240 (McDermott 2018)."
 const uint MODE_ALBEDO_RANGE = 504u;
-//@mode f0-range "F0 range" group="Truth" encode=color doc="Blue below 0.02; red between 0.05 and metals (sRGB 180)."
+//@mode f0-range "F0 range" group="Truth" encode=color numbers="plausible|too low|too high" doc="Blue below 0.02; red between 0.05 and metals (sRGB 180)."
 const uint MODE_F0_RANGE = 505u;
 // By random paths (debug/paths.glsl). `view.bounces` limits the length of those that trace the model.
 //@mode monte-carlo "Monte Carlo" group="Truth" encode=color unit="cd/m^2" tonemap accumulate stage=paths doc="The picture with an exact integral of the unoccluded environment."
@@ -265,6 +267,9 @@ const uint MODE_OCCLUSION_ERROR = 513u;
 const uint MODE_SHADOW_ERROR = 514u;
 //@mode bounce-error "Bounce error" group="Truth" encode=vector unit="cd/m^2" accumulate stage=paths traces doc="Light from other surfaces of the model, which the picture lacks."
 const uint MODE_BOUNCE_ERROR = 515u;
+
+// A value of a mode that says `numbers`: a color in a picture, the number where a single pixel is read.
+vec3 number_or_color(uint number, vec3 color) { return frame.gives_numbers != 0u ? vec3(float(number)) : color; }
 
 // Your modes: computes a mode's value from the fragment, the shaded surface and the direction to the eye.
 //

@@ -22,21 +22,23 @@ vec3 dimmed(vec3 radiance) {
     return vec3(0.25 * seen / (1.0 + seen));
 }
 
-vec3 nan_color(vec3 radiance) {
-    if (any(isnan(radiance))) return vec3(1.0, 0.0, 1.0);
-    if (any(isinf(radiance))) return vec3(1.0, 1.0, 0.0);
-    if (any(lessThan(radiance, vec3(0.0)))) return vec3(0.0, 1.0, 1.0);
-    return dimmed(radiance);
+vec3 nan_value(vec3 radiance) {
+    if (any(isnan(radiance))) return number_or_color(1u, vec3(1.0, 0.0, 1.0));
+    if (any(isinf(radiance))) return number_or_color(2u, vec3(1.0, 1.0, 0.0));
+    if (any(lessThan(radiance, vec3(0.0)))) return number_or_color(3u, vec3(0.0, 1.0, 1.0));
+    return number_or_color(0u, dimmed(radiance));
 }
 
-vec3 negative_color(vec3 radiance) {
-    bvec3 below = lessThan(radiance, vec3(0.0));
-    return any(below) ? vec3(below) : dimmed(radiance);
+// The marked channels. As a number: 1 red + 2 green + 4 blue.
+vec3 marked_channels(bvec3 marked, vec3 radiance) {
+    uint number = uint(marked.r) + 2u * uint(marked.g) + 4u * uint(marked.b);
+    return number_or_color(number, any(marked) ? vec3(marked) : dimmed(radiance));
 }
 
-vec3 clipped_color(vec3 radiance) {
-    bvec3 above = greaterThan(radiance * frame.exposure, vec3(1.0));
-    return any(above) ? vec3(above) : dimmed(radiance);
+vec3 negative_value(vec3 radiance) { return marked_channels(lessThan(radiance, vec3(0.0)), radiance); }
+
+vec3 clipped_value(vec3 radiance) {
+    return marked_channels(greaterThan(radiance * frame.exposure, vec3(1.0)), radiance);
 }
 
 // Stops above and below 18 % gray, the mean reflectance that light meters assume.
@@ -48,32 +50,32 @@ float stops_from_gray(vec3 radiance) {
 
 // No common dielectric is darker than charcoal (sRGB 30) or lighter than fresh snow (240) (McDermott 2018, The PBR
 // Guide). A metal's base color is not an albedo, so the check applies only below metallic 0.5.
-vec3 albedo_range_color(Surface s) {
+vec3 albedo_range_value(Surface s) {
     vec3 srgb = srgb_from_linear(s.base_color) * 255.0;
-    if (s.metallic < 0.5 && max_component(srgb) < 30.0) return TOO_LOW;
-    if (s.metallic < 0.5 && max_component(srgb) > 240.0) return TOO_HIGH;
-    return vec3(0.25 * luminance(s.base_color));
+    if (s.metallic < 0.5 && max_component(srgb) < 30.0) return number_or_color(1u, TOO_LOW);
+    if (s.metallic < 0.5 && max_component(srgb) > 240.0) return number_or_color(2u, TOO_HIGH);
+    return number_or_color(0u, vec3(0.25 * luminance(s.base_color)));
 }
 
 // At normal incidence dielectrics reflect 2 to 5 % and metals sRGB 180 or more (McDermott 2018). Values between are
 // suspect: such a metal is covered by dirt or rust, which are dielectrics and need a lower `metallic`.
-vec3 f0_range_color(Surface s) {
+vec3 f0_range_value(Surface s) {
     float f0 = max_component(f0_of(s));
-    if (f0 < 0.02) return TOO_LOW;
+    if (f0 < 0.02) return number_or_color(1u, TOO_LOW);
     float metal = linear_from_srgb(vec3(180.0 / 255.0)).r;
-    if (f0 > 0.05 && f0 < metal) return TOO_HIGH;
-    return vec3(0.25 * f0);
+    if (f0 > 0.05 && f0 < metal) return number_or_color(2u, TOO_HIGH);
+    return number_or_color(0u, vec3(0.25 * f0));
 }
 
 // `lit` and `radiance`: the picture.
 bool debug_truth(Surface s, vec3 v, Lit lit, vec3 radiance, out vec3 value) {
     bool known = true;
-    if (MODE == MODE_NAN) value = nan_color(radiance);
-    else if (MODE == MODE_NEGATIVE) value = negative_color(radiance);
-    else if (MODE == MODE_CLIPPED) value = clipped_color(radiance);
+    if (MODE == MODE_NAN) value = nan_value(radiance);
+    else if (MODE == MODE_NEGATIVE) value = negative_value(radiance);
+    else if (MODE == MODE_CLIPPED) value = clipped_value(radiance);
     else if (MODE == MODE_FALSE_COLOR) value = vec3(stops_from_gray(radiance));
-    else if (MODE == MODE_ALBEDO_RANGE) value = albedo_range_color(s);
-    else if (MODE == MODE_F0_RANGE) value = f0_range_color(s);
+    else if (MODE == MODE_ALBEDO_RANGE) value = albedo_range_value(s);
+    else if (MODE == MODE_F0_RANGE) value = f0_range_value(s);
     else known = false;
     return known;
 }

@@ -6,12 +6,14 @@ pub(super) mod text;
 
 use std::collections::BTreeMap;
 
+use serde_json::Value;
+
 use crate::interface::Light;
 use crate::measure::{Curves, Material};
 use crate::render::Texel;
 use crate::scene::CameraView;
-use crate::shader::PixelValue;
 use crate::shader::not_finite::NotFinite;
+use crate::shader::{Mode, PixelValue};
 
 use directions::Directions;
 
@@ -107,6 +109,11 @@ impl Reading {
     /// The value of a mode, if it was read.
     pub(super) fn value(&self, slug: &str) -> Option<PixelValue> {
         self.values.get(slug).map(|(value, _)| *value)
+    }
+
+    /// The values of these modes that were read, in JSON.
+    pub(super) fn json<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = (String, Value)> + 'a {
+        modes.iter().filter_map(|mode| Some((mode.slug.clone(), self.value(&mode.slug)?.json(mode))))
     }
 
     /// Whether the value of a mode is that of an earlier picture.

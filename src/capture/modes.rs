@@ -4,8 +4,8 @@ use crate::message::did_you_mean;
 use crate::session::Session;
 use crate::shader::Mode;
 
-/// The modes of these names: `modes` for all that have data in the model and take one frame, `all`, or slugs. The order is that of
-/// the shader tree.
+/// The modes of these names: `modes` for all that have data in the model and take one frame, `all`, or slugs; without a name, all but
+/// those of random paths. The order is that of the shader tree.
 ///
 /// # Errors
 /// A name that no mode has, with the nearest.
@@ -26,6 +26,8 @@ pub fn modes_of(session: &Session, names: &[String]) -> Result<Vec<Mode>, String
             return Err(format!("there is no mode `{name}`.{hint} `specula modes` lists them all"));
         }
     }
-    let is_wanted = |mode: &&Mode| wants_all || (wants_plain && is_plain(mode)) || names.contains(&mode.slug);
+    let is_quick = |mode: &Mode| names.is_empty() && !mode.follows_paths();
+    let is_wanted =
+        |mode: &&Mode| wants_all || is_quick(mode) || (wants_plain && is_plain(mode)) || names.contains(&mode.slug);
     Ok(shaders.modes.iter().filter(is_wanted).cloned().collect())
 }

@@ -70,7 +70,7 @@ impl Stills {
         for (index, mode) in modes.iter().enumerate() {
             tell(progress, index, modes.len())?;
             self.session.settings.mode.clone_from(&mode.slug);
-            let frame = self.bind(size)?;
+            let frame = self.bind_as(size, FrameState::with_numbers)?;
             self.view.restart_passes();
             self.view.restart_mean();
             let count = if frame.state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
@@ -163,10 +163,19 @@ impl Stills {
     }
 
     fn bind(&mut self, size: (u32, u32)) -> Result<BoundFrame, HeadlessError> {
+        self.bind_as(size, |state| state)
+    }
+
+    /// Binds the state of the session, which `adapt` changes before.
+    fn bind_as(
+        &mut self,
+        size: (u32, u32),
+        adapt: impl FnOnce(FrameState) -> FrameState,
+    ) -> Result<BoundFrame, HeadlessError> {
         self.check_size(size)?;
         let target = self.target()?;
         let state = self.session.frame_state(self.clock, size, target);
-        let state: Arc<FrameState> = Arc::new(state.ok_or_else(|| HeadlessError::Shaders(Vec::new()))?);
+        let state = Arc::new(adapt(state.ok_or_else(|| HeadlessError::Shaders(Vec::new()))?));
         if state.pipelines.needs_pending(&state.shaders) {
             let mode = &self.session.settings.mode;
             return Err(HeadlessError::Settings(format!("the shaders of the mode `{mode}` have errors")));

@@ -15,6 +15,7 @@ use specula::scene::{LoadTiming, Model};
 use specula::shader::{Batch, Compiler, Source, TreePath, Watcher};
 
 use super::common::{Common, check_validation, compiler};
+use super::progress::Progress;
 use super::{Failure, print_json};
 
 /// The process to measure.
@@ -24,11 +25,11 @@ enum What {
     Reload,
     /// Time of a frame, and of the first frame in each debug mode
     Frame,
-    /// Time from the model's file to its first frame
+    /// Time from opening the model's file to its first frame
     Load,
     /// Time to bake an environment, pass by pass, and to read it from the disk cache
     Bake,
-    /// Time to draw a thumbnail of every debug mode: first with their pipelines, then without
+    /// Time to draw a thumbnail of every debug mode: the first time, with building pipelines, and again
     Thumbnails,
 }
 
@@ -38,7 +39,7 @@ const THUMBNAIL: [u32; 2] = [96, 72];
 /// Options of `bench`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The process to measure
+    /// What to measure
     #[arg(value_enum)]
     what: What,
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
@@ -46,7 +47,7 @@ pub struct Args {
     /// Number of samples, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 20, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     samples: u32,
-    /// For reload: the file to edit, from the root of the tree. An edit of a file without `main()` changes nothing on screen
+    /// File to edit for reload, relative to the root of the tree. The edit changes no pixel
     #[arg(long, value_name = "FILE", default_value = "pbr.frag")]
     edit: String,
     /// Print JSON
@@ -62,13 +63,16 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     let gpu = args.common.gpu_without_pipelines()?;
     let compiler = compiler()?;
     compiler.warm();
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling the shaders");
     let mut result = match args.what {
-        What::Reload => reload(&args, &gpu, &compiler)?,
-        What::Frame => frame(&args, &gpu, &compiler)?,
-        What::Load => load(&args, &gpu, &compiler, start)?,
-        What::Bake => bake(&args, &gpu, &compiler)?,
-        What::Thumbnails => thumbnails(&args, &gpu, &compiler)?,
+        What::Reload => reload(&args, &gpu, &compiler, &progress)?,
+        What::Frame => frame(&args, &gpu, &compiler, &progress)?,
+        What::Load => load(&args, &gpu, &compiler, (start, &progress))?,
+        What::Bake => bake(&args, &gpu, &compiler, &progress)?,
+        What::Thumbnails => thumbnails(&args, &gpu, &compiler, &progress)?,
     };
+    drop(progress);
     result["device"] = json!(gpu.info().name);
     result["samples"] = json!(args.samples);
     if args.json {
@@ -81,7 +85,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
 
 /// Saves an edited file in a copy of the tree, waits for the watcher, reloads and renders. Times every step, and what is
 /// left to compile when the frame is on screen.
-fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
     let folder = TempFolder::new()?;
     copy_tree(&args.common.source()?, &folder.0)?;
     let source = Source::Disk(folder.0.clone());
@@ -101,6 +105,7 @@ fn reload(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value
     let names = ["detect_ms", "compile_ms", "pipeline_ms", "first_frame_ms", "total_ms", "overhead_ms", "rest_ms"];
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for sample in 0..args.samples {
+        progress.begin("sample", (sample as usize, args.samples as usize), "");
         let text = edited(&original, sample + 1);
         let begin = Instant::now();
         std::fs::write(&path, text).map_err(|e| Failure::Input(e.to_string()))?;
@@ -143,13 +148,14 @@ fn edited(text: &str, number: u32) -> String {
 }
 
 /// Times frames of the selected mode, and the first and second frame of every mode.
-fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     headless.draw()?;
     let (mut wall, mut device, mut passes) = (Vec::new(), Vec::new(), BTreeMap::<String, Vec<f64>>::new());
-    for _ in 0..args.samples {
+    for sample in 0..args.samples {
+        progress.begin("sample", (sample as usize, args.samples as usize), "");
         // A still picture is not drawn again, so measure one that turns, too slowly for it to change.
         headless.settings_mut().camera.azimuth += 0.001;
         let begin = Instant::now();
@@ -167,8 +173,9 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
         true => headless.shaders().modes.iter().map(|m| m.slug.clone()).collect(),
     };
     let (mut first, mut again, mut modes) = (Vec::new(), Vec::new(), Vec::new());
-    for slug in slugs {
-        headless.settings_mut().mode.clone_from(&slug);
+    for (index, slug) in slugs.iter().enumerate() {
+        progress.begin("mode", (index, slugs.len()), slug);
+        headless.settings_mut().mode.clone_from(slug);
         let begin = Instant::now();
         headless.draw()?;
         let first_ms = ms(begin);
@@ -191,7 +198,7 @@ fn frame(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value,
 }
 
 /// Draws all thumbnails of the gallery.
-fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, mut settings) = (args.common.source()?, args.common.settings()?);
     // As the window draws them.
@@ -201,6 +208,7 @@ fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<V
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     headless.draw()?;
     let modes = headless.shaders().modes.clone();
+    progress.say("drawing the thumbnails");
     let mut draw = || -> Result<(usize, f64), Failure> {
         let begin = Instant::now();
         let drawn = headless.thumbnails(size.into(), &modes)?.len();
@@ -217,7 +225,12 @@ fn thumbnails(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<V
 }
 
 /// Loads the model repeatedly, while the shaders compile. Times the first load also from the start of the program.
-fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -> Result<Value, Failure> {
+fn load(
+    args: &Args,
+    gpu: &Arc<Gpu>,
+    compiler: &Arc<Compiler>,
+    (start, progress): (Instant, &Progress),
+) -> Result<Value, Failure> {
     let device_ms = ms(start);
     let names = [
         "parse_ms",
@@ -233,6 +246,7 @@ fn load(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, start: Instant) -
     let mut samples: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     let mut cold_ms = 0.0;
     for sample in 0..args.samples {
+        progress.begin("sample", (sample as usize, args.samples as usize), "");
         let begin = Instant::now();
         let (source, settings) = (args.common.source()?, args.common.settings()?);
         let (mut load_ms, mut timing) = (0.0, LoadTiming::default());
@@ -282,7 +296,7 @@ fn finish(headless: &mut Headless) -> Result<(), Failure> {
 }
 
 /// Bakes the selected environment repeatedly. The first bake includes the creation of its pipelines.
-fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, Failure> {
+fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>, progress: &Progress) -> Result<Value, Failure> {
     let model = args.common.model_silently(args.model.as_deref())?;
     let (source, settings) = (args.common.source()?, args.common.settings()?);
     if !settings.environment.is_lit() {
@@ -292,7 +306,8 @@ fn bake(args: &Args, gpu: &Arc<Gpu>, compiler: &Arc<Compiler>) -> Result<Value, 
     }
     let (mut headless, _) = Headless::new(gpu, compiler, source, model, settings, args.common.size)?;
     let (mut table, mut from_disk) = (BTreeMap::<String, Vec<f64>>::new(), Vec::new());
-    for _ in 0..args.samples {
+    for sample in 0..args.samples {
+        progress.begin("sample", (sample as usize, args.samples as usize), "");
         headless.bake(false)?;
         let report = serde_json::to_value(headless.bake_report()).unwrap_or_default();
         for (name, value) in report.as_object().into_iter().flatten() {

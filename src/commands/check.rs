@@ -14,6 +14,7 @@ use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
 
 use super::common::{Common, check_validation, compiler};
+use super::progress::Progress;
 use super::{Failure, print_diagnostics, print_json};
 
 /// Options of `check`.
@@ -31,13 +32,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let source = args.common.source()?;
     let mut library = Library::new(source, compiler()?, &specula::frame::stages::all_stages());
     let start = std::time::Instant::now();
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling every file");
     let mut diagnostics = check::check(&mut library);
     let built = match library.set().cloned() {
         Some(shaders) if diagnostics.iter().all(|d| d.severity != Severity::Error) => {
-            build_choices(args, &shaders, &mut diagnostics)?
+            build_choices(args, &shaders, &mut diagnostics, &progress)?
         }
         _ => None,
     };
+    drop(progress);
     let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
     for diagnostic in &diagnostics {
         emit(args.common.emits(), &Event::Diagnostic(diagnostic));
@@ -67,6 +71,7 @@ fn build_choices(
     args: &Args,
     shaders: &Arc<ShaderSet>,
     diagnostics: &mut Vec<Diagnostic>,
+    progress: &Progress,
 ) -> Result<Option<usize>, Failure> {
     let gpu = match args.common.gpu_without_pipelines() {
         Ok(gpu) => gpu,
@@ -113,6 +118,7 @@ fn build_choices(
     let mut count = 1;
     let mut build = |request: &PipelineRequest, file: &str, line: u32, what: String| {
         count += request.materials.len();
+        progress.say(&format!("building the pipelines of {what}"));
         if let Err(error) = set.build(request) {
             diagnostics.push(
                 Diagnostic::error(file, format!("the pipeline of {what} cannot be built: {error}")).on_line(line, None),

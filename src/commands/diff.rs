@@ -21,12 +21,12 @@ use super::{Failure, print_json};
 pub struct Args {
     /// Picture, .png or .exr, or a folder of them
     a: PathBuf,
-    /// Picture of the same size, or folder whose pictures have the same names
+    /// Picture of the same size, or folder with pictures of the same names
     b: PathBuf,
     /// Largest error that passes
     #[arg(long, value_name = "ERROR", default_value_t = 0.0, allow_negative_numbers = true)]
     max: f64,
-    /// Write a map of the differences: a file; for folders a folder, with a file for each picture beyond --max
+    /// Write a map of the differences: a file; or, for folders, a folder with a map of each picture whose error is larger than --max
     #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
     /// Print JSON

@@ -18,7 +18,7 @@ use stages::Stages;
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// Also tell of each stage of the picture: words of SPIR-V, times, and the driver's registers, instructions and spills
+    /// Also list the stages of the picture: words of SPIR-V, compile times, and the driver's registers, instructions and spills
     #[arg(long)]
     stages: bool,
     /// Print JSON
@@ -49,7 +49,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     print_devices(devices);
     print_model(&model);
     if args.stages {
-        Stages::new(&args.common, model)?.print();
+        let progress = super::progress::Progress::new(!args.common.emits());
+        progress.say("compiling the shaders and building pipelines");
+        let stages = Stages::new(&args.common, model)?;
+        drop(progress);
+        stages.print();
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde_json::json;
 use specula::learn::{Exercise, Finding, Lab, LearnError, Progress, exercises, find, prepare};
+use specula::message::tell;
 use specula::shader::{Source, is_specula_tree};
 
 use super::common::{Common, check_validation, compiler};
@@ -16,16 +17,16 @@ const FOLDER: &str = "specula-learn";
 /// Options of `learn`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Number or name of an exercise [default: the first that is not solved]; or list, check or reset
+    /// Number or name of an exercise to open [default: the first unsolved one]; or list, check or reset
     #[arg(value_name = "EXERCISE|list|check|reset")]
     what: Option<String>,
-    /// For check: number or name of the exercise
+    /// Number or name of the exercise to check
     #[arg(value_name = "EXERCISE")]
     exercise: Option<String>,
-    /// Folder in which the exercises lie, each in a folder of its own; for check, also the tree of the exercise itself
+    /// Folder that holds a folder for each exercise [default: specula-learn, or the last one]. For check, it may be the folder of the exercise itself
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
-    /// For list and check: print JSON
+    /// Print JSON (list and check)
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -67,7 +68,11 @@ fn open(mut common: Common, dir: Option<PathBuf>, exercise: &Exercise, start: In
     let mut progress = Progress::load();
     let parent = dir.or_else(|| progress.folder.clone()).unwrap_or_else(|| FOLDER.into());
     let parent = std::path::absolute(&parent).unwrap_or(parent);
+    let is_new = !parent.join(&exercise.name).exists();
     let folder = prepare(&parent, exercise).map_err(Failure::Input)?;
+    if is_new {
+        tell(format_args!("exercise {} is in {}, a folder of your own to edit", exercise.number, folder.display()));
+    }
     progress.folder = Some(parent);
     progress.save();
     common.shaders = Some(folder);
@@ -105,6 +110,8 @@ fn check(args: &Args) -> Result<(), Failure> {
     let exercise = find(name).map_err(Failure::Usage)?;
     let source = Source::open(tree(args.dir.as_deref(), exercise)?);
     let gpu = args.common.gpu()?;
+    let progress = super::progress::Progress::new(!args.common.emits());
+    progress.say("compiling the shaders and measuring the goals");
     let mut lab = Lab::new(&gpu, &compiler()?);
     let findings = lab.check(exercise, &source, || false).map_err(|error| match error {
         LearnError::Shaders(diagnostics) => Failure::Shaders(diagnostics),
@@ -112,6 +119,7 @@ fn check(args: &Args) -> Result<(), Failure> {
         other => Failure::Input(other.to_string()),
     });
     drop(lab);
+    drop(progress);
     let findings = findings?;
     check_validation(&gpu)?;
     if findings.iter().all(|finding| finding.passed) {

@@ -17,6 +17,7 @@ mod learn;
 mod modes;
 mod new;
 mod probe;
+mod progress;
 mod render;
 mod signals;
 mod view;
@@ -28,7 +29,7 @@ use std::time::Instant;
 use clap::{Parser, Subcommand};
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
-use specula::message::tell;
+use specula::message::{clear_status, print_error, tell};
 use specula::render::UploadError;
 use specula::shader::Diagnostic;
 
@@ -39,12 +40,12 @@ use specula::shader::Diagnostic;
     after_help = "Without a command, `specula [MODEL]` opens the window. `specula help set` lists all settings.\n\n\
     Exit codes:\n  \
     0  Done.\n  \
-    1  A file is wrong: a model, a shader or another file is missing, does not load or cannot be written.\n     \
-       Or a check failed: check, diff, brdf and --validate.\n  \
-    2  The command line is wrong: an unknown command, option or name, or a value that is not allowed, also one\n     \
-       in a look file, and one that only this model, shader tree or device does not have.\n  \
-    3  There is no usable device or display, or none with the name of --device; or the device has not finished\n     \
-       within --timeout, was lost, or was lost three times in a row in a window."
+    1  A model, a shader or another file is missing, does not load or cannot be written;\n     \
+       or a check failed (check, diff, brdf, learn check, --validate).\n  \
+    2  The command line or a look file is wrong: an unknown command, option or name, or a value that is not\n     \
+       allowed, or that this model, shader tree or device does not have.\n  \
+    3  There is no usable device or display, or none with the name in --device; or the device was lost (a window:\n     \
+       three times in a row), or did not finish within --timeout."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -57,25 +58,25 @@ struct Cli {
 enum Command {
     /// Open the window (the default)
     View(view::Args),
-    /// Render to a PNG or EXR, without a window
+    /// Render a picture to a PNG or EXR file, without a window
     Render(render::Args),
     /// List the debug modes, constants and parameters of the shader tree
     Modes(modes::Args),
-    /// Compile every shader with every declared choice; for CI
+    /// Compile every shader, and build the pipelines of every mode and choice; for CI
     Check(check::Args),
-    /// Show the devices, the shader tree and what is in a model
+    /// Show the devices, the shader tree and the contents of a model
     Info(info::Args),
-    /// Write the shader tree to a new folder, to start from
+    /// Write a copy of the shader tree to a new folder, for you to edit
     New(new::Args),
-    /// Learn shading: exercises that Specula checks, in the window or in a terminal
+    /// Learn shading by exercises that Specula checks, in the window or in a terminal
     Learn(learn::Args),
-    /// Measure reloads, frames and loading
+    /// Measure reloads, frames, loading and baking
     Bench(bench::Args),
-    /// Compare pictures, or folders of them
+    /// Compare two pictures, or two folders of pictures
     Diff(diff::Args),
-    /// Measure the BRDF of the shader tree, or plot it
+    /// Measure or plot the BRDF of the shader tree
     Brdf(brdf::Args),
-    /// Print the raw values of a pixel in every debug mode
+    /// Print the raw values of a pixel in all debug modes
     Probe(probe::Args),
     /// Print the help of a command, or the list of all settings: `specula help set`
     Help(help::Args),
@@ -185,7 +186,17 @@ fn end(failure: &Failure) -> ExitCode {
 /// Prints text to stdout as it is, with a line break. A reader that went away is ignored.
 pub fn print(text: &str) {
     use std::io::Write as _;
+    clear_status();
     let _ = writeln!(std::io::stdout().lock(), "{text}");
+}
+
+/// Says how many modes of random paths a command has left out.
+pub fn tell_left_out(count: usize) {
+    match count {
+        0 => {}
+        1 => tell("left out 1 mode of random paths; add --paths, or name it with --mode"),
+        _ => tell(format_args!("left out {count} modes of random paths; add --paths, or name them with --mode")),
+    }
 }
 
 /// Prints a value as indented JSON. serde escapes ASCII control characters; the others, which some terminals obey too, are escaped
@@ -205,6 +216,6 @@ pub fn print_json(value: &impl serde::Serialize) {
 /// Prints diagnostics to stderr: `file:line: error: message`, which editors parse, then the source line with its caret.
 pub fn print_diagnostics(diagnostics: &[Diagnostic]) {
     for diagnostic in diagnostics {
-        eprintln!("{}", diagnostic.full());
+        print_error(diagnostic.full());
     }
 }

@@ -3,6 +3,7 @@
 use specula::shader::{Library, Update};
 
 use super::common::{Common, compiler};
+use super::progress::Progress;
 use super::{Failure, print_json};
 
 /// Options of `modes`.
@@ -17,12 +18,15 @@ pub struct Args {
 
 /// Runs the command. Needs no device.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling the shaders");
     let mut library = Library::new(args.common.source()?, compiler()?, &specula::frame::stages::stages());
     let shaders = match library.update(&specula::shader::Change::All) {
         Update::Ready(shaders, _) => shaders,
         Update::Failed(diagnostics, _) => return Err(Failure::Shaders(diagnostics)),
         Update::Unchanged { .. } => return Ok(()),
     };
+    drop(progress);
     if args.json {
         print_json(&shaders.modes);
         return Ok(());

@@ -13,28 +13,33 @@ use specula::shader::not_finite::NotFinite;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
 use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
-use super::{Failure, print_json};
+use super::progress::Progress;
+use super::{Failure, print_json, tell_left_out};
 
 /// Options of `probe`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Values are in world space, before exposure, tone map and encoding. Color is multiplied by coverage.\n\
-    A mode without data at the pixel is null in JSON. A mode whose value is NaN or infinite is the string \"NaN\".\n\
-    If there is such a mode, the first statement that made NaN or infinity follows (`not_finite` in JSON).\n\
-    The pixel has one sample, in its middle: view.msaa is 1, so that no edge mixes two surfaces.\n\
-    The value of an accumulating mode is the mean of view.frames frames. Angles are in degrees.\n\
-    Textures of the material follow with the texel of level 0 at the pixel, as stored and as a linear number; the shader itself \
-    filters.\n\
-    --mode may repeat; without it, all modes are printed.\n\
+    after_help = "Without --mode, all modes are printed, except those of random paths, which take seconds each on a software device: add --paths, or \
+    name them.\n\
+    Values are in world space, before exposure, tone map and encoding. Color is multiplied by coverage. Angles are in degrees. Where the \
+    picture shows a color for each number (triangle, front or back, NaN), the number or its meaning is printed.\n\
+    In JSON, a value is [r, g, b, coverage], or a number or name where it stands for one; null: the mode has no data at the pixel; \
+    \"NaN\": the value is NaN or infinite. `not_finite` is then the first statement that made NaN or infinity.\n\
+    The pixel has one sample in its center: view.msaa is 1, so that no edge mixes two surfaces. An accumulating mode is the mean of \
+    view.frames frames.\n\
+    `textures` lists the texel of level 0 at the pixel in each texture of the material, as stored and as a linear number, unfiltered.\n\
     The falloff of a spot light is the square of angle_scale * cosine + angle_offset, clamped to 0..1 \
     (KHR_lights_punctual)."
 )]
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// The pixel, counted from the upper left corner
+    /// Pixel to read, counted from the upper left corner
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
     at: (u32, u32),
+    /// Include the modes of random paths
+    #[arg(long)]
+    paths: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -65,16 +70,23 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let source = args.common.source()?;
     let gpu = args.common.gpu()?;
     let model = args.common.model(args.model.as_deref())?;
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling the shaders");
     let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size)?;
-    let modes = chosen(&headless.shaders(), &slugs)?;
+    let Chosen { modes, left_out } = chosen(&headless.shaders(), &slugs, args.paths)?;
     let state = headless.frame_state()?;
+    progress.say("reading the pixel");
     let hit = is_hit(&mut headless, args.at)?;
     let shown = if hit { modes.as_slice() } else { &[] };
-    let values: Vec<_> = shown.iter().zip(headless.pixel(args.at, shown)?).collect();
+    let read = headless.pixel_with(args.at, shown, |step| progress.step(step))?;
+    let values: Vec<_> = shown.iter().zip(read).collect();
     let texels = if hit { headless.texels(args.at)? } else { Vec::new() };
+    progress.say("looking for the first line with NaN or infinity");
     let not_finite = first_not_finite(&mut headless, args.at, &values);
+    drop(progress);
     if args.json {
-        let modes: Map<String, Value> = values.iter().map(|(mode, pixel)| (mode.slug.clone(), value(pixel))).collect();
+        let modes: Map<String, Value> =
+            values.iter().map(|(mode, pixel)| (mode.slug.clone(), pixel.json(mode))).collect();
         let lights: Vec<Value> = state.lights.iter().map(light).collect();
         let textures: Vec<Value> = texels.iter().map(Texel::json).collect();
         let mut found = json!({ "pixel": [x, y], "hit": hit, "modes": modes, "camera": camera(&state),
@@ -90,25 +102,31 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
             out!("\n{}", not_finite.text());
         }
     }
+    tell_left_out(if hit { left_out } else { 0 });
     // The layers also report what is found when objects are destroyed.
     drop(headless);
     check_validation(&gpu)
 }
 
-/// The value of a mode in JSON.
-fn value(pixel: &PixelValue) -> Value {
-    match pixel {
-        PixelValue { not_finite: true, .. } => json!("NaN"),
-        PixelValue { no_data: true, .. } => Value::Null,
-        PixelValue { value, .. } => json!(value),
-    }
+/// The modes to print.
+struct Chosen {
+    modes: Vec<Mode>,
+    /// Modes of random paths that were neither named nor asked for.
+    left_out: usize,
 }
 
-/// The modes of these slugs, or all.
-fn chosen(shaders: &ShaderSet, slugs: &[String]) -> Result<Vec<Mode>, Failure> {
+/// The modes of these slugs; or all, those of random paths only with `paths` or by name.
+fn chosen(shaders: &ShaderSet, slugs: &[String], paths: bool) -> Result<Chosen, Failure> {
     slugs.iter().filter(|slug| *slug != "all").try_for_each(|slug| check_mode(shaders, slug))?;
     let all = slugs.is_empty() || slugs.iter().any(|slug| slug == "all");
-    Ok(shaders.modes.iter().filter(|mode| all || slugs.contains(&mode.slug)).cloned().collect())
+    if paths && !all {
+        return Err(Failure::Usage("--paths adds modes to all others; a mode that is named needs no --paths".into()));
+    }
+    let is_named = |mode: &Mode| slugs.contains(&mode.slug);
+    let wanted = shaders.modes.iter().filter(|mode| all || is_named(mode));
+    let (modes, left_out): (Vec<&Mode>, Vec<&Mode>) =
+        wanted.partition(|mode| paths || !mode.follows_paths() || is_named(mode));
+    Ok(Chosen { modes: modes.into_iter().cloned().collect(), left_out: left_out.len() })
 }
 
 /// The first statement that makes NaN or infinity: in the final picture, or else in the first of these modes that has one.

@@ -36,9 +36,9 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "probe",
-        r#""at": [x,y], "modes"?: ["d", "f"]"#,
-        "Raw values of a pixel of the picture, in these modes or all. Result: pixel, modes, textures (a texel of each), not_finite (the first \
-         line with NaN or Inf, if a value is one)",
+        r#""at": [x,y], "modes"?: ["d", "f"] | ["all"]"#,
+        "Raw values of a pixel of the picture, in these modes; without them, in all but those of random paths. Result: pixel, modes, \
+         textures (a texel of each), not_finite (the first line with NaN or Inf, if a value is one)",
     ),
     row("reload", "", "Compiles all shaders again. Result: generation; an error lists the diagnostics"),
     row(

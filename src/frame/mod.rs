@@ -229,6 +229,12 @@ impl FrameState {
         }
     }
 
+    /// The same picture for reading single pixels: modes that show a color for each number give the number.
+    pub fn with_numbers(mut self) -> Self {
+        self.constants.gives_numbers = 1;
+        self
+    }
+
     /// The debug mode that it shows; `None` only for a tree without modes.
     pub fn mode(&self) -> Option<&Mode> {
         self.shaders.modes.iter().find(|mode| mode.id == self.pipelines.mode)

@@ -34,7 +34,7 @@ pub fn mode_sets<'a>(modes: impl IntoIterator<Item = &'a Mode>, most: usize) -> 
 
 /// Whether a thumbnail of the mode can be drawn in a fraction of a frame.
 fn has_thumbnail(mode: &Mode) -> bool {
-    !mode.accumulate && !mode.traces && mode.pass.is_none() && mode.stage != crate::shader::PATHS_STAGE
+    mode.pass.is_none() && !mode.follows_paths()
 }
 
 /// Whether the mode can be one of several that a pipeline computes.

@@ -6,12 +6,12 @@ use super::{Headless, HeadlessError};
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{BoundFrame, Capture, Output, Redraw, View};
 
-/// How far a picture is.
+/// How far a picture or a readout is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// Frames or paths that are drawn.
+    /// Frames, paths or modes that are drawn.
     pub done: u64,
-    /// Frames or paths of the whole picture.
+    /// How many there are in all.
     pub of: u64,
     /// Unit of the count, as shown to the user.
     pub unit: &'static str,

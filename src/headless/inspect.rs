@@ -1,7 +1,7 @@
 //! The values of one pixel in many modes, drawn as the window's inspector draws them.
 
 use super::{Headless, HeadlessError};
-use crate::frame::{TargetFormat, mode_sets};
+use crate::frame::{FrameState, TargetFormat, mode_sets};
 use crate::render::{PixelModes, Texel, Thumbnails, read_texels, texel_places};
 use crate::shader::{Mode, PixelValue};
 
@@ -18,7 +18,7 @@ impl Headless {
         let mut pixel = PixelModes::new(&self.gpu, &self.layouts, 1)?;
         let mut found = Vec::new();
         for set in mode_sets(modes, Thumbnails::most_at_once(&self.gpu)) {
-            let frame = self.bind_modes(&set, self.size, TargetFormat::full(1))?;
+            let frame = self.bind_modes(&set, self.size, TargetFormat::full(1), FrameState::with_numbers)?;
             let mut encoder = self.frames.begin()?;
             pixel.draw(&mut encoder, 0, &frame, at)?;
             self.frames.submit(encoder, Default::default())?;

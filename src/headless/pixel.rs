@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Headless, HeadlessError};
+use super::{Headless, HeadlessError, Step};
 use crate::frame::{FrameInputs, FrameState, Scene};
 use crate::pipeline::PipelineSet;
 use crate::render::Redraw;
@@ -22,6 +22,19 @@ impl Headless {
     /// # Errors
     /// As [`Headless::render`].
     pub fn pixel(&mut self, at: (u32, u32), modes: &[Mode]) -> Result<Vec<PixelValue>, HeadlessError> {
+        self.pixel_with(at, modes, |_| ())
+    }
+
+    /// [`Headless::pixel`], which tells `progress` after each mode how far it is.
+    ///
+    /// # Errors
+    /// As [`Headless::render`].
+    pub fn pixel_with(
+        &mut self,
+        at: (u32, u32),
+        modes: &[Mode],
+        progress: impl Fn(&Step),
+    ) -> Result<Vec<PixelValue>, HeadlessError> {
         self.finish_or_fail()?;
         self.provide()?;
         let whole = self.frame_state()?;
@@ -33,7 +46,7 @@ impl Headless {
             let settings = Settings { mode: mode.slug.clone(), ..self.session.settings.clone() };
             let scene = Some(scene);
             let (shaders, revisions, target) = (&whole.shaders, self.session.revisions, whole.pipelines.target);
-            FrameState::new(&FrameInputs {
+            let inputs = FrameInputs {
                 settings: &settings,
                 shaders,
                 scene,
@@ -41,7 +54,8 @@ impl Headless {
                 clock: self.clock,
                 size: self.size,
                 target,
-            })
+            };
+            FrameState::new(&inputs).with_numbers()
         };
         let state_of = |mode: &Mode| {
             let state = state_in(mode, &part);
@@ -65,6 +79,7 @@ impl Headless {
                     self.draw_frame(&frame, Redraw::Pixel(at.0, at.1), |_, _, _| Ok(()))?;
                 }
                 values.push(self.view.pixel(self.frames.current()).map(|pixel| pixel.value).unwrap_or_default());
+                progress(&Step { done: values.len() as u64, of: modes.len() as u64, unit: "modes" });
             }
         }
         self.view.probe = None;

@@ -30,7 +30,7 @@ impl Headless {
         let mut thumbnails = Thumbnails::new(&self.gpu, &self.layouts, 1)?;
         let mut drawn = Vec::new();
         for set in mode_sets(modes, Thumbnails::most_at_once(&self.gpu)) {
-            let frame = self.bind_modes(&set, size, target)?;
+            let frame = self.bind_modes(&set, size, target, |state| state)?;
             let atlas = Thumbnails::atlas(&self.gpu, size, (1, set.len() as u32))?;
             let corners: Vec<(u32, u32)> = (0..set.len() as u32).map(|row| (0, row * size.1)).collect();
             let bytes = atlas.desc().bytes();
@@ -54,16 +54,17 @@ impl Headless {
         Ok(drawn)
     }
 
-    /// The frame that draws a set of modes at once, with its pipelines.
+    /// The frame that draws a set of modes at once, with its pipelines. `adapt` changes its state before.
     pub(super) fn bind_modes(
         &mut self,
         set: &[&Mode],
         size: (u32, u32),
         target: TargetFormat,
+        adapt: impl FnOnce(FrameState) -> FrameState,
     ) -> Result<BoundFrame, HeadlessError> {
         let (shaders, scene) = (self.shaders(), self.session.scene());
         let inputs = self.session.inputs(&shaders, scene.as_ref(), self.clock, size, target);
-        let state = Arc::new(FrameState::of_modes(&inputs, set));
+        let state = Arc::new(adapt(FrameState::of_modes(&inputs, set)));
         self.resources.provide(&state).map_err(|error| self.explained(error.into()))
     }
 }

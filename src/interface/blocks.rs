@@ -176,6 +176,8 @@ blocks! {
         dither: float,
         /// The colors that stand for the numbers from 0 to 1, at equal steps. Linear RGB.
         colormap: [vec3; COLORMAP_STEPS],
+        /// Whether modes that show a color for each number give the number itself: 1 where a single pixel is read, else 0.
+        gives_numbers: uint,
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.

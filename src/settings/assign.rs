@@ -7,6 +7,8 @@ use crate::message::{did_you_mean, either};
 const MATERIALS: &str = "materials.";
 /// Where the list of all settings is.
 const SEE: &str = "(see `specula help set`)";
+/// The same, after a name that was probably meant.
+const SEE_ALL: &str = "`specula help set` lists all";
 
 impl Settings {
     /// Applies `path=value`, as `--set` takes it: a dotted path (`lights.orbit.0.strength`), or the bare name of one of the shader
@@ -81,16 +83,26 @@ impl Settings {
 /// The message about a name that is neither a setting nor one of the shader tree's `own` names. `describe` says what one of those
 /// takes.
 pub fn unknown_setting(name: &str, own: &[&str], describe: impl Fn(&str) -> Option<String>) -> String {
-    let hint = catalog::nearest(name, own).map_or_else(String::new, |nearest| {
-        let takes = if own.contains(&nearest.as_str()) { describe(&nearest) } else { numbers(&nearest) };
+    let nearest = catalog::nearest(name, own);
+    let hint = nearest.as_ref().map_or_else(String::new, |(_, nearest)| {
+        let takes = if own.contains(&nearest.as_str()) { describe(nearest) } else { numbers(nearest) };
         let takes = takes.map(|takes| format!(", which takes {takes}")).unwrap_or_default();
         format!(" Did you mean `{nearest}`{takes}?")
     });
+    if is_near(nearest) {
+        return format!("unknown setting `{name}`.{hint} {SEE_ALL}");
+    }
     let list = own.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let list = if list.is_empty() { "none".to_owned() } else { list };
     format!(
         "unknown setting `{name}`.{hint} Shader parameters: {list}. Settings: `view.ev`, `lights.orbit.0.strength`, ... {SEE}"
     )
+}
+
+/// Whether the nearest name is so near that it was meant: the list of all names would hide it.
+fn is_near(nearest: Option<(f64, String)>) -> bool {
+    const LEAST_LIKENESS: f64 = 0.6;
+    nearest.is_some_and(|(likeness, _)| likeness >= LEAST_LIKENESS)
 }
 
 /// A TOML value, or numbers joined by commas; anything else is text.
@@ -123,8 +135,11 @@ fn find<'a>(root: &'a toml::Value, path: &str) -> Result<Option<&'a toml::Value>
             }
             (None, _) if matches!(above.as_str(), "shader" | "passes") && full == path => return Ok(None),
             (None, _) => {
-                let hint = catalog::nearest(path, &[]).map(|name| format!(" Did you mean `{name}`?"));
-                let hint = hint.unwrap_or_default();
+                let nearest = catalog::nearest(path, &[]);
+                let hint = nearest.as_ref().map(|(_, name)| format!(" Did you mean `{name}`?")).unwrap_or_default();
+                if is_near(nearest) {
+                    return Err(format!("unknown setting `{path}`.{hint} {SEE_ALL}"));
+                }
                 let place_name = if above.is_empty() { "At the top".to_owned() } else { format!("Below `{above}`") };
                 return Err(format!("unknown setting `{path}`.{hint} {place_name} there are {} {SEE}", keys(place)));
             }
@@ -269,7 +284,8 @@ mod tests {
                 "unknown setting `view.exposure`. Did you mean `view.ev`? Below `view` there are background, bounces, channels, \
                  colormap, dither, ev, frames, msaa, pass_memory, range, tonemap, wireframe (see `specula help set`)",
             ),
-            ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? At the top there are camera, "),
+            ("views.ev=1", "unknown setting `views.ev`. Did you mean `view.ev`? `specula help set` lists all"),
+            ("qqqq.ev=1", "At the top there are camera, "),
             ("shader.rim.x=1", "unknown setting `shader.rim.x`. "),
             ("camera.eye.0=1", "eye has no value yet; set all of eye"),
             ("view.ev=bright", "view.ev cannot be 'bright'; it takes a number, -30 to 30"),

@@ -166,9 +166,9 @@ pub fn told(limits: &RangeInclusive<f32>) -> String {
     format!("{} to {}", number(*limits.start()), number(*limits.end()))
 }
 
-/// The setting that is most like an unknown path. A path without a dot is also compared with the last parts of all
+/// The setting that is most like an unknown path, and how alike they are, 0..1. A path without a dot is also compared with the last parts of all
 /// paths, since that is how people abbreviate them.
-pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<String> {
+pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<(f64, String)> {
     let paths = paths();
     let candidates = own.iter().copied().chain(paths.iter().map(String::as_str));
     let likeness = |path: &str| {
@@ -177,7 +177,7 @@ pub(super) fn nearest(typed: &str, own: &[&str]) -> Option<String> {
         // A full name wins over an abbreviation that is equally like it.
         whole.max(0.99 * message::likeness(typed, last))
     };
-    message::best(candidates.map(|path| (likeness(path), path))).map(str::to_owned)
+    message::best(candidates.map(|path| (likeness(path), path))).map(|path| (likeness(path), path.to_owned()))
 }
 
 /// The value at a path of a table.
@@ -242,7 +242,7 @@ mod tests {
             ("roughness", &["roughness_scale"], Some("material.roughness")),
             ("qqqqq", &["NDF"], None),
         ] {
-            assert_eq!(nearest(typed, own).as_deref(), expected, "{typed}");
+            assert_eq!(nearest(typed, own).as_ref().map(|(_, name)| name.as_str()), expected, "{typed}");
         }
     }
 

@@ -22,7 +22,7 @@ pub mod spirv;
 pub mod values;
 pub mod watch;
 
-pub use annotation::{Constant, DrawAs, Encode, Mode, PATHS_STAGE, Parameter};
+pub use annotation::{Constant, DrawAs, Encode, Mode, Numbers, PATHS_STAGE, Parameter};
 pub use compile::{Compiler, StageKind};
 pub use diagnostic::{Diagnostic, Severity};
 pub use expression::Expression;

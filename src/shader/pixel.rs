@@ -1,6 +1,8 @@
 //! Decodes a pixel of the HDR target: color, coverage and flags. `shaders/common/pixel.glsl` encodes it.
 
-use super::Mode;
+use serde_json::{Value, json};
+
+use super::{Mode, Numbers};
 use crate::interface::{FLAG_NO_DATA, FLAG_NOT_FINITE};
 
 /// Maximum number of samples per pixel for which the mean still separates coverage and flags.
@@ -40,9 +42,17 @@ impl PixelValue {
         }
     }
 
-    /// The value as text: one number per component of the mode, the unit, and whether the value is before exposure; or
-    /// `no data`; or `NaN`, which also stands for infinity. The width depends only on the mode.
+    /// A value that was read on its own, as text: one number per component of the mode, the unit, and whether the value is before
+    /// exposure; or what its number means; or `no data`; or `NaN`, which also stands for infinity. The width depends only on the mode.
     pub fn text(&self, mode: &Mode) -> String {
+        match &mode.numbers {
+            Some(numbers) => self.meaning(numbers),
+            None => self.text_in_picture(mode),
+        }
+    }
+
+    /// The value of a picture's pixel as text. Unlike [`PixelValue::text`], it is a color where the picture shows one for each number.
+    pub fn text_in_picture(&self, mode: &Mode) -> String {
         if let Some(text) = self.words(mode) {
             return text;
         }
@@ -71,13 +81,55 @@ impl PixelValue {
         format!("{text:<total$}")
     }
 
-    /// The value in words, for units that people read so: `-2.1 EV`, `level 0`, `1,024 texels/m`. Always of the same width.
+    /// A value that was read on its own, in JSON: null is no data, "NaN" is not finite. A number that stands for something is an integer
+    /// or a name; all others are RGB times coverage, and coverage.
+    pub fn json(&self, mode: &Mode) -> Value {
+        match (self, &mode.numbers) {
+            (Self { not_finite: true, .. }, _) => json!("NaN"),
+            (Self { no_data: true, .. }, _) => Value::Null,
+            (_, None) => json!(self.value),
+            _ if !self.is_covered() => Value::Null,
+            (_, Some(Numbers::Index)) => json!(self.number()),
+            (_, Some(Numbers::Names(names))) => match names.get(self.number() as usize) {
+                // A sign, for example.
+                Some(name) => name.parse::<i64>().map_or_else(|_| json!(name), |number| json!(number)),
+                None => json!(self.number()),
+            },
+        }
+    }
+
+    /// Whether anything covers the pixel. Where nothing does, its color is 0 and stands for no number.
+    fn is_covered(&self) -> bool {
+        self.value[3] > 0.0
+    }
+
+    /// The number that a color of the picture stands for.
+    fn number(&self) -> u32 {
+        self.value[0].round() as u32
+    }
+
+    /// What the number means. Always of the same width.
+    fn meaning(&self, numbers: &Numbers) -> String {
+        let names: &[String] = if let Numbers::Names(names) = numbers { names } else { &[] };
+        let width = names.iter().map(|name| name.chars().count()).fold(NUMBER_WIDTH, usize::max);
+        let text = match self {
+            Self { not_finite: true, .. } => "NaN".to_owned(),
+            Self { no_data: true, .. } => "no data".to_owned(),
+            _ if !self.is_covered() => "no data".to_owned(),
+            _ => names.get(self.number() as usize).cloned().unwrap_or_else(|| self.number().to_string()),
+        };
+        format!("{text:>width$}")
+    }
+
+    /// The value in words, for units that people read so: `-2.1 EV`, `level 0`, `3 layers`, `1,024 texels/m`. Always of the same width.
     fn words(&self, mode: &Mode) -> Option<String> {
         let number = self.value[0];
         let (text, width) = match &*mode.unit {
             "EV" => (format!("{number:+.1} EV"), 8),
             "level" if (number - number.round()).abs() < 0.05 => (format!("level {:.0}", number.abs()), 10),
             "level" => (format!("level {number:.1}"), 10),
+            "layers" if number.round() == 1.0 => ("1 layer".to_owned(), 12),
+            "layers" => (format!("{number:.0} layers"), 12),
             "log2 texels/m" => (format!("{} texels/m", grouped(number.exp2())), 22),
             _ => return None,
         };
@@ -187,8 +239,32 @@ mod tests {
         assert_eq!(of("level", 1.34).trim(), "level 1.3");
         assert_eq!(of("log2 texels/m", 10.0).trim(), "1,024 texels/m");
         assert_eq!(of("log2 texels/m", 4.0).trim(), "16 texels/m");
+        assert_eq!([of("layers", 1.0).trim(), of("layers", 3.0).trim()], ["1 layer", "3 layers"]);
         let absent = PixelValue { no_data: true, ..PixelValue::default() };
         assert_eq!(absent.text(&mode(1, "EV", false)).trim(), "no data");
+    }
+
+    #[test]
+    fn numbers_that_stand_for_something_say_so() {
+        let of = |numbers: &Numbers, number: f32| {
+            let mode = Mode { numbers: Some(numbers.clone()), ..mode(3, "", false) };
+            let value = PixelValue { value: [number, number, number, 1.0], ..PixelValue::default() };
+            (value.text(&mode).trim().to_owned(), value.json(&mode))
+        };
+        let told = |text: &str, json: Value| (text.to_owned(), json);
+        let names = |names: &[&str]| Numbers::Names(names.iter().map(|name| (*name).to_owned()).collect());
+        assert_eq!(of(&Numbers::Index, 1_234_567.0), told("1234567", json!(1_234_567)));
+        assert_eq!(of(&names(&["front", "back"]), 1.0), told("back", json!("back")));
+        assert_eq!(of(&names(&["-1", "+1"]), 1.0), told("+1", json!(1)));
+        assert_eq!(of(&names(&["finite", "NaN"]), 1.0), told("NaN", json!("NaN")));
+        assert_eq!(of(&names(&["front", "back"]), 7.0), told("7", json!(7)));
+        let mode = Mode { numbers: Some(Numbers::Index), ..mode(3, "", false) };
+        for absent in [PixelValue { no_data: true, ..PixelValue::default() }, PixelValue::default()] {
+            assert_eq!((absent.text(&mode).trim(), absent.json(&mode)), ("no data", Value::Null));
+        }
+        // A picture shows colors.
+        let green = PixelValue { value: [0.0, 0.5, 0.0, 1.0], ..PixelValue::default() };
+        assert_eq!(green.text_in_picture(&mode).split_whitespace().count(), 3);
     }
 
     #[test]

@@ -61,7 +61,11 @@ fn a_misspelled_setting_gets_the_nearest() {
         ("lights.orbit.0.strenth=1", "Did you mean `lights.orbit.0.strength`"),
     ] {
         let name = format!("unknown setting `{}`", assignment.split('=').next().unwrap());
-        set(assignment).expect(2, &[&name, nearest, "specula help set"]);
+        let told = set(assignment);
+        told.expect(2, &[&name, nearest, "specula help set"]);
+        // The list of all would hide the one that was meant.
+        let has_list = told.stderr.contains("Shader parameters: `") || told.stderr.contains(" there are ");
+        assert_eq!(has_list, !nearest.starts_with("Did you mean"), "{told:#?}");
     }
     set("no_such_name=1").expect(2, &["`rim_strength`", "`TOON_BANDS`", "Settings: `view.ev`, "]);
     set("view.ev=").expect(2, &["view.ev", "no value", "it takes a number, -30 to 30"]);

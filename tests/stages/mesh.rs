@@ -1,9 +1,7 @@
 //! Task and mesh stages. Drawing needs a device with VK_EXT_mesh_shader; refusals and errors need none.
 
-use crate::support::{
-    Session, assert_same, assert_validated, failed, glb, gpu, line_of, lines, load, ready, settings, stages,
-};
-use crate::{FRAGMENT, GEOM, alone, assert_alike, covered, geometry, passes_check, session};
+use crate::support::{Session, assert_same, assert_validated, failed, gpu, line_of, lines, ready, stages};
+use crate::{FRAGMENT, GEOM, alone, assert_alike, covered, geometry, passes_check, points, session};
 
 const MESH: &str = "passes/mine.mesh";
 const TASK: &str = "passes/mine.task";
@@ -56,8 +54,7 @@ fn mesh_stages_are_refused_by_devices_without_them() {
     assert!(full.contains("the pass works with passes/mine.vert"), "{full}");
     assert_same(&plain, &session.render(), "the pass as it was");
     // Without the file, edits of the pass go on.
-    std::fs::remove_file(session.tree.path(MESH)).unwrap();
-    session.changed(&[MESH]);
+    session.delete(&[MESH]);
     ready(&session.save("passes/mine.frag", &FRAGMENT.replace("fragment.normal_ws", "-fragment.normal_ws")));
     ready(&session.save("passes/mine.frag", FRAGMENT));
     assert_same(&plain, &session.render(), "repaired");
@@ -67,9 +64,7 @@ fn mesh_stages_are_refused_by_devices_without_them() {
     let told = lines(failed(&session.changed(&[TASK, MESH]))).join("\n");
     assert!(told.contains(&format!("{LACKS} task stage")) && told.contains(&format!("{LACKS} mesh stage")), "{told}");
     // One that its own fragment stage alone could take is refused as well.
-    std::fs::remove_file(session.tree.path(TASK)).unwrap();
-    std::fs::remove_file(session.tree.path(MESH)).unwrap();
-    session.changed(&[TASK, MESH]);
+    session.delete(&[TASK, MESH]);
     let extension = FRAGMENT.replace("460\n", "460\n#extension GL_EXT_mesh_shader : require\n");
     let reads = extension.replace(
         "layout(location = 0) out",
@@ -156,20 +151,7 @@ fn errors_of_mesh_stages_have_their_line() {
         ),
         (&[pass, (MESH, no_number)], "mine.frag reads `vec3 Fragment.position_ws` at location 0, "),
     ];
-    for (files, expected) in cases {
-        for (file, text) in files {
-            session.tree.write(file, text);
-        }
-        let names: Vec<&str> = files.iter().map(|(file, _)| *file).collect();
-        let told = lines(failed(&session.changed(&names))).join("\n");
-        assert!(told.contains(expected), "{told}\nis not\n{expected}");
-        assert_same(&before, &session.render(), expected);
-        for name in &names {
-            std::fs::remove_file(session.tree.path(name)).unwrap();
-        }
-        session.changed(&names);
-        assert_same(&before, &session.render(), "repaired");
-    }
+    session.refuses(&before, &cases);
     session.save(MESH, &good);
     let told = lines(&session.headless.shaders().warnings).join("\n");
     assert!(
@@ -198,8 +180,7 @@ fn a_mesh_stage_draws_what_the_vertex_stage_draws() {
     assert!(covered(&large) > covered(&plain) * 3 / 2, "{} to {}", covered(&plain), covered(&large));
     failed(&session.save(MESH, &swollen.replace("1.5", "nothing")));
     assert_same(&large, &session.render(), "broken");
-    std::fs::remove_file(session.tree.path(MESH)).unwrap();
-    ready(&session.changed(&[MESH]));
+    ready(&session.delete(&[MESH]));
     assert_same(&plain, &session.render(), "the vertex stage again");
     // Multisampled, to an image, without back faces, and with a slider of its own.
     let slider = "uniform Mine { float grown; };   //@ui \"Grown\" 0..2 = 1.0\n";
@@ -214,8 +195,7 @@ fn a_mesh_stage_draws_what_the_vertex_stage_draws() {
     session.set("grown=1.0");
     ready(&session.save("passes/mine.frag", &FRAGMENT.replace(" to=picture", "")));
     let image = session.mode("pass:mine");
-    std::fs::remove_file(session.tree.path(MESH)).unwrap();
-    ready(&session.changed(&[MESH]));
+    ready(&session.delete(&[MESH]));
     assert_alike(&image, &session.mode("pass:mine"), "an image");
     assert_validated();
 }
@@ -288,22 +268,13 @@ fn endless_loops_of_mesh_stages_have_their_line() {
     ready(&session.changed(&[TASK, MESH]));
     let drawn = session.render();
     let endless = "float x = abs(frame.eye_ws.x);\n    while (x < 1e9) x *= 0.5;\n    ";
-    for (file, text) in &files {
+    for (file, repaired) in &files {
         let (hook, with) = match *file {
             TASK => ("uint count = list_groups(true)", "uint count = list_groups(x > -1.0)"),
             _ => ("set_corner(i, f)", "f.color.x += x; set_corner(i, f)"),
         };
-        let text = text.replacen(hook, &format!("{endless}{with}"), 1);
-        ready(&session.save(file, &text));
-        let Err(specula::headless::HeadlessError::Shaders(told)) = session.headless.render().map(|_| ()) else {
-            panic!("{file}: an endless loop is no error")
-        };
-        let told = lines(&told).join("\n");
-        let expected = format!("{file}:{}: error: this loop did not end (", line_of(&text, "while"));
-        assert!(told.contains(&expected), "{told}\nis not\n{expected}");
-        let (_, repaired) = files.iter().find(|(known, _)| known == file).unwrap();
-        ready(&session.save(file, repaired));
-        assert_same(&drawn, &session.render(), file);
+        let endless = repaired.replacen(hook, &format!("{endless}{with}"), 1);
+        session.ends_loop(file, (&endless, repaired), &drawn);
     }
     assert_validated();
 }
@@ -313,10 +284,7 @@ fn models_of_points_have_no_mesh_stage() {
     if !draws_meshes("points beside mesh stages") {
         return;
     }
-    let (mut document, bytes) = glb::document(&glb::sphere(8, 16), &glb::gray());
-    document["meshes"][0]["primitives"][0]["mode"] = 0.into();
-    let plain = ["view.msaa=1", "view.background=none", "environment.name=none", "passes.model=false"];
-    let mut session = Session::new(load(&glb::container(&document, &bytes)), settings(&plain));
+    let mut session = points(&["passes.model=false"]);
     ready(&session.save("passes/mine.frag", FRAGMENT));
     ready(&session.save(MESH, &mesh("", "")));
     assert_eq!(covered(&session.render()), 0);

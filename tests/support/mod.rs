@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use specula::gpu::{Gpu, GpuOptions};
-use specula::headless::Headless;
+use specula::headless::{Headless, HeadlessError};
 use specula::pipeline::{Outcome, Reload};
 use specula::render::Capture;
 use specula::scene::{Model, built_in, load_bytes};
 use specula::settings::Settings;
-use specula::shader::{Change, Compiler, Diagnostic, Source, TreePath, embedded};
+use specula::shader::{Change, Compiler, Diagnostic, Library, Source, TreePath, check, embedded};
 use tempfile::TempDir;
 
 /// Large enough for every feature of the models, small enough for a software device.
@@ -131,6 +131,42 @@ impl Session {
         self.headless.update(Change::Paths(paths))
     }
 
+    /// Deletes files and takes that in.
+    pub fn delete(&mut self, files: &[&str]) -> Reload {
+        files.iter().for_each(|file| fs::remove_file(self.tree.path(file)).unwrap());
+        self.changed(files)
+    }
+
+    /// Saves each group of files. Fails unless each is refused with its message, keeps the picture `before`, and costs nothing once it
+    /// is deleted again.
+    #[track_caller]
+    pub fn refuses(&mut self, before: &Capture, cases: &[(&[(&str, &str)], &str)]) {
+        for (files, expected) in cases {
+            files.iter().for_each(|(file, text)| self.tree.write(file, text));
+            let names: Vec<&str> = files.iter().map(|(file, _)| *file).collect();
+            let told = lines(failed(&self.changed(&names))).join("\n");
+            assert!(told.contains(expected), "{told}\nis not\n{expected}");
+            assert_same(before, &self.render(), expected);
+            self.delete(&names);
+            assert_same(before, &self.render(), "repaired");
+        }
+    }
+
+    /// Saves a text whose `while` does not end. Fails unless the next frame is refused with the line of that loop. Saves `repaired` then,
+    /// which must draw `drawn`.
+    #[track_caller]
+    pub fn ends_loop(&mut self, file: &str, (endless, repaired): (&str, &str), drawn: &Capture) {
+        ready(&self.save(file, endless));
+        let Err(HeadlessError::Shaders(told)) = self.headless.render().map(|_| ()) else {
+            panic!("{file}: an endless loop is no error")
+        };
+        let told = lines(&told).join("\n");
+        let expected = format!("{file}:{}: error: this loop did not end (", line_of(endless, "while"));
+        assert!(told.contains(&expected), "{told}\nis not\n{expected}");
+        ready(&self.save(file, repaired));
+        assert_same(drawn, &self.render(), file);
+    }
+
     /// A frame.
     pub fn render(&mut self) -> Capture {
         let capture = self.headless.render().unwrap_or_else(explain);
@@ -163,9 +199,9 @@ pub fn render(headless: &mut Headless, slug: &str) -> Capture {
     capture
 }
 
-fn explain<T>(error: specula::headless::HeadlessError) -> T {
+fn explain<T>(error: HeadlessError) -> T {
     match error {
-        specula::headless::HeadlessError::Shaders(diagnostics) => panic!("{}", lines(&diagnostics).join("\n")),
+        HeadlessError::Shaders(diagnostics) => panic!("{}", lines(&diagnostics).join("\n")),
         other => panic!("{other}"),
     }
 }
@@ -212,6 +248,14 @@ pub fn stages(reload: &Reload) -> Vec<&str> {
     let mut stages: Vec<&str> = reload.report.stages.iter().map(|(stage, _)| stage.as_str()).collect();
     stages.sort_unstable();
     stages
+}
+
+/// Fails unless `specula check` would pass.
+pub fn passes_check(session: &Session) {
+    let source = Source::Disk(session.tree.root());
+    let mut library = Library::new(source, compiler().clone(), &specula::frame::stages::stages());
+    let found = check::check(&mut library);
+    assert!(found.is_empty(), "{}", lines(&found).join("\n"));
 }
 
 /// Diagnostics as editors read them.

@@ -194,6 +194,38 @@ impl Running {
         self.until(kind, |event| event["event"] == kind)
     }
 
+    /// Fails if an event of a kind, or the end of the program, comes within this time.
+    #[track_caller]
+    pub fn never(&mut self, kind: &str, within: Duration) {
+        let deadline = Instant::now() + within;
+        loop {
+            match self.events.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+                Ok(line) => {
+                    let event: Value = serde_json::from_str(&line).unwrap();
+                    self.seen.push(line);
+                    assert_ne!(event["event"], kind, "{}", self.story());
+                }
+                Err(RecvTimeoutError::Timeout) => return,
+                Err(RecvTimeoutError::Disconnected) => panic!("the program ended. {}", self.story()),
+            }
+        }
+    }
+
+    /// Waits until the program has used less than a tenth of the processor for a second. One that draws without a pause never does.
+    #[track_caller]
+    pub fn rests(&self) {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let before = self.ticks();
+            // The time that is measured.
+            std::thread::sleep(Duration::from_secs(1));
+            if self.ticks() - before < 10 {
+                return;
+            }
+            assert!(Instant::now() < deadline, "it never rests. {}", self.story());
+        }
+    }
+
     /// Waits for a reload that ended well or did not.
     #[track_caller]
     pub fn reload(&mut self, ok: bool) -> Value {

@@ -1,11 +1,8 @@
 //! Keys that shaders read, while the window is open.
 
-use std::time::{Duration, Instant};
-
 use image::{Rgba, RgbaImage};
 
 use crate::support::Tree;
-use crate::support::process::PATIENCE;
 use crate::support::window::Viewer;
 
 /// The picture is red while A is down, or green after an odd number of spaces, and blue in a frame in which N goes down.
@@ -22,20 +19,6 @@ fn open(pass: &str) -> Viewer {
     let mut viewer = Viewer::open(tree, &["sphere-grid"]);
     viewer.running.event("ready");
     viewer
-}
-
-/// Waits until the window has drawn nothing for a second.
-#[track_caller]
-fn rests(viewer: &Viewer) {
-    let deadline = Instant::now() + PATIENCE;
-    loop {
-        let before = viewer.running.ticks();
-        std::thread::sleep(Duration::from_secs(1));
-        if viewer.running.ticks() - before < 10 {
-            return;
-        }
-        assert!(Instant::now() < deadline, "it never rests. {}", viewer.running.story());
-    }
 }
 
 /// Only the screen is looked at, so nothing but the key itself makes the window draw.
@@ -55,7 +38,7 @@ fn keys_reach_the_shaders_and_the_window_rests() {
     viewer.key("n");
     viewer.key("space");
     viewer.until_screen("green without blue", is(0, 255, 0));
-    rests(&viewer);
+    viewer.running.rests();
     viewer.until_screen("green", is(0, 255, 0));
     viewer.quit();
 }

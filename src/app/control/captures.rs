@@ -18,7 +18,7 @@ use crate::control::{Reply, Sheet, Timeline, Turntable as TurntableFields};
 use crate::headless::HeadlessError;
 use crate::picture;
 use crate::render::Texel;
-use crate::shader::{Compiler, PixelValue, Source};
+use crate::shader::{Compiler, Source};
 use crate::threads::Message;
 
 /// Time between two reports of progress.
@@ -120,7 +120,7 @@ impl Work {
                 let not_finite = stills.not_finite((size, at), &values, tree);
                 let textures: Vec<Value> = stills.texels(size, at)?.iter().map(Texel::json).collect();
                 let values: Map<String, Value> =
-                    values.iter().map(|(mode, value)| (mode.slug.clone(), value_json(value))).collect();
+                    values.iter().map(|(mode, value)| (mode.slug.clone(), short(value.json(mode)))).collect();
                 let mut found =
                     json!({ "pixel": [x, y], "size": [size.0, size.1], "modes": values, "textures": textures });
                 if let Some(not_finite) = not_finite {
@@ -145,15 +145,6 @@ impl Work {
                 Ok(json!({ "file": path_text(&file), "versions": versions.len() }))
             }
         }
-    }
-}
-
-/// The value of a mode, as `specula probe --json` prints it.
-fn value_json(pixel: &PixelValue) -> Value {
-    match pixel {
-        PixelValue { not_finite: true, .. } => json!("NaN"),
-        PixelValue { no_data: true, .. } => Value::Null,
-        PixelValue { value, .. } => short(value),
     }
 }
 

@@ -38,7 +38,7 @@ impl Viewer {
             }
             Request::Capture(capture) => Next::Wait(capture_of(capture)?),
             Request::Probe(Probe { at, modes }) => {
-                let names = modes.unwrap_or_else(|| vec!["all".to_owned()]);
+                let names = modes.unwrap_or_default();
                 // The names are looked up again when the picture is there.
                 if self.session.shaders.as_ref().is_some_and(|shaders| shaders.is_complete()) {
                     modes_of(&self.session, &names)?;

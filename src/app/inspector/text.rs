@@ -12,6 +12,7 @@ pub(in crate::app) fn numbers(mode: &Mode, value: &PixelValue) -> String {
     match value {
         PixelValue { not_finite: true, .. } => "NaN or Inf".into(),
         PixelValue { no_data: true, .. } => "no data".into(),
+        PixelValue { .. } if mode.numbers.is_some() => value.text(mode).trim().to_owned(),
         PixelValue { value, .. } => {
             let count = usize::from(mode.components).clamp(1, 3);
             value[..count].iter().map(|number| format!("{:>7}", short(*number))).collect::<Vec<_>>().join(" ")
@@ -43,19 +44,9 @@ pub(in crate::app) fn swatch(mode: &Mode, value: &PixelValue, exposure: f32) -> 
     }
 }
 
-/// A value in JSON, as `specula probe` prints it: null is no data, "NaN" is not finite.
-pub(in crate::app) fn json_value(value: &PixelValue) -> Value {
-    match value {
-        PixelValue { not_finite: true, .. } => json!("NaN"),
-        PixelValue { no_data: true, .. } => Value::Null,
-        PixelValue { value, .. } => json!(value),
-    }
-}
-
 /// All values in JSON, in the form of `specula probe`.
-pub(in crate::app) fn json(reading: &Reading, not_finite: Option<&NotFinite>) -> Value {
-    let values: Map<String, Value> =
-        reading.values.iter().map(|(slug, (value, _))| (slug.clone(), json_value(value))).collect();
+pub(in crate::app) fn json(reading: &Reading, modes: &[Mode], not_finite: Option<&NotFinite>) -> Value {
+    let values: Map<String, Value> = reading.json(modes).collect();
     let camera = &reading.camera;
     let names = reading.names.as_ref();
     let mut out = json!({
@@ -151,7 +142,8 @@ mod tests {
 
     #[test]
     fn json_is_that_of_probe() {
-        let found = json(&reading(), None);
+        let modes = ["depth", "position", "d", "uv1"].map(|slug| mode(slug, "", 3, ""));
+        let found = json(&reading(), &modes, None);
         assert_eq!(found["pixel"], json!([12, 34]));
         assert_eq!(found["modes"]["position"], json!([1.0, -2.0, 0.5, 1.0]));
         assert_eq!((&found["modes"]["d"], &found["modes"]["uv1"]), (&json!("NaN"), &Value::Null));

@@ -106,7 +106,8 @@ fn copy(ui: &mut Ui, state: &Inspector, modes: &[crate::shader::Mode]) {
                 ui.close();
             }
             if ui.button("All values as JSON").on_hover_text("In the form of `specula probe --json`").clicked() {
-                ui.ctx().copy_text(serde_json::to_string_pretty(&text::json(reading, found)).unwrap_or_default());
+                let json = text::json(reading, modes, found);
+                ui.ctx().copy_text(serde_json::to_string_pretty(&json).unwrap_or_default());
                 ui.close();
             }
         });

@@ -118,7 +118,7 @@ impl PixelReader {
         };
         let is_dropped = inspector.reading.is_none() && !self.drawn.is_empty();
         let Some((shaders, mut now)) = shown(viewer, size) else { return Ok(None) };
-        now.target = TargetFormat::full(1);
+        (now.target, now.gives_numbers) = (TargetFormat::full(1), true);
         let now = (now, at);
         if is_dropped || self.shown.as_ref() != Some(&now) {
             if self.shown.as_ref().is_none_or(|(before, _)| *before != now.0) {

@@ -27,6 +27,8 @@ pub(super) struct Shown {
     revisions: Revisions,
     environment: usize,
     pub(super) target: TargetFormat,
+    /// Whether single pixels are read: modes that show a color for each number give the number.
+    pub(super) gives_numbers: bool,
     /// Pixels of a picture.
     pub(super) size: (u32, u32),
 }
@@ -62,7 +64,8 @@ impl Shown {
         };
         let mut bound = BoundSets { ready: Vec::new(), missing: VecDeque::new(), is_new: false };
         for set in sets {
-            let state = Arc::new(FrameState::of_modes(&inputs, &set));
+            let state = FrameState::of_modes(&inputs, &set);
+            let state = Arc::new(if self.gives_numbers { state.with_numbers() } else { state });
             match viewer.resources.bind(&state, false)? {
                 Some(frame) => bound.ready.push((set, frame)),
                 None => {
@@ -98,6 +101,7 @@ pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>
         revisions: viewer.session.revisions,
         environment: environment as usize,
         target: target(viewer, state.pipelines.target),
+        gives_numbers: false,
         size,
     };
     Some((shaders, shown))

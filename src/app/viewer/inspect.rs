@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Viewer;
-use crate::app::inspector::{Asked, NotFiniteSearch, Page, Reading, Shown, text};
+use crate::app::inspector::{Asked, NotFiniteSearch, Page, Reading, Shown};
 use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::render::Texel;
@@ -90,9 +90,9 @@ impl Viewer {
                 Some(names) => names.each_ref().map(|name| Some(name.as_str())),
                 None => [None; 2],
             };
-            let values = reading.values.iter();
-            let modes = values.map(|(slug, (value, _))| (slug.clone(), text::json_value(value))).collect();
-            let generation = self.session.shaders.as_ref().map_or(0, |shaders| shaders.generation);
+            let shaders = self.session.shaders.clone().unwrap_or_default();
+            let modes = reading.json(&shaders.modes).collect();
+            let generation = shaders.generation;
             let textures = reading.texels.iter().map(Texel::json).collect();
             let event = Event::Inspected { pixel: reading.at, generation, hit, node, material, modes, textures };
             emit(&self.events, &event);

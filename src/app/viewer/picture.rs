@@ -222,7 +222,7 @@ pub(in crate::app) fn value_text(state: &FrameState, pixel: &PixelAt) -> Option<
     let PixelAt { at: (x, y), value, .. } = pixel;
     let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
     let mode = state.mode().filter(|_| covered)?;
-    Some(format!("{}   at {x}, {y}", value.text(mode)))
+    Some(format!("{}   at {x}, {y}", value.text_in_picture(mode)))
 }
 
 /// Half floats with the samples of the settings, or 1 if the device does not support them.

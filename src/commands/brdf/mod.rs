@@ -22,6 +22,7 @@ use specula::shader::{Change, Constant, Library, ShaderSet, Update};
 use super::Failure;
 use super::common::parse::number;
 use super::common::{TIMEOUT_S, check_validation, compiler, open_gpu, source};
+use super::progress::Progress;
 
 /// Options of `brdf`.
 #[derive(clap::Args)]
@@ -32,25 +33,27 @@ pub struct Args {
 
 #[derive(Subcommand)]
 enum What {
-    /// Measure the directional albedo by roughness and angle; no surface may reflect more light than arrives
+    /// Measure the directional albedo by roughness and angle; fails if a surface reflects more light than arrives
     Furnace(furnace::Args),
-    /// Check Helmholtz reciprocity: f(l, v) = f(v, l)
+    /// Check Helmholtz reciprocity, f(l, v) = f(v, l)
     Reciprocity(reciprocity::Args),
-    /// Check that the microfacet distribution is normalized: the integral of D NoH is 1
+    /// Check that the microfacet distribution is normalized (the integral of D NoH is 1)
     Normalization(normalization::Args),
-    /// Measure the error of image-based lighting by roughness
+    /// Measure the error of image-based lighting against random paths, by roughness
     SplitSum(split_sum::Args),
-    /// Plot the lobes, and the albedo over the angle, to a PNG
+    /// Plot the lobes and the albedo over the angle to a PNG
     Plot(plot::Args),
 }
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<(), Failure> {
+    let progress = Progress::new(true);
+    progress.say("compiling the shaders and measuring");
     match args.what {
         What::Furnace(args) => furnace::run(&args),
         What::Reciprocity(args) => reciprocity::run(&args),
         What::Normalization(args) => normalization::run(&args),
-        What::SplitSum(args) => split_sum::run(&args),
+        What::SplitSum(args) => split_sum::run(&args, &progress),
         What::Plot(args) => plot::run(&args),
     }
 }
@@ -61,13 +64,13 @@ struct Options {
     /// Shader tree [default: ./shaders if it is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
-    /// Set a constant or parameter of the shader tree, as NDF=Beckmann; may repeat. `specula modes` lists them
+    /// Set a constant or parameter of the shader tree, such as NDF=Beckmann; may be repeated. `specula modes` lists them
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Use the device whose name contains this text; `specula info` lists the devices
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Turn the Vulkan validation layers on; each of their messages fails the command
+    /// Turn on the Vulkan validation layers; any message fails the command
     #[arg(long)]
     validate: bool,
 }
@@ -92,10 +95,10 @@ impl Options {
 /// The surface that is measured.
 #[derive(clap::Args)]
 struct SurfaceOptions {
-    /// 0 dielectric .. 1 metal
+    /// Metallic of the surface, 0 (dielectric) to 1 (metal)
     #[arg(long, value_name = "0..1", allow_negative_numbers = true, value_parser = unit)]
     metallic: Option<f32>,
-    /// Linear RGB of the base color, each 0..1
+    /// Base color of the surface: linear RGB, each 0 to 1
     #[arg(long, value_name = "R,G,B", default_value = "1,1,1", allow_hyphen_values = true, value_parser = color)]
     base_color: [f32; 3],
 }

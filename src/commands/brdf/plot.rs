@@ -38,7 +38,7 @@ pub struct Args {
     /// Angle of the light in degrees from the normal, 0 to 89
     #[arg(long, value_name = "DEG", default_value = "45", allow_negative_numbers = true, value_parser = |t: &str| number(t, 0.0, 89.0))]
     angle: f32,
-    /// One to six values of roughness
+    /// One to six values of roughness, 0 to 1
     #[arg(long, value_name = "R,R,..", value_delimiter = ',', default_value = "0.2,0.4,0.6,0.8", allow_hyphen_values = true, value_parser = unit)]
     roughness: Vec<f32>,
     #[command(flatten)]

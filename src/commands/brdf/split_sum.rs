@@ -11,6 +11,7 @@ use specula::settings::{LightSource, MaterialOverride};
 use super::{Options, SurfaceOptions};
 use crate::commands::common::names::check_environment;
 use crate::commands::common::{TIMEOUT_S, check_mode, check_validation, compiler, open_gpu, source};
+use crate::commands::progress::Progress;
 use crate::commands::{Failure, print_json};
 
 /// The sphere of this model is measured.
@@ -28,7 +29,7 @@ pub struct Args {
     /// Environment that lights the surface: studio, sky, furnace, or a .hdr or .exr file
     #[arg(long, value_name = "NAME|FILE", default_value = "studio")]
     env: String,
-    /// Number of frames of random paths that are averaged, 1 to 10000
+    /// Number of frames of random paths to average, 1 to 10000
     #[arg(long, value_name = "N", default_value_t = 64, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     frames: u32,
     /// Print JSON
@@ -49,7 +50,7 @@ struct Row {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args, progress: &Progress) -> Result<(), Failure> {
     let mut settings = args.options.settings()?;
     settings.lights.source = LightSource::None;
     settings.environment.name.clone_from(&args.env);
@@ -77,6 +78,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for row in 1..=ROWS {
         let roughness = row as f32 / ROWS as f32;
+        progress.begin("roughness", (row as usize - 1, ROWS as usize), &format!("{roughness:.1}"));
         headless.settings_mut().material.roughness = roughness;
         let split_sum = capture(&mut headless, "final")?;
         let truth = capture(&mut headless, "monte-carlo")?;

@@ -27,19 +27,19 @@ pub const TIMEOUT_S: u32 = 60;
 /// Options that are the same everywhere.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Common {
-    /// Shader tree, an example as examples:fur, or a shader of Shadertoy or glslViewer [default: ./shaders when it is Specula's, else the built-in one]
+    /// Shader tree: a folder, an example such as examples:fur, or a shader written for Shadertoy or glslViewer [default: ./shaders if it is a Specula tree, else the built-in one]
     #[arg(long, value_name = "DIR|FILE")]
     pub shaders: Option<PathBuf>,
     /// Environment that lights the model: studio, sky, furnace, a .hdr or .exr file, or none [default: studio]
     #[arg(long, value_name = "NAME|FILE")]
     env: Option<String>,
-    /// File of a measured BRDF (MERL or UTIA), for the modes measured, measured-split and measured-error
+    /// Measured BRDF (MERL or UTIA file) for the modes measured, measured-split and measured-error
     #[arg(long, value_name = "FILE")]
     measured: Option<PathBuf>,
-    /// Which lights shine
+    /// Lights to use
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME")]
     lights: Option<LightSource>,
-    /// Position of the camera in meters, as 0,1,3 [default: the model is framed]
+    /// Position of the camera in meters, such as 0,1,3 [default: the model is framed]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     eye: Option<[f32; 3]>,
     /// Point that the camera looks at, in meters
@@ -60,34 +60,34 @@ pub struct Common {
     /// Background: none (transparent), env (the environment) or #rrggbb
     #[arg(long, value_name = "NAME|COLOR")]
     background: Option<String>,
-    /// Memory in MiB that images and buffers of passes may take; 2048 by default
+    /// Memory limit for the images and buffers of passes, in MiB [default: 2048]
     #[arg(long, value_name = "MIB", allow_negative_numbers = true)]
     memory: Option<u32>,
-    /// Debug mode; `specula modes` lists them
+    /// Debug mode to show; `specula modes` lists them
     #[arg(long, value_name = "NAME")]
     pub mode: Vec<String>,
-    /// Watch an expression of the shaders, as brdf/ndf.glsl:20:a2: the mode `expression` shows its value. A column may stand before the name
+    /// Show the value of a shader expression, such as brdf/ndf.glsl:20:a2, as the mode `expression`. FILE:LINE:COLUMN:NAME names one of several on a line
     #[arg(long, value_name = "FILE:LINE:NAME")]
     watch_expr: Option<String>,
-    /// Change any setting, as view.msaa=1, or a shader parameter, as NDF=Beckmann; may repeat. `specula help set` lists all
+    /// Change a setting, such as view.msaa=1, or a shader parameter, such as NDF=Beckmann; may be repeated. `specula help set` lists all
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// Look file with settings: TOML, or a PNG that Specula has written; other options come on top
+    /// Read settings from a look file: TOML, or a PNG that Specula has written. Other options override it
     #[arg(long, value_name = "FILE")]
     look: Option<PathBuf>,
     /// Use the device whose name contains this text; `specula info` lists the devices
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
-    /// Print events as JSON, one object a line, on stdout
+    /// Print events to stdout as JSON, one object per line
     #[arg(long, value_enum, ignore_case = true, value_name = "FORMAT")]
     pub events: Option<EventFormat>,
-    /// Let a model read files outside its own folder
+    /// Allow a model to read files outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
-    /// Turn the Vulkan validation layers on; each of their messages fails the command
+    /// Turn on the Vulkan validation layers; any message fails the command
     #[arg(long)]
     pub validate: bool,
-    /// Time that the device may take for a frame, a bake or a pipeline. A command then ends with exit code 3; a window starts again without what was new
+    /// Time limit of the device for a frame, a bake or a pipeline. After it, a command ends with exit code 3, and a window restarts without the newest edit
     #[arg(long, value_name = "SECONDS", default_value_t = TIMEOUT_S, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub timeout: u32,
 }
@@ -95,7 +95,7 @@ pub struct Common {
 /// How events are printed.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum EventFormat {
-    /// One JSON object a line.
+    /// One JSON object per line.
     Json,
 }
 

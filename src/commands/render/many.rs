@@ -7,8 +7,7 @@ use specula::headless::{Headless, Step};
 use specula::picture;
 use specula::pipeline::Outcome;
 
-use super::progress::Progress;
-use super::{Args, Failure};
+use super::{Args, Failure, Progress};
 
 /// Frames a second of a turntable.
 const FPS: f32 = 25.0;
@@ -31,12 +30,13 @@ pub fn check(args: &Args) -> Result<(), Failure> {
 
 /// Writes the sheet or the turntable.
 pub fn write(headless: &mut Headless, args: &Args) -> Result<(), Failure> {
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling all modes");
     // All modes and passes are known when all stages have compiled.
     if let Some(Outcome::Failed(diagnostics)) = headless.finish().map(|rest| rest.outcome) {
         return Err(Failure::Shaders(diagnostics));
     }
-    let mut progress = Progress::new(!args.common.emits(), 1);
-    progress.begin(0, if args.sheet.is_some() { "sheet" } else { "turntable" });
+    progress.say(if args.sheet.is_some() { "sheet" } else { "turntable" });
     let mut tell = |done: u64, of: u64| {
         progress.step(&Step { done, of, unit: "pictures" });
         true

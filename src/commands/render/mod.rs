@@ -1,7 +1,6 @@
 //! `specula render`: writes a picture, or a picture of every mode, and again at every save with `--watch`.
 
 mod many;
-mod progress;
 mod warnings;
 mod watch;
 
@@ -11,17 +10,17 @@ use std::time::Instant;
 use specula::capture::Turn;
 use specula::events::{CompletedEvent, Event, ReloadEvent, emit, in_short};
 use specula::frame::{Date, Keys};
-use specula::headless::{Headless, Sequence, Step};
+use specula::headless::{Headless, Sequence};
 use specula::message;
 use specula::picture;
 use specula::pipeline::{Outcome, Reload};
 use specula::render::Capture;
-use specula::shader::Diagnostic;
+use specula::shader::{Diagnostic, Mode};
 
 use super::common::parse::size;
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
-use super::{Failure, print_diagnostics};
-use progress::Progress;
+use super::progress::Progress;
+use super::{Failure, print_diagnostics, tell_left_out};
 use warnings::Warnings;
 use watch::{Changes, Watch};
 
@@ -30,37 +29,40 @@ use watch::{Changes, Watch};
 pub struct Args {
     /// glTF model, .gltf or .glb, or the name of a built-in one [default: shader-ball]
     model: Option<PathBuf>,
-    /// File to write, .png or .exr (raw values); with `--mode all`, FILE.<mode>.png for each; modes that trace the model then have one path per pixel
+    /// File to write, .png or .exr (raw values). With `--mode all`: FILE.<mode>.png for each mode, except modes of random paths
     #[arg(long, short, value_name = "FILE", default_value = "specula.png")]
     out: PathBuf,
-    /// Write a contact sheet of modes with their names: modes (those that have data in the model), all, or names as d,f,v
+    /// With `--mode all`: include the modes of random paths, which take seconds each on a software device. Those that trace the model get one path per pixel
+    #[arg(long)]
+    paths: bool,
+    /// Write a contact sheet of modes with their names: modes (all that have data in the model and take one frame), all (random paths too), or names such as d,f,v
     #[arg(long, value_name = "MODES", conflicts_with = "turntable")]
     sheet: Option<String>,
-    /// Size of each picture of a sheet in pixels
+    /// Size of each picture on a sheet in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", allow_hyphen_values = true, value_parser = size)]
     tile: (u32, u32),
-    /// Write a full turn of N frames as a video, .mp4, as an animation, .webp or .gif, or as numbered .png files; 25 frames a second without --fps
+    /// Write a full turn of N frames: a video (.mp4), an animation (.webp, .gif) or numbered .png files. 25 frames per second without --fps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     turntable: Option<u32>,
-    /// Object that a turntable rotates
+    /// What a turntable rotates
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME", default_value = "camera")]
     turn: Turn,
-    /// Stay, and render again whenever a shader or the model is saved
+    /// Keep running, and render again whenever a shader or the model is saved
     #[arg(long)]
     watch: bool,
-    /// Draw this many frames, and write the last: for passes that read the frame before [default: 1]
+    /// Draw N frames and write the last, for passes that read the previous frame [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
-    /// Time of the first frame for animated shaders, seconds
+    /// Time of the first frame in seconds, for animated shaders
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     time: f32,
-    /// Frames a second, for animated shaders [default: 60]
+    /// Frames per second, for animated shaders [default: 60]
     #[arg(long, value_name = "N")]
     fps: Option<f32>,
-    /// Keys that are down in all frames, for shaders that read keys, as A,Space,Left; they go down in the first
+    /// Keys that are down in all frames, such as A,Space,Left, for shaders that read keys. They go down in the first frame
     #[arg(long, value_name = "NAMES")]
     keys: Option<Keys>,
-    /// Date at time 0 for shaders that read it, as 2026-11-23T16:00:00 [default: 2000-01-01]
+    /// Date at time 0, such as 2026-11-23T16:00:00, for shaders that read it [default: 2000-01-01]
     #[arg(long, value_name = "DATE")]
     date: Option<Date>,
     #[command(flatten)]
@@ -85,10 +87,15 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
             "--time takes a number of seconds, and --fps 0.001 to 100000 frames a second".into(),
         ));
     }
+    if args.paths && !all {
+        return Err(Failure::Usage("--paths adds modes to `--mode all`; a mode that is named needs no --paths".into()));
+    }
     let source = args.common.source()?;
     // Start watching before reading any file, so that no save is missed in between.
     let mut watch = args.watch.then(|| Watch::new(&source)).transpose()?;
     let gpu = args.common.gpu()?;
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling the shaders");
     let read = || args.common.model(args.model.as_deref());
     let (mut headless, reload) = Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
     headless.set_sequence(Sequence {
@@ -101,9 +108,10 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     if let Some(watch) = &mut watch {
         watch.follow(&headless);
     }
-    if !first_picture(&mut headless, reload, &args, watch.as_mut())? {
+    if !first_picture(&mut headless, reload, &args, watch.as_mut(), &progress)? {
         return Ok(());
     }
+    drop(progress);
     if settings.environment.is_lit() {
         emit(args.common.emits(), &Event::Bake(headless.bake_report()));
     }
@@ -112,12 +120,14 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     match write(&mut headless, &args, all) {
         Err(Failure::Shaders(diagnostics)) if watch.is_some() => {
             tell(&args, &diagnostics);
-            eprintln!("specula: no picture yet; waiting for the next save");
+            message::tell("no picture yet; waiting for the next save");
         }
         result => {
             result?;
             hint_at_frames(&headless, &args)?;
             hint_at_background(&headless);
+            let is_left_out = |mode: &&Mode| all && !args.paths && mode.follows_paths();
+            tell_left_out(headless.shaders().modes.iter().filter(is_left_out).count());
         }
     }
     warn_of_bakes(&headless);
@@ -125,7 +135,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     complete(&mut headless, &args, watch.is_some())?;
     warnings.tell(&headless.shaders().warnings);
     if let Some(mut watch) = watch {
-        eprintln!("specula: wrote {}; watching, Ctrl+C ends", args.out.display());
+        message::tell(format_args!("wrote {}; watching, Ctrl+C ends", args.out.display()));
         while let Some(changes) = watch.next() {
             again(&mut headless, &args, all, &mut watch, &changes, &mut warnings)?;
             check_validation(&gpu)?;
@@ -143,11 +153,13 @@ fn first_picture(
     mut reload: Reload,
     args: &Args,
     watch: Option<&mut Watch>,
+    progress: &Progress,
 ) -> Result<bool, Failure> {
     if let Some(watch) = watch {
         while let Outcome::Failed(diagnostics) = &reload.outcome {
+            progress.pause();
             tell(args, diagnostics);
-            eprintln!("specula: no picture yet; waiting for the next save");
+            message::tell("no picture yet; waiting for the next save");
             let Some(changes) = watch.next() else { return Ok(false) };
             take_files(headless, args, watch, &changes)?;
             reload = headless.update_first(headless.reloader().library().change_of(&changes.paths));
@@ -157,6 +169,7 @@ fn first_picture(
         Outcome::Failed(diagnostics) => Err(Failure::Shaders(diagnostics)),
         Outcome::Ready(_) | Outcome::Unchanged { .. } => {
             headless.check_settings()?;
+            progress.say("baking the environment and building pipelines");
             headless.provide()?;
             Ok(true)
         }
@@ -188,7 +201,7 @@ fn again(
             // A loop that does not end.
             Err(Failure::Shaders(diagnostics)) => {
                 tell(args, &diagnostics);
-                eprintln!("specula: the last good picture stays");
+                message::tell("the last good picture stays");
             }
             result => result?,
         }
@@ -211,7 +224,7 @@ fn complete(headless: &mut Headless, args: &Args, watches: bool) -> Result<(), F
             return Err(Failure::Shaders(diagnostics.clone()));
         }
         tell(args, diagnostics);
-        eprintln!("specula: the picture is good; modes of the broken files are missing");
+        message::tell("the picture is good; modes of the broken files are missing");
     }
     let generation = headless.shaders().generation;
     emit(args.common.emits(), &Event::Completed(CompletedEvent::new(&rest, generation)));
@@ -239,7 +252,7 @@ fn take_model(headless: &mut Headless, args: &Args, watch: &mut Watch) -> Result
     match loaded {
         Ok(()) => {
             watch.follow(headless);
-            eprintln!("specula: the model was loaded again");
+            message::tell("the model was loaded again");
             Ok(true)
         }
         Err(Failure::Input(message) | Failure::Usage(message)) => {
@@ -297,10 +310,10 @@ fn tell(args: &Args, diagnostics: &[Diagnostic]) {
 fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, first_frame_ms: f64) {
     match &reload.outcome {
         Outcome::Unchanged { cleared: false } => return,
-        Outcome::Unchanged { cleared: true } => eprintln!("specula: the shaders are good again"),
+        Outcome::Unchanged { cleared: true } => message::tell("the shaders are good again"),
         Outcome::Failed(diagnostics) => {
             tell(args, diagnostics);
-            eprintln!("specula: the last good picture stays");
+            message::tell("the last good picture stays");
         }
         Outcome::Ready(_) => {
             let report = &reload.report;
@@ -326,22 +339,24 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
     if !all {
         let slug = headless.settings_mut().mode.clone();
         check_mode(&headless.shaders(), &slug)?;
-        let capture = capture(headless, args, &mut Progress::new(!args.common.emits(), 1), 0)?;
+        let capture = capture(headless, args, &Progress::new(!args.common.emits()), (0, 1))?;
         return picture::write(&capture, headless.settings_mut(), out).map_err(Failure::Input);
     }
+    let progress = Progress::new(!args.common.emits());
+    progress.say("compiling all modes");
     // The passes that are off, and their modes, are known when all stages have compiled.
     if let Some(Outcome::Failed(diagnostics)) = headless.finish().map(|rest| rest.outcome) {
         return Err(Failure::Shaders(diagnostics));
     }
     let frames = headless.settings_mut().view.frames;
     let shaders = headless.shaders();
-    let mut progress = Progress::new(!args.common.emits(), shaders.modes.len());
-    for (number, mode) in shaders.modes.iter().enumerate() {
+    let modes: Vec<&Mode> = shaders.modes.iter().filter(|mode| args.paths || !mode.follows_paths()).collect();
+    for (number, mode) in modes.iter().enumerate() {
         let settings = headless.settings_mut();
         settings.mode.clone_from(&mode.slug);
         // A frame of a mode that traces the model takes seconds on a software device.
         settings.view.frames = if mode.traces { 1 } else { frames };
-        let capture = capture(headless, args, &mut progress, number)?;
+        let capture = capture(headless, args, &progress, (number, modes.len()))?;
         let path = picture::path_of_mode(out, &mode.slug);
         picture::write(&capture, headless.settings_mut(), &path).map_err(Failure::Input)?;
     }
@@ -349,16 +364,20 @@ fn write(headless: &mut Headless, args: &Args, all: bool) -> Result<(), Failure>
     Ok(())
 }
 
-/// Renders the picture, and reports the number of random paths behind it, if there are any.
-fn capture(headless: &mut Headless, args: &Args, progress: &mut Progress, number: usize) -> Result<Capture, Failure> {
+/// Renders the picture, which is one of several (its number from 0, and their count), and reports the number of random paths behind
+/// it, if there are any.
+fn capture(
+    headless: &mut Headless,
+    args: &Args,
+    progress: &Progress,
+    place: (usize, usize),
+) -> Result<Capture, Failure> {
     let begin = Instant::now();
-    progress.begin(number, &headless.settings_mut().mode);
+    progress.begin("picture", place, &headless.settings_mut().mode);
     let capture = headless.render_with(|step| progress.step(step))?;
-    progress.step(&Step { done: 1, of: 1, unit: "" });
     if let Some(paths_per_pixel) = headless.paths_per_pixel()? {
         let ms = begin.elapsed().as_secs_f64() * 1e3;
         let mode = headless.settings_mut().mode.clone();
-        progress.clear();
         message::tell(format_args!("{mode}: {paths_per_pixel} paths per pixel in {:.1} s (view.frames)", ms * 1e-3));
         emit(args.common.emits(), &Event::Paths { mode: &mode, paths_per_pixel, ms });
     }

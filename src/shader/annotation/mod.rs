@@ -42,7 +42,7 @@ use resolve::resolve;
 use texture::TextureNote;
 use ui::Ui;
 
-pub use mode::{DrawAs, Encode, Mode, PATHS_STAGE};
+pub use mode::{DrawAs, Encode, Mode, Numbers, PATHS_STAGE};
 pub use parameter::{Constant, Parameter, ParameterType};
 
 /// All annotations of a tree.

@@ -30,6 +30,13 @@ pub enum Encode {
     Vector,
 }
 
+impl Mode {
+    /// Whether the value comes from random paths or from rays through the model, which take seconds a frame on a software device.
+    pub fn follows_paths(&self) -> bool {
+        self.accumulate || self.traces || self.stage == PATHS_STAGE
+    }
+}
+
 impl Encode {
     /// The `interface::ENCODE_*` number.
     pub fn id(self) -> u32 {
@@ -39,6 +46,16 @@ impl Encode {
             Self::Vector => interface::ENCODE_VECTOR,
         }
     }
+}
+
+/// The meaning of a number for which a picture shows a color. The mode gives the number itself where a single pixel is read:
+/// `Frame::gives_numbers`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// An index, from 0.
+    Index,
+    /// Names of 0, 1, ...
+    Names(Vec<String>),
 }
 
 /// How a mode draws the model.
@@ -84,6 +101,9 @@ pub struct Mode {
     /// The colors that stand for its numbers.
     #[serde(skip)]
     pub colormap: Colormap,
+    /// The meaning of its numbers, if the picture shows a color for each.
+    #[serde(skip)]
+    pub numbers: Option<Numbers>,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
     /// Whether the view averages frames, each of which is a noisy estimate.
@@ -178,9 +198,10 @@ fn set(mode: &mut Mode, key: &str, bytes: Range<usize>, cursor: &mut Cursor<'_>)
             mode.range = Some((low as f32, high as f32));
         }
         "colormap" => mode.colormap = colormap(cursor)?,
+        "numbers" => mode.numbers = Some(numbers(cursor)?),
         other => {
             let known = "group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, needs=, \
-                range=, colormap=, key= or doc=";
+                range=, colormap=, numbers=, key= or doc=";
             return Err(cursor.error(bytes, format!("expected {known}, found `{other}`")));
         }
     }
@@ -200,6 +221,20 @@ fn colormap(cursor: &mut Cursor<'_>) -> Result<Colormap, Box<Diagnostic>> {
             format!("expected a colormap after colormap=, found `{value}`.{hint} It can be {}", either(&known)),
         )
     })
+}
+
+/// Reads the value of `numbers=`: `index`, or names with `|` between them.
+fn numbers(cursor: &mut Cursor<'_>) -> Result<Numbers, Box<Diagnostic>> {
+    let (bytes, value) = cursor.value("numbers")?;
+    if value == "index" {
+        return Ok(Numbers::Index);
+    }
+    let names: Vec<String> = value.split('|').map(|name| name.trim().to_owned()).collect();
+    if names.len() < 2 || names.iter().any(String::is_empty) {
+        let message = format!("expected numbers=index or names as numbers=\"front|back\", found `{value}`");
+        return Err(cursor.error(bytes, message));
+    }
+    Ok(Numbers::Names(names))
 }
 
 /// Reads the value of `needs=`: names of `FEATURE_*` constants in small letters, with `-` for `_`.

@@ -63,6 +63,24 @@ fn units_and_components_of_modes() {
 }
 
 #[test]
+fn numbers_of_modes_have_a_meaning() {
+    let numbers = |text: &str| {
+        let found = read_text(&format!("const uint MODE_A = 1u; //@mode a \"A\" {text}")).unwrap();
+        found.modes[0].numbers.clone()
+    };
+    assert_eq!(numbers(""), None);
+    assert_eq!(numbers("numbers=index"), Some(Numbers::Index));
+    let names = ["front", "far back"].map(str::to_owned).to_vec();
+    assert_eq!(numbers("numbers=\"front|far back\""), Some(Numbers::Names(names)));
+    for wrong in ["front", "front|"] {
+        refused(
+            &format!("const uint MODE_A = 1u; //@mode a \"A\" numbers={wrong}"),
+            &format!("m.frag:3:47: error: expected numbers=index or names as numbers=\"front|back\", found `{wrong}`"),
+        );
+    }
+}
+
+#[test]
 fn constants_and_parameters() {
     let found = read_text(&format!(
         "layout(constant_id = USER_CONSTANTS + 1) const uint NDF_MODEL = 1u; //@ui \"NDF\" choice GGX=0 Beckmann=1\n\
@@ -152,7 +170,7 @@ fn what_does_not_parse_says_what_was_expected() {
     refused(
         "const uint M = 1u; //@mode d \"D\" colour=1",
         "m.frag:3:34: error: expected group=, encode=, components=, unit=, stage=, tonemap, accumulate, traces, through, draw=, \
-         needs=, range=, colormap=, key= or doc=, found `colour`",
+         needs=, range=, colormap=, numbers=, key= or doc=, found `colour`",
     );
     let errors = read_text("const uint M = 1u; //@mode d \"D\" needs=sheen,clearcot").unwrap_err();
     let needs =

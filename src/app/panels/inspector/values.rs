@@ -143,6 +143,10 @@ fn paint_swatch(ui: &Ui, rect: Rect, mode: &Mode, value: &PixelValue, exposure: 
         painter.text(rect.center(), Align2::CENTER_CENTER, "!", FontId::proportional(10.0), Color32::BLACK);
         return;
     }
+    // The color of a number is that of the picture.
+    if mode.numbers.is_some() {
+        return;
+    }
     let linear = text::swatch(mode, value, exposure);
     // Modes that show data are stored as they are, without the sRGB curve.
     let color = match mode.encode {
