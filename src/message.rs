@@ -47,7 +47,8 @@ static STATUS: Mutex<bool> = Mutex::new(false);
 /// Shows a line on stderr, a terminal, in place of the one before: `specula: TEXT`. What is printed next takes its place.
 pub fn show_status(text: &str) {
     let mut is_shown = STATUS.lock().unwrap_or_else(PoisonError::into_inner);
-    eprint!("\rspecula: {}\u{1b}[K", escape(text));
+    // Without wrapping: only one row can be overwritten.
+    eprint!("\r\u{1b}[?7lspecula: {}\u{1b}[K\u{1b}[?7h", escape(text));
     let _ = std::io::stderr().flush();
     *is_shown = true;
 }
@@ -58,7 +59,7 @@ pub fn clear_status() {
 }
 
 /// Removes the status line. None is shown while the guard lives.
-fn without_status() -> MutexGuard<'static, bool> {
+pub fn without_status() -> MutexGuard<'static, bool> {
     let mut is_shown = STATUS.lock().unwrap_or_else(PoisonError::into_inner);
     if std::mem::take(&mut *is_shown) {
         eprint!("\r\u{1b}[K");

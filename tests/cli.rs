@@ -322,6 +322,8 @@ fn render_mode_all_writes_each_file() {
         let finished = render(directory.path(), "quad.glb", &[&all[..], more].concat());
         let told = format!("left out {left_out} modes of random paths; add --paths");
         assert_eq!(finished.expect(0, &[]).stderr.contains(&told), more.is_empty(), "{finished:#?}");
+        let has = |mode: &str| directory.path().join(format!("out.{mode}.png")).exists();
+        assert_eq!([has("roughness"), has("path-traced")], [true, !more.is_empty()]);
         let files = fs::read_dir(directory.path()).unwrap().count();
         assert_eq!(files, expected + 1, "files beside the modes and the model");
     }

@@ -15,8 +15,8 @@
 //   range     values that the picture shows as 0 and 1; without it those of `encode`. The window fits it to the picture where
 //             values have a unit or leave 0..1 (view.range)
 //   colormap  colors that stand for a number, in a mode with one component
-//   numbers   the picture shows a color for each number (`number_or_color`); where a pixel is read, the number has a meaning:
-//             index: it is one; "front|back": the names of 0, 1, ...
+//   numbers   the picture shows a color for each number (`number_or_color`). Where a single pixel is read, the shader returns the
+//             number: an index (index), or a place in a list of names ("front|back": 0 is front, 1 is back)
 //   draw      lines: the edges of triangles; layers: the sum of all fragments, hidden or not
 //   tonemap   the value is light, so exposure and tone map apply
 //   accumulate  the value is an estimate from frame.sample_count random paths per pixel; the renderer shows the mean

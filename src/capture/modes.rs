@@ -1,11 +1,14 @@
-//! Which modes a contact sheet shows.
+//! Which modes a contact sheet shows, and which the window's command `probe` reads.
 
 use crate::message::did_you_mean;
 use crate::session::Session;
 use crate::shader::Mode;
 
-/// The modes of these names: `modes` for all that have data in the model and take one frame, `all`, or slugs; without a name, all but
-/// those of random paths. The order is that of the shader tree.
+/// Names that stand for several modes.
+const GROUPS: [&str; 3] = ["modes", "all", "paths"];
+
+/// The modes of these names: `modes` for all that have data in the model and take one frame, `all` for all but those of random paths,
+/// `paths` for these, or slugs; without a name, all but those of random paths. The order is that of the shader tree.
 ///
 /// # Errors
 /// A name that no mode has, with the nearest.
@@ -18,16 +21,18 @@ pub fn modes_of(session: &Session, names: &[String]) -> Result<Vec<Mode>, String
         has_feature && (is_measured || !mode.slug.starts_with("measured"))
     };
     let is_plain = |mode: &Mode| !mode.accumulate && !mode.traces && mode.pass.is_none() && has_data(mode);
-    let (wants_plain, wants_all) = (names.iter().any(|name| name == "modes"), names.iter().any(|name| name == "all"));
+    let has = |group: &str| names.iter().any(|name| name == group);
+    let (wants_plain, wants_all, wants_paths) = (has("modes"), has("all") || names.is_empty(), has("paths"));
     let slugs = || shaders.modes.iter().map(|mode| mode.slug.as_str());
-    for name in names.iter().filter(|name| !["modes", "all"].contains(&name.as_str())) {
+    for name in names.iter().filter(|name| !GROUPS.contains(&name.as_str())) {
         if !slugs().any(|slug| slug == name) {
-            let hint = did_you_mean(name, slugs().chain(["modes", "all"]));
+            let hint = did_you_mean(name, slugs().chain(GROUPS));
             return Err(format!("there is no mode `{name}`.{hint} `specula modes` lists them all"));
         }
     }
-    let is_quick = |mode: &Mode| names.is_empty() && !mode.follows_paths();
-    let is_wanted =
-        |mode: &&Mode| wants_all || is_quick(mode) || (wants_plain && is_plain(mode)) || names.contains(&mode.slug);
+    let is_wanted = |mode: &&Mode| {
+        let is_in_group = if mode.follows_paths() { wants_paths } else { wants_all };
+        is_in_group || (wants_plain && is_plain(mode)) || names.contains(&mode.slug)
+    };
     Ok(shaders.modes.iter().filter(is_wanted).cloned().collect())
 }

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use specula::comparison::{Comparison, Measure, Picture};
 use specula::picture;
 
+use super::progress::Progress;
 use super::{Failure, print_json};
 
 /// Options of `diff`.
@@ -66,7 +67,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let message = format!("--out {} would overwrite a picture that is compared: name another place", out.display());
         return Err(Failure::Usage(message));
     }
-    let pairs = if folders { in_folders(&args.a, &args.b)? } else { vec![pair_of_files(&args.a, &args.b)?] };
+    let pairs = if folders {
+        in_folders(&args.a, &args.b, &Progress::new(true))?
+    } else {
+        vec![pair_of_files(&args.a, &args.b)?]
+    };
     if let Some(out) = &args.out {
         write_maps(&pairs, out, folders, args.max)?;
     }
@@ -91,13 +96,16 @@ fn pair_of_files(a: &Path, b: &Path) -> Result<Pair, Failure> {
     Ok(Pair { name: b.display().to_string(), compared: Ok(compared) })
 }
 
-fn in_folders(a: &Path, b: &Path) -> Result<Vec<Pair>, Failure> {
+fn in_folders(a: &Path, b: &Path, progress: &Progress) -> Result<Vec<Pair>, Failure> {
     let (in_a, in_b) = (pictures_in(a)?, pictures_in(b)?);
     if in_a.is_empty() && in_b.is_empty() {
         let message = format!("no .png or .exr in {}, nor in {}", a.display(), b.display());
         return Err(Failure::Input(message));
     }
-    let pair = |name: &String| {
+    let names: Vec<&String> = in_a.union(&in_b).collect();
+    let pair = |(number, name): (usize, &&String)| {
+        progress.begin("picture", (number, names.len()), name);
+        let name = *name;
         let compared = match (in_a.contains(name), in_b.contains(name)) {
             (true, true) => Picture::open(&a.join(name))
                 .and_then(|from| Ok((from, Picture::open(&b.join(name))?)))
@@ -107,7 +115,7 @@ fn in_folders(a: &Path, b: &Path) -> Result<Vec<Pair>, Failure> {
         };
         Pair { name: name.clone(), compared }
     };
-    Ok(in_a.union(&in_b).map(pair).collect())
+    Ok(names.iter().enumerate().map(pair).collect())
 }
 
 /// Names of the pictures in a folder, without those of its subfolders.

@@ -29,7 +29,7 @@ use std::time::Instant;
 use clap::{Parser, Subcommand};
 use specula::gpu::GpuError;
 use specula::headless::HeadlessError;
-use specula::message::{clear_status, print_error, tell};
+use specula::message::{print_error, tell, without_status};
 use specula::render::UploadError;
 use specula::shader::Diagnostic;
 
@@ -186,7 +186,7 @@ fn end(failure: &Failure) -> ExitCode {
 /// Prints text to stdout as it is, with a line break. A reader that went away is ignored.
 pub fn print(text: &str) {
     use std::io::Write as _;
-    clear_status();
+    let _guard = without_status();
     let _ = writeln!(std::io::stdout().lock(), "{text}");
 }
 

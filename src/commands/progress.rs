@@ -75,9 +75,14 @@ impl Progress {
 
     /// Begins part `number`, from 0, of `of`: `picture 3 of 90: roughness`. A single part has its name alone.
     pub fn begin(&self, kind: &str, (number, of): (usize, usize), name: &str) {
-        let name = if name.is_empty() { String::new() } else { format!(": {}", escape(name)) };
-        let what = format!("{kind} {} of {of}{name}", number + 1);
-        self.set(if of == 1 { name.trim_start_matches(": ").to_owned() } else { what }, of > 1);
+        let name = escape(name);
+        let what = match (of, name.is_empty()) {
+            (1, true) => kind.to_owned(),
+            (1, false) => name,
+            (_, true) => format!("{kind} {} of {of}", number + 1),
+            (_, false) => format!("{kind} {} of {of}: {name}", number + 1),
+        };
+        self.set(what, of > 1);
     }
 
     fn set(&self, what: String, is_one_of_several: bool) {
@@ -177,5 +182,7 @@ mod tests {
         assert_eq!(line(), "roughness");
         progress.begin("sample", (0, 20), "");
         assert_eq!(line(), "sample 1 of 20");
+        progress.begin("sample", (0, 1), "");
+        assert_eq!(line(), "sample");
     }
 }

@@ -36,7 +36,7 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "probe",
-        r#""at": [x,y], "modes"?: ["d", "f"] | ["all"]"#,
+        r#""at": [x,y], "modes"?: ["d", "f"] | ["all", "paths"]"#,
         "Raw values of a pixel of the picture, in these modes; without them, in all but those of random paths. Result: pixel, modes, \
          textures (a texel of each), not_finite (the first line with NaN or Inf, if a value is one)",
     ),
@@ -76,7 +76,7 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "sheet",
-        r#""file": "sheet.png", "modes"?: "modes" | "all" | ["d", ...], "size"?: [w,h], "columns"?: n"#,
+        r#""file": "sheet.png", "modes"?: "modes" | "all" | ["all", "paths"] | ["d", ...], "size"?: [w,h], "columns"?: n"#,
         "Writes a contact sheet of modes with their names; size is that of one picture",
     ),
     row(

@@ -83,7 +83,7 @@ pub(crate) enum Message {
     Checked(Checked),
     /// A command from outside.
     Asked(Box<Asked>),
-    /// A screen reader has come, wants something done, or has gone.
+    /// A request of a screen reader, or its arrival or end.
     Accessibility(egui_winit::accesskit_winit::Event),
     /// Pictures that are done, and of how many, of the capture with this number.
     Captures(u64, u64, u64),
@@ -160,7 +160,7 @@ impl Outbox {
         let _ = self.0.send_event(message);
     }
 
-    /// Wakes the window, as `send` does.
+    /// A handle with which AccessKit sends messages to the window.
     pub(crate) fn proxy(&self) -> EventLoopProxy<Message> {
         self.0.clone()
     }

@@ -36,10 +36,12 @@ vec3 along(vec2 half_size, vec3 position, ivec2 texel, float here_m, ivec2 step)
     bool is_last = any(greaterThanEqual(texel + step, ivec2(pass.size_px)));
     float before = is_first ? 0.0 : texelFetch(geometry, texel - step, 0).r;
     float after = is_last ? 0.0 : texelFetch(geometry, texel + step, 0).r;
-    bool is_after = abs(after - here_m) < abs(before - here_m);
+    bool is_after = after > 0.0 && (before <= 0.0 || abs(after - here_m) < abs(before - here_m));
+    float near_m = is_after ? after : before;
     float sign_of = is_after ? 1.0 : -1.0;
     vec2 at = uv + sign_of * vec2(step) / pass.size_px;
-    return sign_of * (point_at(half_size, at, is_after ? after : before) - position);
+    // Without a neighbor the surface faces the eye.
+    return sign_of * (point_at(half_size, at, near_m > 0.0 ? near_m : here_m) - position);
 }
 
 // Normal of the surface without normal maps, view space, unit: what hides the sky is the geometry. Points and lines face the eye.

@@ -4,7 +4,7 @@ use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
 
 use super::{ACCENT, QUIET};
 
-/// Keys and what they do; assets/manual/window.md has the same.
+/// Keys and what they do, in short; assets/manual/window.md says more.
 const KEYS: &[(&str, &str)] = &[
     ("1 … 9, 0", "the first ten modes"),
     ("[  ]", "previous mode, next mode"),

@@ -76,12 +76,15 @@ fn search_bar(ui: &mut Ui, search: &mut String, gallery: &mut GalleryState, mode
         let width = ui.available_width() - TOGGLE - if search.is_empty() { 0.0 } else { 24.0 };
         let hint = format!("{}  Search {modes} modes", icon::MAGNIFYING_GLASS);
         named(ui.add(egui::TextEdit::singleline(search).hint_text(hint).desired_width(width)), "Search modes");
-        if !search.is_empty() && ui.small_button(icon::X).on_hover_text("Show all modes").clicked() {
+        if !search.is_empty()
+            && named(ui.small_button(icon::X), "Show all modes").on_hover_text("Show all modes").clicked()
+        {
             search.clear();
         }
-        let (name, hint) =
+        let (symbol, hint) =
             if gallery.is_on { (icon::LIST, "Show names only") } else { (icon::GRID_FOUR, "Show thumbnails") };
-        if ui.add_sized([TOGGLE - 6.0, 18.0], egui::Button::new(name)).on_hover_text(hint).clicked() {
+        let toggle = named(ui.add_sized([TOGGLE - 6.0, 18.0], egui::Button::new(symbol)), hint);
+        if toggle.on_hover_text(hint).clicked() {
             gallery.is_on = !gallery.is_on;
         }
     });

@@ -190,7 +190,7 @@ fn edit_parameter(ui: &mut Ui, parameter: &Parameter, value: Option<&ShaderValue
     let response = match (parameter.kind, numbers.as_mut_slice()) {
         (ParameterType::Bool, [number]) => check(ui, number),
         (_, [number]) if !choices.is_empty() => choose(ui, name, (choices, choice_docs), number),
-        (_, [number]) => edit_number(ui, number, &scale.unwrap_or_else(|| component(parameter))),
+        (_, [number]) => edit_number(ui, &parameter.label, number, &scale.unwrap_or_else(|| component(parameter))),
         (ParameterType::Vec3, [r, g, b]) if parameter.color => {
             let mut linear = [*r as f32, *g as f32, *b as f32];
             let response = rows::color(ui, &mut linear);
@@ -232,7 +232,7 @@ fn edit_constant(ui: &mut Ui, constant: &Constant, value: Option<&ShaderValue>) 
     let mut now = before;
     let response = match of_constant(constant) {
         _ if !choices.is_empty() => choose(ui, name, (choices, choice_docs), &mut now),
-        Some(scale) => edit_number(ui, &mut now, &scale),
+        Some(scale) => edit_number(ui, &constant.label, &mut now, &scale),
         None => check(ui, &mut now),
     };
     let value = match constant.scalar {

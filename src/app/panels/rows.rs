@@ -221,7 +221,7 @@ pub(super) fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
     };
     let is_used = number.is_used(settings);
     let mut now = before;
-    if row.show(ui, |ui| ui.add_enabled_ui(is_used, |ui| edit_number(ui, &mut now, &scale)).inner) {
+    if row.show(ui, |ui| ui.add_enabled_ui(is_used, |ui| edit_number(ui, number.name, &mut now, &scale)).inner) {
         now = default;
     }
     if now != before {
@@ -230,7 +230,7 @@ pub(super) fn number(ui: &mut Ui, settings: &mut Settings, number: &Number) {
 }
 
 /// A slider with its number, or the number alone where there is no room or no range.
-pub(super) fn edit_number(ui: &mut Ui, number: &mut f64, scale: &Scale) -> Response {
+pub(super) fn edit_number(ui: &mut Ui, name: &str, number: &mut f64, scale: &Scale) -> Response {
     let gap = ui.spacing().item_spacing.x;
     let rail = ui.available_width() - VALUE - gap;
     let Some((low, high)) = scale.slider.filter(|_| rail >= SHORTEST) else {
@@ -255,7 +255,7 @@ pub(super) fn edit_number(ui: &mut Ui, number: &mut f64, scale: &Scale) -> Respo
         let digits = 10_f64.powi(scale.decimals as i32);
         *number = if scale.is_squared { (place * place * digits).round() / digits } else { place };
     }
-    response.union(named(drag(ui, number, scale, VALUE), "Value"))
+    response.union(named(drag(ui, number, scale, VALUE), &format!("{name}, value")))
 }
 
 /// A number that is dragged or typed, of this width in points.

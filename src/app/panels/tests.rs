@@ -46,7 +46,7 @@ fn the_legend_names_the_mode_and_its_switches() {
     harness.get_by_role_and_label(Role::Button, "R").click();
     harness.run();
     assert_eq!(harness.state().0.channels, Channels::R);
-    harness.get_by_role_and_label(Role::Button, theme::icon::CHART_BAR).click();
+    harness.get_by_role_and_label(Role::Button, "Histogram").click();
     harness.run();
     assert!(harness.state().1.shows_histogram);
 }

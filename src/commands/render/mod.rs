@@ -35,7 +35,7 @@ pub struct Args {
     /// With `--mode all`: include the modes of random paths, which take seconds each on a software device. Those that trace the model get one path per pixel
     #[arg(long)]
     paths: bool,
-    /// Write a contact sheet of modes with their names: modes (all that have data in the model and take one frame), all (random paths too), or names such as d,f,v
+    /// Write a contact sheet of modes with their names: modes (all that have data in the model and take one frame), all (all but those of random paths), paths (those), or names such as d,f,v
     #[arg(long, value_name = "MODES", conflicts_with = "turntable")]
     sheet: Option<String>,
     /// Size of each picture on a sheet in pixels

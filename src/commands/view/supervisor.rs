@@ -157,6 +157,10 @@ impl Input {
         let read = move || {
             let (mut lines, mut line) = (io::stdin().lock(), Vec::new());
             while (&mut lines).take(LONGEST_LINE).read_until(b'\n', &mut line).is_ok_and(|count| count > 0) {
+                // The last line may lack its end, and the next child's input goes on.
+                if line.len() < LONGEST_LINE as usize && !line.ends_with(b"\n") {
+                    line.push(b'\n');
+                }
                 input.pass(&line);
                 line.clear();
             }
@@ -242,6 +246,9 @@ mod tests {
         input.lead_to(pipe);
         let forwards = input.clone();
         let forwarding = std::thread::spawn(move || forwards.pass(b"a command\n"));
+        while input.lock().pipe.is_some() {
+            std::thread::yield_now();
+        }
         let mut next = spawn("cat");
         input.lead_to(next.stdin.take());
         forwarding.join().unwrap();

@@ -7,6 +7,7 @@ use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, 
 use super::wrapped;
 use crate::app::panels::LegendOf;
 use crate::app::panels::rows::choice_name;
+use crate::app::panels::spoken::named;
 use crate::app::panels::theme::{QUIET, icon};
 use crate::frame::Limits;
 use crate::interface::COLORMAP_STEPS;
@@ -231,7 +232,7 @@ fn channels(ui: &mut Ui, legend: &Legend<'_>, view: &mut ViewSettings, state: &m
         menu.response.on_hover_text(doc).on_disabled_hover_text(format!("{doc}. Choose R, G or B first"));
     });
     let histogram = Button::selectable(state.shows_histogram, icon::CHART_BAR);
-    if ui.add(histogram).on_hover_text("How often each value occurs in the picture").clicked() {
+    if named(ui.add(histogram), "Histogram").on_hover_text("How often each value occurs in the picture").clicked() {
         state.shows_histogram ^= true;
     }
 }

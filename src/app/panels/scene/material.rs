@@ -99,7 +99,7 @@ fn row(ui: &mut Ui, settings: &mut Settings, key: &str, of_file: &Material, of: 
         FactorValue::Number(number) => {
             let scale = scale(of);
             let mut shown = number.to_string().parse().unwrap_or(f64::from(*number));
-            let response = edit_number(ui, &mut shown, &scale);
+            let response = edit_number(ui, info.label, &mut shown, &scale);
             if response.changed() {
                 *number = shown as f32;
             }

@@ -229,13 +229,16 @@ impl Module {
         id
     }
 
-    /// The least 32-bit integer constant, which other code most likely uses too, in whatever order the module declares them.
+    /// The least 32-bit integer constant, which other code most likely uses too. Which one does not depend on the order of declarations.
     pub(super) fn any_integer(&self) -> Option<Id> {
-        let is_integer = |kind: &Id| {
-            self.globals.iter().any(|i| matches!(i[..], [_, id, 32, _] if id == *kind && opcode(i) == op::TYPE_INT))
-        };
-        let constants = self.globals.iter().filter(|i| opcode(i) == op::CONSTANT && i.len() == 4 && is_integer(&i[1]));
-        constants.min_by_key(|i| i[3]).map(|i| i[2])
+        let integers = self.globals.iter().filter(|i| opcode(i) == op::TYPE_INT && i[2] == 32);
+        let is_signed: Vec<(Id, u32)> = integers.map(|i| (i[1], i[3])).collect();
+        let constants = self.globals.iter().filter(|i| opcode(i) == op::CONSTANT && i.len() == 4);
+        let of_integers = constants.filter_map(|i| {
+            let (_, is_signed) = is_signed.iter().find(|(kind, _)| *kind == i[1])?;
+            Some((i[3], *is_signed, i[2]))
+        });
+        of_integers.min().map(|(.., id)| id)
     }
 
     /// Private variables: id, type of the value, initial value.
