@@ -103,7 +103,7 @@ fn an_older_tree_reads_what_it_declares() {
     let (_, after) = rest.split_once("\n} frame;").unwrap();
     session.tree.write("interface.glsl", &format!("{}\n}} frame;{after}", before.trim_end()));
     session.tree.write("common/keys.glsl", "");
-    // Nor did its tone map know ranges.
+    // Nor did its tone map know ranges, and its modes numbers.
     session.tree.write(
         "common/range.glsl",
         "bool has_range() { return false; }\nvec3 in_range(vec3 value) { return value; }\n\
@@ -112,7 +112,10 @@ fn an_older_tree_reads_what_it_declares() {
     );
     let tonemap = session.tree.edited("tonemap.frag", "frame.has_colormap != 0u", "false");
     session.tree.write("tonemap.frag", &tonemap);
-    ready(&session.changed(&["interface.glsl", "common/keys.glsl", "common/range.glsl", "tonemap.frag"]));
+    let modes = session.tree.edited("debug/modes.glsl", "frame.gives_numbers != 0u", "false");
+    session.tree.write("debug/modes.glsl", &modes);
+    let files = ["interface.glsl", "common/keys.glsl", "common/range.glsl", "tonemap.frag", "debug/modes.glsl"];
+    ready(&session.changed(&files));
     let reads = "frame.light_clip_from_world[int(pass.size_px.x) % 2][0].xyz";
     ready(&session.save("passes/keys.frag", &pass("keys to=picture after=tonemap", "", reads)));
     assert!(!session.headless.is_animated().unwrap());
