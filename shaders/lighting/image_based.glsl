@@ -83,25 +83,24 @@ float specular_occlusion(float n_dot_v, float occlusion, float roughness) {
 
 Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
     float n_dot_v = n_dot_v_of(s.n, v);
-    float visibility = s.occlusion * screen_visibility(s.position_ws);
-    vec3 irradiance = irradiance_over_pi(s.n) * visibility;
-    if (AMBIENT_OCCLUSION) irradiance *= with_bounces(visibility, s.base_color) / max(visibility, 1e-6);
+    vec3 irradiance = irradiance_over_pi(s.n) * s.occlusion;
+    if (AMBIENT_OCCLUSION) irradiance *= with_bounces(s.occlusion, s.base_color) / max(s.occlusion, 1e-6);
 
     Lobes light = no_light();
     light.diffuse = albedo.diffuse * irradiance;
     light.multiple = albedo.multiple * irradiance;
-    light.specular = reflected_specular(s, v, albedo.specular) * specular_occlusion(n_dot_v, visibility, s.roughness);
+    light.specular = reflected_specular(s, v, albedo.specular) * specular_occlusion(n_dot_v, s.occlusion, s.roughness);
     if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
-        float occlusion = specular_occlusion(n_dot_v_of(s.clearcoat_n, v), visibility, s.clearcoat_roughness);
+        float occlusion = specular_occlusion(n_dot_v_of(s.clearcoat_n, v), s.occlusion, s.clearcoat_roughness);
         light.clearcoat = reflected_coat(s, v, albedo.clearcoat) * occlusion;
     }
     if ((FEATURES & FEATURE_SHEEN) != 0u) {
         vec3 sheen = albedo.sheen * prefiltered_sheen(reflect(-v, s.n), s.sheen_roughness);
         if ((FEATURES & FEATURE_SUN) != 0u) sheen += frame.environment_intensity * sun_from_sheen(s, v);
-        light.sheen = sheen * visibility;
+        light.sheen = sheen * s.occlusion;
     }
     if ((FEATURES & FEATURE_DIFFUSE_TRANSMISSION) != 0u) {
-        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n) * visibility;
+        light.transmitted = albedo.diffuse_transmitted * irradiance_over_pi(-s.n) * s.occlusion;
     }
     return light;
 }

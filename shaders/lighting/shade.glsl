@@ -52,14 +52,18 @@ void cross_volume(Surface s, inout Lobes light) {
     light.all += light.transmitted;
 }
 
-// Adds what the surface reflects of light `i`. `for_terms`: see LightRange.
-void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, bool for_terms) {
+// Part of light `i` that other surfaces let through, 0..1.
+float visibility_of(uint i, Surface s) {
+    return shadow_visibility(i, s.position_ws, s.n, illuminate(light_at(i, s.position_ws), s.position_ws).l);
+}
+
+// Adds what the surface reflects of light `i`, of which `visible` arrives. `for_terms`: see LightRange.
+void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, float visible, bool for_terms) {
     Light light = light_at(i, s.position_ws);
     // For BRDF terms a rectangle counts as a point light at its center.
     bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !for_terms && light.kind == LIGHT_RECT;
     if (has_size) {
-        vec3 to_center = safe_normalize(light.position_ws.xyz - s.position_ws, s.n);
-        add(lit.area, rectangle_light(s, v, albedo, light), vec3(shadow_visibility(i, s.position_ws, s.n, to_center)));
+        add(lit.area, rectangle_light(s, v, albedo, light), vec3(visible));
         return;
     }
     // L = f E |NoL|, with E the irradiance on a plane perpendicular to l. Below the horizon f is 0, unless the surface
@@ -70,11 +74,16 @@ void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, bool for
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
     add(lit.lobes, lobes, vec3(1.0));
-    float visible = shadow_visibility(i, s.position_ws, s.n, illumination.l);
     add(lit.punctual, lobes, illumination.irradiance * (abs(n_dot_l) * visible));
 }
 
 Lit shade(Surface s, vec3 v, LightRange range) {
+    // Visibility comes before all else, while few values are live: a software device has few registers.
+    s.occlusion *= screen_visibility();
+    float visible[MAX_LIGHT_VIEWS];
+    if (LIGHT_COUNT != 0u) {
+        [[unroll]] for (uint i = 0u; i < min(LIGHT_COUNT, uint(MAX_LIGHT_VIEWS)); ++i) visible[i] = visibility_of(i, s);
+    }
     Albedo albedo = directional_albedo(s, v);
     Lit lit;
     lit.punctual = lit.area = lit.lobes = no_light();
@@ -84,12 +93,13 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
     if (LIGHT_COUNT != 0u) {
         [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) {
-            if (i >= range.first && i < range.end) add_light(lit, s, v, albedo, i, range.for_terms);
+            if (i < range.first || i >= range.end) continue;
+            add_light(lit, s, v, albedo, i, i < uint(MAX_LIGHT_VIEWS) ? visible[i] : 1.0, range.for_terms);
         }
     } else {
         // With a limit that the compiler can see, the loop needs no budget of rounds.
         for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) {
-            add_light(lit, s, v, albedo, i, range.for_terms);
+            add_light(lit, s, v, albedo, i, visibility_of(i, s), range.for_terms);
         }
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {

@@ -1,4 +1,4 @@
-//! What a command that takes long is doing, on stderr: in a terminal one line that changes, elsewhere a line every few seconds.
+//! The progress of a command that takes long, on stderr: in a terminal one line that changes, elsewhere a line every few seconds.
 
 use std::io::IsTerminal as _;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -24,7 +24,7 @@ pub struct Progress {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What the command is doing.
+/// The work that goes on.
 struct State {
     is_terminal: bool,
     start: Instant,

@@ -108,7 +108,7 @@ impl PixelValue {
         self.value[0].round() as u32
     }
 
-    /// What the number means. Always of the same width.
+    /// The meaning of the number. Always of the same width.
     fn meaning(&self, numbers: &Numbers) -> String {
         let names: &[String] = if let Numbers::Names(names) = numbers { names } else { &[] };
         let width = names.iter().map(|name| name.chars().count()).fold(NUMBER_WIDTH, usize::max);

@@ -33,16 +33,17 @@ fn an_exercise_is_solved_by_an_edit() {
 #[test]
 fn the_hint_of_the_first_start_is_dismissed_once() {
     let (width, height) = (900, 600);
-    let shows_hint = |screen: &RgbaImage| count(screen, 0..width, height / 2..height - 30, ACCENT) > 300;
+    // Only the card's edge is a line of this color that is so long.
+    let is_edge = |screen: &RgbaImage, y: u32| count(screen, 0..width, y..y + 1, ACCENT) > 150;
+    let edge = |screen: &RgbaImage| (height / 2..height - 30).rev().find(|y| is_edge(screen, *y));
     let mut viewer = Viewer::at_first_start(Tree::new(), &["sphere-grid", "--size", "900x600"]);
     viewer.running.event("ready");
-    let screen = viewer.until_screen("the hint", shows_hint);
-    // The lower edge of the card is its lowest long line; "Got it" is the last of the buttons above it.
-    let is_edge = |y: &u32| count(&screen, 0..width, *y..*y + 1, ACCENT) > 150;
-    let bottom = (height / 2..height - 30).rev().find(is_edge).unwrap();
+    let screen = viewer.until_screen("the hint", |screen| edge(screen).is_some());
+    // "Got it" is the last of the buttons above the lower edge.
+    let bottom = edge(&screen).unwrap();
     let left = (0..width).find(|x| count(&screen, *x..*x + 1, bottom - 40..bottom, ACCENT) > 20).unwrap();
     viewer.click((left + 220, bottom - 20));
-    viewer.until_screen("no hint", |screen| !shows_hint(screen));
+    viewer.until_screen("no hint", |screen| edge(screen).is_none());
     assert!(viewer.tree.beside("state/specula/hint.json").is_file());
     viewer.quit();
 }

@@ -1,4 +1,4 @@
-//! What opens: files that are dropped, and the last session.
+//! Files that are dropped open, and the last session does.
 
 use serde_json::Value;
 

@@ -5,23 +5,25 @@
 #include "interface.glsl"
 #include "common/math.glsl"
 #include "common/picture_px.glsl"
+#include "lighting/shadows/occlusion_texel.glsl"
 
 //@ui "Ambient occlusion" doc="Corners and gaps get less light from the environment (GTAO, Jimenez et al. 2016)"
 layout(constant_id = USER_CONSTANTS + 11) const bool AMBIENT_OCCLUSION = false;
 
-// r: hidden part, 0 open .. 1 hidden; g: meters along the camera's axis. 0 where the pass is off.
+// occlusion_texel of the hidden part, 0 open .. 1 hidden. 0 where the pass is off.
 uniform sampler2D occlusion;
 
-// Open part of the hemisphere over a point of the picture, 0..1: the four nearest texels at about its distance.
-float screen_visibility(vec3 position_ws) {
+// Open part of the hemisphere over a fragment, 0..1: the four nearest texels at about its distance.
+float screen_visibility() {
     if (!AMBIENT_OCCLUSION) return 1.0;
-    float distance_m = -(frame.view_from_world * vec4(position_ws, 1.0)).z;
+    // gl_FragCoord.w is 1 / distance.
+    float per_distance = gl_FragCoord.w * frame.scene_radius;
     vec2 size = ceil(0.5 * frame.viewport_px);
     vec2 texel = picture_px() / frame.viewport_px * size - 0.5;
     vec2 part = fract(texel);
     vec2 corner = (floor(texel) + 1.0) / size;
-    vec4 hidden = textureGather(occlusion, corner, 0);
-    vec4 apart = abs(textureGather(occlusion, corner, 1) / distance_m - 1.0);
+    vec4 hidden = textureGather(occlusion, corner);
+    vec4 apart = abs(occlusion_distances(hidden) * per_distance - 1.0);
     // A gather holds (0, 1), (1, 1), (1, 0), (0, 0). 1e-4: if no texel is of this surface, all count.
     vec4 weight = vec4((1.0 - part.x) * part.y, part.x * part.y, part.x * (1.0 - part.y), (1.0 - part.x) * (1.0 - part.y));
     weight *= max(1.0 - 50.0 * apart, 1e-4);

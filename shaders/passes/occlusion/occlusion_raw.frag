@@ -1,12 +1,14 @@
-//@pass occlusion_raw "Ambient occlusion: horizons" size=1/2 format=rg32f when=AMBIENT_OCCLUSION doc="Hidden part of the sky in each pixel, with noise"
+//@pass occlusion_raw "Ambient occlusion: horizons" size=1/2 format=r32f when=AMBIENT_OCCLUSION doc="Hidden part of the sky in each pixel, with noise"
 #version 460
 #include "pass.glsl"
 #include "common/math.glsl"
+#include "lighting/shadows/occlusion_texel.glsl"
 
 // Ambient occlusion from the horizons around a pixel (Jimenez, Wu, Pesce & Jarabo 2016, "Practical Real-Time Strategies for
 // Accurate Indirect Occlusion"). Limits: it knows only what the camera sees, and takes everything for as thick as it looks.
 //
-// r: hidden part of the cosine-weighted hemisphere, 0 open .. 1 hidden in the mean over the directions. g: distance, as in `geometry`.
+// occlusion_texel of the hidden part of the cosine-weighted hemisphere, 0 open .. 1 hidden in the mean over the directions; 0 where
+// there is nothing.
 
 uniform sampler2D geometry;
 
@@ -30,37 +32,50 @@ vec3 point_at(vec2 half_size, vec2 at, float distance_m) {
     return distance_m * vec3((2.0 * at - 1.0) * vec2(half_size.x, -half_size.y), -1.0);
 }
 
-// From the point to the neighbor on the side where the surface goes on: where the distance changes less. View space, meters.
-vec3 along(vec2 half_size, vec3 position, ivec2 texel, float here_m, ivec2 step) {
-    bool is_first = any(lessThan(texel, step));
-    bool is_last = any(greaterThanEqual(texel + step, ivec2(pass.size_px)));
-    float before = is_first ? 0.0 : texelFetch(geometry, texel - step, 0).r;
-    float after = is_last ? 0.0 : texelFetch(geometry, texel + step, 0).r;
+// From the point to the neighbor on the side where the surface goes on: where the distance changes less. `before`, `after`: distances
+// of the neighbors, 0 where there is nothing. View space, meters.
+vec3 along(vec2 half_size, vec3 position, vec2 step, float before, float after) {
+    float here_m = -position.z;
     bool is_after = after > 0.0 && (before <= 0.0 || abs(after - here_m) < abs(before - here_m));
     float near_m = is_after ? after : before;
     float sign_of = is_after ? 1.0 : -1.0;
-    vec2 at = uv + sign_of * vec2(step) / pass.size_px;
     // Without a neighbor the surface faces the eye.
-    return sign_of * (point_at(half_size, at, near_m > 0.0 ? near_m : here_m) - position);
+    return sign_of * (point_at(half_size, uv + sign_of * step, near_m > 0.0 ? near_m : here_m) - position);
 }
 
 // Normal of the surface without normal maps, view space, unit: what hides the sky is the geometry. Points and lines face the eye.
-vec3 normal_at(vec2 half_size, vec3 position, ivec2 texel, float here_m) {
-    vec3 x = along(half_size, position, texel, here_m, ivec2(1, 0));
-    vec3 y = along(half_size, position, texel, here_m, ivec2(0, 1));
+// Distances around the pixel at (0, 0): `before` at (-1, 0), (0, 0), (0, -1), (-1, -1); `after` at (0, 1), (1, 1), (1, 0), (0, 0).
+vec3 normal_at(vec2 half_size, vec3 position, vec4 before, vec4 after) {
+    // Beyond the border there is nothing.
+    vec2 pixel = floor(gl_FragCoord.xy);
+    vec2 is_before = vec2(greaterThan(pixel, vec2(0.0)));
+    vec2 is_after = vec2(lessThan(pixel + 1.0, pass.size_px));
+    vec3 x = along(half_size, position, vec2(1.0 / pass.size_px.x, 0.0), before.x * is_before.x, after.z * is_after.x);
+    vec3 y = along(half_size, position, vec2(0.0, 1.0 / pass.size_px.y), before.z * is_before.y, after.x * is_after.y);
     return safe_normalize(cross(y, x), safe_normalize(-position, vec3(0.0, 0.0, 1.0)));
 }
 
+// Cosine of the angle between `v` and what the picture shows at `at`. Beyond the radius nothing hides; between, it fades. -1: nothing.
+float horizon_at(vec2 at, vec2 half_size, vec3 position, vec3 v, float radius_m) {
+    vec2 place = clamp(at, 0.0, 1.0) * (pass.size_px - 1.0) + 0.5;
+    float distance_m = texelFetch(geometry, ivec2(place), 0).r;
+    vec3 to = point_at(half_size, at, distance_m) - position;
+    float per_m = inversesqrt(max(dot(to, to), 1e-12));
+    float near = distance_m > 0.0 ? saturate(2.0 - 2.0 / (per_m * radius_m)) : 0.0;
+    return mix(-1.0, dot(to, v) * per_m, near);
+}
+
 void main() {
-    ivec2 texel = ivec2(gl_FragCoord.xy);
-    float here_m = texelFetch(geometry, texel, 0).r;
-    color = vec4(0.0, here_m, 0.0, 0.0);
+    // A gather holds (0, 1), (1, 1), (1, 0), (0, 0), around a corner of four texels.
+    vec4 before = textureGather(geometry, uv - 0.5 / pass.size_px);
+    float here_m = before.y;
+    color = vec4(0.0);
     if (here_m <= 0.0) return;
 
     vec2 half_size = half_size_at_1m();
     vec3 position = point_at(half_size, uv, here_m);
     vec3 v = normalize(-position);
-    vec3 n = normal_at(half_size, position, texel, here_m);
+    vec3 n = normal_at(half_size, position, before, textureGather(geometry, uv + 0.5 / pass.size_px));
     float radius_m = occlusion_radius * frame.scene_radius;
     // Radius in the image, 0..1 of its height.
     float radius = min(radius_m / (2.0 * here_m * half_size.y), 0.5);
@@ -71,7 +86,6 @@ void main() {
     float turn = float(4 * ((pixel.x + 2 * pixel.y) & 3) + pixel.y) / 16.0;
     float shift = (float((pixel.x ^ pixel.y) & 3) + 0.5) / 4.0;
 
-    int samples = here_m > 0.0 ? 2 * STEPS : 0;
     float open = 0.0;
     for (int slice = 0; slice < SLICES; ++slice) {
         float angle = PI * (float(slice) + turn) / float(SLICES);
@@ -85,21 +99,14 @@ void main() {
         float sin_gamma = projected.y / max(weight, 1e-6);
         // Cosines of the horizons' angles from v, on both sides. They stay within the hemisphere around the normal.
         vec2 horizons = vec2(sin_gamma, -sin_gamma);
-        // Both sides in turn. Pixels without a surface take no step, which a software device would compute all the same.
-        for (int i = 0; i < samples; ++i) {
-            bool is_first = (i & 1) == 0;
-            float part = (float(i >> 1) + shift) / float(STEPS);
+        // Pixels without a surface take no step, which a software device would compute all the same.
+        int steps = here_m > 0.0 ? STEPS : 0;
+        for (int i = 0; i < steps; ++i) {
+            float part = (float(i) + shift) / float(STEPS);
             // Not nearer than the neighboring pixel.
             vec2 offset = direction * scale * part * part + direction / pass.size_px;
-            vec2 at = uv + (is_first ? -offset : offset);
-            vec2 place = clamp(at, 0.0, 1.0) * (pass.size_px - 1.0) + 0.5;
-            float distance_m = texelFetch(geometry, ivec2(place), 0).r;
-            vec3 to = point_at(half_size, at, distance_m) - position;
-            float per_m = inversesqrt(max(dot(to, to), 1e-12));
-            // Beyond the radius nothing hides; between, it fades.
-            float near = distance_m > 0.0 ? saturate(2.0 - 2.0 / (per_m * radius_m)) : 0.0;
-            float horizon = mix(-1.0, dot(to, v) * per_m, near);
-            horizons = max(horizons, is_first ? vec2(horizon, -1.0) : vec2(-1.0, horizon));
+            float first = horizon_at(uv - offset, half_size, position, v, radius_m);
+            horizons = max(horizons, vec2(first, horizon_at(uv + offset, half_size, position, v, radius_m)));
         }
         horizons = min(horizons, 1.0);
         // Integral of max(cos(angle - gamma), 0) |sin(angle)| between the horizons h (eq. 7 there): for each,
@@ -111,5 +118,5 @@ void main() {
         open += weight * 0.25 * (cos_gamma * (2.0 - cos_2h.x - cos_2h.y) + across);
     }
     // One direction alone may be above 1; the mean over all directions of an open point is 1.
-    color.r = 1.0 - open / float(SLICES);
+    color.r = occlusion_texel(1.0 - open / float(SLICES), here_m);
 }

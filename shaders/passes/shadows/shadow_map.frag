@@ -1,4 +1,4 @@
-//@pass shadow_map "Shadow map" draw=model instances=lights size=2048x2048 format=r32f when=SHADOWS doc="Depth of what is nearest to each light; a tile for each"
+//@pass shadow_map "Shadow map" draw=model instances=lights size=2048x2048 format=r16f when=SHADOWS doc="Depth of what is nearest to each light; a tile for each"
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
@@ -18,5 +18,6 @@ void main() {
     }
     // A light inside the model sees parts of it beyond its tile. gl_FragCoord.w is 1 / w.
     if (any(greaterThan(abs(in_tile) * gl_FragCoord.w, vec2(1.0)))) discard;
-    color = vec4(gl_FragCoord.z, 0.0, 0.0, 1.0);
+    // A half float is off by up to 1 part in 2048. It must not be nearer to the light than the surface, which would hide itself.
+    color = vec4(gl_FragCoord.z * (1.0 - 1.0 / 2048.0), 0.0, 0.0, 1.0);
 }

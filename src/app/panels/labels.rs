@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use egui::{Align2, FontId, Id, LayerId, Order, Painter, Pos2, Rect, pos2, vec2};
+use egui::{Align2, FontId, Galley, Id, LayerId, Order, Painter, Pos2, Rect, pos2, vec2};
 
 use super::theme::{CARD, TEXT};
 use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
@@ -53,7 +53,7 @@ fn objects(model: &Model) -> Vec<(String, Bounds)> {
     if is_chart { nodes.into_values().collect() } else { Vec::new() }
 }
 
-/// Shows the names over the picture, below cards.
+/// Shows the names over the picture, below cards. A name that would cover that of a nearer object is left out.
 pub(super) fn show(
     egui: &egui::Context,
     labels: &mut Labels,
@@ -67,15 +67,17 @@ pub(super) fn show(
     }
     let camera = &frame(&model.bounds, &model.outline, camera, picture.aspect_ratio());
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("labels"))).with_clip_rect(picture);
-    for (name, bounds) in &labels.objects {
+    let mut shown = Vec::new();
+    for (name, bounds) in nearest_first(&labels.objects, camera.eye) {
         let corners = bounds.corners().map(|corner| project(camera, corner, picture));
         let Some(corners) = corners.into_iter().collect::<Option<Vec<Pos2>>>() else { continue };
         let around = Rect::from_points(&corners);
         let (center, low) = (bounds.center(), bounds.min.y);
         let Some(foot) = project(camera, glam::Vec3::new(center.x, low, center.z), picture) else { continue };
-        // Names that are wider than what they name would cover each other.
-        if around.width() >= 30.0 {
-            label(&painter, name, foot, around.width());
+        let label = Label::new(&painter, name, foot, around.width());
+        if shown.iter().all(|other: &Rect| !other.intersects(label.room)) {
+            shown.push(label.room);
+            label.show(&painter);
         }
     }
 }
@@ -88,13 +90,32 @@ fn project(camera: &CameraView, point: glam::Vec3, picture: Rect) -> Option<Pos2
     (clip.w > 0.0).then(|| pos2(picture.min.x + at.x, picture.min.y + at.y))
 }
 
-/// Writes a name at the foot of an object, a line for each part of it.
-fn label(painter: &Painter, name: &str, foot: Pos2, width: f32) {
-    let text = name.replace(", ", "\n");
-    let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), width.max(48.0));
-    let room = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
-    painter.rect_filled(room, 3.0, CARD.color().gamma_multiply(0.72));
-    painter.galley(room.min + vec2(4.0, 1.0), text, TEXT.color());
+/// The objects by their distance from the eye.
+fn nearest_first(objects: &[(String, Bounds)], eye: glam::Vec3) -> Vec<&(String, Bounds)> {
+    let mut sorted: Vec<_> = objects.iter().collect();
+    let distance = |(_, bounds): &(String, Bounds)| bounds.center().distance_squared(eye);
+    sorted.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    sorted
+}
+
+/// A name at the foot of an object, a line for each part of it.
+struct Label {
+    text: Arc<Galley>,
+    room: Rect,
+}
+
+impl Label {
+    fn new(painter: &Painter, name: &str, foot: Pos2, width: f32) -> Self {
+        let text = name.replace(", ", "\n");
+        let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), width.max(48.0));
+        let room = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
+        Self { text, room }
+    }
+
+    fn show(self, painter: &Painter) {
+        painter.rect_filled(self.room, 3.0, CARD.color().gamma_multiply(0.72));
+        painter.galley(self.room.min + vec2(4.0, 1.0), self.text, TEXT.color());
+    }
 }
 
 #[cfg(test)]

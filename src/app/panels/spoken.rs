@@ -1,4 +1,4 @@
-//! What a screen reader says of a control that shows a symbol or a picture instead of its name.
+//! Names that a screen reader reads aloud for controls that show a symbol or a picture instead.
 
 use egui::{Response, WidgetInfo, WidgetType};
 
