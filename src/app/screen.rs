@@ -1,10 +1,12 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
 mod error_map;
+mod extras;
 mod gallery;
 mod grid;
 mod inspector;
 mod loops;
+mod pace;
 mod probe;
 mod reference;
 mod selection;
@@ -28,7 +30,6 @@ use super::input::Mouse;
 use super::panels;
 use super::timing::CpuTimes;
 use super::viewer::Viewer;
-use crate::events::{Event, emit};
 use crate::frame::FrameState;
 use crate::gpu::{Frames, Gpu, GpuError, SetLayouts, Surface, Swapchain, UiRenderer, Use};
 use crate::render::tools::Outline;
@@ -284,32 +285,14 @@ impl Screen {
             Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, redraw)?,
             None => View::clear(&mut encoder, &output),
         }
-        self.draw_reference(&mut encoder, slot, &acquired.image, self.rect.at)?;
-        let outlined = self.draw_outline(&mut encoder, viewer, frame.as_ref(), &acquired.image);
-        self.survive(outlined)?;
-        let shown = self.draw_texture(&mut encoder, viewer, frame.as_ref());
-        self.survive(shown)?;
-        let grid = self.draw_grid(&mut encoder, slot, &acquired.image);
-        if self.survive(grid)?.is_none() {
-            self.cells.clear();
-            viewer.panels.grid.end();
-        }
-        let recorded = self.record_thumbnail(&mut encoder, slot, viewer);
-        if self.survive(recorded)?.is_none() {
-            // The newest picture matters more.
-            (self.thumbnails, self.thumbnail, self.shortage) = (None, None, None);
-            self.lacks_thumbnails = true;
-        }
-        let context = (&self.layouts, pixels_per_point);
-        let next_thumbnails = self.gallery.draw(&mut encoder, slot, viewer, &mut self.ui, context)?;
-        self.inspector.take(&self.frames, Some(slot), viewer);
-        let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
-        let next_values = self.inspector.draw(&mut encoder, slot, viewer, &self.layouts, of_pixel)?;
+        let waits =
+            self.draw_extras((&mut encoder, slot), viewer, frame.as_ref(), (&acquired.image, pixels_per_point))?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         self.record_window_shot(&mut encoder, slot, viewer, &acquired.image)?;
-        self.has_others[slot] |=
-            self.reference.is_some() || self.thumbnail.is_some() || next_thumbnails.is_some() || next_values.is_some();
-        self.has_others[slot] |= !self.cells.is_empty();
+        self.has_others[slot] |= self.reference.is_some()
+            || self.thumbnail.is_some()
+            || !self.cells.is_empty()
+            || waits.iter().any(Option::is_some);
         self.attempts[slot] = viewer.record(window);
         self.cpu.record_ms = record.elapsed().as_secs_f64() * 1e3;
         self.frames.submit(encoder, acquired.submission)?;
@@ -321,31 +304,12 @@ impl Screen {
 
         viewer.answer();
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let drawn = self.reference.as_ref().filter(|reference| !reference.is_still());
-        let reference = drawn.map(|reference| (&reference.view, &reference.frame));
-        let cells = || self.cells.iter().filter_map(|cell| Some((&cell.view, cell.shown.as_ref()?.frame())));
-        let views = || frame.iter().map(|frame| (&self.view, frame)).chain(reference).chain(cells());
-        let leaves_motion = views().any(|(view, frame)| view.is_moving(frame));
-        let gets_better = views()
-            .any(|(view, frame)| frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED);
-        let again = self.stale
-            || moving
-            || reported
-            || self.awaits_pixel()
-            || views().any(|(view, _)| view.awaits_survey())
-            || self.thumbnail.is_some()
-            || self.window_shot.is_some()
-            || viewer.has_unanswered()
-            || measures
-            || redraw == Redraw::Always
-            || self.error_map.awaits_copies()
-            || viewer.moves()
-            || gets_better
-            || std::mem::take(&mut self.redraws)
-            || leaves_motion;
-        let again = self.awaits_loops() || again;
-        let waits = [delay.filter(|delay| *delay < NEVER), next_thumbnails, next_values];
-        Ok(if again { Some(Duration::ZERO) } else { waits.into_iter().flatten().min() })
+        let again = self.stale || moving || reported || measures || redraw == Redraw::Always;
+        if std::mem::take(&mut self.redraws) | self.awaits_loops() || again || self.has_more(viewer, frame.as_ref()) {
+            return Ok(Some(Duration::ZERO));
+        }
+        let delay = delay.filter(|delay| *delay < NEVER);
+        Ok(waits.into_iter().flatten().chain(delay).min())
     }
 
     /// Recreates the swapchain if it does not fit the window. Returns whether there is a swapchain.
@@ -386,25 +350,6 @@ impl Screen {
             }
             result => result.map(Some),
         }
-    }
-
-    /// Measures and reports the first frame of the window, of a reload and of the model. Returns whether panels must be
-    /// redrawn.
-    fn finished(&mut self, viewer: &mut Viewer, frame: Option<&BoundFrame>, begin: Instant) -> Result<bool, GpuError> {
-        if std::mem::take(&mut self.first) {
-            // SYNC: once, so that the time includes the device's work.
-            self.frames.wait_all()?;
-            emit(&viewer.events, &Event::Window { ms: viewer.start.elapsed().as_secs_f64() * 1e3 });
-        }
-        if !viewer.times_next_frame() {
-            return Ok(false);
-        }
-        // SYNC: once per reload, so that the time includes the device's work.
-        self.frames.wait_all()?;
-        // A frame with an older picture does not tell what the newest one takes.
-        let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none() && self.cells.is_empty());
-        viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, device_ms);
-        Ok(!viewer.times_next_frame())
     }
 }
 

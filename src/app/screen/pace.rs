@@ -1,0 +1,55 @@
+//! When the next frame follows, and the times of frames that are measured.
+
+use std::time::Instant;
+
+use super::Screen;
+use crate::app::viewer::Viewer;
+use crate::events::{Event, emit};
+use crate::gpu::GpuError;
+use crate::render::{BoundFrame, View};
+
+impl Screen {
+    /// Whether another frame must follow at once, because the last one shows less than there is or something on the device is on its
+    /// way.
+    pub(super) fn has_more(&self, viewer: &Viewer, frame: Option<&BoundFrame>) -> bool {
+        let moving = self.reference.as_ref().filter(|reference| !reference.is_still());
+        let reference = moving.map(|reference| (&reference.view, &reference.frame));
+        let cells = self.cells.iter().filter_map(|cell| Some((&cell.view, cell.shown.as_ref()?.frame())));
+        let mut views = frame.map(|frame| (&self.view, frame)).into_iter().chain(reference).chain(cells);
+        let is_unfinished = |(view, frame): (&View, &BoundFrame)| {
+            let gets_better = frame.state.pipelines.accumulates && view.accumulated() < View::MOST_ACCUMULATED;
+            gets_better || view.is_moving(frame) || view.awaits_survey()
+        };
+        self.awaits_pixel()
+            || self.thumbnail.is_some()
+            || self.window_shot.is_some()
+            || self.error_map.awaits_copies()
+            || viewer.has_unanswered()
+            || viewer.moves()
+            || views.any(is_unfinished)
+    }
+
+    /// Measures and reports the first frame of the window, of a reload and of the model. Returns whether panels must be
+    /// redrawn.
+    pub(super) fn finished(
+        &mut self,
+        viewer: &mut Viewer,
+        frame: Option<&BoundFrame>,
+        begin: Instant,
+    ) -> Result<bool, GpuError> {
+        if std::mem::take(&mut self.first) {
+            // SYNC: once, so that the time includes the device's work.
+            self.frames.wait_all()?;
+            emit(&viewer.events, &Event::Window { ms: viewer.start.elapsed().as_secs_f64() * 1e3 });
+        }
+        if !viewer.times_next_frame() {
+            return Ok(false);
+        }
+        // SYNC: once per reload, so that the time includes the device's work.
+        self.frames.wait_all()?;
+        // A frame with an older picture does not tell what the newest one takes.
+        let device_ms = self.frames.last_device_ms().filter(|_| self.reference.is_none() && self.cells.is_empty());
+        viewer.frame_done(frame, begin.elapsed().as_secs_f64() * 1e3, device_ms);
+        Ok(!viewer.times_next_frame())
+    }
+}
