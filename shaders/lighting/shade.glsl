@@ -52,9 +52,19 @@ void cross_volume(Surface s, inout Lobes light) {
     light.all += light.transmitted;
 }
 
+// Whether a light gives nothing because it is below the horizon. It does if the surface transmits light, if the coat has its own
+// normal, or if its terms are asked for.
+bool is_below(float n_dot_l, bool for_terms) {
+    return n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms;
+}
+
 // Part of light `i` that other surfaces let through, 0..1.
-float visibility_of(uint i, Surface s) {
-    return shadow_visibility(i, s.position_ws, s.n, illuminate(light_at(i, s.position_ws), s.position_ws).l);
+float visibility_of(uint i, Surface s, bool for_terms) {
+    Light light = light_at(i, s.position_ws);
+    vec3 l = illuminate(light, s.position_ws).l;
+    bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && light.kind == LIGHT_RECT;
+    if (!has_size && is_below(dot(s.n, l), for_terms)) return 1.0;
+    return shadow_visibility(i, s.position_ws, s.n, l);
 }
 
 // Adds what the surface reflects of light `i`, of which `visible` arrives. `for_terms`: see LightRange.
@@ -66,11 +76,10 @@ void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, float vi
         add(lit.area, rectangle_light(s, v, albedo, light), vec3(visible));
         return;
     }
-    // L = f E |NoL|, with E the irradiance on a plane perpendicular to l. Below the horizon f is 0, unless the surface
-    // transmits light or the coat has its own normal.
+    // L = f E |NoL|, with E the irradiance on a plane perpendicular to l.
     Illumination illumination = illuminate(light, s.position_ws);
     float n_dot_l = dot(s.n, illumination.l);
-    if (n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms) return;
+    if (is_below(n_dot_l, for_terms)) return;
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
     add(lit.lobes, lobes, vec3(1.0));
@@ -82,7 +91,9 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     s.occlusion *= screen_visibility();
     float visible[MAX_LIGHT_VIEWS];
     if (LIGHT_COUNT != 0u) {
-        [[unroll]] for (uint i = 0u; i < min(LIGHT_COUNT, uint(MAX_LIGHT_VIEWS)); ++i) visible[i] = visibility_of(i, s);
+        [[unroll]] for (uint i = 0u; i < min(LIGHT_COUNT, uint(MAX_LIGHT_VIEWS)); ++i) {
+            visible[i] = visibility_of(i, s, range.for_terms);
+        }
     }
     Albedo albedo = directional_albedo(s, v);
     Lit lit;
@@ -99,7 +110,7 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     } else {
         // With a limit that the compiler can see, the loop needs no budget of rounds.
         for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) {
-            add_light(lit, s, v, albedo, i, visibility_of(i, s), range.for_terms);
+            add_light(lit, s, v, albedo, i, visibility_of(i, s, range.for_terms), range.for_terms);
         }
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {

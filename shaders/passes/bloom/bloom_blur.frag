@@ -3,12 +3,11 @@
 #include "pass.glsl"
 #include "passes/bloom/levels.glsl"
 
-uniform sampler2D bloom_light;
 uniform sampler2D bloom_wide;
 
 void main() {
-    int last = last_level(bloom_light);
-    vec3 sum = float(max(last - 2, 0)) * under_tent(bloom_wide, uv, 0);
-    for (int level = 1; level <= min(last, 2); ++level) sum += under_tent(bloom_light, uv, level);
+    int last = last_level();
+    vec3 sum = float(max(last - 2, 0)) * textureLod(bloom_wide, uv, 0.0).rgb;
+    for (int level = 1; level <= min(last, 2); ++level) sum += under_tent(uv, level);
     color = vec4(sum / float(last), 1.0);
 }

@@ -5,11 +5,9 @@
 
 // The third and all further levels of the light.
 
-uniform sampler2D bloom_light;
-
 void main() {
-    int last = last_level(bloom_light);
+    int last = last_level();
     vec3 sum = vec3(0.0);
-    for (int level = 3; level <= min(last, 12); ++level) sum += under_tent(bloom_light, uv, level);
+    for (int level = 3; level <= min(last, 12); ++level) sum += under_tent(uv, level);
     color = vec4(sum / float(max(last - 2, 1)), 1.0);
 }

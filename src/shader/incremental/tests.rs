@@ -192,7 +192,8 @@ fn fifty_edits_one_after_the_other() {
         // Each edit starts from the shipped text of its file, so it reverts earlier edits in that file.
         let edited = edit_all(&shipped, &stage, &first.files, &all[chosen..=chosen], step);
         texts.insert(path.clone(), edited[path].clone());
-        let linked = incremental(&texts, &stage, &base).unwrap_or_else(|| panic!("step {step}: not linked"));
+        let linked =
+            incremental(&texts, &stage, &base).unwrap_or_else(|| panic!("step {step}: not linked: {:?}", all[chosen]));
         if step % 5 == 4 {
             assert_same(&linked.spirv, &whole(&texts, &stage).unwrap().spirv, &format!("step {step}"));
         }
