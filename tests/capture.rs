@@ -101,6 +101,26 @@ fn a_turntable_is_a_full_turn() {
 }
 
 #[test]
+fn a_turntable_has_one_range_for_all_frames() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    // The camera turns around a place beside the model, so it is 10, 7, 10 and 13 meters away from it, or the other way round.
+    let camera = ["--eye", "3,0,10", "--target", "3,0,0", "--fovy", "60", "--size", "64x48", "--background", "none"];
+    let depth = ["render", "shader-ball", "--set", "view.msaa=1", "--mode", "depth", "--turntable", "4"];
+    run(path, &[&depth[..], &camera[..], &["--out", "spin.png"]].concat()).expect(0, &[]);
+    let mut brightness = [1, 2, 3, 4].map(|number| {
+        let frame = open_image(&path.join(format!("spin.{number:04}.png"))).into_rgba8();
+        let covered: Vec<f64> =
+            frame.pixels().filter(|pixel| pixel[3] == 255).map(|pixel| f64::from(pixel[0])).collect();
+        assert!(covered.len() > 20, "the model covers {} pixels in frame {number}", covered.len());
+        covered.iter().sum::<f64>() / covered.len() as f64
+    });
+    brightness.sort_by(f64::total_cmp);
+    let [near, middle, _, far] = brightness;
+    assert!(near + 40.0 < middle && middle + 40.0 < far, "{brightness:?}");
+}
+
+#[test]
 fn a_video_has_the_size_and_the_times_that_were_asked_for() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();

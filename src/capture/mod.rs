@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 use image::{DynamicImage, RgbaImage};
 
+use crate::frame::Limits;
 use crate::headless::{Headless, HeadlessError};
 use crate::picture;
 use crate::render;
@@ -44,6 +45,9 @@ pub trait Renderer {
     /// Settings that do not fit, a bad file, a device error.
     fn capture(&mut self, size: (u32, u32)) -> Result<render::Capture, HeadlessError>;
 
+    /// The limits of the values in the last picture, if its range follows them.
+    fn measured_limits(&self) -> Option<Limits>;
+
     /// The shaders in use.
     fn shaders(&self) -> Arc<ShaderSet> {
         self.session().shaders.clone().unwrap_or_default()
@@ -62,6 +66,10 @@ impl Renderer for Headless {
     fn capture(&mut self, size: (u32, u32)) -> Result<render::Capture, HeadlessError> {
         self.set_size(size)?;
         self.render()
+    }
+
+    fn measured_limits(&self) -> Option<Limits> {
+        Headless::measured_limits(self)
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::label::Labels;
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
-use crate::frame::{Clock, FrameState, TargetFormat};
+use crate::frame::{Clock, FrameState, Limits, TargetFormat};
 use crate::gpu::{Frames, Gpu, GpuError, Image, Use};
 use crate::headless::{HeadlessError, Search, first_not_finite};
 use crate::pipeline::PipelineSet;
@@ -250,5 +250,9 @@ impl Renderer for Stills {
     fn capture(&mut self, size: (u32, u32)) -> Result<Capture, HeadlessError> {
         let frame = self.bind(size)?;
         self.picture(&frame)
+    }
+
+    fn measured_limits(&self) -> Option<Limits> {
+        self.view.measured_limits()
     }
 }

@@ -8,7 +8,10 @@ use glam::{Quat, Vec3};
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
 use crate::message::did_you_mean;
 use crate::scene::{Model, frame};
-use crate::settings::{CameraSettings, Settings};
+use crate::settings::{CameraSettings, Settings, ViewRange};
+
+/// The pictures at equal angles whose values tell the range of all frames.
+const LOOKS: u32 = 8;
 
 /// Object that a turntable rotates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -86,25 +89,48 @@ impl Turntable {
     ) -> Result<(), CaptureError> {
         let model = renderer.session().model().cloned().unwrap_or_default();
         let aspect = self.size.0 as f32 / self.size.1.max(1) as f32;
-        let begin = match self.turn {
+        let camera = match self.turn {
             Turn::Light => settings.camera.clone(),
             Turn::Camera | Turn::Model => steady(&settings.camera, &model, aspect),
         };
+        let mut begin = Settings { camera, ..settings.clone() };
+        tell(progress, 0, self.frames as usize)?;
+        begin.view.range = self.range(renderer, &begin)?;
         for index in 0..self.frames {
             tell(progress, index as usize, self.frames as usize)?;
-            let turn = index as f32 / self.frames as f32;
-            let mut settings = Settings { camera: begin.clone(), ..settings.clone() };
-            if self.turn != Turn::Light {
-                settings.camera = turned(&begin, turn);
-            }
-            if self.turn != Turn::Camera {
-                turn_light(&mut settings, turn);
-            }
-            *renderer.settings() = settings;
+            *renderer.settings() = self.turned(&begin, index as f32 / self.frames as f32);
             animation.add(image_of(renderer.capture(self.size)?)?)?;
         }
         tell(progress, self.frames as usize, self.frames as usize)?;
         animation.finish()
+    }
+
+    /// The settings after a part of a turn.
+    fn turned(&self, begin: &Settings, turn: f32) -> Settings {
+        let mut settings = begin.clone();
+        if self.turn != Turn::Light {
+            settings.camera = turned(&begin.camera, turn);
+        }
+        if self.turn != Turn::Camera {
+            turn_light(&mut settings, turn);
+        }
+        settings
+    }
+
+    /// A range for all frames, if it would follow the values of each: with one of its own, each frame would have another brightness.
+    fn range(&self, renderer: &mut dyn Renderer, begin: &Settings) -> Result<ViewRange, CaptureError> {
+        let looks = self.frames.min(LOOKS);
+        let mut range = begin.view.range;
+        for look in 0..looks {
+            *renderer.settings() = self.turned(begin, look as f32 / looks as f32);
+            renderer.capture(self.size)?;
+            let Some((low, high)) = renderer.measured_limits() else { break };
+            range = match range {
+                ViewRange::Fixed(lowest, highest) => ViewRange::Fixed(lowest.min(low), highest.max(high)),
+                _ => ViewRange::Fixed(low, high),
+            };
+        }
+        Ok(range)
     }
 }
 

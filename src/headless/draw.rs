@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{Headless, HeadlessError};
+use crate::frame::Limits;
 use crate::gpu::{Encoder, GpuError, Image, Use};
 use crate::render::{BoundFrame, Capture, Output, Redraw, View};
 
@@ -73,6 +74,11 @@ impl Headless {
             readback = self.draw_frame(frame, Redraw::ToneMap, View::read_back)?;
         }
         readback.map(|readback| readback.finish()).ok_or_else(|| HeadlessError::Settings("nothing was drawn".into()))
+    }
+
+    /// The limits of the values in the last picture, if its range follows them.
+    pub fn measured_limits(&self) -> Option<Limits> {
+        self.view.measured_limits()
     }
 
     /// Renders the frame after the last one, from what passes have kept of that, and reads it back.

@@ -54,6 +54,12 @@ impl View {
         self.displayed.and_then(|(_, limits)| limits)
     }
 
+    /// The limits of the values that the last frame showed, if they follow the values.
+    pub fn measured_limits(&self) -> Option<Limits> {
+        let (display, limits) = self.displayed?;
+        Some(limits.unwrap_or(display.unit_limits()?))
+    }
+
     /// Forgets the limits of earlier pictures, so that the next one depends on its own values alone.
     pub fn forget_limits(&mut self) {
         self.known_limits.clear();
