@@ -106,8 +106,8 @@ fn a_turntable_has_one_range_for_all_frames() {
     let path = directory.path();
     // The camera turns around a place beside the model, so it is 10, 7, 10 and 13 meters away from it, or the other way round.
     let camera = ["--eye", "3,0,10", "--target", "3,0,0", "--fovy", "60", "--size", "64x48", "--background", "none"];
-    let depth = ["render", "shader-ball", "--set", "view.msaa=1", "--mode", "depth", "--turntable", "4"];
-    run(path, &[&depth[..], &camera[..], &["--out", "spin.png"]].concat()).expect(0, &[]);
+    let depth = ["render", "shader-ball", "--mode", "depth", "--set", "view.range=auto", "--set", "view.msaa=1"];
+    run(path, &[&depth[..], &camera[..], &["--turntable", "4", "--out", "spin.png"]].concat()).expect(0, &[]);
     let mut brightness = [1, 2, 3, 4].map(|number| {
         let frame = open_image(&path.join(format!("spin.{number:04}.png"))).into_rgba8();
         let covered: Vec<f64> =

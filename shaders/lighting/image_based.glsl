@@ -81,6 +81,7 @@ float specular_occlusion(float n_dot_v, float occlusion, float roughness) {
     return saturate(pow(n_dot_v + occlusion, exp2(-16.0 * alpha - 1.0)) - 1.0 + occlusion);
 }
 
+// Light from the environment. `s.occlusion` includes ambient occlusion, screen_visibility().
 Lobes environment_light(Surface s, vec3 v, Albedo albedo) {
     float n_dot_v = n_dot_v_of(s.n, v);
     vec3 irradiance = irradiance_over_pi(s.n) * s.occlusion;

@@ -10,6 +10,7 @@
 #include "lighting/lobes.glsl"
 #include "lighting/punctual.glsl"
 #include "lighting/rectangle.glsl"
+#include "lighting/shadows/ambient_occlusion.glsl"
 #include "lighting/shadows/shadow.glsl"
 #include "lighting/transmission.glsl"
 
@@ -45,6 +46,8 @@ LightRange chosen_lights() {
 
 bool is_empty(LightRange range) { return range.first >= range.end; }
 
+bool is_in(LightRange range, uint i) { return i >= range.first && i < range.end; }
+
 // Attenuates transmitted light by the volume's thickness, wherever the light comes from.
 void cross_volume(Surface s, inout Lobes light) {
     light.all -= light.transmitted;
@@ -52,47 +55,47 @@ void cross_volume(Surface s, inout Lobes light) {
     light.all += light.transmitted;
 }
 
-// Whether a light gives nothing because it is below the horizon. It does if the surface transmits light, if the coat has its own
-// normal, or if its terms are asked for.
-bool is_below(float n_dot_l, bool for_terms) {
+// Whether a light is below the horizon and adds nothing. It still adds light if the surface transmits light or the coat has its own
+// normal, and its terms can be asked for.
+bool is_below_horizon(float n_dot_l, bool for_terms) {
     return n_dot_l <= 0.0 && !LIGHT_PASSES && !coat_lies_apart() && !for_terms;
 }
 
 // Part of light `i` that other surfaces let through, 0..1.
-float visibility_of(uint i, Surface s, bool for_terms) {
+float light_visibility(uint i, Surface s, bool for_terms) {
     Light light = light_at(i, s.position_ws);
     vec3 l = illuminate(light, s.position_ws).l;
     bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && light.kind == LIGHT_RECT;
-    if (!has_size && is_below(dot(s.n, l), for_terms)) return 1.0;
+    if (!has_size && is_below_horizon(dot(s.n, l), for_terms)) return 1.0;
     return shadow_visibility(i, s.position_ws, s.n, l);
 }
 
-// Adds what the surface reflects of light `i`, of which `visible` arrives. `for_terms`: see LightRange.
-void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, float visible, bool for_terms) {
+// Adds what the surface reflects of light `i`, of which the part `visibility` arrives. `for_terms`: see LightRange.
+void add_light(inout Lit lit, Surface s, vec3 v, Albedo albedo, uint i, float visibility, bool for_terms) {
     Light light = light_at(i, s.position_ws);
     // For BRDF terms a rectangle counts as a point light at its center.
     bool has_size = (FEATURES & FEATURE_RECT_LIGHTS) != 0u && !for_terms && light.kind == LIGHT_RECT;
     if (has_size) {
-        add(lit.area, rectangle_light(s, v, albedo, light), vec3(visible));
+        add(lit.area, rectangle_light(s, v, albedo, light), vec3(visibility));
         return;
     }
     // L = f E |NoL|, with E the irradiance on a plane perpendicular to l.
     Illumination illumination = illuminate(light, s.position_ws);
     float n_dot_l = dot(s.n, illumination.l);
-    if (is_below(n_dot_l, for_terms)) return;
+    if (is_below_horizon(n_dot_l, for_terms)) return;
     lit.last = evaluate_brdf(s, illumination.l, v);
     Lobes lobes = lobes_of(lit.last);
     add(lit.lobes, lobes, vec3(1.0));
-    add(lit.punctual, lobes, illumination.irradiance * (abs(n_dot_l) * visible));
+    add(lit.punctual, lobes, illumination.irradiance * (abs(n_dot_l) * visibility));
 }
 
 Lit shade(Surface s, vec3 v, LightRange range) {
-    // Visibility comes before all else, while few values are live: a software device has few registers.
-    s.occlusion *= screen_visibility();
-    float visible[MAX_LIGHT_VIEWS];
+    // Visibility first, while few values are live: a software device has few registers.
+    s.occlusion *= screen_visibility(1.0 / gl_FragCoord.w);
+    float visibility[MAX_LIGHT_VIEWS];
     if (LIGHT_COUNT != 0u) {
-        [[unroll]] for (uint i = 0u; i < min(LIGHT_COUNT, uint(MAX_LIGHT_VIEWS)); ++i) {
-            visible[i] = visibility_of(i, s, range.for_terms);
+        [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) {
+            if (is_in(range, i)) visibility[i] = light_visibility(i, s, range.for_terms);
         }
     }
     Albedo albedo = directional_albedo(s, v);
@@ -104,13 +107,12 @@ Lit shade(Surface s, vec3 v, LightRange range) {
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) lit.behind = albedo.transmitted * transmitted_radiance(s, v);
     if (LIGHT_COUNT != 0u) {
         [[unroll]] for (uint i = 0u; i < LIGHT_COUNT; ++i) {
-            if (i < range.first || i >= range.end) continue;
-            add_light(lit, s, v, albedo, i, i < uint(MAX_LIGHT_VIEWS) ? visible[i] : 1.0, range.for_terms);
+            if (is_in(range, i)) add_light(lit, s, v, albedo, i, visibility[i], range.for_terms);
         }
     } else {
         // With a limit that the compiler can see, the loop needs no budget of rounds.
         for (uint i = range.first; i < min(range.end, uint(MAX_LIGHTS)); ++i) {
-            add_light(lit, s, v, albedo, i, visibility_of(i, s, range.for_terms), range.for_terms);
+            add_light(lit, s, v, albedo, i, light_visibility(i, s, range.for_terms), range.for_terms);
         }
     }
     if (LIGHT_PASSES && (FEATURES & FEATURE_VOLUME) != 0u) {

@@ -304,8 +304,10 @@ impl Screen {
 
         viewer.answer();
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
-        let again = self.stale || moving || reported || measures || redraw == Redraw::Always;
-        if std::mem::take(&mut self.redraws) | self.awaits_loops() || again || self.has_more(viewer, frame.as_ref()) {
+        // Both change with every frame.
+        let (redraws, awaits_loops) = (std::mem::take(&mut self.redraws), self.awaits_loops());
+        let changes = self.stale || moving || reported || measures || redraw == Redraw::Always;
+        if redraws || awaits_loops || changes || self.has_more(viewer, frame.as_ref()) {
             return Ok(Some(Duration::ZERO));
         }
         let delay = delay.filter(|delay| *delay < NEVER);

@@ -6,12 +6,14 @@ use std::path::Path;
 use glam::{Quat, Vec3};
 
 use super::{Animation, CaptureError, Renderer, Tell, image_of, tell};
+use crate::frame::{Display, Limits};
 use crate::message::did_you_mean;
 use crate::scene::{Model, frame};
 use crate::settings::{CameraSettings, Settings, ViewRange};
 
-/// The pictures at equal angles whose values tell the range of all frames.
-const LOOKS: u32 = 8;
+/// Pictures at equal angles that are drawn first to find one range for all frames, if a mode's range follows its values. Otherwise the
+/// brightness of the same value would change from frame to frame. Values that appear only between these angles may be clipped.
+const RANGE_SAMPLES: u32 = 8;
 
 /// Object that a turntable rotates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -94,14 +96,24 @@ impl Turntable {
             Turn::Camera | Turn::Model => steady(&settings.camera, &model, aspect),
         };
         let mut begin = Settings { camera, ..settings.clone() };
-        tell(progress, 0, self.frames as usize)?;
-        begin.view.range = self.range(renderer, &begin)?;
+        let samples = if is_measured(renderer, &begin) { self.frames.min(RANGE_SAMPLES) } else { 0 };
+        let all = (samples + self.frames) as usize;
+        let mut range = None;
+        for sample in 0..samples {
+            tell(progress, sample as usize, all)?;
+            *renderer.settings() = self.turned(&begin, sample as f32 / samples as f32);
+            renderer.capture(self.size)?;
+            range = union(range, renderer.measured_limits());
+        }
+        if let Some((low, high)) = range {
+            begin.view.range = ViewRange::Fixed(low, high);
+        }
         for index in 0..self.frames {
-            tell(progress, index as usize, self.frames as usize)?;
+            tell(progress, (samples + index) as usize, all)?;
             *renderer.settings() = self.turned(&begin, index as f32 / self.frames as f32);
             animation.add(image_of(renderer.capture(self.size)?)?)?;
         }
-        tell(progress, self.frames as usize, self.frames as usize)?;
+        tell(progress, all, all)?;
         animation.finish()
     }
 
@@ -116,21 +128,20 @@ impl Turntable {
         }
         settings
     }
+}
 
-    /// A range for all frames, if it would follow the values of each: with one of its own, each frame would have another brightness.
-    fn range(&self, renderer: &mut dyn Renderer, begin: &Settings) -> Result<ViewRange, CaptureError> {
-        let looks = self.frames.min(LOOKS);
-        let mut range = begin.view.range;
-        for look in 0..looks {
-            *renderer.settings() = self.turned(begin, look as f32 / looks as f32);
-            renderer.capture(self.size)?;
-            let Some((low, high)) = renderer.measured_limits() else { break };
-            range = match range {
-                ViewRange::Fixed(lowest, highest) => ViewRange::Fixed(lowest.min(low), highest.max(high)),
-                _ => ViewRange::Fixed(low, high),
-            };
-        }
-        Ok(range)
+/// Whether the range of each picture would follow its own values.
+fn is_measured(renderer: &dyn Renderer, settings: &Settings) -> bool {
+    let shaders = renderer.shaders();
+    let mode = shaders.modes.iter().find(|mode| mode.slug == settings.mode);
+    Display::new(&settings.view, mode).is_measured()
+}
+
+/// The range that holds both.
+fn union(a: Option<Limits>, b: Option<Limits>) -> Option<Limits> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
+        (one, other) => one.or(other),
     }
 }
 

@@ -24,7 +24,7 @@ pub struct Progress {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The work that goes on.
+/// State shared with the thread that prints.
 struct State {
     is_terminal: bool,
     start: Instant,

@@ -65,7 +65,7 @@ impl Display {
         matches!(self.range, Range::Measured { .. })
     }
 
-    /// The limits of values that are stored as they are, if the range follows the picture's values.
+    /// The limits that values within 0..1 (directions: -1..1) are shown with, if the range follows the picture's values.
     pub(crate) fn unit_limits(&self) -> Option<Limits> {
         match self.range {
             Range::Measured { is_signed, .. } => Some((if is_signed { -1.0 } else { 0.0 }, 1.0)),

@@ -1,4 +1,4 @@
-//! Files that are dropped open, and the last session does.
+//! Opens dropped files, and restores the last session.
 
 use serde_json::Value;
 

@@ -10,24 +10,22 @@
 //@ui "Ambient occlusion" doc="Corners and gaps get less light from the environment (GTAO, Jimenez et al. 2016)"
 layout(constant_id = USER_CONSTANTS + 11) const bool AMBIENT_OCCLUSION = false;
 
-// occlusion_texel of the hidden part, 0 open .. 1 hidden. 0 where the pass is off.
+// pack_occlusion() of the hidden part, 0 open .. 1 hidden. 0 where there is nothing or the pass is off.
 uniform sampler2D occlusion;
 
-// Open part of the hemisphere over a fragment, 0..1: the four nearest texels at about its distance.
-float screen_visibility() {
+// Open part of the hemisphere over the pixel's surface, 0..1: of the four nearest texels, those at about its distance count.
+// `distance_m`: along the camera's axis.
+float screen_visibility(float distance_m) {
     if (!AMBIENT_OCCLUSION) return 1.0;
-    // gl_FragCoord.w is 1 / distance.
-    float per_distance = gl_FragCoord.w * frame.scene_radius;
     vec2 size = ceil(0.5 * frame.viewport_px);
     vec2 texel = picture_px() / frame.viewport_px * size - 0.5;
     vec2 part = fract(texel);
-    vec2 corner = (floor(texel) + 1.0) / size;
-    vec4 hidden = textureGather(occlusion, corner);
-    vec4 apart = abs(occlusion_distances(hidden) * per_distance - 1.0);
+    vec4 texels = textureGather(occlusion, (floor(texel) + 1.0) / size);
+    vec4 error = abs(unpack_radii(texels) * (frame.scene_radius / distance_m) - 1.0);
     // A gather holds (0, 1), (1, 1), (1, 0), (0, 0). 1e-4: if no texel is of this surface, all count.
     vec4 weight = vec4((1.0 - part.x) * part.y, part.x * part.y, part.x * (1.0 - part.y), (1.0 - part.x) * (1.0 - part.y));
-    weight *= max(1.0 - 50.0 * apart, 1e-4);
-    return 1.0 - dot(hidden, weight) / dot(weight, vec4(1.0));
+    weight *= max(1.0 - 50.0 * error, 1e-4);
+    return saturate(1.0 - dot(texels, weight) / dot(weight, vec4(1.0)));
 }
 
 // Visibility for light that is reflected between the surfaces too, for albedo `a` (Jimenez et al. 2016, eq. 10, a fit).

@@ -6,8 +6,8 @@
 uniform sampler2D bloom_wide;
 
 void main() {
-    int last = last_level();
-    vec3 sum = float(max(last - 2, 0)) * textureLod(bloom_wide, uv, 0.0).rgb;
-    for (int level = 1; level <= min(last, 2); ++level) sum += under_tent(uv, level);
-    color = vec4(sum / float(last), 1.0);
+    int coarsest = coarsest_level();
+    vec3 sum = float(max(coarsest - 2, 0)) * textureLod(bloom_wide, uv, 0.0).rgb;
+    for (int level = 1; level <= min(coarsest, 2); ++level) sum += tent_filtered(uv, level);
+    color = vec4(sum / float(coarsest), 1.0);
 }

@@ -1,13 +1,11 @@
-//@pass bloom_wide "Bloom: wide blur" size=1/32 when=BLOOM doc="Mean of the blurs that need no more texels than this"
+//@pass bloom_wide "Bloom: wide blur" size=1/32 when=BLOOM doc="Mean of the blurs of mip level 3 and above"
 #version 460
 #include "pass.glsl"
 #include "passes/bloom/levels.glsl"
 
-// The third and all further levels of the light.
-
 void main() {
-    int last = last_level();
+    int coarsest = coarsest_level();
     vec3 sum = vec3(0.0);
-    for (int level = 3; level <= min(last, 12); ++level) sum += under_tent(uv, level);
-    color = vec4(sum / float(max(last - 2, 1)), 1.0);
+    for (int level = 3; level <= min(coarsest, 12); ++level) sum += tent_filtered(uv, level);
+    color = vec4(sum / float(max(coarsest - 2, 1)), 1.0);
 }

@@ -5,7 +5,7 @@
 
 uniform sampler2D dof_far_raw;
 
-// A tent of 3 x 3 texels, which hides the samples' noise: see passes/bloom/bloom_blur.frag.
+// A tent of 3 x 3 texels, which hides the samples' noise: see passes/bloom/levels.glsl.
 vec4 smoothed() {
     vec2 offset = 0.5 / vec2(textureSize(dof_far_raw, 0));
     vec4 sum = texture(dof_far_raw, uv - offset) + texture(dof_far_raw, uv + offset);

@@ -7,7 +7,7 @@
 // Ambient occlusion from the horizons around a pixel (Jimenez, Wu, Pesce & Jarabo 2016, "Practical Real-Time Strategies for
 // Accurate Indirect Occlusion"). Limits: it knows only what the camera sees, and takes everything for as thick as it looks.
 //
-// occlusion_texel of the hidden part of the cosine-weighted hemisphere, 0 open .. 1 hidden in the mean over the directions; 0 where
+// pack_occlusion() of the hidden part of the cosine-weighted hemisphere, 0 open .. 1 hidden in the mean over the directions; 0 where
 // there is nothing.
 
 uniform sampler2D geometry;
@@ -48,15 +48,16 @@ vec3 along(vec2 half_size, vec3 position, vec2 step, float before, float after) 
 vec3 normal_at(vec2 half_size, vec3 position, vec4 before, vec4 after) {
     // Beyond the border there is nothing.
     vec2 pixel = floor(gl_FragCoord.xy);
-    vec2 is_before = vec2(greaterThan(pixel, vec2(0.0)));
-    vec2 is_after = vec2(lessThan(pixel + 1.0, pass.size_px));
-    vec3 x = along(half_size, position, vec2(1.0 / pass.size_px.x, 0.0), before.x * is_before.x, after.z * is_after.x);
-    vec3 y = along(half_size, position, vec2(0.0, 1.0 / pass.size_px.y), before.z * is_before.y, after.x * is_after.y);
+    vec2 has_before = vec2(greaterThan(pixel, vec2(0.0)));
+    vec2 has_after = vec2(lessThan(pixel + 1.0, pass.size_px));
+    vec3 x = along(half_size, position, vec2(1.0 / pass.size_px.x, 0.0), before.x * has_before.x, after.z * has_after.x);
+    vec3 y = along(half_size, position, vec2(0.0, 1.0 / pass.size_px.y), before.z * has_before.y, after.x * has_after.y);
     return safe_normalize(cross(y, x), safe_normalize(-position, vec3(0.0, 0.0, 1.0)));
 }
 
-// Cosine of the angle between `v` and what the picture shows at `at`. Beyond the radius nothing hides; between, it fades. -1: nothing.
-float horizon_at(vec2 at, vec2 half_size, vec3 position, vec3 v, float radius_m) {
+// Cosine of the angle between `v` and the surface that the picture shows at `at`. From half the radius to the radius it fades to -1: beyond,
+// nothing hides.
+float horizon_cosine(vec2 at, vec2 half_size, vec3 position, vec3 v, float radius_m) {
     vec2 place = clamp(at, 0.0, 1.0) * (pass.size_px - 1.0) + 0.5;
     float distance_m = texelFetch(geometry, ivec2(place), 0).r;
     vec3 to = point_at(half_size, at, distance_m) - position;
@@ -105,8 +106,8 @@ void main() {
             float part = (float(i) + shift) / float(STEPS);
             // Not nearer than the neighboring pixel.
             vec2 offset = direction * scale * part * part + direction / pass.size_px;
-            float first = horizon_at(uv - offset, half_size, position, v, radius_m);
-            horizons = max(horizons, vec2(first, horizon_at(uv + offset, half_size, position, v, radius_m)));
+            float first = horizon_cosine(uv - offset, half_size, position, v, radius_m);
+            horizons = max(horizons, vec2(first, horizon_cosine(uv + offset, half_size, position, v, radius_m)));
         }
         horizons = min(horizons, 1.0);
         // Integral of max(cos(angle - gamma), 0) |sin(angle)| between the horizons h (eq. 7 there): for each,
@@ -118,5 +119,5 @@ void main() {
         open += weight * 0.25 * (cos_gamma * (2.0 - cos_2h.x - cos_2h.y) + across);
     }
     // One direction alone may be above 1; the mean over all directions of an open point is 1.
-    color.r = occlusion_texel(1.0 - open / float(SLICES), here_m);
+    color.r = pack_occlusion(1.0 - open / float(SLICES), here_m / frame.scene_radius);
 }

@@ -67,16 +67,20 @@ pub(super) fn show(
     }
     let camera = &frame(&model.bounds, &model.outline, camera, picture.aspect_ratio());
     let painter = egui.layer_painter(LayerId::new(Order::Background, Id::new("labels"))).with_clip_rect(picture);
-    let mut shown = Vec::new();
+    let mut shown: Vec<Rect> = Vec::new();
     for (name, bounds) in nearest_first(&labels.objects, camera.eye) {
         let corners = bounds.corners().map(|corner| project(camera, corner, picture));
         let Some(corners) = corners.into_iter().collect::<Option<Vec<Pos2>>>() else { continue };
         let around = Rect::from_points(&corners);
         let (center, low) = (bounds.center(), bounds.min.y);
         let Some(foot) = project(camera, glam::Vec3::new(center.x, low, center.z), picture) else { continue };
+        // A name on a much smaller object would hide it.
+        if around.width() < 30.0 {
+            continue;
+        }
         let label = Label::new(&painter, name, foot, around.width());
-        if shown.iter().all(|other: &Rect| !other.intersects(label.room)) {
-            shown.push(label.room);
+        if is_free(label.rect, &shown) {
+            shown.push(label.rect);
             label.show(&painter);
         }
     }
@@ -98,23 +102,28 @@ fn nearest_first(objects: &[(String, Bounds)], eye: glam::Vec3) -> Vec<&(String,
     sorted
 }
 
+/// Whether a label may lie here.
+fn is_free(rect: Rect, shown: &[Rect]) -> bool {
+    shown.iter().all(|other| !other.intersects(rect))
+}
+
 /// A name at the foot of an object, a line for each part of it.
 struct Label {
     text: Arc<Galley>,
-    room: Rect,
+    rect: Rect,
 }
 
 impl Label {
     fn new(painter: &Painter, name: &str, foot: Pos2, width: f32) -> Self {
         let text = name.replace(", ", "\n");
         let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), width.max(48.0));
-        let room = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
-        Self { text, room }
+        let rect = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
+        Self { text, rect }
     }
 
     fn show(self, painter: &Painter) {
-        painter.rect_filled(self.room, 3.0, CARD.color().gamma_multiply(0.72));
-        painter.galley(self.room.min + vec2(4.0, 1.0), self.text, TEXT.color());
+        painter.rect_filled(self.rect, 3.0, CARD.color().gamma_multiply(0.72));
+        painter.galley(self.rect.min + vec2(4.0, 1.0), self.text, TEXT.color());
     }
 }
 
@@ -142,5 +151,19 @@ mod tests {
         assert!(places.iter().all(|place| picture.contains(*place)));
         // The first row runs from left to right, above the second.
         assert!(places[0].x < places[1].x && places[0].y < places[4].y);
+    }
+
+    #[test]
+    fn the_nearest_names_come_first_and_never_overlap() {
+        let objects = [4.0, 1.0, 9.0].map(|z| {
+            let mut bounds = Bounds::default();
+            bounds.include(glam::Vec3::new(0.0, 0.0, z));
+            (z.to_string(), bounds)
+        });
+        let order: Vec<&str> =
+            nearest_first(&objects, glam::Vec3::ZERO).into_iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(order, ["1", "4", "9"]);
+        let at = |x: f32| Rect::from_min_size(pos2(x, 0.0), vec2(50.0, 20.0));
+        assert!(is_free(at(60.0), &[at(0.0)]) && !is_free(at(40.0), &[at(0.0)]));
     }
 }

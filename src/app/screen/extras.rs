@@ -9,8 +9,8 @@ use crate::gpu::{Encoder, GpuError, Image};
 use crate::render::BoundFrame;
 
 impl Screen {
-    /// Draws them for frame slot `slot` to the window's image, `pixels_per_point`. Returns when thumbnails and values want their next
-    /// frames. Memory that is short for one of them costs that one alone.
+    /// Records them for frame slot `slot`, into the window's image. Returns when thumbnails and values of pixels want the next frame.
+    /// An out-of-memory error in the outline, the texture, the grid or a thumbnail drops that part; any other error ends the frame.
     pub(super) fn draw_extras(
         &mut self,
         (encoder, slot): (&mut Encoder, usize),

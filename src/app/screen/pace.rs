@@ -9,8 +9,8 @@ use crate::gpu::GpuError;
 use crate::render::{BoundFrame, View};
 
 impl Screen {
-    /// Whether another frame must follow at once, because the last one shows less than there is or something on the device is on its
-    /// way.
+    /// Whether another frame must follow at once: a picture improves or moves, a result is on its way from the device, a command waits
+    /// for its answer, or the clock runs.
     pub(super) fn has_more(&self, viewer: &Viewer, frame: Option<&BoundFrame>) -> bool {
         let moving = self.reference.as_ref().filter(|reference| !reference.is_still());
         let reference = moving.map(|reference| (&reference.view, &reference.frame));

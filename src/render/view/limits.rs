@@ -54,10 +54,12 @@ impl View {
         self.displayed.and_then(|(_, limits)| limits)
     }
 
-    /// The limits of the values that the last frame showed, if they follow the values.
+    /// The limits of the values in the last frame, if its range follows them. `None` too if the frame has no values.
     pub fn measured_limits(&self) -> Option<Limits> {
         let (display, limits) = self.displayed?;
-        Some(limits.unwrap_or(display.unit_limits()?))
+        let unit = display.unit_limits()?;
+        let has_values = self.measured.is_some_and(|(_, values)| values.is_some());
+        has_values.then(|| limits.unwrap_or(unit))
     }
 
     /// Forgets the limits of earlier pictures, so that the next one depends on its own values alone.

@@ -67,6 +67,7 @@ void main() {
     vec4 far = frame.world_from_clip * vec4(2.0 * uv - 1.0, 0.0, 1.0);
     vec3 direction = normalize(far.xyz - far.w * frame.eye_ws);
     Surface s = surface_at(pixel, direction);
+    s.occlusion *= screen_visibility(-(frame.view_from_world * vec4(s.position_ws, 1.0)).z);
     Albedo albedo = directional_albedo(s, -direction);
     vec3 radiance = s.emissive + with_sum(environment_light(s, -direction, albedo)).all;
     for (uint i = 0u; i < min(frame.light_count, uint(MAX_LIGHTS)); ++i) radiance += radiance_by_light(i, s, -direction, albedo);

@@ -10,7 +10,7 @@ layout(set = SET_FRAME, binding = BINDING_PARAMS, scalar) uniform Params {
     float rim_power;           //@ui "Rim power" 1..8 group="Material" doc="How narrow the rim is" = 3.0
     vec3 rim_color;            //@ui "Rim color" color group="Material" = 1 0.8 0.6
     float bloom_strength;      //@ui "Bloom strength" 0..1 when=BLOOM = 0.12
-    int bloom_levels;          //@ui "Bloom width" 2..8 when=BLOOM = 5
+    int bloom_levels;          //@ui "Bloom width" 2..8 when=BLOOM doc="Mip levels that are blurred: each doubles the reach" = 5
     float shadow_softness;     //@ui "Shadow softness" 0..0.5 when=SHADOWS = 0.1
     float rock_height;         //@ui "Height of the rock" 0..0.2 = 0.04
     float rock_scale;          //@ui "Bumps across the model's radius" 1..20 = 4.0
