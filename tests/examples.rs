@@ -9,8 +9,13 @@ use support::process::run;
 use support::{SIZE, assert_differ, assert_same, assert_validated, compiler, gpu, lines, model, settings};
 
 fn draw(example: Option<Example>, frames: u32) -> specula::render::Capture {
+    draw_with(&[], example, frames)
+}
+
+fn draw_with(more: &[&str], example: Option<Example>, frames: u32) -> specula::render::Capture {
     let ball = model("shader-ball");
-    let opened = Headless::new(gpu(), compiler(), Source::Embedded(example), ball, settings(&["view.msaa=1"]), SIZE);
+    let settings = settings(&[&["view.msaa=1"], more].concat());
+    let opened = Headless::new(gpu(), compiler(), Source::Embedded(example), ball, settings, SIZE);
     let Ok((mut headless, _)) = opened else { panic!("an example does not open") };
     headless.set_sequence(Sequence { frames, start_s: 1.0, fps: 10.0, ..Sequence::default() });
     support::render(&mut headless, "final")
@@ -65,6 +70,25 @@ fn assert_refused(example: Option<Example>) {
             println!("the picture of the example `meshlets` is skipped: the device lacks VK_EXT_mesh_shader");
         }
         other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_deferred_renderer_lights_as_the_model_pass_does() {
+    // The gold in the middle, under a rim that hides a part of the sky.
+    let radiance = |example: Option<Example>, more: &[&str]| {
+        let capture = draw_with(more, example, 1);
+        let (x, y) = (SIZE.0 / 2, SIZE.1 / 2);
+        let pixels = (y - 8..y + 8).flat_map(|y| (x - 8..x + 8).map(move |x| (x, y)));
+        pixels.map(|(x, y)| capture.raw_at(x, y).unwrap()[1]).sum::<f32>()
+    };
+    let deferred = Example::named("deferred");
+    let mut before = f32::INFINITY;
+    for more in [&["lights.source=none"][..], &["lights.source=none", "AMBIENT_OCCLUSION=true"]] {
+        let (expected, found) = (radiance(None, more), radiance(deferred, more));
+        assert!((found / expected - 1.0).abs() < 0.02, "{more:?}: {found}, not {expected}");
+        assert!(expected < 0.98 * before, "{more:?} changes nothing");
+        before = expected;
     }
 }
 
