@@ -34,6 +34,8 @@ pub(super) struct Inspector {
     pub(super) is_visible: bool,
     /// The pixel that the user has clicked.
     pub(super) pin: Option<[u32; 2]>,
+    /// Whether a message has said that the panel reads pixels.
+    pub(super) was_mentioned: bool,
     /// Whether the pixel under the mouse is shown while none is pinned.
     pub(super) follows: bool,
     pub(super) page: Page,

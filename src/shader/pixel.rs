@@ -125,7 +125,8 @@ impl PixelValue {
     fn words(&self, mode: &Mode) -> Option<String> {
         let number = self.value[0];
         let (text, width) = match &*mode.unit {
-            "EV" => (format!("{number:+.1} EV"), 8),
+            // Adding 0 takes the sign of -0 away.
+            "EV" => (format!("{:+.1} EV", (number * 10.0).round() / 10.0 + 0.0), 8),
             "level" if (number - number.round()).abs() < 0.05 => (format!("level {:.0}", number.abs()), 10),
             "level" => (format!("level {number:.1}"), 10),
             "layers" if number.round() == 1.0 => ("1 layer".to_owned(), 12),
@@ -234,7 +235,7 @@ mod tests {
         let of = |unit: &str, number: f32| {
             PixelValue { value: [number; 4], ..PixelValue::default() }.text(&mode(1, unit, false))
         };
-        assert_eq!(of("EV", -2.12).trim(), "-2.1 EV");
+        assert_eq!([of("EV", -2.12).trim(), of("EV", -0.01).trim()], ["-2.1 EV", "+0.0 EV"]);
         assert_eq!(of("level", 0.01).trim(), "level 0");
         assert_eq!(of("level", 1.34).trim(), "level 1.3");
         assert_eq!(of("log2 texels/m", 10.0).trim(), "1,024 texels/m");

@@ -1,4 +1,4 @@
-//@pass dof_reach "Depth of field: reach" size=1/16 format=r32f doc="Largest blur in front of the focus that may reach a tile of 16 x 16 pixels, pixels"
+//@pass dof_reach "Depth of field: reach" size=1/16 format=r32f doc="Radius in pixels of the largest blur in front of the focus that reaches each tile of 16 x 16 pixels"
 #version 460
 #include "pass.glsl"
 #include "lens.glsl"

@@ -97,6 +97,8 @@ pub(super) struct Layout {
     free: Rect,
     /// Whether the light theme is shown.
     is_light: bool,
+    /// Whether this arrangement belongs to what is open, and the next window does not get it.
+    is_passing: bool,
 }
 
 impl Default for Layout {
@@ -118,7 +120,8 @@ impl Layout {
 
     fn of_tree(tree: Tree<Panel>) -> Self {
         let (fit, free) = (Fit::default(), Rect::ZERO);
-        Self { tree, fit, own: None, is_own: false, is_changed: false, is_settled: false, free, is_light: false }
+        let (is_own, is_changed, is_settled, is_light, is_passing) = (false, false, false, false, false);
+        Self { tree, fit, own: None, is_own, is_changed, is_settled, free, is_light, is_passing }
     }
 
     /// Shows a preset. The user's own arrangement is kept for [`Self::arrange_own`].
@@ -128,6 +131,12 @@ impl Layout {
         }
         let own = self.own.take();
         *self = Self { own, is_changed: true, is_light: self.is_light, ..Self::of_tree(preset.tree()) };
+    }
+
+    /// Shows a preset until the user chooses another arrangement. The next window is arranged as before.
+    pub(super) fn arrange_here(&mut self, preset: Preset) {
+        self.arrange(preset);
+        self.is_passing = true;
     }
 
     /// Whether there is an arrangement of the user's to go back to.
@@ -267,6 +276,9 @@ impl Layout {
         } else if std::mem::replace(&mut self.is_settled, true) {
             (self.is_changed, self.is_settled) = (false, false);
             self.fit.remember(&self.tree);
+            if self.is_passing {
+                return;
+            }
             let (tree, own) = (self.fit.measured(&self.tree), self.own.clone());
             store::save(&store::Stored { tree, is_own: self.is_own, own, is_light: self.is_light });
         } else {

@@ -21,10 +21,44 @@ const SMALLEST: f32 = 0.3;
 /// Points of a drag that double the distance.
 const DOUBLE: f32 = 120.0;
 
-/// State of the light handles: the drag in progress.
+/// State of the light handles: the drag in progress, and where earlier drags have left handles.
 #[derive(Default)]
 pub(super) struct Gizmo {
     drag: Option<Drag>,
+    /// Handles that stay where they were dropped, as long as the camera and the light's distance are the same.
+    kept: Vec<Kept>,
+    view: Option<CameraView>,
+}
+
+impl Gizmo {
+    /// Forgets where handles were dropped, if the camera has moved since.
+    fn follow(&mut self, view: &CameraView) {
+        if self.view.replace(*view) != Some(*view) {
+            self.kept.clear();
+        }
+    }
+
+    /// The radius at which a handle was dropped.
+    fn kept_radius(&self, light: LightId, distance: f32) -> Option<f32> {
+        let found = self.kept.iter().find(|kept| kept.light == light && kept.distance == distance)?;
+        Some(found.radius)
+    }
+
+    /// Keeps a handle at a radius.
+    fn keep(&mut self, light: LightId, distance: f32, radius: f32) {
+        self.kept.retain(|kept| kept.light != light);
+        self.kept.push(Kept { light, distance, radius });
+    }
+}
+
+/// A handle that was dropped. At a light outside of the picture, a handle comes nearer to the center than the light, so a drag that turns
+/// the light would otherwise let its handle jump when it ends.
+struct Kept {
+    light: LightId,
+    /// Distance of the light then, in radii of the model.
+    distance: f32,
+    /// Radius of the sphere that the handle is on, meters.
+    radius: f32,
 }
 
 struct Drag {
@@ -76,11 +110,14 @@ impl Frame {
         (clip.w > 0.0).then(|| self.rect.min + vec2(x, y) * self.rect.size())
     }
 
+    /// Whether the picture has room for a handle at a point.
+    fn shows(&self, point: Vec3) -> bool {
+        self.project(point).is_some_and(|at| self.rect.shrink(MARGIN).contains(at))
+    }
+
     /// The distance of a light's handle from the model's center: that of the light, `own`, or the largest one that the picture shows.
     fn visible_radius(&self, direction: Vec3, own: f32) -> f32 {
-        let inside = self.rect.shrink(MARGIN);
-        let point = |radius: f32| self.bounds.center() + direction * radius;
-        let is_seen = |radius: f32| self.project(point(radius)).is_some_and(|at| inside.contains(at));
+        let is_seen = |radius: f32| self.shows(self.bounds.center() + direction * radius);
         let (mut seen, mut hidden) = (SMALLEST * self.bounds.radius(), own);
         if is_seen(own) || seen > own {
             return own;
@@ -127,6 +164,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, rect: Rect) {
         }
         return;
     }
+    viewer.panels.gizmo.follow(&frame.view);
     let lights = &mut viewer.session.settings.lights;
     let mut shown = Vec::new();
     if lights.source == LightSource::Orbit {
@@ -161,7 +199,9 @@ fn handle(
     let direction = light_direction(*place.azimuth, *place.polar);
     let drag = gizmo.drag.take_if(|drag| drag.light == light);
     let own = model_radius * *place.distance;
-    let radius = drag.as_ref().map_or_else(|| frame.visible_radius(direction, own), |drag| drag.radius);
+    let kept = gizmo.kept_radius(light, *place.distance).filter(|radius| frame.shows(center + direction * *radius));
+    let at_rest = || kept.unwrap_or_else(|| frame.visible_radius(direction, own));
+    let radius = drag.as_ref().map_or_else(at_rest, |drag| drag.radius);
     let (Some(at), Some(middle)) = (frame.project(center + direction * radius), frame.project(center)) else {
         return false;
     };
@@ -195,10 +235,14 @@ fn handle(
             *place.azimuth = direction.x.atan2(direction.z).to_degrees();
             *place.polar = direction.y.clamp(-1.0, 1.0).acos().to_degrees();
         }
+        gizmo.keep(light, *place.distance, drag.radius);
         gizmo.drag = Some(drag);
         let text = format!("{:.0}° {:.0}°  {:.2} R", *place.azimuth, *place.polar, *place.distance);
         let label = painter.layout_no_wrap(text, FontId::monospace(11.0), Color32::WHITE);
-        let back = Rect::from_min_size(at + vec2(14.0, -8.0), label.size() + vec2(8.0, 4.0));
+        let size = label.size() + vec2(8.0, 4.0);
+        // On the side that has room.
+        let left = if at.x + 14.0 + size.x <= frame.rect.max.x { at.x + 14.0 } else { at.x - 14.0 - size.x };
+        let back = Rect::from_min_size(pos2(left, at.y - 8.0), size);
         painter.rect_filled(back, 3.0, Color32::from_black_alpha(200));
         painter.galley(back.min + vec2(4.0, 2.0), label, Color32::WHITE);
         // The next frame shows the light where it is now.

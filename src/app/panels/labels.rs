@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use egui::{Align2, FontId, Galley, Id, LayerId, Order, Painter, Pos2, Rect, pos2, vec2};
+use egui::{Align2, FontId, Galley, Id, LayerId, Order, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
 use super::theme::{CARD, TEXT};
 use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
@@ -78,7 +78,7 @@ pub(super) fn show(
         if around.width() < 30.0 {
             continue;
         }
-        let label = Label::new(&painter, name, foot, around.width());
+        let label = Label::new(&painter, name, foot, around.width(), picture);
         if is_free(label.rect, &shown) {
             shown.push(label.rect);
             label.show(&painter);
@@ -114,10 +114,14 @@ struct Label {
 }
 
 impl Label {
-    fn new(painter: &Painter, name: &str, foot: Pos2, width: f32) -> Self {
+    fn new(painter: &Painter, name: &str, foot: Pos2, width: f32, picture: Rect) -> Self {
         let text = name.replace(", ", "\n");
         let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), width.max(48.0));
         let rect = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
+        // At the edge of the picture it moves inwards.
+        let inside = picture.shrink(2.0);
+        let low = (inside.min - rect.min).max(Vec2::ZERO);
+        let rect = rect.translate(low + (inside.max - rect.max).min(Vec2::ZERO));
         Self { text, rect }
     }
 

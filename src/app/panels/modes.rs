@@ -34,7 +34,8 @@ pub(super) fn show(
     }
     let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let is_found = |mode: &Mode| words.iter().all(|word| text_of(mode).contains(word));
-    let found: Vec<(usize, &Mode)> = shaders.modes.iter().enumerate().filter(|(_, mode)| is_found(mode)).collect();
+    let found = shaders.modes.iter().enumerate().filter(|(_, mode)| is_found(mode)).collect();
+    let found = best_first(found, &search.trim().to_lowercase());
     if found.is_empty() {
         ui.label(RichText::new(format!("No mode matches \"{}\".", search.trim())).small().color(QUIET));
     }
@@ -155,6 +156,30 @@ fn row(ui: &mut Ui, index: usize, mode: &Mode, is_current: bool) -> egui::Respon
 fn keys(index: usize, mode: &Mode) -> Vec<char> {
     let digit = (index < 10).then(|| char::from_digit((index as u32 + 1) % 10, 10)).flatten();
     mode.key.into_iter().chain(digit).collect()
+}
+
+/// Sorts found modes by how well their names match the search: those with this name first, with their group.
+fn best_first<'a>(mut found: Vec<(usize, &'a Mode)>, search: &str) -> Vec<(usize, &'a Mode)> {
+    if search.is_empty() {
+        return found;
+    }
+    let rank = |mode: &Mode| match mode.name.to_lowercase() {
+        name if name == search || mode.slug == search => 0,
+        name if name.starts_with(search) => 1,
+        name if name.contains(search) => 2,
+        _ => 3,
+    };
+    // Groups stay whole.
+    let mut groups: Vec<(&str, usize)> = Vec::new();
+    for (_, mode) in &found {
+        match groups.iter_mut().find(|(group, _)| *group == mode.group) {
+            Some((_, best)) => *best = rank(mode).min(*best),
+            None => groups.push((&mode.group, rank(mode))),
+        }
+    }
+    groups.sort_by_key(|(_, best)| *best);
+    found.sort_by_key(|(_, mode)| (groups.iter().position(|(group, _)| *group == mode.group), rank(mode)));
+    found
 }
 
 /// Returns the lowercase text that the search matches against.

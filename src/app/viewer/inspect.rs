@@ -23,6 +23,9 @@ impl Viewer {
         // The panel reads the pixel once it is open.
         if !inspector.is_visible {
             inspector.pin = Some(at);
+            if !std::mem::replace(&mut inspector.was_mentioned, true) {
+                self.say("The panel Inspector reads the values of the pixel that you click");
+            }
             return;
         }
         let is_near = |pin: [u32; 2]| pin[0].abs_diff(at[0]) <= MARKER && pin[1].abs_diff(at[1]) <= MARKER;

@@ -30,7 +30,7 @@ use notifier::Notifier;
 use state::{State, Touched};
 
 /// A save of one file that is there and closed is complete; this long covers an editor's own backup file beside it.
-const SETTLE_SAVE: Duration = Duration::from_millis(3);
+const SETTLE_SAVE: Duration = Duration::from_millis(2);
 /// A batch with more files (a checkout), or with a file that is gone (an editor that deletes and creates), is delivered when
 /// nothing happened for this long.
 const SETTLE: Duration = Duration::from_millis(30);

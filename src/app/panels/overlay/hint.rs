@@ -15,8 +15,8 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
     if !viewer.panels.hint.is_shown() || picture.width() < 300.0 || picture.height() < 200.0 {
         return;
     }
-    // Which tree it is is known with the first shaders.
-    if viewer.shader.tree.is_empty() {
+    // Which tree it is is known with the first shaders. A single file is the user's own already.
+    if viewer.shader.tree.is_empty() || viewer.shader.location.as_ref().is_some_and(|path| path.is_file()) {
         return;
     }
     let tree = viewer.shader.location.clone();

@@ -107,13 +107,25 @@ pub(in crate::app) fn show(
     if let Some(value) = legend.value {
         let (mono, color) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
         let galley = wrapped(ui, value, mono.clone(), color, width);
-        // The position of the pixel goes to the next line as a whole.
+        // The position of the pixel goes to the next line as a whole, and the unit with it if there is no room for both.
         let galley = match galley.rows.len() {
             1 => galley,
+            _ if wraps_numbers(ui, legend, value, width) => {
+                let unit = format!(" {}", legend.of.mode.unit);
+                wrapped(ui, &value.replacen(&unit, &unit.replacen(' ', "\n", 1), 1), mono, color, width)
+            }
             _ => wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, width),
         };
         ui.label(galley);
     }
+}
+
+/// Whether numbers and unit do not fit in one line.
+fn wraps_numbers(ui: &Ui, legend: &Legend<'_>, value: &str, width: f32) -> bool {
+    let (numbers, _) = value.split_once("   at ").unwrap_or((value, ""));
+    let mono = TextStyle::Monospace.resolve(ui.style());
+    let lines = wrapped(ui, numbers.trim_end(), mono, ui.visuals().text_color(), width).rows.len();
+    lines > 1 && !legend.of.mode.unit.is_empty()
 }
 
 /// The name of the mode with its unit.
