@@ -288,6 +288,16 @@ fn errors_have_their_line_and_the_picture_stays() {
     let draws = "imageStore(show, ivec2(0), vec4(1.0)); color = vec4(1.0);";
     let told = lines(failed(&session.save("passes/show.frag", &pass("show", own_image, draws))));
     assert!(told.iter().any(|line| line.contains("only a compute shader can write the image")), "{}", told.join("\n"));
+    let compute = format!(
+        "//@pass cells format=r16f\n#version 460\nlayout(local_size_x = 8) in;\n{}\nvoid main() {{}}\n",
+        own_image.replace("rgba16f", "r16f").replace("show", "cells")
+    );
+    let told = lines(failed(&session.save("passes/cells.comp", &compute)));
+    let needs =
+        |line: &String| line.contains("cells.comp:4:8: error: shader needs the device feature StorageImageExtended");
+    assert!(told.iter().any(needs), "{}", told.join("\n"));
+    std::fs::remove_file(session.tree.path("passes/cells.comp")).unwrap();
+    session.changed(&["passes/cells.comp"]);
     // Bindings follow the names. One that is given may have the place of another.
     let told = (0..4).flat_map(|binding| {
         let given = format!("uniform sampler2D picture; layout(set = 2, binding = {binding}) uniform sampler2D glow;");

@@ -1,7 +1,10 @@
 //! Random graphs of passes.
 
-use crate::support::{assert_same, assert_validated, lines, ready};
+use crate::support::{SIZE, assert_same, assert_validated, lines, ready};
 use crate::{pass, sequence, sphere};
+
+/// Number of graphs.
+const GRAPHS: usize = 300;
 
 /// A small generator of pseudo-random numbers: xorshift32 (Marsaglia 2003, "Xorshift RNGs").
 struct Random(u32);
@@ -107,14 +110,13 @@ fn random_graph(random: &mut Random) -> Vec<(String, String)> {
     files
 }
 
-/// Random graphs with switches and edits between frames: no good graph is refused, and the validation layers stay silent.
+/// Random graphs with switches, edits and other sizes between frames: no good graph is refused, and the validation layers stay silent.
 #[test]
 fn random_graphs_are_drawn_without_a_message() {
-    let graphs = if std::env::var_os("SPECULA_LONG").is_some() { 300 } else { 25 };
     let mut random = Random(0x9e37_79b9);
     let mut session = sphere(&[]);
     let mut drawn = 0;
-    for graph in 0..graphs {
+    for graph in 0..GRAPHS {
         session.set(["view.msaa=1", "view.msaa=4"][random.below(2) as usize]);
         let files = random_graph(&mut random);
         for (file, text) in &files {
@@ -130,6 +132,7 @@ fn random_graphs_are_drawn_without_a_message() {
                 let name = file.trim_start_matches("passes/").split('.').next().unwrap();
                 session.set(&format!("passes.{name}={}", random.below(3) != 0));
             }
+            session.headless.set_size([SIZE, (33, 70), (7, 5), (1, 1)][random.below(4) as usize]).unwrap();
             let first = sequence(&mut session, 3);
             assert_same(&first, &sequence(&mut session, 3), &format!("graph {graph}: {files:#?}"));
             // The same with no image that passes share: those that are kept are each pass's own.
@@ -150,6 +153,6 @@ fn random_graphs_are_drawn_without_a_message() {
         }
         ready(&session.changed(&names));
     }
-    assert_eq!(drawn, 2 * graphs);
+    assert_eq!(drawn, 2 * GRAPHS);
     assert_validated();
 }

@@ -116,7 +116,7 @@ struct Label {
 impl Label {
     fn new(painter: &Painter, name: &str, foot: Pos2, width: f32, picture: Rect) -> Self {
         let text = name.replace(", ", "\n");
-        let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), width.max(48.0));
+        let text = painter.layout(text, FontId::proportional(11.0), TEXT.color(), (0.7 * width).max(48.0));
         let rect = Align2::CENTER_CENTER.anchor_size(foot, text.size() + vec2(8.0, 2.0));
         // At the edge of the picture it moves inwards.
         let inside = picture.shrink(2.0);

@@ -179,7 +179,6 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     viewer.panels.timing.is_visible = false;
     viewer.panels.texture.request = None;
     viewer.panels.gallery.begin_frame();
-    theme::show_hover_texts(ui.ctx(), !viewer.panels.show_keys && !viewer.panels.palette.is_open());
     let picture = if viewer.panels.visible && has_room {
         bars(ui, viewer, commands);
         let mut layout = std::mem::take(&mut viewer.panels.layout);

@@ -105,15 +105,6 @@ pub(in crate::app) fn apply(egui: &egui::Context) {
     choose(egui, false);
 }
 
-/// Lets hover texts come, or keeps those of the panels from covering a list that lies over them.
-pub(in crate::app) fn show_hover_texts(egui: &egui::Context, is_shown: bool) {
-    // Seconds that the mouse rests on a control. Two hours are never.
-    let delay = if is_shown { 0.5 } else { 7200.0 };
-    if egui.global_style().interaction.tooltip_delay != delay {
-        egui.all_styles_mut(|style| style.interaction.tooltip_delay = delay);
-    }
-}
-
 /// Shows the dark or the light theme.
 pub(in crate::app) fn choose(egui: &egui::Context, is_light: bool) {
     IS_LIGHT.set(is_light);

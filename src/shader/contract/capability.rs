@@ -63,7 +63,11 @@ const KNOWN: &[(u32, &str, &[&str])] = &[
     (42, "MinLod", &["textureClampARB"]),
     (45, "SampledCubeArray", &["samplerCubeArray", "samplerCubeArrayShadow", "textureCubeArray"]),
     (48, "ImageMSArray", &["image2DMSArray"]),
-    (49, "StorageImageExtendedFormats", &[]),
+    (
+        49,
+        "StorageImageExtendedFormats",
+        &["rg16f", "rg32f", "r16f", "rg8", "r8", "r11f_g11f_b10f", "rgb10_a2", "rgba16", "rg16", "r16"],
+    ),
     (52, "InterpolationFunction", &["interpolateAtCentroid", "interpolateAtSample", "interpolateAtOffset"]),
     (54, "GeometryStreams", &["EmitStreamVertex", "EndStreamPrimitive", "stream"]),
     (55, "StorageImageReadWithoutFormat", &["imageLoad"]),

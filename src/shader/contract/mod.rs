@@ -153,7 +153,13 @@ fn check_capabilities(capabilities: &[u32], texts: Texts<'_>) -> Vec<Diagnostic>
     let refuse = |capability::Missing { name, glsl }: capability::Missing| {
         let message = format!("shader needs the device feature {name} (SPIR-V capability), Specula does not enable it");
         let error = texts.error_at_any(glsl, message);
-        if glsl.is_empty() { error } else { error.with_note(format!("what needs it in GLSL: {}", glsl.join(", "))) }
+        match glsl {
+            [] => error,
+            _ if name == "StorageImageExtendedFormats" => {
+                error.with_note("a shader can write images of the formats rgba8, rgba16f, rgba32f and r32f".to_owned())
+            }
+            _ => error.with_note(format!("what needs it in GLSL: {}", glsl.join(", "))),
+        }
     };
     capability::missing(capabilities).into_iter().map(refuse).collect()
 }

@@ -107,12 +107,13 @@ pub(in crate::app) fn show(
     if let Some(value) = legend.value {
         let (mono, color) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
         let galley = wrapped(ui, value, mono.clone(), color, width);
-        // The position of the pixel goes to the next line as a whole, and the unit with it if there is no room for both.
+        // The position of the pixel goes to the next line as a whole. So does the unit, if there is no room for it.
         let galley = match galley.rows.len() {
             1 => galley,
             _ if wraps_numbers(ui, legend, value, width) => {
                 let unit = format!(" {}", legend.of.mode.unit);
-                wrapped(ui, &value.replacen(&unit, &unit.replacen(' ', "\n", 1), 1), mono, color, width)
+                let value = value.replacen(&unit, &unit.replacen(' ', "\n", 1), 1);
+                wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, width)
             }
             _ => wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, width),
         };
