@@ -18,6 +18,8 @@ pub(super) struct ShaderStatus {
     pub(super) tree: String,
     /// Folder or file of a tree on disk.
     pub(super) location: Option<PathBuf>,
+    /// Whether the tree is a single file of another playground.
+    pub(super) is_single_file: bool,
     /// Whether a compile is under way.
     pub(super) compiling: bool,
     /// The last finished reload.

@@ -27,6 +27,10 @@ fn an_exercise_is_solved_by_an_edit() {
     assert!(goals(&solved).iter().all(|goal| goal["passed"] == true), "{solved}");
     let progress = std::fs::read_to_string(viewer.tree.beside("state/specula/learn.json")).unwrap();
     assert!(progress.contains("01-roughness") && progress.contains("true"), "{progress}");
+    // The next window is arranged as before the exercise.
+    let layout = viewer.tree.beside("state/specula/layout.json");
+    viewer.until("the stored arrangement", |_| layout.is_file());
+    assert!(!std::fs::read_to_string(&layout).unwrap().contains("Learn"), "the exercise's arrangement is stored");
     viewer.quit();
 }
 

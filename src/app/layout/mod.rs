@@ -97,8 +97,8 @@ pub(super) struct Layout {
     free: Rect,
     /// Whether the light theme is shown.
     is_light: bool,
-    /// Whether this arrangement belongs to what is open, and the next window does not get it.
-    is_passing: bool,
+    /// Whether this arrangement belongs to an exercise, so the next window does not get it.
+    is_temporary: bool,
 }
 
 impl Default for Layout {
@@ -119,9 +119,17 @@ impl Layout {
     }
 
     fn of_tree(tree: Tree<Panel>) -> Self {
-        let (fit, free) = (Fit::default(), Rect::ZERO);
-        let (is_own, is_changed, is_settled, is_light, is_passing) = (false, false, false, false, false);
-        Self { tree, fit, own: None, is_own, is_changed, is_settled, free, is_light, is_passing }
+        Self {
+            tree,
+            fit: Fit::default(),
+            own: None,
+            is_own: false,
+            is_changed: false,
+            is_settled: false,
+            free: Rect::ZERO,
+            is_light: false,
+            is_temporary: false,
+        }
     }
 
     /// Shows a preset. The user's own arrangement is kept for [`Self::arrange_own`].
@@ -134,9 +142,9 @@ impl Layout {
     }
 
     /// Shows a preset until the user chooses another arrangement. The next window is arranged as before.
-    pub(super) fn arrange_here(&mut self, preset: Preset) {
+    pub(super) fn arrange_temporarily(&mut self, preset: Preset) {
         self.arrange(preset);
-        self.is_passing = true;
+        self.is_temporary = true;
     }
 
     /// Whether there is an arrangement of the user's to go back to.
@@ -268,6 +276,23 @@ impl Layout {
         self.free
     }
 
+    /// The content of the file: this arrangement, or the one before it if it is temporary. The theme is stored in both cases.
+    fn stored(&self) -> store::Stored {
+        let is_light = self.is_light;
+        if !self.is_temporary {
+            return store::Stored {
+                tree: self.fit.measured(&self.tree),
+                is_own: self.is_own,
+                own: self.own.clone(),
+                is_light,
+            };
+        }
+        match store::load() {
+            Some(before) => store::Stored { is_light, ..before },
+            None => store::Stored { tree: Preset::Debug.tree(), is_own: false, own: None, is_light },
+        }
+    }
+
     /// Stores a changed arrangement, once its tiles have their sizes. A drag changes them in each frame, and only its end is worth
     /// a file.
     fn store(&mut self, ui: &Ui) {
@@ -276,11 +301,7 @@ impl Layout {
         } else if std::mem::replace(&mut self.is_settled, true) {
             (self.is_changed, self.is_settled) = (false, false);
             self.fit.remember(&self.tree);
-            if self.is_passing {
-                return;
-            }
-            let (tree, own) = (self.fit.measured(&self.tree), self.own.clone());
-            store::save(&store::Stored { tree, is_own: self.is_own, own, is_light: self.is_light });
+            store::save(&self.stored());
         } else {
             ui.ctx().request_repaint();
         }

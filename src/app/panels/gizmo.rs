@@ -308,4 +308,20 @@ mod tests {
         let edge = frame.direction_at(pos2(101.0, 51.0), 0.5, true);
         assert!((edge.length() - 1.0).abs() < 1e-4);
     }
+
+    #[test]
+    fn a_dropped_handle_stays_until_the_camera_or_the_distance_changes() {
+        let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+        let view = |x: f32| CameraView::new(Vec3::new(x, 2.0, 8.0), Vec3::ZERO, 0.7, 1.5, &bounds);
+        let light = LightId::Orbit(1);
+        let mut gizmo = Gizmo::default();
+        gizmo.follow(&view(1.0));
+        gizmo.keep(light, 2.0, 1.3);
+        gizmo.follow(&view(1.0));
+        assert_eq!(gizmo.kept_radius(light, 2.0), Some(1.3));
+        assert_eq!(gizmo.kept_radius(light, 2.5), None, "another distance");
+        assert_eq!(gizmo.kept_radius(LightId::Rectangle, 2.0), None, "another light");
+        gizmo.follow(&view(1.1));
+        assert_eq!(gizmo.kept_radius(light, 2.0), None, "another camera");
+    }
 }

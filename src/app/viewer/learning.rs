@@ -99,7 +99,7 @@ impl Viewer {
         if exercise.is_some() {
             self.panels.hint.hide();
             if !self.panels.layout.is_in_sight(Panel::Learn) {
-                self.panels.layout.arrange_here(Preset::Learn);
+                self.panels.layout.arrange_temporarily(Preset::Learn);
             }
         }
         if self.settled.is_some() && self.settled == self.session.shaders.as_ref().map(|shaders| shaders.generation) {

@@ -14,7 +14,7 @@ use crate::pipeline::{Outcome, Reload};
 use crate::render::{BakeError, wrong_values};
 use crate::scene::environment;
 use crate::settings::GROUND;
-use crate::shader::{Diagnostic, Severity, ShaderSet, expression};
+use crate::shader::{Diagnostic, Severity, ShaderSet, Source, expression};
 use crate::threads::baker::BakeMessage;
 use crate::threads::worker::WorkerMessage;
 use crate::threads::{Message, Role};
@@ -37,6 +37,7 @@ impl Viewer {
                 self.shader.compiling = false;
                 self.shader.tree = source.name();
                 self.shader.location = source.location().map(Into::into);
+                self.shader.is_single_file = matches!(source, Source::Toy(_));
                 self.threads.follow_tree(&source);
                 self.source = source;
                 self.remember_tree(&reload.outcome);

@@ -16,7 +16,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, com
         return;
     }
     // Which tree it is is known with the first shaders. A single file is the user's own already.
-    if viewer.shader.tree.is_empty() || viewer.shader.location.as_ref().is_some_and(|path| path.is_file()) {
+    if viewer.shader.tree.is_empty() || viewer.shader.is_single_file {
         return;
     }
     let tree = viewer.shader.location.clone();

@@ -1,8 +1,10 @@
 //! The legend over the picture: the mode's name and unit, the range of values and the colors that stand for them, the channels, a
 //! histogram, and the value under the mouse.
 
+use std::sync::Arc;
+
 use clap::ValueEnum as _;
-use egui::{Button, Color32, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
+use egui::{Button, Color32, Galley, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::wrapped;
 use crate::app::panels::LegendOf;
@@ -106,27 +108,15 @@ pub(in crate::app) fn show(
     }
     if let Some(value) = legend.value {
         let (mono, color) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
-        let galley = wrapped(ui, value, mono.clone(), color, width);
-        // The position of the pixel goes to the next line as a whole. So does the unit, if there is no room for it.
-        let galley = match galley.rows.len() {
-            1 => galley,
-            _ if wraps_numbers(ui, legend, value, width) => {
-                let unit = format!(" {}", legend.of.mode.unit);
-                let value = value.replacen(&unit, &unit.replacen(' ', "\n", 1), 1);
-                wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, width)
-            }
-            _ => wrapped(ui, &value.replacen("   at ", "\nat ", 1), mono, color, width),
-        };
+        // The position of the pixel goes to the next line as a whole, and so does the unit where numbers and unit do not fit.
+        let (unit, at_below) = (&legend.of.mode.unit, value.replacen("   at ", "\nat ", 1));
+        let unit_below = at_below.replacen(&format!(" {unit}"), &format!("\n{unit}"), usize::from(!unit.is_empty()));
+        let lines = |text: &str| (text.lines().count(), wrapped(ui, text, mono.clone(), color, width));
+        let fits = |(count, galley): &(usize, Arc<Galley>)| galley.rows.len() == *count;
+        let mut forms = [value, &at_below].into_iter().map(lines);
+        let (_, galley) = forms.find(fits).unwrap_or_else(|| lines(&unit_below));
         ui.label(galley);
     }
-}
-
-/// Whether numbers and unit do not fit in one line.
-fn wraps_numbers(ui: &Ui, legend: &Legend<'_>, value: &str, width: f32) -> bool {
-    let (numbers, _) = value.split_once("   at ").unwrap_or((value, ""));
-    let mono = TextStyle::Monospace.resolve(ui.style());
-    let lines = wrapped(ui, numbers.trim_end(), mono, ui.visuals().text_color(), width).rows.len();
-    lines > 1 && !legend.of.mode.unit.is_empty()
 }
 
 /// The name of the mode with its unit.
