@@ -45,6 +45,38 @@ fn at(capture: &Capture, x: f32) -> [f32; 4] {
 }
 
 #[test]
+fn the_surface_is_read_by_name() {
+    let mut session = sphere();
+    for (image, mode) in
+        [("normal", "shading-normal"), ("base_color", "base-color"), ("roughness_metallic", "roughness")]
+    {
+        let expected = at(&session.mode(mode), 0.4);
+        session.headless.settings_mut().mode = "final".to_owned();
+        ready(&session.save("passes/show.frag", &show(image)));
+        let found = at(&session.render(), 0.4);
+        let channels = if mode == "roughness" { 1 } else { 3 };
+        for channel in 0..channels {
+            assert!((found[channel] - expected[channel]).abs() < 2e-3, "{image}: {found:?}, not {expected:?}");
+        }
+    }
+    // Nothing moves.
+    ready(&session.save("passes/show.frag", &show("velocity")));
+    assert_eq!(at(&session.render(), 0.4)[..2], [0.0, 0.0]);
+    // The camera turns to the left around the model, so what faces it moves to the right.
+    session.headless.settings_mut().camera.azimuth -= 2.0;
+    let moved = at(&session.headless.render_next().unwrap(), 0.4);
+    assert!(moved[0] > 2e-3 && moved[1].abs() < moved[0], "{moved:?}");
+    let is_drawn = |session: &Session| session.headless.pass_times().iter().any(|pass| pass.name == "normal");
+    assert!(is_drawn(&session));
+    // Without a reader the pass is not drawn.
+    std::fs::remove_file(session.tree.path("passes/show.frag")).unwrap();
+    ready(&session.changed(&["passes/show.frag"]));
+    session.render();
+    assert!(!is_drawn(&session), "an image that nobody reads is drawn");
+    passes_check(&session);
+}
+
+#[test]
 fn a_pass_draws_the_model() {
     let mut session = sphere();
     let before = session.render();

@@ -114,7 +114,7 @@ impl Library {
         loop {
             let is_read = |(own, names): &(TreePath, Vec<String>)| {
                 let others = texts.iter().filter(|(path, _)| path != own && !off.contains(path));
-                others.into_iter().any(|(_, text)| names.iter().any(|name| mentions(text, name)))
+                others.into_iter().any(|(_, text)| names.iter().any(|name| reads(text, name)))
             };
             let (read, unread): (Vec<_>, Vec<_>) = on.into_iter().partition(is_read);
             on = read;
@@ -193,10 +193,13 @@ fn is_text(path: &TreePath) -> bool {
     path.extension() == Some("glsl") || StageKind::of(path).is_some()
 }
 
-/// Whether the code of a text names the image of a pass, as it is or as it was one frame ago.
-fn mentions(text: &str, name: &str) -> bool {
+/// Whether a text declares the image of a pass as a uniform, as it is or as it was one frame ago. In a declaration of several
+/// lines it is not found; such a pass is only compiled later than it could be.
+fn reads(text: &str, name: &str) -> bool {
     let names = [name, &format!("before_{name}")];
-    let is_named = |line: &Line<'_>| names.iter().any(|name| find_word(&line.code, name).is_some());
+    let is_named = |line: &Line<'_>| {
+        line.code.contains("uniform") && names.iter().any(|name| find_word(&line.code, name).is_some())
+    };
     text.contains(name) && lines(text).iter().any(is_named)
 }
 
