@@ -183,7 +183,7 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     uint path_bounces;                 // Modes that trace the model: number of times that a path goes on from the surface that it has hit.
     float delta_s;                     // Seconds since the frame before; 0 in the first.
     uint frame_index;                  // Frames drawn before this one. Stays while nothing moves.
-    vec4 mouse_px;                     // Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
+    vec4 mouse_px;                     // Pixels from the upper left corner: xy last place of the mouse while the left button was down, zw where it went down; z < 0 once it is up, w < 0 after the first frame of a click.
     mat4 clip_from_world_before;       // clip_from_world of the last picture before this one; in the first the same as now.
     mat4 light_clip_from_world[MAX_LIGHT_VIEWS]; // The first lights: world to the clip space of a light that sees the model's bounds; depth is reversed: 1 near, 0 far.
     vec4 date;                         // Year, month from 0, day from 1, seconds of the day: local time in a window, in `render` that of `--date`.
@@ -195,6 +195,8 @@ layout(set = SET_FRAME, binding = BINDING_FRAME, scalar) uniform Frame {
     float dither;                      // Amplitude of the dither in steps of 8 bits: 0 or 1.
     vec3 colormap[COLORMAP_STEPS];     // The colors that stand for the numbers from 0 to 1, at equal steps. Linear RGB.
     uint gives_numbers;                // Whether modes that show a color for each number give the number itself: 1 where a single pixel is read, else 0.
+    vec2 cursor_px;                    // Pixels from the upper left corner: where the mouse is, with or without a button; -1, -1 beyond the picture.
+    uint mouse_buttons;                // The mouse buttons that went down over the picture and are still down: 1 left, 2 right, 4 middle.
 } frame;
 
 struct Light {

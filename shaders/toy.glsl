@@ -24,7 +24,7 @@ float iTime;                   // seconds
 float iTimeDelta;              // seconds since the frame before
 float iFrameRate;              // frames a second
 int iFrame;                    // frames before this one
-vec4 iMouse;                   // xy: last place of the mouse while it was down; zw: where it went down, z < 0 once it is up
+vec4 iMouse;                   // xy: last place of the mouse while it was down; zw: where it went down, z < 0 once it is up, w < 0 after the first frame
 vec4 iDate;                    // year, month from 0, day from 1, seconds of the day
 float iChannelTime[4];
 const float iSampleRate = 44100.0;
@@ -51,7 +51,8 @@ void toy_begin() {
     iFrame = int(toy.frame_index);
     vec4 mouse = toy.mouse_px;
     bool was_down = mouse != vec4(0.0);
-    iMouse = was_down ? vec4(mouse.x, toy.size_px.y - mouse.y, mouse.z, toy.size_px.y - mouse.w) : vec4(0.0);
+    float from_y = toy.size_px.y - abs(mouse.w);
+    iMouse = was_down ? vec4(mouse.x, toy.size_px.y - mouse.y, mouse.z, mouse.w < 0.0 ? -from_y : from_y) : vec4(0.0);
     iDate = toy.date;
     iChannelTime = float[4](iTime, iTime, iTime, iTime);
     toyFragCoord = gl_FragCoord;

@@ -116,11 +116,13 @@ pub const BINDING_LEVEL_ABOVE: u32 = 4;
 pub const LOOPS: [(u32, u32); 2] = [(SET_FRAME, 20), (SET_TASK, 8)];
 
 /// The bytes of [`Frame`] that change while the time runs.
-pub const CLOCK: [Range<usize>; 5] = [
+pub const CLOCK: [Range<usize>; 7] = [
     offset_of!(Frame, time_s)..offset_of!(Frame, time_s) + size_of::<f32>(),
     offset_of!(Frame, delta_s)..offset_of!(Frame, delta_s) + size_of::<f32>(),
     offset_of!(Frame, frame_index)..offset_of!(Frame, frame_index) + size_of::<u32>(),
     offset_of!(Frame, mouse_px)..offset_of!(Frame, mouse_px) + size_of::<[f32; 4]>(),
+    offset_of!(Frame, cursor_px)..offset_of!(Frame, cursor_px) + size_of::<[f32; 2]>(),
+    offset_of!(Frame, mouse_buttons)..offset_of!(Frame, mouse_buttons) + size_of::<u32>(),
     offset_of!(Frame, date)..offset_of!(Frame, date) + size_of::<[f32; 4]>(),
 ];
 

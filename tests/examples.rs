@@ -37,6 +37,7 @@ fn examples_change_the_picture_and_repeat_themselves() {
             "life",
             "meshlets",
             "normals",
+            "particles",
             "raymarch",
             "reaction",
             "swarm",

@@ -2,6 +2,7 @@
 
 mod support;
 
+use specula::headless::Sequence;
 use specula::render::Capture;
 use support::{
     SIZE, Session, assert_differ, assert_same, assert_validated, failed, glb, lines, load, passes_check, ready,
@@ -224,6 +225,65 @@ fn the_model_reads_buffers_that_passes_write() {
     assert_validated();
 }
 
+/// What a compute pass writes is drawn in the same frame, without after=, one quad for each element of its buffer.
+#[test]
+fn quads_are_drawn_where_a_compute_pass_puts_them() {
+    let mut session = sphere();
+    session.set("passes.model=false");
+    let place = "//@pass zplace size=1x1 dispatch=1\n#version 460\n#include \"interface.glsl\"\n\
+        layout(local_size_x = 4) in;\nbuffer Places { vec4 places[4]; };\n\
+        void main() { places[gl_GlobalInvocationID.x] = vec4(float(gl_GlobalInvocationID.x) * 0.5 - 0.75, 0.0, 0.1, \
+        10.0 * float(frame.frame_index)); }\n";
+    let vertex = "#version 460\n#include \"interface.glsl\"\nreadonly buffer Places { vec4 places[4]; };\n\
+        layout(location = 0) out flat float index;\n\
+        const vec2 CORNERS[6] = vec2[](vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, -1), vec2(1, 1), vec2(-1, 1));\n\
+        void main() {\n    vec4 place = places[gl_InstanceIndex];\n    index = float(gl_InstanceIndex) + place.w;\n    \
+        gl_Position = vec4(place.xy + place.z * CORNERS[gl_VertexIndex], 0.5, 1.0);\n}\n";
+    let squares = "//@pass squares draw=quads instances=4 to=picture\n#version 460\n\
+        layout(location = 0) in flat float index;\nlayout(location = 0) out vec4 color;\n\
+        void main() { color = vec4(index + 1.0, 0.0, 0.0, 1.0); }\n";
+    session.save("passes/place.comp", place);
+    session.save("passes/squares.vert", vertex);
+    ready(&session.save("passes/squares.frag", squares));
+    let picture = session.render();
+    for index in 0..4 {
+        assert_eq!(at(&picture, 0.125 + 0.25 * index as f32), [index as f32 + 1.0, 0.0, 0.0, 1.0], "square {index}");
+        assert_eq!(at(&picture, 0.25 * index as f32)[3], 0.0, "beside square {index}");
+    }
+    passes_check(&session);
+    // To an image of its own, with its own depth.
+    ready(&session.save("passes/squares.frag", &squares.replace(" to=picture", " format=r32f")));
+    ready(&session.save("passes/show.frag", &show("squares")));
+    session.headless.set_sequence(Sequence { frames: 3, ..Sequence::default() });
+    assert_eq!(at(&session.render(), 0.375)[0], 22.0, "the places of this frame");
+    // The compute pass that writes what another one reads comes first, before the model as well.
+    let [one, two] = ["writeonly buffer Steps { float step_index; };", "readonly buffer Steps { float step_index; };"];
+    let compute = |name: &str, buffer: &str, body: &str| {
+        format!(
+            "//@pass {name} size=1x1 dispatch=1\n#version 460\n#include \"interface.glsl\"\nlayout(local_size_x = 1) in;\n\
+             {buffer}\nvoid main() {{ {body} }}\n"
+        )
+    };
+    session.save("passes/zsteps.comp", &compute("zsteps", one, "step_index = float(frame.frame_index);"));
+    let reads = place.replace("10.0 * float(frame.frame_index)", "10.0 * step_index");
+    ready(&session.save("passes/place.comp", &reads.replace("buffer Places", &format!("{two}\nbuffer Places"))));
+    assert_eq!(at(&session.render(), 0.375)[0], 22.0, "the steps of this frame");
+    passes_check(&session);
+    session.headless.set_sequence(Sequence::default());
+
+    let mut refuse = |path: &str, text: &str, expected: &str| {
+        let good = session.tree.read(path);
+        let told = lines(failed(&session.save(path, text))).join("\n");
+        assert!(told.contains(expected), "{told}");
+        session.save(path, &good);
+    };
+    let material = squares.replace("#version 460", "#version 460\n#include \"material/material.glsl\"");
+    refuse("passes/squares.frag", &material, "the pass `squares` draws quads, which have no");
+    let reads_model = vertex.replace("index = float", "index = draw.vertices.at[0].uv0.x + float");
+    let expected = "squares.vert:8:13: error: the pass `squares` draws quads, which have no vertices of the model";
+    refuse("passes/squares.vert", &reads_model, expected);
+}
+
 /// A displacement map in the model's vertex stage, and what a pass with a vertex stage of its own reads there.
 #[test]
 fn vertex_stages_read_by_name() {
@@ -434,7 +494,7 @@ fn contradictions_have_their_line() {
         (
             "passes/mine.frag",
             text.replace("draw=model", "draw=teapot"),
-            "mine.frag:1:19: error: expected draw=model or draw=background, found `teapot`",
+            "mine.frag:1:19: error: expected draw=model, draw=quads or draw=background, found `teapot`",
         ),
         ("passes/mine.frag", text.replace("draw=model", "instances=0"), "expected instances=lights, or instances=1 to"),
         (

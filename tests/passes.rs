@@ -116,7 +116,9 @@ fn the_order_follows_from_who_reads_what() {
 #[test]
 fn an_image_has_the_size_and_format_of_its_pass() {
     let mut session = sphere(&[]);
-    for (annotation, size) in [("size=1/4", [SIZE.0.div_ceil(4), SIZE.1.div_ceil(4)]), ("size=7x5", [7, 5])] {
+    for (annotation, size) in
+        [("size=1/4", [SIZE.0.div_ceil(4), SIZE.1.div_ceil(4)]), ("size=7x5", [7, 5]), ("size=6", [6, 6])]
+    {
         let text = pass(&format!("small {annotation} format=rg32f"), "", "color = vec4(pass.size_px, 3.0, 4.0);");
         ready(&session.save("passes/small.frag", &text));
         let read = "color = vec4(texture(small, uv).rgb, 1.0) + 0.0 * float(textureSize(small, 0).x);";
@@ -235,6 +237,34 @@ fn textures_of_the_tree_are_read_by_name_and_reloaded() {
     assert_same(&before, &session.render(), "the last good texture stays");
 }
 
+/// The image of one frame ago is kept because a pass reads it, also if its own pass does not say `keep`.
+#[test]
+fn an_image_that_is_read_one_frame_later_is_kept() {
+    let mut session = sphere(&[]);
+    ready(&session.save("passes/count.frag", &pass("count", "", "color = vec4(float(frame.frame_index) + 1.0);")));
+    let shows =
+        pass("show to=picture", "uniform sampler2D before_count;", "color = vec4(texture(before_count, uv).rgb, 1.0);");
+    ready(&session.save("passes/show.frag", &shows));
+    session.headless.set_sequence(Sequence { frames: 3, ..Sequence::default() });
+    assert_eq!(session.render().raw_at(0, 0).unwrap(), [2.0, 2.0, 2.0, 1.0]);
+    session.headless.set_sequence(Sequence::default());
+    assert_eq!(session.render().raw_at(0, 0).unwrap(), [0.0, 0.0, 0.0, 1.0], "nothing before the first frame");
+    passes_check(&session);
+}
+
+/// A pass after the tone map is read as it is displayed.
+#[test]
+fn a_pixel_of_a_displayed_pass_is_that_of_the_display() {
+    let mut session = sphere(&[]);
+    let shows = pass("show to=picture after=tonemap", "", "color = vec4(0.2, 0.4, 0.8, 1.0);");
+    ready(&session.save("passes/show.frag", &shows));
+    let shaders = session.headless.shaders();
+    let modes: Vec<_> = shaders.modes.iter().filter(|mode| mode.slug == "pass:show").cloned().collect();
+    let pixel = session.headless.pixel((SIZE.0 / 2, SIZE.1 / 2), &modes).unwrap()[0];
+    assert_eq!(pixel.value, [0.2, 0.4, 0.8, 1.0]);
+    assert!(pixel.text(&modes[0]).contains("displayed"), "{}", pixel.text(&modes[0]));
+}
+
 #[test]
 fn errors_have_their_line_and_the_picture_stays() {
     let mut session = sphere(&[]);
@@ -248,8 +278,8 @@ fn errors_have_their_line_and_the_picture_stays() {
     };
     for (text, expected) in [
         (use_it("glwo"), "show.frag:4:19: error: no pass or texture is named `glwo`. Did you mean `glow`?"),
-        (use_it("before_glow"), "show.frag:4:19: error: the image of `glow` one frame ago is not kept"),
         (use_it("film"), "show.frag:4:19: error: `film` gives what it draws to the picture"),
+        (use_it("before_film"), "show.frag:4:19: error: `film` gives what it draws to the picture, which is not kept"),
         (use_it("show"), "show.frag:4:19: error: a pass cannot read the image that it draws, `show`"),
         (show("").replace("to=picture", "size=0"), "show.frag:1:19: error: expected size=1, size=1/2 to size=1/64"),
         (show("").replace("to=picture", "format=rgb8"), "show.frag:1:21: error: expected one of the formats rgba16f"),

@@ -94,6 +94,55 @@ fn a_lamp_casts_a_shadow_in_traced_paths_only() {
     assert!((shadow[0] + picture[0]).abs() < 1e-3 * picture[0], "{shadow:?}, the picture {picture:?}");
 }
 
+/// Radiance of the floor under a lid and a square lamp, along the middle of the picture from left to right.
+fn profile(headless: &mut Headless, mode: &str) -> Vec<f32> {
+    let capture = render(headless, mode);
+    (11..37).map(|x| mean(&capture, x..x + 1, 13..19)[0]).collect()
+}
+
+/// Mean distance of two profiles, in parts of the mean of the second.
+fn distance(a: &[f32], b: &[f32]) -> f32 {
+    let differences: f32 = a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum();
+    differences / b.iter().sum::<f32>()
+}
+
+/// Soft shadows follow the size of the lamp, as random paths do, which meet the model itself.
+#[test]
+fn soft_shadows_are_those_of_random_paths() {
+    let lamp = ["lights.rect.enabled=true", "lights.rect.polar=0", "lights.rect.distance=1", "view.bounces=0"];
+    for (width, limit) in [(0.15, 0.05), (0.6, 0.08)] {
+        let size = [format!("lights.rect.width={width}"), format!("lights.rect.height={width}")];
+        let size: Vec<&str> = size.iter().map(String::as_str).collect();
+        let chosen = [&FROM_ABOVE[..], &lamp, &size, &["view.frames=64"]].concat();
+        let mut headless = bare(load(&under_a_lid(&matte(0.0))), &chosen);
+        let traced = profile(&mut headless, "path-traced");
+        let mut of = |shadows: &str| {
+            set(&mut headless, &format!("SHADOWS={shadows}"));
+            distance(&profile(&mut headless, "final"), &traced)
+        };
+        let [none, hard, soft] = ["Off", "Hard", "Soft"].map(&mut of);
+        assert!(soft < limit && soft < 0.8 * hard && hard < none, "{width}: none {none}, hard {hard}, soft {soft}");
+    }
+}
+
+/// A surface that nothing hides has no shadow, however large the lamp is and from where it shines.
+#[test]
+fn soft_shadows_spare_the_surface_itself() {
+    let ball = glb::model(&glb::sphere(48, 96), &matte(0.5));
+    for bytes in [ball, glb::model(&floor(), &matte(0.5))] {
+        for polar in [20, 70] {
+            let lamp =
+                ["lights.rect.enabled=true", "lights.rect.distance=2", "lights.rect.width=3", "lights.rect.height=3"];
+            let mut headless = bare(load(&bytes), &[&lamp[..], &["camera.elevation=40"]].concat());
+            set(&mut headless, &format!("lights.rect.polar={polar}"));
+            let open = whole(&render(&mut headless, "final"))[0];
+            set(&mut headless, "SHADOWS=Soft");
+            let shadowed = whole(&render(&mut headless, "final"))[0];
+            assert!((shadowed / open - 1.0).abs() < 0.01, "{polar}: {shadowed}, not {open}");
+        }
+    }
+}
+
 #[test]
 fn holes_of_a_mask_and_partial_coverage_let_light_through() {
     let lid = |mode: &str, alpha: f64| {

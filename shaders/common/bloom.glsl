@@ -1,4 +1,4 @@
-// Bloom: light that a lens scatters around what is bright. passes/bloom/bloom_blur.frag draws it.
+// Bloom: light that a lens scatters around what is bright. passes/bloom/bloom.frag draws it.
 #ifndef COMMON_BLOOM_GLSL
 #define COMMON_BLOOM_GLSL
 
@@ -9,13 +9,16 @@
 layout(constant_id = USER_CONSTANTS + 12) const bool BLOOM = false;  //@ui "Bloom" doc="Light that a lens scatters around what is bright (Jimenez 2014)"
 
 // Mean of ever wider blurs of the exposed light.
-uniform sampler2D bloom_blur;
+uniform sampler2D bloom;
 
 // A lens scatters a part of all light, so no threshold is needed: the picture is mixed with blurs of itself, and its mean stays
 // the same (Jimenez 2014, "Next Generation Post Processing in Call of Duty: Advanced Warfare"). `light`: exposed, times
-// coverage. `uv`: 0..1 in the picture. Beside the model, scattered light covers the background as far as it is bright.
+// coverage. `uv`: 0..1 in the picture.
+//
+// Limits: the blurs are round, without the streaks of an iris, and know no light from beyond the picture's border. Beside the model, scattered light
+// covers the background as far as it is bright.
 void add_bloom(inout vec3 light, inout float coverage, vec2 uv) {
-    vec3 blur = bloom_strength * texture(bloom_blur, uv).rgb;
+    vec3 blur = bloom_strength * texture(bloom, uv).rgb;
     light = light * (1.0 - bloom_strength) + blur;
     coverage = max(coverage, saturate(max(blur.r, max(blur.g, blur.b))));
 }

@@ -5,7 +5,11 @@
 #include "common/math.glsl"
 #include "common/sampling.glsl"
 
-// The look of a lens and a film. It reads no time, so a still picture stays still.
+// The look of a lens and a film: the cosine-fourth falloff of a thin lens (Kolb et al. 1995, "A Realistic Camera Model for Computer
+// Graphics", section 4), and grain. It reads no time, so a still picture stays still.
+//
+// Limits: cos^4 is a thin lens without a hood; real ones also cut off the border of the aperture. The grain is white noise, finer than
+// that of a film, and stands still in a moving picture too.
 
 uniform sampler2D picture;
 

@@ -4,7 +4,10 @@
 #include "common/color.glsl"
 
 // Draws lines where depth jumps. Depth is near / distance (reversed, 0 at infinity), which is linear over a plane on
-// screen. So its second difference is 0 on a plane of any slope, and differs from 0 at an edge.
+// screen. So its second difference is 0 on a plane of any slope, and differs from 0 at an edge (Saito & Takahashi 1990,
+// "Comprehensible Rendering of 3-D Shapes", section 4).
+//
+// Limits: it sees depth alone, so a crease or a change of material without a jump has no line. Blended surfaces have no depth.
 
 uniform sampler2D picture;
 uniform sampler2D depth;

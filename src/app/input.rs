@@ -13,6 +13,7 @@ use super::keys;
 use super::screen::Screen;
 use super::selection::Selected;
 use super::viewer::Viewer;
+use crate::frame::BEYOND;
 use crate::scene::CameraController;
 use crate::session::Session;
 use crate::settings::LightSettings;
@@ -84,10 +85,14 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
         }
         WindowEvent::Focused(false) => {
             viewer.playback.keys().release_all();
+            viewer.playback.release_buttons();
             viewer.hold_reference(false) || viewer.reads_keys()
         }
         WindowEvent::MouseInput { state, button, .. } => {
             let pressed = *state == ElementState::Pressed && !taken && inside(screen, screen.mouse.at);
+            if let Some(bit) = button_bit(*button) {
+                viewer.playback.set_button(bit, pressed);
+            }
             match button {
                 MouseButton::Left => return on_left_button(viewer, screen, pressed),
                 MouseButton::Middle => screen.mouse.middle = pressed,
@@ -105,13 +110,20 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             let is_over = inside(screen, at);
             let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
             screen.mouse.at = at;
+            let [x, y] = in_picture(screen, at);
+            let (width, height) = screen.rect.size;
+            let is_inside = is_over && x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+            viewer.playback.hover(if is_inside { [x, y] } else { BEYOND });
             screen.mouse.click = screen.mouse.click.filter(|start| start.distance(at) <= SAME_PLACE);
             if screen.mouse.left {
                 viewer.playback.drag(in_picture(screen, at));
             }
             drag(viewer, screen, delta) || was_over || screen.mouse.over
         }
-        WindowEvent::CursorLeft { .. } => std::mem::take(&mut screen.mouse.over),
+        WindowEvent::CursorLeft { .. } => {
+            viewer.playback.hover(BEYOND);
+            std::mem::take(&mut screen.mouse.over)
+        }
         WindowEvent::MouseWheel { delta, .. } if !taken && inside(screen, screen.mouse.at) => {
             let steps = match delta {
                 MouseScrollDelta::LineDelta(_, lines) => *lines,
@@ -122,6 +134,16 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             true
         }
         _ => false,
+    }
+}
+
+/// The bit of a button in `interface::Frame::mouse_buttons`.
+fn button_bit(button: MouseButton) -> Option<u32> {
+    match button {
+        MouseButton::Left => Some(1),
+        MouseButton::Right => Some(2),
+        MouseButton::Middle => Some(4),
+        _ => None,
     }
 }
 

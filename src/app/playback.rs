@@ -3,10 +3,18 @@
 
 use std::time::Instant;
 
-use crate::frame::{Clock, Date, Keys};
+use crate::frame::{BEYOND, Clock, Date, Keys};
 
 /// Length of a single step, seconds.
 const STEP_S: f32 = 1.0 / 60.0;
+
+/// The mouse over the picture, as the block `Frame` has it.
+#[derive(Clone, Copy, Debug)]
+struct Mouse {
+    px: [f32; 4],
+    cursor_px: [f32; 2],
+    buttons: u32,
+}
 
 /// The clock of the window's frames.
 pub(super) struct Playback {
@@ -21,6 +29,10 @@ pub(super) struct Playback {
     restarted: bool,
     /// The keys now. The clock has those of the last frame.
     keys: Keys,
+    /// The mouse now. The clock has that of the last frame; while it is paused, only drags change it.
+    mouse: Mouse,
+    /// Whether a frame has shown the last click.
+    shows_click: bool,
     /// The date of still pictures: when the window was opened.
     opened: Date,
 }
@@ -35,6 +47,8 @@ impl Default for Playback {
             step: false,
             restarted: false,
             keys: Keys::default(),
+            mouse: Mouse { px: [0.0; 4], cursor_px: BEYOND, buttons: 0 },
+            shows_click: false,
             opened: Date::now(),
         }
     }
@@ -53,7 +67,8 @@ impl Playback {
 
     /// Sets the clock back to 0.
     pub(super) fn restart(&mut self) {
-        self.clock = Clock { mouse_px: self.clock.mouse_px, date: self.clock.date, ..Clock::default() };
+        let Clock { mouse_px, cursor_px, mouse_buttons, date, .. } = self.clock;
+        self.clock = Clock { mouse_px, cursor_px, mouse_buttons, date, ..Clock::default() };
         (self.last, self.restarted) = (None, true);
     }
 
@@ -84,11 +99,19 @@ impl Playback {
         let step = std::mem::take(&mut self.step);
         if is_animated && self.paused && !step {
             self.last = None;
+            self.clock.mouse_px = self.mouse.px;
             // An unchanged clock gives the same picture, which is not drawn again.
             return self.clock;
         }
         self.clock.keys = if reads_keys { self.keys.in_frame() } else { Keys::default() };
         self.keys = self.keys.held();
+        // A click counts in one frame.
+        if std::mem::take(&mut self.shows_click) {
+            self.mouse.px[3] = -self.mouse.px[3].abs();
+        }
+        self.shows_click = self.mouse.px[3] > 0.0;
+        let Mouse { px, cursor_px, buttons } = self.mouse;
+        (self.clock.mouse_px, self.clock.cursor_px, self.clock.mouse_buttons) = (px, cursor_px, buttons);
         if !is_animated {
             self.last = None;
             return Clock { date: self.opened, keys: self.clock.keys, ..Clock::default() };
@@ -116,21 +139,37 @@ impl Playback {
         &mut self.keys
     }
 
+    /// The mouse moved, with or without a button.
+    pub(super) fn hover(&mut self, at: [f32; 2]) {
+        self.mouse.cursor_px = at;
+    }
+
+    /// The button of this bit went down over the picture, or up.
+    pub(super) fn set_button(&mut self, bit: u32, is_down: bool) {
+        let buttons = &mut self.mouse.buttons;
+        *buttons = if is_down { *buttons | bit } else { *buttons & !bit };
+    }
+
+    /// No button is down any more: the window has lost the focus.
+    pub(super) fn release_buttons(&mut self) {
+        self.mouse.buttons = 0;
+    }
+
     /// The left button went down over the picture.
     pub(super) fn press(&mut self, [x, y]: [f32; 2]) {
-        self.clock.mouse_px = [x, y, x, y];
+        // The sign of w says whether this is the frame of a click, so it is not 0.
+        (self.mouse.px, self.shows_click) = ([x, y, x, y.max(0.5)], false);
     }
 
     /// The mouse moved while the button is down.
     pub(super) fn drag(&mut self, [x, y]: [f32; 2]) {
-        let [_, _, from_x, from_y] = self.clock.mouse_px;
-        self.clock.mouse_px = [x, y, from_x, from_y];
+        let [_, _, from_x, from_y] = self.mouse.px;
+        self.mouse.px = [x, y, from_x, from_y];
     }
 
     /// The button went up.
     pub(super) fn release(&mut self) {
-        let mouse = &mut self.clock.mouse_px;
-        mouse[2] = -mouse[2].abs();
+        self.mouse.px[2] = -self.mouse.px[2].abs();
     }
 }
 
@@ -211,7 +250,7 @@ mod tests {
             frames.animated();
             frames.playback.paused = paused;
             frames.playback.restart();
-            let first = Clock { mouse_px: [3.0, 4.0, 3.0, 4.0], ..Clock::default() };
+            let first = Clock { mouse_px: [3.0, 4.0, 3.0, -4.0], ..Clock::default() };
             assert_eq!(frames.next(true), first);
             assert!(frames.playback.take_restart(), "passes begin again");
             assert!(!frames.playback.take_restart(), "they begin again once");
@@ -295,8 +334,37 @@ mod tests {
         let mut frames = Frames::new();
         frames.playback.press([1.0, 2.0]);
         frames.playback.drag([5.0, 6.0]);
-        assert_eq!(frames.next(true).mouse_px, [5.0, 6.0, 1.0, 2.0]);
+        frames.animated();
+        assert_eq!(frames.next(true).mouse_px, [5.0, 6.0, 1.0, -2.0], "down since an earlier frame");
         frames.playback.release();
-        assert_eq!(frames.next(true).mouse_px, [5.0, 6.0, -1.0, 2.0], "not down");
+        assert_eq!(frames.next(true).mouse_px, [5.0, 6.0, -1.0, -2.0], "not down");
+        frames.playback.press([7.0, 8.0]);
+        assert_eq!(frames.next(true).mouse_px, [7.0, 8.0, 7.0, 8.0], "the frame of a click");
+    }
+
+    #[test]
+    fn a_paused_shader_follows_drags_alone() {
+        let mut frames = Frames::new();
+        frames.animated();
+        frames.playback.paused = true;
+        let still = frames.next(true);
+        frames.playback.hover([9.0, 9.0]);
+        assert_eq!(frames.next(true), still, "a paused picture is not drawn again because the mouse moves over it");
+        frames.playback.press([1.0, 2.0]);
+        frames.playback.drag([3.0, 4.0]);
+        assert_eq!(frames.next(true), Clock { mouse_px: [3.0, 4.0, 1.0, 2.0], ..still });
+    }
+
+    #[test]
+    fn the_mouse_is_told_without_a_button_and_so_is_each_button() {
+        let mut frames = Frames::new();
+        frames.playback.hover([1.0, 2.0]);
+        frames.playback.set_button(1, true);
+        frames.playback.set_button(2, true);
+        let clock = frames.next(true);
+        assert_eq!((clock.cursor_px, clock.mouse_buttons), ([1.0, 2.0], 3));
+        frames.playback.set_button(1, false);
+        assert_eq!(frames.next(true).mouse_buttons, 2);
+        assert_eq!(frames.next(false).mouse_buttons, 0, "a still picture does not know the mouse");
     }
 }

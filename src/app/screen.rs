@@ -346,7 +346,7 @@ impl Screen {
     /// Turns an out-of-memory error into `None`, and keeps it for the end of the frame.
     fn survive<T>(&mut self, result: Result<T, GpuError>) -> Result<Option<T>, GpuError> {
         match result {
-            Err(error @ GpuError::OutOfMemory(_)) => {
+            Err(error) if error.is_shortage() => {
                 self.shortage = Some(error);
                 Ok(None)
             }

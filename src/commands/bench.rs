@@ -1,4 +1,6 @@
-//! `specula bench reload|frame|load|bake`: measures times on this machine, and prints them with the device's name.
+//! `specula bench reload|frame|load|bake|thumbnails|passes`: measures times on this machine, and prints them with the device's name.
+
+mod passes;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -31,6 +33,8 @@ enum What {
     Bake,
     /// Time to draw a thumbnail of every debug mode: the first time, with building pipelines, and again
     Thumbnails,
+    /// Time of a frame with hard shadows, ambient occlusion and bloom, and with 100 passes of one pixel, in turn with one without
+    Passes,
 }
 
 /// Width and height of a thumbnail, pixels.
@@ -70,6 +74,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         What::Frame => frame(&args, &gpu, &compiler, &progress)?,
         What::Load => load(&args, &gpu, &compiler, (start, &progress))?,
         What::Bake => bake(&args, &gpu, &compiler, &progress)?,
+        What::Passes => passes::passes(&args, &gpu, &compiler, &progress)?,
         What::Thumbnails => thumbnails(&args, &gpu, &compiler, &progress)?,
     };
     drop(progress);

@@ -9,6 +9,7 @@ use specula::gpu::{PrimitiveClass, SetLayouts};
 use specula::interface::{self, ALPHA_BLEND, ALPHA_MASK, ALPHA_OPAQUE};
 use specula::message::tell;
 use specula::pipeline::{PassTextures, PipelineSet, beyond_limits};
+use specula::render::beyond_memory;
 use specula::settings::{Settings, ShaderValue};
 use specula::shader::spirv::reflect::Scalar;
 use specula::shader::{Diagnostic, Library, Severity, ShaderSet, check};
@@ -103,6 +104,32 @@ fn build_choices(
     let textures = PassTextures::load(&gpu, &shaders.graph, None).unwrap_or_else(|errors| {
         problems.extend(errors.into_iter().map(|error| source.explained(error)));
         Arc::default()
+    });
+    let size = args.common.size;
+    // Each pass that is off, and what each constant switches on, must fit.
+    let switches = shaders.graph.passes.iter().filter_map(|pass| pass.note.when.as_ref());
+    let switched = switches.collect::<BTreeSet<_>>().into_iter().map(|name| {
+        let constant = shaders.constants.iter().find(|constant| constant.name == *name);
+        let last = constant.and_then(|constant| constant.choices.last());
+        let mut chosen = settings.clone();
+        chosen.shader.insert(name.clone(), last.map_or(ShaderValue::Bool(true), |(_, value)| ShaderValue::Int(*value)));
+        request(&chosen)
+    });
+    let off = shaders.graph.passes.iter().filter(|pass| !pass.note.on).map(|pass| {
+        let mut chosen = settings.clone();
+        chosen.passes.insert(pass.name().to_owned(), true);
+        request(&chosen)
+    });
+    let limit = u64::from(settings.view.pass_memory) << 20;
+    let beyond = std::iter::once(plain.clone())
+        .chain(off)
+        .chain(switched)
+        .filter_map(|request| beyond_memory(&request, size, limit));
+    let beyond: Vec<Diagnostic> = beyond.collect();
+    beyond.into_iter().for_each(|error| {
+        if !problems.contains(&error) {
+            problems.push(error);
+        }
     });
     if !problems.is_empty() {
         diagnostics.extend(problems);

@@ -13,7 +13,7 @@ pub struct Args {
     /// Folder to create; it must be new or empty
     dir: PathBuf,
 
-    /// Example to start from: deferred, displacement, fluid, fur, hatching, hull, life, meshlets, normals, raymarch, reaction, swarm or toy
+    /// Example to start from: deferred, displacement, fluid, fur, hatching, hull, life, meshlets, normals, particles, raymarch, reaction, swarm or toy
     #[arg(long, value_name = "NAME")]
     template: Option<String>,
 }

@@ -12,6 +12,7 @@ use specula::shader::expression;
 use specula::shader::not_finite::NotFinite;
 use specula::shader::{DrawAs, Mode, ShaderSet};
 
+use super::common::frames::Frames;
 use super::common::{Common, check_mode, check_validation, compiler, warn_unmeasured};
 use super::progress::Progress;
 use super::{Failure, print_json, tell_left_out};
@@ -44,6 +45,8 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    frames: Frames,
+    #[command(flatten)]
     common: Common,
 }
 
@@ -61,6 +64,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
         );
         return Err(Failure::Usage(message));
     }
+    let sequence = args.frames.sequence()?;
     let mut settings = args.common.settings()?;
     settings.view.msaa = 1;
     if slugs.is_empty() && !settings.expression.at.is_empty() {
@@ -73,6 +77,7 @@ pub fn run(mut args: Args) -> Result<(), Failure> {
     let progress = Progress::new(!args.common.emits());
     progress.say("compiling the shaders");
     let (mut headless, _) = Headless::new(&gpu, &compiler()?, source, model, settings, args.common.size)?;
+    headless.set_sequence(sequence);
     let Chosen { modes, left_out } = chosen(&headless.shaders(), &slugs, args.paths)?;
     let state = headless.frame_state()?;
     progress.say("reading the pixel");

@@ -27,8 +27,8 @@ pub(crate) use formats::pass_format;
 pub use keys::{Keys, key_names};
 pub use mode_sets::{SharedMode, mode_sets};
 pub(crate) use pipeline_key::PipelineKey;
-pub(crate) use pipelines::shared_features;
 pub use pipelines::{MaterialVariant, PipelineRequest};
+pub(crate) use pipelines::{QUADS, shared_features};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 
@@ -65,8 +65,11 @@ pub struct FrameInputs<'a> {
     pub target: TargetFormat,
 }
 
+/// [`Clock::cursor_px`] while the mouse is not over the picture.
+pub(crate) const BEYOND: [f32; 2] = [-1.0; 2];
+
 /// The time of a frame, and the state of mouse and keys.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// Seconds since the start.
     pub time_s: f32,
@@ -76,10 +79,29 @@ pub struct Clock {
     pub frame_index: u32,
     /// The mouse over the picture: `interface::Frame::mouse_px`.
     pub mouse_px: [f32; 4],
+    /// Where the mouse is: `interface::Frame::cursor_px`.
+    pub cursor_px: [f32; 2],
+    /// The buttons that are down: `interface::Frame::mouse_buttons`.
+    pub mouse_buttons: u32,
     /// The date and the time of the day.
     pub date: Date,
     /// The keys.
     pub keys: Keys,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self {
+            time_s: 0.0,
+            delta_s: 0.0,
+            frame_index: 0,
+            mouse_px: [0.0; 4],
+            cursor_px: BEYOND,
+            mouse_buttons: 0,
+            date: Date::default(),
+            keys: Keys::default(),
+        }
+    }
 }
 
 /// Counts the changes of watched files on disk, so that the same name is loaded again after a change.
@@ -182,6 +204,8 @@ impl FrameState {
             delta_s: clock.delta_s,
             frame_index: clock.frame_index,
             mouse_px: clock.mouse_px,
+            cursor_px: clock.cursor_px,
+            mouse_buttons: clock.mouse_buttons,
             date: clock.date.parts(),
             keys: clock.keys.words(),
             background: settings.view.background_linear().unwrap_or_default(),
@@ -257,6 +281,8 @@ impl FrameState {
             delta_s: 0.0,
             frame_index: 0,
             mouse_px: [0.0; 4],
+            cursor_px: [0.0; 2],
+            mouse_buttons: 0,
             date: [0.0; 4],
             ..*frame
         };

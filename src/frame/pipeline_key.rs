@@ -28,7 +28,7 @@ pub(crate) struct KeyPass(pub(crate) Arc<GraphPass>);
 impl KeyPass {
     fn parts(&self) -> impl PartialEq + Hash + '_ {
         let GraphPass { note, front, part, inputs, .. } = &*self.0;
-        (&note.stage, front, part, inputs, note.model.is_some(), &note.also)
+        (&note.stage, front, part, inputs, (note.model.is_some(), note.quads), &note.also)
     }
 }
 

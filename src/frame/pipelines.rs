@@ -27,6 +27,10 @@ pub struct MaterialVariant {
     pub class: PrimitiveClass,
 }
 
+/// What the pipelines of quads are made for in place of a material.
+pub(crate) const QUADS: MaterialVariant =
+    MaterialVariant { alpha: interface::ALPHA_OPAQUE, features: 0, class: PrimitiveClass::Triangles };
+
 /// Everything that selects the pipelines of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PipelineRequest {
@@ -185,6 +189,12 @@ impl PipelineRequest {
     /// Whether a pixel depends on what is drawn at that pixel alone. Other passes than the built-in ones may read any pixel.
     pub(crate) fn is_local(&self) -> bool {
         self.passes.iter().all(|pass| pass.note.is_built_in() || pass.note.background)
+    }
+
+    /// Whether a pass after the tone map is shown, so that the pixels are those of the display.
+    pub(crate) fn shows_display(&self) -> bool {
+        let is_shown = |pass: &&Arc<GraphPass>| self.shown_pass.as_deref().is_some_and(|name| pass.is_called(name));
+        self.passes.iter().find(is_shown).is_some_and(|pass| pass.part == Part::Display)
     }
 
     fn pass_of(&self, is_wanted: impl Fn(&GraphPass) -> bool) -> Option<&Arc<GraphPass>> {

@@ -34,6 +34,9 @@ pub enum GpuError {
          needs less"
     )]
     OutOfMemory(String),
+    /// Images and buffers of passes take more memory than the user allows: the message with its line.
+    #[error("{0}")]
+    PassMemory(String),
     /// Any other Vulkan error.
     #[error("Vulkan failed while {action}: {result}")]
     Vulkan {
@@ -62,6 +65,11 @@ pub enum GpuError {
 }
 
 impl GpuError {
+    /// Whether memory is lacking, so that smaller pictures or other shaders may still be drawn.
+    pub fn is_shortage(&self) -> bool {
+        matches!(self, Self::OutOfMemory(_) | Self::PassMemory(_))
+    }
+
     /// The error of a Vulkan call. `action` says what Specula was doing; `object` names the object, or is empty.
     pub(super) fn vulkan(result: vk::Result, action: &'static str, object: &str) -> Self {
         let full = || if object.is_empty() { action.to_owned() } else { format!("{action} {object}") };

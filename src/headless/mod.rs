@@ -19,7 +19,7 @@ use std::time::Instant;
 use crate::frame::{Clock, FrameState, TargetFormat};
 use crate::gpu::{Frames, Gpu, Image, PassTime, SetLayouts, return_freed_memory};
 use crate::pipeline::{Outcome, Reload, Reloader};
-use crate::render::{BakeReport, BoundFrame, GpuModel, Resources, View, wrong_values};
+use crate::render::{BakeReport, BoundFrame, GpuModel, Resources, View, beyond_memory, wrong_values};
 use crate::scene::Model;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -325,6 +325,9 @@ impl Headless {
                 let errors = self.session.diagnostics.iter().filter(|found| found.severity == Severity::Error);
                 return Err(HeadlessError::Shaders(errors.cloned().collect()));
             }
+        }
+        if let Some(error) = beyond_memory(&state.pipelines, state.size, state.pass_memory) {
+            return Err(HeadlessError::Shaders(vec![error]));
         }
         self.resources.provide(&Arc::new(state)).map_err(|error| self.explained(error.into()))
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::{Headless, HeadlessError, Step};
-use crate::frame::{FrameInputs, FrameState, Scene};
+use crate::frame::{Clock, FrameInputs, FrameState, Scene};
 use crate::pipeline::PipelineSet;
 use crate::render::Redraw;
 use crate::scene;
@@ -42,37 +42,41 @@ impl Headless {
         let near = scene::near_pixel(all.model(), whole.camera.clip_from_world(), self.size, at);
         let part = all.only(near);
         let part = if part.is_transmissive() { all.clone() } else { part };
-        let state_in = |mode: &Mode, scene: &Scene| {
-            let settings = Settings { mode: mode.slug.clone(), ..self.session.settings.clone() };
+        let (settings, revisions, size) = (self.session.settings.clone(), self.session.revisions, self.size);
+        let state_in = |mode: &Mode, scene: &Scene, clock: Clock| {
+            let settings = Settings { mode: mode.slug.clone(), ..settings.clone() };
             let scene = Some(scene);
-            let (shaders, revisions, target) = (&whole.shaders, self.session.revisions, whole.pipelines.target);
-            let inputs = FrameInputs {
-                settings: &settings,
-                shaders,
-                scene,
-                revisions,
-                clock: self.clock,
-                size: self.size,
-                target,
-            };
+            let (shaders, target) = (&whole.shaders, whole.pipelines.target);
+            let inputs = FrameInputs { settings: &settings, shaders, scene, revisions, clock, size, target };
             FrameState::new(&inputs).with_numbers()
         };
-        let state_of = |mode: &Mode| {
-            let state = state_in(mode, &part);
-            if state.pipelines.is_local() { state } else { state_in(mode, &all) }
+        let state_of = |mode: &Mode, clock: Clock| {
+            let state = state_in(mode, &part, clock);
+            Arc::new(if state.pipelines.is_local() { state } else { state_in(mode, &all, clock) })
         };
-        let states: Vec<Arc<FrameState>> = modes.iter().map(|mode| Arc::new(state_of(mode))).collect();
+        // The last frame of the sequence is read.
+        let sequence = self.sequence;
+        let states: Vec<(&Mode, Arc<FrameState>)> =
+            modes.iter().map(|mode| (mode, state_of(mode, self.clock))).collect();
         self.view.probe = Some(at);
         let mut values = Vec::new();
         // A set keeps the pipelines of its newest requests only.
         for states in states.chunks(PipelineSet::REQUESTS_KEPT as usize / 2) {
             if let Some(set) = self.resources.pipelines() {
                 // A driver compiles a pipeline on the calling thread.
-                states.par_iter().try_for_each(|state| set.build(&state.pipelines).map(|_| ()))?;
+                states.par_iter().try_for_each(|(_, state)| set.build(&state.pipelines).map(|_| ()))?;
             }
-            for state in states {
-                let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
+            for (mode, state) in states {
                 self.view.restart_passes();
+                let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
+                // A still picture needs no earlier frames.
+                let earlier = if frame.is_animated() { sequence.frames.max(1) - 1 } else { 0 };
+                for index in 0..earlier {
+                    let state = state_of(mode, sequence.clock(index));
+                    let frame = self.resources.provide(&state).map_err(|error| self.explained(error.into()))?;
+                    self.draw_frame(&frame, Redraw::Always, |_, _, _| Ok(()))?;
+                }
+                let frame = self.resources.provide(state).map_err(|error| self.explained(error.into()))?;
                 self.view.restart_mean();
                 let frames = if state.pipelines.accumulates { self.session.settings.view.frames } else { 1 };
                 for _ in 0..frames {

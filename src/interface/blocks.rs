@@ -154,7 +154,7 @@ blocks! {
         delta_s: float,
         /// Frames drawn before this one. Stays while nothing moves.
         frame_index: uint,
-        /// Pixels from the upper left corner: xy last place of the mouse while down, zw where it went down; z < 0 once it is up.
+        /// Pixels from the upper left corner: xy last place of the mouse while the left button was down, zw where it went down; z < 0 once it is up, w < 0 after the first frame of a click.
         mouse_px: vec4,
         /// clip_from_world of the last picture before this one; in the first the same as now.
         clip_from_world_before: mat4,
@@ -178,6 +178,10 @@ blocks! {
         colormap: [vec3; COLORMAP_STEPS],
         /// Whether modes that show a color for each number give the number itself: 1 where a single pixel is read, else 0.
         gives_numbers: uint,
+        /// Pixels from the upper left corner: where the mouse is, with or without a button; -1, -1 beyond the picture.
+        cursor_px: vec2,
+        /// The mouse buttons that went down over the picture and are still down: 1 left, 2 right, 4 middle.
+        mouse_buttons: uint,
     }
 
     /// A light, in world space. `BINDING_LIGHTS` holds an array of them.

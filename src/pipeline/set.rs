@@ -347,8 +347,7 @@ impl PipelineSet {
         };
         let front: Vec<_> = front.iter().map(|(flag, module)| (*flag, &**module)).collect();
         let modules: Vec<&ShaderModule> = front.iter().map(|(_, module)| *module).chain([&*fragment]).collect();
-        let draws_model = pass.note.model.is_some();
-        let layout = self.layout(&pass.inputs, &modules, draws_model);
+        let layout = self.layout(&pass.inputs, &modules, pass.note.draws_model());
         let layout = layout.map_err(|error| of_pass(pass, error))?;
         let more = pass.note.also.iter().map(|(_, format)| pass_format(*format));
         let modes = key.modes.iter().skip(1).map(|_| key.format);
@@ -357,7 +356,7 @@ impl PipelineSet {
             front: &front,
             fragment: &fragment,
             colors: &colors,
-            depth: draws_model || pass.part == Part::Model,
+            depth: pass.note.model.is_some() || pass.part == Part::Model,
             raster: key.raster,
             samples: key.samples,
             class: key.class,

@@ -62,7 +62,9 @@ impl PixelValue {
         if !mode.unit.is_empty() {
             unit = format!(" {}", mode.unit);
         }
-        if mode.tonemap {
+        if mode.is_displayed {
+            unit += " displayed";
+        } else if mode.tonemap {
             unit += " before exposure";
         }
         let total = width + unit.chars().count();

@@ -1,7 +1,18 @@
 //! The memory that images and buffers of passes take.
 
+use specula::headless::HeadlessError;
+
 use crate::support::{Session, assert_differ, assert_same, assert_validated, ready};
 use crate::{pass, sphere};
+
+/// The line of the error with which the session draws no picture.
+fn refusal(session: &mut Session) -> String {
+    match session.headless.render() {
+        Err(HeadlessError::Shaders(errors)) => errors[0].one_line(),
+        Err(error) => error.to_string(),
+        Ok(_) => String::new(),
+    }
+}
 
 #[test]
 fn passes_take_no_more_memory_than_allowed() {
@@ -26,12 +37,10 @@ fn passes_take_no_more_memory_than_allowed() {
         (with_buffer, 8),
     ] {
         ready(&session.save("passes/big.frag", &text));
-        let error = match session.headless.render() {
-            Ok(_) => panic!("{text} fits"),
-            Err(error) => error.to_string(),
-        };
-        let expected = format!("big.frag:1): passes take {taken} MiB so far, and `--memory` allows 6");
-        assert!(error.contains(&expected), "{error}");
+        let expected = format!(
+            "error: with the pass `big` the images and buffers of passes take {taken} MiB, and --memory allows 6"
+        );
+        assert!(refusal(&mut session).contains(&expected), "{}", refusal(&mut session));
     }
     session.set("view.pass_memory=16");
     session.render();
@@ -79,8 +88,8 @@ fn images_that_are_not_needed_at_the_same_time_share_their_memory() {
     );
     session.set("view.pass_memory=8");
     all(&mut session, &chain(&reads_first));
-    let error = session.headless.render().err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(error.contains("passes take 12 MiB so far, and `--memory` allows 8"), "{error}");
+    let error = refusal(&mut session);
+    assert!(error.contains("the images and buffers of passes take 12 MiB, and --memory allows 8"), "{error}");
     session.set("view.pass_memory=12");
     session.render();
     all(&mut session, &chain(&last));

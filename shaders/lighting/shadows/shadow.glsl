@@ -1,4 +1,8 @@
 // Shadows of punctual and rectangular lights, by shadow maps (Williams 1978). passes/shadows/shadow_map.frag draws the map.
+//
+// Limits: a light sees the model from its middle, and the mean distance of what hides a point from there decides how wide the penumbra is,
+// so penumbras that overlap are only about right. Soft shadows take 24 samples, whose noise shows in wide penumbras.
+// Only the first MAX_LIGHT_VIEWS lights throw shadows.
 #ifndef LIGHTING_SHADOW_GLSL
 #define LIGHTING_SHADOW_GLSL
 
@@ -55,10 +59,28 @@ float along_axis_m(LightDepth of, bool is_parallel, float depth) {
     return is_parallel ? -depth * of.scale : of.scale / (depth - of.offset);
 }
 
+// Change of depth across the map on the plane through the point with this normal: depth per width of the map along u and v. A plane has
+// depths that are linear in the map, in perspective too. `ndc`: the point in the light's view.
+vec2 depth_slope(mat4 view, vec3 ndc, vec3 n, bool faces_light, float tile_size) {
+    mat3 plane = basis_around(n);
+    vec4 along_t = view * vec4(plane[0], 0.0);
+    vec4 along_b = view * vec4(plane[1], 0.0);
+    vec3 t = along_t.xyz - ndc * along_t.w;
+    vec3 b = along_b.xyz - ndc * along_b.w;
+    float area = t.x * b.y - t.y * b.x;
+    // Clamps the slope at 87 degrees. A plane that faces away from the middle of a large light gets that slope too, since the light's
+    // border still reaches it.
+    float least = 0.05 * (dot(t.xy, t.xy) + dot(b.xy, b.xy));
+    float sign_of_area = area < 0.0 ? -1.0 : 1.0;
+    area = sign_of_area * (faces_light ? max(abs(area), least) : -least);
+    return vec2(t.z * b.y - b.z * t.y, b.z * t.x - t.z * b.x) * (2.0 / (tile_size * area));
+}
+
 // Part of the light that reaches the point, 0..1. The edge of its shadow is as wide as the penumbra: the wider, the farther the
 // point is from what hides it (percentage-closer soft shadows, Fernando 2005). `seen`: the point in the light's clip space.
-// `low`, `high`: corners of the tile. `per_meter`: of the map's width, at the point. `angle`: width of the light / its distance.
-float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, float per_meter, float angle) {
+// `low`, `high`: corners of the tile. `slope`: depth_slope(): the surface itself rises towards the light within the samples, and must not
+// hide the point (receiver plane depth bias, Isidoro 2006). `per_meter`: of the map's width, at the point. `angle`: width of the light / its distance.
+float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, vec2 slope, float per_meter, float angle) {
     const int BLOCKERS = 8;
     const int TAPS = 16;
     float turn = pixel_noise(picture_px());
@@ -72,7 +94,7 @@ float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, float 
     for (int i = 0; i < BLOCKERS; ++i) {
         vec2 at = clamp(uv + reach * disk_sample(i, BLOCKERS, turn), low, high);
         float blocker = textureLod(shadow_map, at, 0.0).r;
-        if (blocker > depth) blockers += vec2(along_axis_m(of, is_parallel, blocker), 1.0);
+        if (blocker > depth + max(dot(slope, at - uv), 0.0)) blockers += vec2(along_axis_m(of, is_parallel, blocker), 1.0);
     }
     if (blockers.y == 0.0) return 1.0;
     float apart_m = here_m - blockers.x / blockers.y;
@@ -80,7 +102,7 @@ float soft_visibility(mat4 view, vec4 seen, vec2 uv, vec2 low, vec2 high, float 
     float lit = 0.0;
     for (int i = 0; i < TAPS; ++i) {
         vec2 at = clamp(uv + radius * disk_sample(i, TAPS, turn), low, high);
-        lit += textureLod(shadow_map, at, 0.0).r <= depth ? 1.0 : 0.0;
+        lit += textureLod(shadow_map, at, 0.0).r <= depth + max(dot(slope, at - uv), 0.0) ? 1.0 : 0.0;
     }
     return lit / float(TAPS);
 }
@@ -100,7 +122,9 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     // and needs no root.
     float n_dot_l = dot(n, l);
     float sin2 = 1.0 - n_dot_l * n_dot_l;
-    position_ws += texel_m * ((0.5 + 3.0 * sin2) * sign(n_dot_l) * n + 0.5 * l);
+    // Light from behind has passed through the surface, but that of a large light may come from its border.
+    float side = n_dot_l < 0.0 && lights[i].kind != LIGHT_RECT ? -1.0 : 1.0;
+    position_ws += texel_m * ((0.5 + 3.0 * sin2) * side * n + 0.5 * l);
     vec4 seen = view * vec4(position_ws, 1.0);
     if (seen.w <= 0.0 || any(greaterThan(abs(seen.xy), vec2(seen.w)))) return 1.0;
     vec3 light_ndc = seen.xyz / vec3(seen.w);
@@ -108,10 +132,13 @@ float shadow_visibility(uint i, vec3 position_ws, vec3 n, vec3 l) {
     vec2 uv = (low + 0.5 * tile_size) + 0.5 * tile_size * light_ndc.xy;
     if (SHADOWS == SOFT_SHADOWS) {
         Light light = lights[i];
-        float to_light_m = light.position_ws.w == 0.0 ? 1.0 : distance(light.position_ws.xyz, position_ws);
+        bool is_distant = light.position_ws.w == 0.0;
+        vec3 to_light_ws = is_distant ? l : light.position_ws.xyz - position_ws;
+        float to_light_m = length(to_light_ws);
         float size_m = light.kind == LIGHT_RECT ? length(light.half_x_ws + light.half_y_ws) : shadow_softness * to_light_m;
         float angle = size_m / max(to_light_m, 1e-6);
-        return soft_visibility(view, seen, uv, low, low + tile_size, per_meter / seen.w, angle);
+        vec2 slope = depth_slope(view, light_ndc, n, side * dot(n, to_light_ws) > 0.0, tile_size);
+        return soft_visibility(view, seen, uv, low, low + tile_size, slope, per_meter / seen.w, angle);
     }
     // Points behind the model's bounds have a depth below 0.
     return hard_visibility(uv, max(light_ndc.z, 0.0));

@@ -3,7 +3,7 @@
 #include "pass.glsl"
 #include "common/color.glsl"
 
-// The light that bloom_blur.frag and bloom_wide.frag blur. Its mip levels are ever wider means.
+// The light that bloom.frag and bloom_wide.frag blur. Its mip levels are ever wider means.
 
 uniform sampler2D picture;
 

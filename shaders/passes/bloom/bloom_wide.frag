@@ -3,6 +3,8 @@
 #include "pass.glsl"
 #include "passes/bloom/levels.glsl"
 
+// The part of the bloom that is wide, at a low resolution. bloom.frag adds the narrower levels; common/bloom.glsl has the limits.
+
 void main() {
     int coarsest = coarsest_level();
     vec3 sum = vec3(0.0);

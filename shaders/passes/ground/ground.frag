@@ -5,7 +5,8 @@
 #include "common/math.glsl"
 #include "lighting/shadows/ground.glsl"
 
-// Darkens what lies behind the model where the model takes light from the ground, by the part of the luminance that is left. The
+// A shadow catcher (compare the differential rendering of Debevec 1998, "Rendering Synthetic Objects into Real Scenes"): darkens what
+// lies behind the model where the model takes light from the ground, by the part of the luminance that is left. The
 // ground itself is not drawn, and reflects no light onto the model. Where nothing lies behind the model, its shadow is black with
 // the coverage of what it takes away.
 //

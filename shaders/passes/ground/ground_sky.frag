@@ -7,6 +7,10 @@
 // In each direction of the compass the model hides the sky above some angle: that of the lowest surface over the ground, as if the
 // model were solid above it. Below that angle t the sky lights the ground with the integral of 2 sin cos from 0 to t, sin^2 t.
 
+// Horizons of a height field hide the sky in the same way (Max 1988, "Horizon Mapping: Shadows for Bump-Mapped Surfaces").
+//
+// Limits: light that passes under an overhang of the model is lost.
+
 uniform sampler2D ground_blockers;
 
 const int DIRECTIONS = 24;

@@ -1,9 +1,14 @@
-//@pass shadow_map "Shadow map" draw=model instances=lights size=2048x2048 format=r16f when=SHADOWS doc="Depth of what is nearest to each light; a tile for each"
+//@pass shadow_map "Shadow map" draw=model instances=lights cull=none size=2048x2048 format=r16f when=SHADOWS doc="Depth of what is nearest to each light; a tile for each"
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
 #include "common/math.glsl"
 #include "material/material.glsl"
+
+// The surface that is nearest to each light (Williams 1978, "Casting Curved Shadows on Curved Surfaces").
+//
+// Limits: 2048 pixels are shared by all lights, so edges become blocky with many of them. A surface blocks all light or none: what blends
+// or transmits blocks none.
 
 layout(location = 0) in Fragment fragment;
 layout(location = 12) in vec2 in_tile;

@@ -4,6 +4,8 @@
 #include "common/pixel.glsl"
 #include "passes/temporal/compress.glsl"
 
+// Shows the mean of temporal_mean.frag, which has source and limits.
+
 uniform sampler2D picture;
 uniform sampler2D temporal_mean;
 

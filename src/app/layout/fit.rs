@@ -40,6 +40,14 @@ impl Fit {
         self.size = None;
     }
 
+    /// The side of the picture whose panels a narrow window hides; `None` if there are none.
+    pub(super) fn hidden_side(&self, tree: &Tree<Panel>) -> Option<&'static str> {
+        let is_hidden = |id: &TileId| !tree.tiles.is_visible_in_layout(*id);
+        let name = if self.hidden == Side::Left { "left" } else { "right" };
+        let is_narrow = self.size.is_some_and(|size| size.x < NARROW);
+        (is_narrow && tree.tiles.tile_ids().any(|id| is_hidden(&id))).then_some(name)
+    }
+
     /// Shows the other side of the picture in a narrow window.
     pub(super) fn swap_sides(&mut self) {
         self.hidden = if self.hidden == Side::Left { Side::Right } else { Side::Left };

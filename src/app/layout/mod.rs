@@ -97,8 +97,10 @@ pub(super) struct Layout {
     free: Rect,
     /// Whether the light theme is shown.
     is_light: bool,
-    /// Whether this arrangement belongs to an exercise, so the next window does not get it.
+    /// Whether this arrangement belongs to an exercise or a single file, so the next window does not get it.
     is_temporary: bool,
+    /// What was arranged before a temporary arrangement, and whether the user had made it.
+    before: Option<(Tree<Panel>, bool)>,
 }
 
 impl Default for Layout {
@@ -129,6 +131,7 @@ impl Layout {
             free: Rect::ZERO,
             is_light: false,
             is_temporary: false,
+            before: None,
         }
     }
 
@@ -141,10 +144,18 @@ impl Layout {
         *self = Self { own, is_changed: true, is_light: self.is_light, ..Self::of_tree(preset.tree()) };
     }
 
-    /// Shows a preset until the user chooses another arrangement. The next window is arranged as before.
+    /// Shows a preset until the user chooses another arrangement, or [`Self::arrange_as_before`]. The next window is arranged as before.
     pub(super) fn arrange_temporarily(&mut self, preset: Preset) {
+        let before = self.before.take().unwrap_or_else(|| (self.fit.measured(&self.tree), self.is_own));
         self.arrange(preset);
-        self.is_temporary = true;
+        (self.is_temporary, self.before) = (true, Some(before));
+    }
+
+    /// Shows the arrangement before [`Self::arrange_temporarily`], unless the user has chosen another one since.
+    pub(super) fn arrange_as_before(&mut self) {
+        let Some((tree, is_own)) = self.before.take().filter(|_| self.is_temporary && !self.is_own) else { return };
+        let own = self.own.take().filter(|_| !is_own);
+        *self = Self { own, is_own, is_changed: true, is_light: self.is_light, ..Self::of_tree(tree) };
     }
 
     /// Whether there is an arrangement of the user's to go back to.
@@ -158,6 +169,16 @@ impl Layout {
             let is_light = self.is_light;
             *self = Self { is_own: true, is_changed: true, is_light, ..Self::of_tree(tree) };
         }
+    }
+
+    /// The side of the picture whose panels the window is too narrow for.
+    pub(super) fn hidden_side(&self) -> Option<&'static str> {
+        self.fit.hidden_side(&self.tree)
+    }
+
+    /// Shows these panels in place of those on the other side.
+    pub(super) fn swap_sides(&mut self) {
+        self.fit.swap_sides();
     }
 
     /// Whether the light theme is shown.

@@ -23,9 +23,12 @@ pub(in crate::app) enum Preset {
     Compare,
     /// An exercise beside the picture.
     Learn,
+    /// For a shader without a model, which opens it: clock, passes and shaders.
+    Toy,
 }
 
 impl Preset {
+    /// Those that the user chooses from.
     pub(in crate::app) const ALL: [Self; 4] = [Self::Debug, Self::Look, Self::Compare, Self::Learn];
 
     pub(in crate::app) fn title(self) -> &'static str {
@@ -34,6 +37,7 @@ impl Preset {
             Self::Look => "Look",
             Self::Compare => "Compare",
             Self::Learn => "Learn",
+            Self::Toy => "Shader",
         }
     }
 
@@ -42,6 +46,7 @@ impl Preset {
             Self::Debug => "Modes and shaders on the left, all settings on the right",
             Self::Look => "Light, output and parameters on the right, nothing on the left",
             Self::Compare => "The timeline of your edits below the picture, parameters on the right",
+            Self::Toy => "Clock, passes and shaders beside the picture",
             Self::Learn => "An exercise beside the picture: short lessons about shading, which Specula checks",
         }
     }
@@ -67,6 +72,12 @@ impl Preset {
                 let below = tiles.insert_tab_tile(below);
                 let left = linear(tiles, LinearDir::Vertical, vec![(picture, 1.0), (below, BELOW)]);
                 vec![(left, 1.0), (column(tiles, &right), RIGHT)]
+            }
+            Self::Toy => {
+                let above = [Panel::Passes, Panel::Parameters, Panel::Output, Panel::Capture];
+                let below = [Panel::Shaders, Panel::Timeline, Panel::Timing, Panel::Modes];
+                let right: [(&[Panel], f32); 2] = [(&above, 1.0), (&below, 1.0)];
+                vec![(picture, 1.0), (column(tiles, &right), RIGHT)]
             }
             Self::Learn => {
                 let below: [(&[Panel], f32); 2] =

@@ -43,6 +43,10 @@ pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Comman
         Action::Watch(at) => watch(settings, at),
         Action::WriteDefaults => viewer.panels.defaults.ask(None),
         Action::TogglePanels => viewer.panels.visible ^= true,
+        Action::ToggleTheme => {
+            let layout = &mut viewer.panels.layout;
+            layout.set_light(!layout.is_light());
+        }
         Action::ShowKeys => viewer.panels.show_keys = true,
     }
 }

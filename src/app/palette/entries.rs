@@ -49,6 +49,8 @@ pub(super) enum Action {
     /// Asks whether to write the values of parameters to the files.
     WriteDefaults,
     TogglePanels,
+    /// Change between the light and the dark theme.
+    ToggleTheme,
     ShowKeys,
 }
 
@@ -279,6 +281,7 @@ pub(super) fn commands() -> Vec<Entry> {
         ("Screenshot", "capture PNG", "F12", Action::Do(Command::Screenshot)),
         ("Keys", "shortcuts help", "F1", Action::ShowKeys),
         ("Hide or show the panels", "", "H", Action::TogglePanels),
+        ("Light or dark theme", "colors appearance", "", Action::ToggleTheme),
         ("Hide the selection", "scene node primitive", "Ctrl+H", Action::Do(Command::HideSelected)),
         ("Isolate the selection", "scene node solo local view", "/", Action::Do(Command::IsolateSelected)),
         ("Show everything", "scene hidden unhide reveal", "Alt+H", Action::Do(Command::ShowAll)),

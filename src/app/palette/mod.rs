@@ -9,7 +9,7 @@ mod search;
 use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 
 use super::command::Command;
-use super::panels::theme::{EDGE, ERROR, PANEL, QUIET};
+use super::panels::theme::{EDGE, ERROR, PANEL, QUIET, hide_hover_texts};
 use super::viewer::Viewer;
 use crate::message::did_you_mean;
 use crate::shader::Expression;
@@ -22,7 +22,7 @@ const ROWS: usize = 12;
 /// Width in points.
 const WIDTH: f32 = 480.0;
 /// Height without the rows, in points.
-const AROUND: f32 = 70.0;
+const AROUND: f32 = 90.0;
 
 /// State of the palette between frames.
 #[derive(Default)]
@@ -123,6 +123,7 @@ fn window(egui: &egui::Context, palette: &mut Palette, entries: &mut Vec<Entry>,
         };
         frame.show(ui, content).inner
     });
+    hide_hover_texts(egui);
     if std::mem::replace(&mut palette.is_shown, true) && shown.response.clicked_elsewhere() {
         palette.is_open = false;
     }
@@ -164,6 +165,11 @@ fn list(ui: &mut Ui, palette: &mut Palette, entries: &mut Vec<Entry>, rows: usiz
         if row::show(ui, found, &note(found), index == palette.row) {
             chosen = Some(found);
         }
+    }
+    if found.len() > rows {
+        let last = (first + rows).min(found.len());
+        let text = format!("{} to {last} of {}", first + 1, found.len());
+        ui.label(RichText::new(text).small().color(QUIET)).on_hover_text("Arrow keys show the others");
     }
     if ui.input(|input| input.key_pressed(Key::Enter)) {
         chosen = chosen.or_else(|| found.get(palette.row));

@@ -2,6 +2,7 @@
 
 use egui::{Key, Label, RichText, TextEdit, Ui, Window, vec2};
 
+use super::theme::hide_hover_texts;
 use super::{ACCENT, QUIET};
 
 /// Keys and what they do, in short; assets/manual/window.md says more.
@@ -66,7 +67,9 @@ pub(super) fn show(egui: &egui::Context, list: &mut KeyList, open: &mut bool, cl
     let window = Window::new(RichText::new("Keys").strong()).open(open).collapsible(false).resizable(false);
     // Above the cards over the picture.
     let window = window.order(egui::Order::Foreground);
-    window.pivot(egui::Align2::CENTER_CENTER).default_pos(room.center()).show(egui, |ui| {
+    let window = window.pivot(egui::Align2::CENTER_CENTER).default_pos(room.center());
+    hide_hover_texts(egui);
+    window.show(egui, |ui| {
         ui.set_width(WIDTH.min(room.width() - 40.0));
         let field = ui.add(TextEdit::singleline(&mut list.filter).hint_text("Filter").desired_width(f32::INFINITY));
         if is_new {

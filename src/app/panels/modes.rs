@@ -1,6 +1,9 @@
 //! The debug modes by group, as a gallery of thumbnails or as a list, with a search. The picture previews the mode that the mouse rests
 //! on.
 
+use std::collections::HashSet;
+use std::sync::LazyLock;
+
 use egui::{RichText, Ui, vec2};
 
 use super::spoken::named;
@@ -9,7 +12,7 @@ use super::{PanelState, QUIET, mode_tile};
 use crate::app::gallery::GalleryState;
 use crate::app::grid::Grid;
 use crate::shader::annotation::Mode;
-use crate::shader::{PATHS_STAGE, ShaderSet};
+use crate::shader::{PATHS_STAGE, ShaderSet, TreePath, embedded};
 
 /// Width of the button that switches between gallery and list, points.
 const TOGGLE: f32 = 34.0;
@@ -158,9 +161,24 @@ fn keys(index: usize, mode: &Mode) -> Vec<char> {
     mode.key.into_iter().chain(digit).collect()
 }
 
-/// Sorts found modes by how well their names match the search: those with this name first, with their group.
+/// The groups of the modes that Specula comes with.
+static BUILT_IN_GROUPS: LazyLock<HashSet<&'static str>> = LazyLock::new(|| {
+    let text = embedded::read(None, &TreePath::from("debug/modes.glsl")).unwrap_or_default();
+    let text = std::str::from_utf8(text).unwrap_or_default();
+    let notes = text.lines().filter(|line| line.trim_start().starts_with("//@mode"));
+    let groups = notes.filter_map(|line| line.split("group=\"").nth(1)?.split('"').next());
+    groups.chain(["Passes"]).collect()
+});
+
+/// Sorts found modes by how well their names match the search: those with this name first, with their group. Without a search the
+/// user's own groups follow the first one.
 fn best_first<'a>(mut found: Vec<(usize, &'a Mode)>, search: &str) -> Vec<(usize, &'a Mode)> {
     if search.is_empty() {
+        let first = found.first().map(|(_, mode)| mode.group.clone());
+        found.sort_by_key(|(_, mode)| {
+            let is_first = first.as_ref() == Some(&mode.group);
+            (!is_first, BUILT_IN_GROUPS.contains(mode.group.as_str()))
+        });
         return found;
     }
     let rank = |mode: &Mode| match mode.name.to_lowercase() {

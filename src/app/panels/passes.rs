@@ -1,5 +1,5 @@
-//! The panel Passes: the effects that the tree declares, each with its parameters below, then the passes that only work for others,
-//! and the clock of animated shaders.
+//! The panel Passes: the clock of animated shaders, then the effects that the tree declares, those of the user first, each with its
+//! parameters below, and last the passes that only work for others.
 
 use std::collections::BTreeSet;
 
@@ -10,8 +10,8 @@ use super::parameters::{is_true, show_constant, show_parameter};
 use super::rows::{Row, check, set_option};
 use crate::app::playback::Playback;
 use crate::settings::Settings;
-use crate::shader::annotation::pass::MODEL;
-use crate::shader::{Constant, GraphPass, Parameter, ShaderSet};
+use crate::shader::annotation::pass::{MODEL, Target};
+use crate::shader::{Constant, GraphPass, Parameter, ShaderSet, TreePath, embedded};
 
 /// Shows the panel. `is_animated`: something on screen reads the time.
 pub(super) fn show(
@@ -21,22 +21,38 @@ pub(super) fn show(
     playback: &mut Playback,
     is_animated: bool,
 ) {
+    if is_animated {
+        clock(ui, playback);
+    }
     // A parameter that several effects use is shown once.
     let mut shown = BTreeSet::new();
-    for switch in switches(shaders) {
-        show_constant(ui, switch, &mut settings.shader);
-        if is_true(switch, &settings.shader) {
-            let of_switch = of_switch(shaders, switch);
-            show_parameters(ui, of_switch, &switch.label, settings, &mut shown);
-        }
-    }
     let names = internal(shaders);
     let (inside, effects): (Vec<&GraphPass>, Vec<&GraphPass>) =
         own(shaders).partition(|pass| names.contains(pass.name()));
-    for pass in effects {
+    let (shipped, added): (Vec<&GraphPass>, Vec<&GraphPass>) = effects.into_iter().partition(|pass| is_shipped(pass));
+    let show_effect = |ui: &mut Ui, pass: &GraphPass, settings: &mut Settings, shown: &mut BTreeSet<_>| {
         if show_switch(ui, pass, settings) {
-            show_parameters(ui, of_effect(shaders, pass, &names), &pass.note.label, settings, &mut shown);
+            show_parameters(ui, of_effect(shaders, pass, &names), &pass.note.label, settings, shown);
         }
+    };
+    // A shader without a model covers what the others draw.
+    let is_covered = added.iter().any(|pass| pass.covers());
+    added.into_iter().for_each(|pass| show_effect(ui, pass, settings, &mut shown));
+    let mut show_others = |ui: &mut Ui| {
+        for switch in switches(shaders) {
+            show_constant(ui, switch, &mut settings.shader);
+            if is_true(switch, &settings.shader) {
+                let of_switch = of_switch(shaders, switch);
+                show_parameters(ui, of_switch, &switch.label, settings, &mut shown);
+            }
+        }
+        shipped.iter().for_each(|pass| show_effect(ui, pass, settings, &mut shown));
+    };
+    if is_covered {
+        let title = RichText::new("Passes of the model").small().color(QUIET);
+        CollapsingHeader::new(title).id_salt("covered passes").show_unindented(ui, show_others);
+    } else {
+        show_others(ui);
     }
     if !inside.is_empty() {
         let title = RichText::new(format!("Internal passes ({})", inside.len())).small().color(QUIET);
@@ -48,9 +64,11 @@ pub(super) fn show(
         });
         header.header_response.on_hover_text("Passes whose images the effects read");
     }
-    if is_animated {
-        clock(ui, playback);
-    }
+}
+
+/// Whether the pass is one of the tree that Specula comes with.
+fn is_shipped(pass: &GraphPass) -> bool {
+    embedded::read(None, &TreePath::from(pass.note.stage.as_str())).is_some()
 }
 
 /// The passes with a switch of their own.
@@ -59,12 +77,15 @@ fn own(shaders: &ShaderSet) -> impl Iterator<Item = &GraphPass> {
     shaders.graph.passes.iter().map(|pass| &**pass).filter(has_own)
 }
 
-/// The names of the passes that only work for others: they do not change the picture, and another pass needs them.
+/// The names of the passes that only work for others: they do not change the picture, and another pass needs them or may need them.
 pub(in crate::app) fn internal(shaders: &ShaderSet) -> BTreeSet<&str> {
     let passes = || shaders.graph.passes.iter().map(|pass| &**pass);
     let needed = passes().flat_map(|pass| needs(shaders, pass).filter(|needed| needed.name() != pass.name()));
     let needed: BTreeSet<&str> = needed.filter(|needed| !needed.note.to_picture()).map(GraphPass::name).collect();
-    passes().map(GraphPass::name).filter(|name| *name == MODEL || needed.contains(name)).collect()
+    // The surface's images are there for passes that the user may write.
+    let is_offer = |pass: &GraphPass| pass.note.to == Target::Image && is_shipped(pass);
+    let is_internal = |pass: &&GraphPass| pass.name() == MODEL || needed.contains(pass.name()) || is_offer(pass);
+    passes().filter(is_internal).map(GraphPass::name).collect()
 }
 
 /// A pass and those whose images and buffers it needs.

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use egui::style::WidgetVisuals;
-use egui::{Color32, CornerRadius, FontDefinitions, FontId, Stroke, TextStyle, Theme};
+use egui::{Color32, CornerRadius, FontDefinitions, FontId, Id, LayerId, Popup, PopupAnchor, Stroke, TextStyle, Theme};
 
 /// A color of the window, which depends on the theme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +79,8 @@ pub(in crate::app) const GOOD: Tone = Tone::new(0x70c982, 0x2a732c);
 /// Icons of the Phosphor font.
 pub(in crate::app) mod icon {
     pub(in crate::app) use egui_phosphor::regular::{
-        CHART_BAR, FOLDER_OPEN, GRID_FOUR, LAYOUT, LIST, MAGNIFYING_GLASS, MOON, QUESTION, SQUARES_FOUR, SUN, X,
+        ARROWS_LEFT_RIGHT, CHART_BAR, FOLDER_OPEN, GRID_FOUR, LAYOUT, LIST, MAGNIFYING_GLASS, MOON, QUESTION,
+        SQUARES_FOUR, SUN, X,
     };
 }
 
@@ -103,6 +104,13 @@ pub(in crate::app) fn apply(egui: &egui::Context) {
         scroll.floating_allocated_width = scroll.bar_width + scroll.bar_inner_margin;
     });
     choose(egui, false);
+}
+
+/// Hides the hover texts of the panels in this frame, as an open menu does.
+pub(in crate::app) fn hide_hover_texts(egui: &egui::Context) {
+    // A popup without a place: it counts as open, and draws nothing.
+    let id = Id::new("no hover texts");
+    Popup::new(id, egui.clone(), PopupAnchor::PointerFixed, LayerId::background()).show(|_| ());
 }
 
 /// Shows the dark or the light theme.

@@ -32,6 +32,13 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, commands: &mut Vec<Comma
             {
                 state.layout.arrange_own();
             }
+            if let Some(side) = state.layout.hidden_side() {
+                let hint = format!("The window is too narrow for the panels on both sides: shows those on the {side}");
+                let button = named(ui.button(icon::ARROWS_LEFT_RIGHT), "Panels of the other side");
+                if button.on_hover_text(hint).clicked() {
+                    state.layout.swap_sides();
+                }
+            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if named(ui.button(icon::QUESTION), "Keys").on_hover_text("Keys (F1, ?)").clicked() {
                     state.show_keys ^= true;

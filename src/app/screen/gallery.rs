@@ -123,7 +123,7 @@ impl Gallery {
         }
         let drawn = self.draw_sets(encoder, slot, viewer, ui, layouts, &shaders, stale);
         match drawn {
-            Err(GpuError::OutOfMemory(_)) => {
+            Err(error) if error.is_shortage() => {
                 self.failed = true;
                 Ok(Some(Duration::ZERO))
             }

@@ -147,7 +147,7 @@ impl PixelReader {
             return Ok(Some(left));
         }
         match self.draw_sets(encoder, slot, viewer, layouts, &shaders, stale) {
-            Err(GpuError::OutOfMemory(_)) => {
+            Err(error) if error.is_shortage() => {
                 (self.renderer, self.stopped) = (None, true);
                 self.pending.clear();
                 Ok(Some(Duration::ZERO))

@@ -27,7 +27,7 @@ impl Screen {
         }
         viewer.screenshot = false;
         match self.write_screenshot(viewer, frame) {
-            Err(error @ GpuError::OutOfMemory(_)) => {
+            Err(error) if error.is_shortage() => {
                 self.view.forget();
                 self.reference = None;
                 viewer.say(format!("no screenshot: {error}"));
@@ -76,7 +76,7 @@ impl Screen {
             match self.read_picture(viewer, frame) {
                 Ok(Some(capture)) => viewer.write_shot(shot, capture),
                 Ok(None) => shot.reply.error("there is no picture"),
-                Err(error @ GpuError::OutOfMemory(_)) => {
+                Err(error) if error.is_shortage() => {
                     self.view.forget();
                     self.reference = None;
                     shot.reply.error(error.to_string());

@@ -7,6 +7,7 @@ use super::{FirstFrame, Viewer};
 use crate::app::command::{Command, CompareWith, open_as};
 use crate::app::dialog::Dialog;
 use crate::app::inspector::Shown;
+use crate::app::layout::Preset;
 use crate::app::recent::Kind;
 use crate::events::{CompletedEvent, Event, ReloadEvent, emit};
 use crate::gpu::GpuError;
@@ -20,6 +21,17 @@ use crate::threads::worker::WorkerMessage;
 use crate::threads::{Message, Role};
 
 impl Viewer {
+    /// Shows the panels for a single file, which has no model, or those of before for a tree.
+    fn arrange_for(&mut self, is_single_file: bool) {
+        let was_single_file = std::mem::replace(&mut self.shader.is_single_file, is_single_file);
+        let layout = &mut self.panels.layout;
+        match (was_single_file, is_single_file) {
+            (false, true) => layout.arrange_temporarily(Preset::Toy),
+            (true, false) => layout.arrange_as_before(),
+            _ => {}
+        }
+    }
+
     pub(in crate::app) fn on_message(&mut self, message: Message) {
         match message {
             Message::Worker(WorkerMessage::Built(Err(message))) => {
@@ -37,7 +49,7 @@ impl Viewer {
                 self.shader.compiling = false;
                 self.shader.tree = source.name();
                 self.shader.location = source.location().map(Into::into);
-                self.shader.is_single_file = matches!(source, Source::Toy(_));
+                self.arrange_for(matches!(source, Source::Toy(_)));
                 self.threads.follow_tree(&source);
                 self.source = source;
                 self.remember_tree(&reload.outcome);

@@ -1,5 +1,6 @@
 //! The options that every command takes: settings, shader tree, model, device.
 
+pub mod frames;
 pub mod names;
 pub mod parse;
 
@@ -349,6 +350,11 @@ pub fn check_mode(shaders: &ShaderSet, slug: &str) -> Result<(), Failure> {
     let slugs = || shaders.modes.iter().map(|mode| mode.slug.as_str());
     if slugs().any(|known| known == slug) {
         return Ok(());
+    }
+    let is_step = |name: &str| shaders.graph.pass(name).is_some();
+    if slug.strip_prefix("pass:").is_some_and(is_step) {
+        let message = format!("the mode '{slug}' is the picture itself, to which that pass draws: use --mode final");
+        return Err(Failure::Usage(message));
     }
     let hint = did_you_mean(slug, slugs());
     Err(Failure::Usage(format!("there is no mode '{slug}'.{hint} `specula modes` lists them all")))

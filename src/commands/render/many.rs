@@ -20,7 +20,7 @@ pub fn is_asked(args: &Args) -> bool {
 /// Fails before any work when the file cannot be written.
 pub fn check(args: &Args) -> Result<(), Failure> {
     if args.turntable.is_some() {
-        return check_animation(&args.out, args.fps.unwrap_or(FPS)).map_err(Failure::Usage);
+        return check_animation(&args.out, args.frames.fps.unwrap_or(FPS)).map_err(Failure::Usage);
     }
     if args.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("png")) {
         return Err(Failure::Usage(format!("cannot write {}: a sheet must end in .png", args.out.display())));
@@ -57,7 +57,7 @@ fn draw(
     tell: &mut dyn FnMut(u64, u64) -> bool,
 ) -> Result<(), CaptureError> {
     if let Some(frames) = args.turntable {
-        let (fps, size, turn) = (args.fps.unwrap_or(FPS), args.common.size, args.turn);
+        let (fps, size, turn) = (args.frames.fps.unwrap_or(FPS), args.common.size, args.turn);
         return Turntable { frames, fps, size, turn }.write(headless, out, tell);
     }
     let names: Vec<String> =

@@ -9,14 +9,14 @@ use std::time::Instant;
 
 use specula::capture::Turn;
 use specula::events::{CompletedEvent, Event, ReloadEvent, emit, in_short};
-use specula::frame::{Date, Keys};
-use specula::headless::{Headless, Sequence};
+use specula::headless::Headless;
 use specula::message;
 use specula::picture;
 use specula::pipeline::{Outcome, Reload};
 use specula::render::Capture;
 use specula::shader::{Diagnostic, Mode};
 
+use super::common::frames::Frames;
 use super::common::parse::size;
 use super::common::{Common, check_mode, check_out, check_validation, compiler};
 use super::progress::Progress;
@@ -50,21 +50,8 @@ pub struct Args {
     /// Keep running, and render again whenever a shader or the model is saved
     #[arg(long)]
     watch: bool,
-    /// Draw N frames and write the last, for passes that read the previous frame [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    frames: Option<u32>,
-    /// Time of the first frame in seconds, for animated shaders
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
-    time: f32,
-    /// Frames per second, for animated shaders [default: 60]
-    #[arg(long, value_name = "N")]
-    fps: Option<f32>,
-    /// Keys that are down in all frames, such as A,Space,Left, for shaders that read keys. They go down in the first frame
-    #[arg(long, value_name = "NAMES")]
-    keys: Option<Keys>,
-    /// Date at time 0, such as 2026-11-23T16:00:00, for shaders that read it [default: 2000-01-01]
-    #[arg(long, value_name = "DATE")]
-    date: Option<Date>,
+    #[command(flatten)]
+    frames: Frames,
     #[command(flatten)]
     common: Common,
 }
@@ -81,12 +68,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
         true => many::check(&args)?,
         false => check_out(&args.out)?,
     }
-    let fps = args.fps.unwrap_or(60.0);
-    if !args.time.is_finite() || !(0.001..=100_000.0).contains(&fps) {
-        return Err(Failure::Usage(
-            "--time takes a number of seconds, and --fps 0.001 to 100000 frames a second".into(),
-        ));
-    }
+    let sequence = args.frames.sequence()?;
     if args.paths && !all {
         return Err(Failure::Usage("--paths adds modes to `--mode all`; a mode that is named needs no --paths".into()));
     }
@@ -98,13 +80,7 @@ pub fn run(mut args: Args, start: Instant) -> Result<(), Failure> {
     progress.say("compiling the shaders");
     let read = || args.common.model(args.model.as_deref());
     let (mut headless, reload) = Headless::start(&gpu, &compiler()?, source, settings.clone(), args.common.size, read)?;
-    headless.set_sequence(Sequence {
-        frames: args.frames.unwrap_or(1),
-        start_s: args.time,
-        fps,
-        date: args.date.unwrap_or_default(),
-        keys: args.keys.unwrap_or_default(),
-    });
+    headless.set_sequence(sequence);
     if let Some(watch) = &mut watch {
         watch.follow(&headless);
     }
@@ -280,7 +256,7 @@ fn hint_at_frames(headless: &Headless, args: &Args) -> Result<(), Failure> {
         [one] => format!("the pass {one} continues"),
         all => format!("the passes {} continue", all.join(", ")),
     };
-    if args.frames.is_none() && !passes.is_empty() {
+    if args.frames.frames.is_none() && !passes.is_empty() {
         message::tell(format_args!("hint: {subject} from frame to frame, and this is the first; --frames 60 draws 60"));
     }
     Ok(())
@@ -317,9 +293,9 @@ fn report(reload: &Reload, headless: &Headless, args: &Args, detect_ms: f64, fir
         }
         Outcome::Ready(_) => {
             let report = &reload.report;
+            let changed = if report.changed.is_empty() { "removed file".to_owned() } else { report.changed.join(" ") };
             message::tell(format_args!(
-                "{} -> {}  compile {:.0} ms + pipeline {:.0} ms + frame {first_frame_ms:.0} ms",
-                report.changed.join(" "),
+                "{changed} -> {}  compile {:.0} ms + pipeline {:.0} ms + frame {first_frame_ms:.0} ms",
                 in_short(&report.stages.iter().map(|(stage, _)| stage.clone()).collect::<Vec<_>>()),
                 report.compile_ms,
                 reload.pipeline_ms,

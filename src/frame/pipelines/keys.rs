@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{MaterialVariant, PipelineRequest, is_transmissive};
+use super::{MaterialVariant, PipelineRequest, QUADS, is_transmissive};
 use crate::frame::formats::{MEAN_FORMAT, pass_format};
 use crate::frame::pipeline_key::{KeyPass, PipelineKey};
 use crate::gpu::{PrimitiveClass, Raster, Specialization, Swapchain, vk};
@@ -146,6 +146,9 @@ impl PipelineRequest {
         if pass.is_compute || pass.note.is_built_in() || pass.note.background {
             return Vec::new();
         }
+        if pass.note.quads {
+            return vec![self.model_pass_key(pass, QUADS)];
+        }
         if pass.note.model.is_some() {
             let materials = self.materials.iter().filter(|material| material.is_taken_by(pass));
             return materials.map(|material| self.model_pass_key(pass, *material)).collect();
@@ -164,7 +167,7 @@ impl PipelineRequest {
         shared.iter().chain(&self.constants).copied().collect()
     }
 
-    /// The pipeline with which a pass that is not the model's own draws a material of the model.
+    /// The pipeline with which a pass that is not the model's own draws a material of the model, or [`QUADS`].
     pub(crate) fn model_pass_key(&self, pass: &Arc<GraphPass>, material: MaterialVariant) -> PipelineKey {
         let raster = if pass.note.blend { Raster::Blended } else { Raster::Solid };
         let key = PipelineKey { modes: Vec::new(), ..self.key_with_model(pass, material, raster) };

@@ -303,6 +303,14 @@ impl Encoder {
         unsafe { self.gpu.device.cmd_draw(self.raw, vertices, 1, 0, 0) };
     }
 
+    /// Draws this many instances of two triangles, without vertices in memory.
+    pub fn draw_quads(&mut self, instances: u32) {
+        const CORNERS: u32 = 6;
+        self.counter.draw(CORNERS.saturating_mul(instances));
+        // SAFETY: this encoder records the command buffer.
+        unsafe { self.gpu.device.cmd_draw(self.raw, CORNERS, instances, 0, 0) };
+    }
+
     /// Draws `count` indices, beginning with index number `first`.
     pub fn draw_indexed(&mut self, count: u32, first: u32, instances: u32) {
         self.counter.draw_indexed(count, instances);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::PixelAt;
-use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Use, vk};
+use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, Memory, Swapchain, Use, vk};
 use crate::shader::PixelValue;
 
 /// A frame in CPU memory.
@@ -88,8 +88,8 @@ impl Readback {
 /// Copies one pixel per frame of a slot, as part of the frame.
 pub(super) struct PixelReadback {
     buffer: Arc<Buffer>,
-    /// Pixel position, whether the target holds half floats, and the picture's number.
-    copied: Option<((u32, u32), bool, u64)>,
+    /// Pixel position, the image's format, and the picture's number.
+    copied: Option<((u32, u32), vk::Format, u64)>,
 }
 
 impl PixelReadback {
@@ -98,27 +98,31 @@ impl PixelReadback {
         Ok(Self { buffer, copied: None })
     }
 
-    /// Records the copy of a pixel of an HDR image. The image is in [`Use::Sampled`] before and after.
-    pub(super) fn record(&mut self, encoder: &mut Encoder, hdr: &Arc<Image>, at: Option<(u32, u32)>, picture: u64) {
-        let desc = hdr.desc();
+    /// Records the copy of a pixel of an HDR image, or of a displayed picture. The image is in [`Use::Sampled`] before and after.
+    pub(super) fn record(&mut self, encoder: &mut Encoder, image: &Arc<Image>, at: Option<(u32, u32)>, picture: u64) {
+        let desc = image.desc();
         let at = at.filter(|(x, y)| *x < desc.width && *y < desc.height);
-        self.copied = at.map(|at| (at, desc.format == vk::Format::R16G16B16A16_SFLOAT, picture));
+        self.copied = at.map(|at| (at, desc.format, picture));
         if let Some(at) = at {
-            encoder.transition(hdr, Use::Sampled, Use::CopyFrom);
-            encoder.copy_pixel(hdr, at, &self.buffer);
-            encoder.transition(hdr, Use::CopyFrom, Use::Sampled);
+            encoder.transition(image, Use::Sampled, Use::CopyFrom);
+            encoder.copy_pixel(image, at, &self.buffer);
+            encoder.transition(image, Use::CopyFrom, Use::Sampled);
             encoder.copies_done();
         }
     }
 
     /// The pixel of the last frame that recorded one. SYNC: after that frame's fence.
     pub(super) fn read(&self) -> Option<PixelAt> {
-        let (at, half, picture) = self.copied?;
-        texels(self.buffer.content(), half).next().map(|texel| PixelAt {
-            at,
-            value: PixelValue::decode(texel),
-            picture,
-        })
+        let (at, format, picture) = self.copied?;
+        let value = match (format, self.buffer.content()) {
+            // The displayed picture has no flags in alpha.
+            (Swapchain::FORMAT, [blue, green, red, alpha, ..]) => {
+                let value = [red, green, blue, alpha].map(|byte| f32::from(*byte) / 255.0);
+                PixelValue { value, ..PixelValue::default() }
+            }
+            (format, bytes) => PixelValue::decode(texels(bytes, format == vk::Format::R16G16B16A16_SFLOAT).next()?),
+        };
+        Some(PixelAt { at, value, picture })
     }
 }
 

@@ -25,6 +25,7 @@ use crate::shader::annotation::pass::Dispatch;
 use crate::shader::graph::{Input, Part, TextureKind};
 pub(super) use blocks::Blocks;
 use images::Images;
+pub use memory::beyond_memory;
 pub(super) use reads::Given;
 use reads::Reads;
 use reuse::DrawnFrom;
@@ -285,8 +286,7 @@ impl DeclaredPasses {
                 encoder.bind_set(&self.layouts, drawn.frame_set);
                 let instances = instances(drawn.frame, pass);
                 let model = ModelDraws { layouts: &self.layouts, frame: drawn.frame, sets: &sets, instances, pass };
-                let draws = drawn.frame.scene.iter().flat_map(|scene| &scene.draws);
-                model.draw(encoder, draws, |material| Some(request.model_pass_key(pass, material)));
+                model.draw_pass(encoder);
             }
             None => {
                 encoder.begin_rendering(&attachments);

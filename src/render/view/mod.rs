@@ -19,6 +19,7 @@ use glam::Mat4;
 
 use capture::PixelReadback;
 pub use capture::{Capture, Readback};
+pub use declared::beyond_memory;
 pub use pixel_modes::PixelModes;
 pub use survey::Survey;
 use targets::{TargetDesc, Targets};
@@ -247,7 +248,9 @@ impl View {
         // The probed pixel, which `pixel` reads once the frame has finished.
         let drawn_picture = self.declared.picture().unwrap_or(targets.picture());
         let picture = self.given.as_ref().unwrap_or(drawn_picture).clone();
-        in_flight.pixel.record(encoder, &picture, self.probe, self.picture);
+        let is_on_display = frame.state.pipelines.shows_display();
+        let in_light = self.probe.filter(|_| !is_on_display);
+        in_flight.pixel.record(encoder, &picture, in_light, self.picture);
         if surveys {
             in_flight.survey.record(&self.gpu, encoder, &picture, self.picture)?;
             self.surveyed = self.picture;
@@ -268,6 +271,9 @@ impl View {
         encoder.transition(output.image, output.before, Use::Color);
         passes::clear(encoder, output.image);
         if let Some(display) = display {
+            if is_on_display {
+                in_flight.pixel.record(encoder, &display, self.probe, self.picture);
+            }
             passes::copy(encoder, &display, output);
         }
         Ok(())

@@ -1,9 +1,9 @@
-//! Draws the model with the pipelines of a pass: with vertices and indices, or with mesh stages.
+//! Draws the model with the pipelines of a pass: with vertices and indices, or with mesh stages. Also draws quads.
 
 use std::sync::Arc;
 
 use super::declared::PassSets;
-use crate::frame::{MaterialVariant, PipelineKey};
+use crate::frame::{MaterialVariant, PipelineKey, QUADS};
 use crate::gpu::{Encoder, SetLayouts, vk};
 use crate::interface::{ALPHA_BLEND, Draw, MAX_LIGHT_VIEWS};
 use crate::render::bound_frame::BoundFrame;
@@ -23,7 +23,7 @@ pub(super) struct ModelDraws<'a> {
     pub(super) sets: &'a PassSets,
     /// How often each is drawn.
     pub(super) instances: u32,
-    pub(super) pass: &'a GraphPass,
+    pub(super) pass: &'a Arc<GraphPass>,
 }
 
 impl ModelDraws<'_> {
@@ -44,6 +44,33 @@ impl ModelDraws<'_> {
                 self.draw_one(encoder, draw);
             }
         }
+    }
+
+    /// Draws what a declared pass draws: the model, or its quads.
+    pub(super) fn draw_pass(&self, encoder: &mut Encoder) {
+        let request = &self.frame.state.pipelines;
+        if !self.pass.note.quads {
+            let draws = self.frame.scene.iter().flat_map(|scene| &scene.draws);
+            return self.draw(encoder, draws, |material| Some(request.model_pass_key(self.pass, material)));
+        }
+        let Some(pipeline) = self.frame.pipelines.get(&request.model_pass_key(self.pass, QUADS)) else { return };
+        // World space is object space.
+        let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let [x, y, z] = identity;
+        let world_from_object = [x, y, z, [0.0; 3]];
+        encoder.push(self.layouts, &Draw { world_from_object, normal_ws_from_object: identity, ..Draw::default() });
+        self.sets.bind(encoder, pipeline);
+        let topology = match self.pass.front.tessellation {
+            Some(_) => vk::PrimitiveTopology::PATCH_LIST,
+            None => vk::PrimitiveTopology::TRIANGLE_LIST,
+        };
+        let cull = match self.pass.note.cull {
+            Some(Cull::Front) => vk::CullModeFlags::FRONT,
+            Some(Cull::Back) => vk::CullModeFlags::BACK,
+            Some(Cull::None) | None => vk::CullModeFlags::NONE,
+        };
+        encoder.set_raster(topology, cull, vk::FrontFace::COUNTER_CLOCKWISE);
+        encoder.draw_quads(self.instances);
     }
 
     fn draw_one(&self, encoder: &mut Encoder, draw: &GpuDraw) {
@@ -88,7 +115,7 @@ impl ModelDraws<'_> {
     }
 }
 
-/// How often a pass draws the model; 0 if it does not.
+/// How often a pass draws the model, or how many quads; 0 if it does not.
 pub(super) fn instances(frame: &BoundFrame, pass: &GraphPass) -> u32 {
     match pass.note.model {
         Some(Instances::Count(count)) => count,

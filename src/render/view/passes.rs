@@ -159,11 +159,10 @@ impl Passes<'_> {
 
     /// Draws the passes that add to the model: those that blend, or the others.
     pub(super) fn added(&self, encoder: &mut Encoder, blend: bool) {
-        let Some(scene) = &self.frame.scene else { return };
         for pass in self.request().added_passes().filter(|pass| pass.note.blend == blend) {
             let instances = instances(self.frame, pass);
             let model = ModelDraws { layouts: self.layouts, frame: self.frame, sets: self.sets, instances, pass };
-            model.draw(encoder, &scene.draws, |material| Some(self.request().model_pass_key(pass, material)));
+            model.draw_pass(encoder);
         }
     }
 

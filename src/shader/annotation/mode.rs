@@ -106,6 +106,9 @@ pub struct Mode {
     pub numbers: Option<Numbers>,
     /// Whether exposure and tone mapping apply.
     pub tonemap: bool,
+    /// Whether its values are those of the display, after the tone map.
+    #[serde(skip)]
+    pub is_displayed: bool,
     /// Whether the view averages frames, each of which is a noisy estimate.
     pub accumulate: bool,
     /// Path of the fragment stage that computes the value. A pass draws the model with it.

@@ -11,6 +11,12 @@ use crate::shader::diagnostic::Diagnostic;
 /// Number of images that every device can draw to in one pass.
 const MOST_IMAGES: usize = 4;
 
+/// How often a pass draws the model at most.
+pub const MOST_COPIES: u32 = 1024;
+
+/// How many quads a pass draws at most.
+const MOST_QUADS: u32 = 1 << 20;
+
 /// Largest side of a pass's image in pixels, if it is given in pixels. The device may offer less.
 const LARGEST_SIDE: u32 = 16384;
 
@@ -178,8 +184,10 @@ pub struct PassNote {
     pub after: Option<String>,
     /// The workgroups of a compute pass.
     pub dispatch: Dispatch,
-    /// How often it draws the model; `None` if it covers its image with one triangle.
+    /// How often it draws the model, or quads; `None` if it covers its image with one triangle.
     pub model: Option<Instances>,
+    /// Whether it draws quads, which its vertex stage places, and not the model.
+    pub quads: bool,
     /// Whether its triangle lies behind the model.
     pub background: bool,
     /// The pass that it replaces in the debug modes that name its stage.
@@ -222,6 +230,11 @@ impl PassNote {
         std::iter::once((self.name.as_str(), self.format)).chain(also)
     }
 
+    /// Whether it draws the model, and not quads.
+    pub fn draws_model(&self) -> bool {
+        self.model.is_some() && !self.quads
+    }
+
     /// Whether it draws to the multisampled picture, together with the model.
     pub fn is_drawn_with_model(&self) -> bool {
         self.to_picture() && (self.model.is_some() || self.background)
@@ -245,6 +258,7 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
         after: None,
         dispatch: Dispatch::Size,
         model: None,
+        quads: false,
         background: false,
         instead: None,
         cull: None,
@@ -275,9 +289,12 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
             "instances" => note.model = Some(instances(cursor)?),
             "draw" => match cursor.value(key)? {
                 (_, what) if what == "model" => note.model = note.model.or(Some(Instances::Count(1))),
+                (_, what) if what == "quads" => {
+                    (note.model, note.quads) = (note.model.or(Some(Instances::Count(1))), true);
+                }
                 (_, what) if what == "background" => note.background = true,
                 (bytes, other) => {
-                    let message = format!("expected draw=model or draw=background, found `{other}`");
+                    let message = format!("expected draw=model, draw=quads or draw=background, found `{other}`");
                     return Err(cursor.error(bytes, message));
                 }
             },
@@ -287,8 +304,12 @@ pub fn pass(cursor: &mut Cursor<'_>) -> Result<PassNote, Box<Diagnostic>> {
                 note.to = cursor.one_of(key, &all)?;
             }
             other => {
-                let known = "to=picture, after=, size=, format=, also=, draw=model, instances=, cull=, blend, dispatch=, when=, mips, \
-                             keep, off or doc=";
+                let known = "to=picture|mean|display, after=, size=, format=, also=, draw=model|quads|background, instances=, cull=, \
+                             blend, instead=, dispatch=, when=, mips, keep, off or doc=";
+                if other == "camera" {
+                    let message = "the camera of a pass is its vertex stage: a .vert file of the same name decides where vertices go";
+                    return Err(cursor.error(bytes, message.to_owned()));
+                }
                 if other.starts_with('=') {
                     return Err(cursor.error(bytes, format!("the option before `{other}` takes no value")));
                 }
@@ -305,6 +326,7 @@ fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=LARGEST_SIDE).contains(side));
     let size = match value.split_once(['/', 'x']) {
         None if value == "1" => Some(PassSize::Divided(1)),
+        None => side(&value).map(|side| PassSize::Pixels(side, side)),
         Some(("1", by)) if value.contains('/') => {
             by.parse().ok().filter(|by| (1..=64).contains(by)).map(PassSize::Divided)
         }
@@ -315,7 +337,7 @@ fn size(cursor: &mut Cursor<'_>) -> Result<PassSize, Box<Diagnostic>> {
     };
     size.ok_or_else(|| {
         let message = format!(
-            "expected size=1, size=1/2 to size=1/64, or size=512x256 (1 to {LARGEST_SIDE} pixels a side), \
+            "expected size=1, size=1/2 to size=1/64, size=512x256 or size=512 (1 to {LARGEST_SIDE} pixels a side), \
              found `{value}`"
         );
         cursor.error(bytes, message)
@@ -331,6 +353,10 @@ fn format_named(name: &str) -> Result<PassFormat, String> {
     let found = PassFormat::ALL.iter().find(|(known, _)| *known == name);
     found.map(|(_, format)| *format).ok_or_else(|| {
         let names: Vec<&str> = PassFormat::ALL.iter().map(|(name, _)| *name).collect();
+        if name.starts_with('d') && name[1..].parse::<u32>().is_ok() {
+            return "a pass with draw= has a depth of its own; to keep depth, write gl_FragCoord.z to format=r32f"
+                .to_owned();
+        }
         format!("expected one of the formats {}, found `{name}`", names.join(", "))
     })
 }
@@ -379,7 +405,7 @@ fn dispatch(cursor: &mut Cursor<'_>) -> Result<Dispatch, Box<Diagnostic>> {
 }
 
 fn instances(cursor: &mut Cursor<'_>) -> Result<Instances, Box<Diagnostic>> {
-    const MOST: u32 = 1024;
+    const MOST: u32 = MOST_QUADS;
     let (bytes, value) = cursor.value("instances")?;
     if value == "lights" {
         return Ok(Instances::Lights);

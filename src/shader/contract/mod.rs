@@ -139,7 +139,10 @@ pub fn check_fragment_outputs(outputs: &[Location], texts: Texts<'_>) -> Vec<Dia
         let is_color = *location == 0 && type_name == "vec4" && std::mem::take(&mut is_first);
         let message =
             format!("shader writes `{type_name} {name}` at location {location}, Specula has {EXPECTED} alone");
-        (!is_color).then(|| texts.error(&[last_part(name), "out"], message))
+        let error = || texts.error(&[last_part(name), "out"], message.clone());
+        let help = format!("write also={} in the //@pass of a pass that draws an image of its own", last_part(name));
+        let is_further = *location > 0 && type_name == "vec4";
+        (!is_color).then(|| if is_further { error().with_help(help) } else { error() })
     };
     outputs.iter().filter_map(&mut refuse).collect()
 }
@@ -167,14 +170,22 @@ fn check_capabilities(capabilities: &[u32], texts: Texts<'_>) -> Vec<Diagnostic>
 fn check_descriptor(found: &Descriptor, texts: Texts<'_>) -> Option<Diagnostic> {
     let Descriptor { set, binding, glsl, name, .. } = found;
     let words = [name.as_str(), "layout"];
-    let Some(known) = interface::BINDINGS.iter().find(|known| (known.set, known.binding) == (*set, *binding)) else {
+    let is_used = |known: &&interface::Binding| known.name != "BINDING_UNUSED";
+    let place = (*set, *binding);
+    let Some(known) = interface::BINDINGS.iter().filter(is_used).find(|known| (known.set, known.binding) == place)
+    else {
         let message = format!("shader says set {set}, binding {binding} is {glsl} `{name}`, Specula has nothing there");
         let names: Vec<String> = interface::BINDINGS
             .iter()
+            .filter(is_used)
             .filter(|known| known.set == *set)
             .map(|known| format!("{} = {} ({})", known.name, known.binding, known.kind.glsl()))
             .collect();
+        let is_image = glsl.starts_with("sampler") || glsl.starts_with("image");
         let help = match names.as_slice() {
+            _ if is_image => format!(
+                "leave out the set and the binding: images of passes and textures are read by name, as `{name}`"
+            ),
             [] => "the sets are SET_FRAME, SET_MATERIAL, SET_PASS and SET_TASK".to_owned(),
             names => format!("set {set} has {}", names.join(", ")),
         };

@@ -1,6 +1,6 @@
 //! Options of a `//@pass` that contradict each other, or do not apply to its kind of stage.
 
-use crate::shader::annotation::pass::{Dispatch, PassFormat, PassNote, PassSize, Target};
+use crate::shader::annotation::pass::{Dispatch, Instances, MOST_COPIES, PassFormat, PassNote, PassSize, Target};
 use crate::shader::compile::StageKind;
 
 /// The word of the annotation that is wrong, and a message.
@@ -33,6 +33,9 @@ pub(super) fn contradiction(note: &PassNote, kind: StageKind) -> Option<(&'stati
     }
     if note.model.is_some() && note.background {
         return Some((draw, "a pass draws the model or the background, not both"));
+    }
+    if note.draws_model() && matches!(note.model, Some(Instances::Count(count)) if count > MOST_COPIES) {
+        return Some(("instances=", "a pass draws the model at most 1024 times; only draw=quads goes beyond"));
     }
     if note.cull.is_some() && note.model.is_none() {
         return Some(("cull=", "only a pass that draws the model has cull=; write draw=model"));

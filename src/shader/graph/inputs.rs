@@ -172,7 +172,7 @@ fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refu
         }
         name if name == note.name || note.draws(name) => {
             let message = format!("a pass cannot read the image that it draws, `{name}`");
-            Err((message, format!("write `keep` in its //@pass and read `before_{name}`, the image one frame ago")))
+            Err((message, format!("read `before_{name}`, the image one frame ago")))
         }
         name => image(name, names).unwrap_or_else(|| {
             let given: Vec<&str> = given.iter().map(|(name, _)| *name).collect();
@@ -185,12 +185,9 @@ fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refu
 fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
     let find = |name: &str| names.passes.iter().find(|pass| pass.name == name || pass.draws(name));
     if let Some((before, pass)) = name.strip_prefix("before_").and_then(|before| Some((before, find(before)?))) {
-        return Some(match pass.keep {
+        return Some(match pass.to == Target::Image {
             true => Ok(Input::Before(before.to_owned())),
-            false => {
-                let message = format!("the image of `{before}` one frame ago is not kept");
-                Err((message, format!("write `keep` in its //@pass ({}:{})", pass.place.file, pass.place.line)))
-            }
+            false => Err(not_kept(before)),
         });
     }
     match find(name) {
@@ -223,6 +220,20 @@ fn texture(name: &str, kind: TextureKind, names: &Names<'_>) -> Result<Input, Re
     Err((message, format!("declare it: //@texture {name} \"{name}{example}")))
 }
 
+/// Refuses to read `picture`, `depth` or what a pass made of the picture one frame later: only images of passes are kept.
+fn not_kept(name: &str) -> Refusal {
+    let is_image = matches!(name, "picture" | "depth" | "behind");
+    let message = match is_image {
+        true => format!("the `{name}` of the frame before is not kept"),
+        false => format!("`{name}` gives what it draws to the picture, which is not kept for the next frame"),
+    };
+    let (read, after) = if is_image { (name, String::new()) } else { ("picture", format!(" after={name}")) };
+    let help = format!(
+        "let a pass copy it: `//@pass last{after}` with `uniform sampler2D {read};`, and read `before_last` here"
+    );
+    (message, help)
+}
+
 /// Refuses a name that nothing has. `given` are the images that Specula gives to the stage.
 fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
     let mut known: Vec<String> = given.iter().map(|name| (*name).to_owned()).collect();
@@ -232,6 +243,9 @@ fn unknown(name: &str, given: &[&str], names: &Names<'_>) -> Refusal {
     known.extend(kept.map(|name| format!("before_{name}")));
     known.extend(names.textures.iter().map(|texture| texture.name.clone()));
     let hint = did_you_mean(name, known.iter().map(String::as_str));
+    if let Some(now) = name.strip_prefix("before_").filter(|now| given.contains(now)) {
+        return not_kept(now);
+    }
     (format!("no pass or texture is named `{name}`.{hint}"), format!("there are {}", known.join(", ")))
 }
 
@@ -245,7 +259,7 @@ fn buffer(found: &Descriptor) -> Result<Input, Refusal> {
         let message = format!("the buffer `{name}` has {} bytes, at most {LARGEST_BUFFER} fit", block.size);
         return Err((message, String::new()));
     }
-    Ok(Input::Buffer(name.clone(), block.size))
+    Ok(Input::Buffer(name.clone(), block.size, found.is_written))
 }
 
 fn written(note: &PassNote, found: &Descriptor) -> Result<Input, Refusal> {
@@ -276,7 +290,7 @@ pub fn different_buffers(passes: &[GraphPass]) -> Vec<Diagnostic> {
     let mut errors = Vec::new();
     for pass in passes {
         for input in pass.inputs.values() {
-            let Input::Buffer(name, bytes) = input else { continue };
+            let Input::Buffer(name, bytes, _) = input else { continue };
             let (size, other) = first.entry(name).or_insert_with(|| (*bytes, format!("the pass `{}`", pass.name())));
             if *size != *bytes {
                 let message =

@@ -18,12 +18,13 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::annotation::Annotations;
-use super::annotation::pass::{MODEL, PassNote};
+use super::annotation::pass::{MODEL, PassNote, Target};
 use super::compile::StageKind;
 use super::contract::Texts;
 use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
+use super::spirv::primitive::Primitive;
 use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
 use contradiction::contradiction;
@@ -49,8 +50,9 @@ pub enum Input {
     Texture(String, TextureKind),
     /// The image of this pass, written by a compute shader.
     Output,
-    /// A storage buffer that all passes share by the name of its block, with its size in bytes. It lasts from frame to frame.
-    Buffer(String, u32),
+    /// A storage buffer that all passes share by the name of its block, with its size in bytes, and whether the stage may write it. It
+    /// lasts from frame to frame.
+    Buffer(String, u32, bool),
     /// The block `Pass` of pass.glsl and toy.glsl: its size in bytes, and its members with their offsets.
     Pass(u32, Vec<(u32, String)>),
     /// The pass's own uniform block: its size in bytes, and its members with their offsets.
@@ -184,8 +186,17 @@ impl Graph {
         snapshot: &Snapshot<'_>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut errors = Vec::new();
-        let notes: Vec<&PassNote> = annotations.passes.iter().filter(|note| stages.contains_key(&note.stage)).collect();
-        let names = inputs::Names { passes: &annotations.passes, textures: &annotations.textures };
+        // A pass whose image is read one frame later keeps it, whether it says so or not.
+        let reflections = || stages.values().flat_map(|stage| &stage.reflection.descriptors);
+        let is_read_later = |note: &PassNote| {
+            let images = note.images().map(|(name, _)| format!("before_{name}"));
+            note.to == Target::Image && images.into_iter().any(|before| reflections().any(|found| found.name == before))
+        };
+        let kept =
+            annotations.passes.iter().map(|note| PassNote { keep: note.keep || is_read_later(note), ..note.clone() });
+        let kept: Vec<PassNote> = kept.collect();
+        let notes: Vec<&PassNote> = kept.iter().filter(|note| stages.contains_key(&note.stage)).collect();
+        let names = inputs::Names { passes: &kept, textures: &annotations.textures };
         errors.extend(roles::misplaced(annotations));
         // Without it, the stages are not those of a picture.
         if stages.contains_key(FULL_SCREEN) {
@@ -223,6 +234,15 @@ impl Graph {
                 continue;
             }
             errors.extend(front.connect(stages).err().map(|error| *error));
+            if note.quads && !matches!(front.takes, None | Some(Primitive::Triangles)) {
+                let message = format!("the pass `{}` draws quads of two triangles each", note.name);
+                errors.push(
+                    note.place
+                        .error_at("draw=", message)
+                        .with_help("write `layout(triangles) in;` in its geometry stage"),
+                );
+                continue;
+            }
             errors.extend(roles::wrong_outputs(note, stage));
             let front_stages = front.stages().filter(|_| !is_compute).map(|path| &stages[path]);
             match inputs::inputs_of(note, front_stages.chain([stage]), &names) {
@@ -328,9 +348,9 @@ impl Graph {
         let shares = move |pass: &GraphPass| match input {
             Input::Image(name) | Input::Before(name) => pass.note.draws(name),
             // Stages before the rasterizer only read.
-            Input::Buffer(name, _) => {
+            Input::Buffer(name, ..) => {
                 let mut inputs = pass.inputs.range(..VERTEX_BINDINGS);
-                inputs.any(|(_, other)| matches!(other, Input::Buffer(other, _) if other == name))
+                inputs.any(|(_, other)| matches!(other, Input::Buffer(other, ..) if other == name))
             }
             _ => false,
         };

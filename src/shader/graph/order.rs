@@ -1,6 +1,6 @@
 //! The drawing order of passes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{GraphPass, Input, Inputs, Part};
 use crate::message::did_you_mean;
@@ -21,6 +21,7 @@ pub fn ordered(mut passes: Vec<GraphPass>) -> Result<Vec<GraphPass>, Vec<Diagnos
     }
     put_on_display(&mut passes, &index);
     put_before_model(&mut passes, &index)?;
+    put_writers_before_model(&mut passes, &index);
     let too_early: Vec<Diagnostic> = passes.iter().filter_map(|pass| after_later(pass, &passes, &index)).collect();
     if !too_early.is_empty() {
         return Err(too_early);
@@ -89,12 +90,71 @@ fn put_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) -
             }
             if is_model && pass.part != Part::BeforeModel {
                 pass.part = Part::BeforeModel;
-                let needs = pass.note.after.as_deref().into_iter().chain(images(&pass.inputs));
-                open.extend(needs.filter_map(|name| index.get(name).copied()));
+                open.extend(needs(pass, index));
             }
         }
     }
     if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// The compute passes whose buffers the model, the background or quads read are drawn before the model, and so are those that they need,
+/// unless one of them reads the picture of this frame: then the model reads what they wrote in the frame before.
+fn put_writers_before_model(passes: &mut [GraphPass], index: &BTreeMap<String, usize>) {
+    let is_read = |at: &usize| {
+        let mut readers = passes.iter().filter(|pass| matches!(pass.part, Part::Model | Part::Mean));
+        readers.any(|reader| writes_buffer_of(&passes[*at], reader))
+    };
+    let writers: Vec<usize> = (0..passes.len()).filter(is_read).collect();
+    for writer in writers {
+        // Compute passes with a common buffer stay together.
+        let beside = |at: usize| -> Vec<usize> {
+            let shares = |other: &usize| {
+                let [one, other] = [&passes[at], &passes[*other]];
+                one.is_compute && other.is_compute && !buffers(one, |_| true).is_disjoint(&buffers(other, |_| true))
+            };
+            (0..passes.len()).filter(shares).collect()
+        };
+        let needed = reached(writer, |at| [needs(&passes[at], index), beside(at)].concat());
+        let can_be_first = |at: &usize| {
+            let pass = &passes[*at];
+            let reads_picture = pass.inputs.values().any(|input| matches!(input, Input::Picture | Input::Depth));
+            pass.part == Part::BeforeModel || (pass.part == Part::Light && !pass.note.to_picture() && !reads_picture)
+        };
+        if needed.iter().all(can_be_first) {
+            needed.into_iter().for_each(|at| passes[at].part = Part::BeforeModel);
+        }
+    }
+}
+
+/// The names of the buffers that a pass has, of those for which `is_wanted` returns true of whether it may write them.
+fn buffers(pass: &GraphPass, is_wanted: impl Fn(bool) -> bool) -> BTreeSet<&str> {
+    let name = |input| match input {
+        &Input::Buffer(ref name, _, is_written) if is_wanted(is_written) => Some(name.as_str()),
+        _ => None,
+    };
+    pass.inputs.values().filter_map(name).collect()
+}
+
+/// Whether a compute pass writes a buffer that another pass only reads.
+fn writes_buffer_of(pass: &GraphPass, reader: &GraphPass) -> bool {
+    pass.is_compute && !buffers(pass, |is_written| is_written).is_disjoint(&buffers(reader, |is_written| !is_written))
+}
+
+/// A pass, and all that `next` leads to from it.
+fn reached(from: usize, next: impl Fn(usize) -> Vec<usize>) -> BTreeSet<usize> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(at) = open.pop() {
+        if found.insert(at) {
+            open.extend(next(at));
+        }
+    }
+    found
+}
+
+/// The passes that a pass names: those of the images that it reads, and that of `after=`.
+fn needs(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Vec<usize> {
+    let names = pass.note.after.as_deref().into_iter().chain(images(&pass.inputs));
+    names.filter_map(|name| index.get(name).copied()).collect()
 }
 
 /// The names of the images that are read as they are in this frame.
@@ -107,6 +167,10 @@ fn images(inputs: &Inputs) -> impl Iterator<Item = &str> {
 
 fn unknown_after(pass: &GraphPass, index: &BTreeMap<String, usize>) -> Option<Diagnostic> {
     let name = pass.note.after.as_deref()?;
+    if name == pass.name() {
+        let error = pass.note.place.error_at("after=", format!("the pass `{name}` cannot come after itself"));
+        return Some(error.with_help("leave out after=: the order follows from what a pass reads"));
+    }
     if name == TONEMAP || index.contains_key(name) {
         return None;
     }
@@ -155,10 +219,16 @@ impl Order<'_> {
         }
         path.push(at);
         let pass = &self.passes[at];
-        let needs = pass.note.after.as_deref().into_iter().chain(images(&pass.inputs));
-        let needs: Vec<usize> = needs.filter_map(|name| self.index.get(name).copied()).collect();
-        for need in needs {
+        for need in needs(pass, self.index) {
             self.emit(need, path)?;
+        }
+        // Before a pass that reads a buffer come the compute passes that write it, except those that wait for the reader.
+        let writers = (0..self.passes.len()).filter(|other| self.passes[*other].part == pass.part);
+        for writer in writers.filter(|writer| *writer != at && writes_buffer_of(&self.passes[*writer], pass)) {
+            let waits = reached(writer, |at| needs(&self.passes[at], self.index));
+            if waits.iter().all(|need| self.state[*need] != State::Open) {
+                self.emit(writer, path)?;
+            }
         }
         path.pop();
         self.state[at] = State::Done;
@@ -172,10 +242,7 @@ impl Order<'_> {
         let pass = &self.passes[at];
         let message = format!("each of these passes waits for the next: {}", names.join(" -> "));
         let error = pass.note.place.error_at(pass.name(), message);
-        let help = format!(
-            "let one of them read an image of the frame before: `keep` in its //@pass, and `before_{}`",
-            pass.name()
-        );
+        let help = format!("let one of them read an image of the frame before, `before_{}`", pass.name());
         Box::new(error.with_help(help))
     }
 }

@@ -7,9 +7,11 @@ use serde::Serialize;
 use super::{FULL_SCREEN, PassStage};
 use crate::shader::annotation::pass::PassNote;
 use crate::shader::compile::StageKind;
-use crate::shader::contract::{Texts, check_pair};
+use crate::shader::compile::include::files_of;
+use crate::shader::contract::{INTERFACE_FILE, Texts, check_pair};
 use crate::shader::diagnostic::Diagnostic;
 use crate::shader::source::snapshot::Snapshot;
+use crate::shader::source::text::{Line, lines};
 use crate::shader::source::{SourceError, TreePath};
 use crate::shader::spirv::primitive::Primitive;
 
@@ -60,12 +62,13 @@ impl PreRasterization {
     /// stage goes before a vertex stage.
     ///
     /// # Errors
-    /// A pass that draws no model has another stage than a vertex stage, a stage lacks the one that it needs beside it, or has
-    /// one beside it that a mesh pipeline does not have.
+    /// - A pass that draws quads has no vertex stage, or a stage that reads what only a model has.
+    /// - One that draws neither has another stage than a vertex stage.
+    /// - A stage lacks the one that it needs beside it, or has one beside it that a mesh pipeline does not have.
     pub(super) fn find(note: &PassNote, model: Option<&str>, snapshot: &Snapshot<'_>) -> Result<Self, Box<Diagnostic>> {
         let own = |stage: &str, kind| Some(stage_beside(stage, kind)).filter(|path| exists(path, snapshot));
         let has_own = StageKind::PRE_RASTERIZATION.iter().any(|kind| own(&note.stage, *kind).is_some());
-        let (stage, model) = match (note.model.is_some(), model) {
+        let (stage, model) = match (note.draws_model(), model) {
             (true, Some(model)) => (if has_own { &note.stage } else { model }, Some(model)),
             _ => (note.stage.as_str(), None),
         };
@@ -78,6 +81,9 @@ impl PreRasterization {
             let message = format!("the pass `{name}` draws no model, so it has no {kind} stage");
             let help = format!("write draw=model in the //@pass of {}, or delete this file", note.stage);
             return Err(Box::new(at_main(path, message, snapshot).with_help(help)));
+        }
+        if note.quads {
+            check_quads(note, vertex.as_deref(), mesh.as_deref().or(task.as_deref()), snapshot)?;
         }
         let vertex = vertex.or_else(|| model.map(|model| stage_beside(model, StageKind::Vertex)));
         let tessellation = match (control, evaluation) {
@@ -202,6 +208,61 @@ fn has_point_size(stage: &PassStage<'_>) -> bool {
 
 fn exists(path: &str, snapshot: &Snapshot<'_>) -> bool {
     snapshot.read(&TreePath::from(path)) != Err(SourceError::Missing)
+}
+
+/// Holds the stages of a pass with draw=quads against what it offers: `vertex` and `mesh` lie beside its stage.
+fn check_quads(
+    note: &PassNote,
+    vertex: Option<&str>,
+    mesh: Option<&str>,
+    snapshot: &Snapshot<'_>,
+) -> Result<(), Box<Diagnostic>> {
+    let name = &note.name;
+    if let Some(path) = mesh {
+        let message = format!("the pass `{name}` draws quads, so it has no {} stage", stage_name(path));
+        let help = "write draw=model in its //@pass: a mesh stage makes its own vertices";
+        return Err(Box::new(at_main(path, message, snapshot).with_help(help)));
+    }
+    if vertex.is_none() {
+        let stage = stage_beside(&note.stage, StageKind::Vertex);
+        let message = format!("the pass `{name}` draws quads, so it needs a vertex stage that places them, {stage}");
+        let help = "gl_VertexIndex is 0 to 5, the corners of two triangles; gl_InstanceIndex is the number of the quad";
+        return Err(Box::new(note.place.error_at("draw=", message).with_help(help)));
+    }
+    let stages = StageKind::PRE_RASTERIZATION.map(|kind| stage_beside(&note.stage, kind));
+    let stages = stages.into_iter().filter(|path| exists(path, snapshot)).chain([note.stage.clone()]);
+    let files: BTreeSet<TreePath> =
+        stages.flat_map(|stage| files_of(snapshot, &TreePath::from(stage.as_str()))).collect();
+    match files.iter().filter(|path| path.as_str() != INTERFACE_FILE).find_map(|path| reads_mesh(path, name, snapshot))
+    {
+        Some(error) => Err(Box::new(error)),
+        None => Ok(()),
+    }
+}
+
+/// An error about the first line of a file that reads what a quad lacks: vertices in memory, whose address is 0, and a material, whose
+/// descriptors are not bound. `name`: the pass.
+fn reads_mesh(path: &TreePath, name: &str, snapshot: &Snapshot<'_>) -> Option<Diagnostic> {
+    const WORDS: [(&str, &str); 3] = [
+        ("draw.vertices", "have no vertices of the model"),
+        ("draw.indices", "have no vertices of the model"),
+        ("material.", "have no material"),
+    ];
+    let text = snapshot.read(path).ok()?;
+    let found = |line: Line<'_>| {
+        let find = |(word, lack): &(&str, &'static str)| {
+            let at = line.code.match_indices(word).map(|(at, _)| at).find(|at| {
+                !line.code[..*at].ends_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '"'))
+            })?;
+            Some((at..at + word.len(), *lack))
+        };
+        let (at, lack) = WORDS.iter().find_map(find).filter(|_| !line.code.trim_start().starts_with("#include"))?;
+        let error =
+            Diagnostic::error(snapshot.display_path(path), format!("the pass `{name}` draws quads, which {lack}"));
+        let help = "place the corner gl_VertexIndex of the quad gl_InstanceIndex, and color it, without this file";
+        Some(error.on_line(line.number, Some(line.raw)).under(at).with_help(help))
+    };
+    lines(&text).into_iter().find_map(found)
 }
 
 /// An error about a stage whose other half of the tessellation is missing.

@@ -100,7 +100,7 @@ pub(super) fn undrawn_modes(annotations: &Annotations) -> impl Iterator<Item = D
 
 /// The word of an annotation that is wrong, and a message.
 fn misplacement<'a>(note: &'a PassNote, passes: &[PassNote]) -> Option<(&'a str, String)> {
-    let draws_model = note.model.is_some() && note.to_picture();
+    let draws_model = note.draws_model() && note.to_picture();
     let name = note.name.as_str();
     match name {
         MODEL if !draws_model => {

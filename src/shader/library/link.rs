@@ -107,7 +107,7 @@ impl Library {
         if !errors.is_empty() {
             return Err(errors);
         }
-        annotations.modes.extend(modes_of(&graph));
+        annotations.modes.extend(modes_of(&graph, snapshot));
         // The parameters of a pass that is still to be compiled are unknown.
         if !is_partial {
             warnings.extend(graph.passes.iter().flat_map(|pass| silent_members(pass, &annotations, &declared)));
@@ -187,7 +187,7 @@ fn unlike_stages(pass: &GraphPass, stages: &BTreeMap<String, PassStage<'_>>) -> 
     let errors = unlike_neighbors(pass.stages(), stages);
     let Some(fragment) = stages.get(&pass.note.stage) else { return errors };
     let covering = fragment.texts.snapshot.display_path(&TreePath::from(COVERING));
-    let is_about = |error: &Diagnostic| pass.note.model.is_some() && error.file == covering;
+    let is_about = |error: &Diagnostic| pass.note.draws_model() && error.file == covering;
     match errors.iter().any(is_about).then(|| includes_covering(pass, fragment.texts)) {
         Some(error) => errors.into_iter().filter(|error| !is_about(error)).chain([error]).collect(),
         None => errors,

@@ -203,8 +203,20 @@ fn reads(text: &str, name: &str) -> bool {
     text.contains(name) && lines(text).iter().any(is_named)
 }
 
+/// What the comment behind the output with this name says, in a stage that draws several images.
+fn doc_of_output(stage: &str, name: &str, snapshot: &Snapshot<'_>) -> String {
+    let comment = |text: Arc<str>| {
+        let line = lines(&text).into_iter().find(|line| {
+            find_word(&line.code, "out").is_some()
+                && find_word(&line.code, name).is_some_and(|at| line.code[at.end..].starts_with(';'))
+        })?;
+        Some(line.raw.split_once("//")?.1.trim().to_owned())
+    };
+    snapshot.read(&TreePath::from(stage)).ok().and_then(comment).unwrap_or_default()
+}
+
 /// A debug mode for each image of a pass.
-pub(super) fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
+pub(super) fn modes_of(graph: &Graph, snapshot: &Snapshot<'_>) -> impl Iterator<Item = Mode> {
     let shown = graph.passes.iter().filter(|pass| !pass.note.is_drawn_with_model() && !pass.note.is_built_in());
     let images = shown.flat_map(|pass| pass.note.images().map(move |(name, _)| (pass, name)));
     (interface::PASS_MODES..).zip(images).map(|(id, (pass, name))| Mode {
@@ -215,10 +227,11 @@ pub(super) fn modes_of(graph: &Graph) -> impl Iterator<Item = Mode> {
         group: "Passes".to_owned(),
         components: 3,
         // A pass that changes the picture is shown like the picture.
+        is_displayed: pass.part == Part::Display,
         tonemap: pass.note.to_picture() || pass.part == Part::Display,
         stage: graph.pass(MODEL).map(|model| model.note.stage.clone()).unwrap_or_default(),
         pass: Some(name.to_owned()),
-        doc: pass.note.doc.clone(),
+        doc: if name == pass.name() { pass.note.doc.clone() } else { doc_of_output(&pass.note.stage, name, snapshot) },
         file: pass.note.place.file.clone(),
         line: pass.note.place.line,
         ..Mode::default()

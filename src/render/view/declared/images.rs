@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::desc::{PassDesc, ScratchDesc};
 use super::reuse::DrawnFrom;
-use super::{lifetimes, memory};
+use super::{beyond_memory, lifetimes};
 use crate::gpu::{Buffer, Encoder, Gpu, GpuError, Image, ImageDesc, Memory, Swapchain, Use, one_shot, vk};
 use crate::render::bound_frame::BoundFrame;
 use crate::shader::GraphPass;
@@ -99,7 +99,9 @@ impl Images {
         if key == self.key {
             return Ok(None);
         }
-        memory::check(frame)?;
+        if let Some(error) = beyond_memory(request, frame.state.size, frame.state.pass_memory) {
+            return Err(GpuError::PassMemory(error.one_line()));
+        }
         let mut next = Self { key, fresh: self.fresh.clone(), drawings: self.drawings, ..Self::default() };
         let describe = |pass: &GraphPass, image: (&str, PassFormat)| PassDesc::new(pass, image, frame.state.size);
         let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), describe);
@@ -376,7 +378,7 @@ fn buffers(graph: &Graph) -> BTreeMap<String, u32> {
 /// Name and size of a buffer, in bytes.
 pub(super) fn buffer_of(input: &Input) -> Option<(&str, u32)> {
     match input {
-        Input::Buffer(name, bytes) => Some((name, *bytes)),
+        Input::Buffer(name, bytes, _) => Some((name, *bytes)),
         _ => None,
     }
 }

@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::desc::PassDesc;
 use super::images::buffer_of;
 use super::lifetimes;
-use crate::gpu::GpuError;
-use crate::render::bound_frame::BoundFrame;
-use crate::shader::annotation::pass::Target;
+use crate::frame::PipelineRequest;
+use crate::shader::Diagnostic;
+use crate::shader::annotation::pass::{PassFormat, PassSize, Target};
 
-/// Fails if the images and buffers of passes take more memory than the user allows.
-pub(super) fn check(frame: &BoundFrame) -> Result<(), GpuError> {
-    let (request, size, limit) = (&frame.state.pipelines, frame.state.size, frame.state.pass_memory);
+/// An error at the line of the first pass with whose images and buffers the passes of `request` take more than `limit` bytes, for a picture
+/// of this size.
+pub fn beyond_memory(request: &PipelineRequest, size: (u32, u32), limit: u64) -> Option<Diagnostic> {
     let slots = lifetimes::slots(&request.passes, request.shown_pass.as_deref(), |pass, image| {
         PassDesc::new(pass, image, size)
     });
@@ -41,15 +41,22 @@ pub(super) fn check(frame: &BoundFrame) -> Result<(), GpuError> {
             .filter(|(name, bytes)| buffers.insert((*name).to_owned(), *bytes).is_none());
         total += new.map(|(_, bytes)| u64::from(bytes)).sum::<u64>();
         if total > limit {
-            let (name, place) = (pass.name(), &pass.note.place);
-            return Err(GpuError::OutOfMemory(format!(
-                "creating the images and buffers of the pass `{name}` ({}:{}): passes take {} MiB so far, and `--memory` allows {}",
-                place.file,
-                place.line,
-                total.div_ceil(1 << 20),
+            let mib = total.div_ceil(1 << 20);
+            let message = format!(
+                "with the pass `{}` the images and buffers of passes take {mib} MiB, and --memory allows {}",
+                pass.name(),
                 limit >> 20
-            )));
+            );
+            let note = &pass.note;
+            let word = match (note.size, note.format) {
+                (PassSize::Pixels(..), _) => "size=",
+                (_, format) if format != PassFormat::default() => "format=",
+                _ => note.name.as_str(),
+            };
+            let help =
+                "a smaller size=, a format= with fewer bytes and no keep or mips take less; --memory MIB allows more";
+            return Some(note.place.error_at(word, message).with_help(help));
         }
     }
-    Ok(())
+    None
 }

@@ -53,7 +53,7 @@ impl DeclaredPasses {
                     PassResource::Texture(image, sampler)
                 }
                 Input::Output => PassResource::Storage(given.target.ok_or_else(missing)?),
-                Input::Buffer(name, _) => PassResource::Buffer(self.images.buffer(name).ok_or_else(missing)?),
+                Input::Buffer(name, ..) => PassResource::Buffer(self.images.buffer(name).ok_or_else(missing)?),
                 Input::Parameters(..) | Input::Pass(..) => {
                     let block = reads.index.and_then(|index| drawn.blocks.get(index, binding));
                     PassResource::Buffer(block.ok_or_else(missing)?)

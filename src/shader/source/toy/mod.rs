@@ -192,8 +192,11 @@ impl Toy {
     }
 
     /// Names that the file of a buffer, or of what all share, may have: first one of this toy alone.
-    fn candidates(&self, name: &str) -> [String; 2] {
-        [format!("{}.{name}.glsl", self.stem()), format!("{name}.glsl")]
+    /// `Buffer A.glsl` is Shadertoy's own name for `buffer_a.glsl`.
+    fn candidates(&self, name: &str) -> [String; 3] {
+        let words = name.split('_').map(|word| word[..1].to_ascii_uppercase() + &word[1..]);
+        let words: Vec<String> = words.collect();
+        [format!("{}.{name}.glsl", self.stem()), format!("{name}.glsl"), format!("{}.glsl", words.join(" "))]
     }
 
     /// The file of this name beside the toy, and its text.

@@ -19,6 +19,17 @@ fn stage(toy: &Toy, pass: &str) -> String {
 const IMAGE: &str = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p) + texture(iChannel1, p); }\n";
 
 #[test]
+fn buffers_may_have_the_names_that_shadertoy_gives_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let toy = toy(
+        folder.path(),
+        &[("t.glsl", IMAGE), ("Buffer A.glsl", IMAGE), ("Common.glsl", "float one() { return 1.0; }")],
+    );
+    assert!(stage(&toy, "image").contains("#define iChannel0 buffer_a\n"));
+    assert!(stage(&toy, "buffer_a").contains("opened/Buffer A.glsl"));
+}
+
+#[test]
 fn buffers_are_drawn_in_the_order_of_their_letters() {
     let folder = tempfile::tempdir().unwrap();
     let toy = toy(folder.path(), &[("t.glsl", IMAGE), ("buffer_a.glsl", IMAGE), ("t.buffer_b.glsl", IMAGE)]);

@@ -1,7 +1,10 @@
-//@pass bloom_blur "Bloom: blur" size=1/8 when=BLOOM doc="Mean of ever wider blurs of the light"
+//@pass bloom "Bloom" size=1/8 when=BLOOM doc="Mean of ever wider blurs of the light"
 #version 460
 #include "pass.glsl"
 #include "passes/bloom/levels.glsl"
+
+// The mean of blurs of the light, each twice as wide as the one before (Jimenez 2014). common/bloom.glsl adds it to the picture, and has its
+// limits.
 
 uniform sampler2D bloom_wide;
 
