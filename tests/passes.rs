@@ -252,6 +252,43 @@ fn an_image_that_is_read_one_frame_later_is_kept() {
     passes_check(&session);
 }
 
+/// What the picture and the depth were one frame ago, without a pass of the user's that copies them.
+#[test]
+fn the_last_picture_and_its_depth_are_there() {
+    let mut session = sphere(&[]);
+    let good = session.render();
+    let middle = |capture: &Capture| capture.raw_at(SIZE.0 / 2, SIZE.1 / 2).unwrap();
+    let shows = |image: &str| {
+        pass(
+            "show to=picture",
+            &format!("uniform sampler2D before_{image};"),
+            &format!("color = texture(before_{image}, uv);"),
+        )
+    };
+    let [first, second] = [1, 2].map(|frames| Sequence { frames, ..Sequence::default() });
+    for image in ["picture", "depth"] {
+        ready(&session.save("passes/show.frag", &shows(image)));
+        session.headless.set_sequence(first);
+        assert_eq!(middle(&session.render())[0], 0.0, "{image}: nothing before the first frame");
+        session.headless.set_sequence(second);
+        let found = middle(&session.render())[0];
+        match image {
+            // The picture of the frame before is that of this pass too, which began with nothing.
+            "picture" => assert_eq!(found, 0.0),
+            _ => assert!(found > 0.0 && found < 1.0, "{found}"),
+        }
+        passes_check(&session);
+    }
+    // A mix of both frames converges to the picture.
+    let mix = "color = mix(texture(picture, uv), texture(before_picture, uv), 0.5);";
+    let mixes = pass("show to=picture", "uniform sampler2D picture; uniform sampler2D before_picture;", mix);
+    ready(&session.save("passes/show.frag", &mixes));
+    session.headless.set_sequence(Sequence { frames: 12, ..Sequence::default() });
+    let found = middle(&session.render());
+    assert!((found[0] / middle(&good)[0] - 1.0).abs() < 0.01, "{found:?}");
+    session.headless.set_sequence(Sequence::default());
+}
+
 /// A pass after the tone map is read as it is displayed.
 #[test]
 fn a_pixel_of_a_displayed_pass_is_that_of_the_display() {

@@ -181,10 +181,19 @@ fn sampled(note: &PassNote, name: &str, names: &Names<'_>) -> Result<Input, Refu
     }
 }
 
+/// The image that a name reads as it was one frame ago: `glow` for `before_glow`. Passes of the tree keep `picture` and `depth`.
+pub fn read_later(name: &str) -> Option<&str> {
+    match name.strip_prefix("before_")? {
+        "picture" => Some("last_picture"),
+        "depth" => Some("last_depth"),
+        image => Some(image),
+    }
+}
+
 /// The image of a pass, of now or one frame ago, or a texture. `None` if nothing has this name.
 fn image(name: &str, names: &Names<'_>) -> Option<Result<Input, Refusal>> {
     let find = |name: &str| names.passes.iter().find(|pass| pass.name == name || pass.draws(name));
-    if let Some((before, pass)) = name.strip_prefix("before_").and_then(|before| Some((before, find(before)?))) {
+    if let Some((before, pass)) = read_later(name).and_then(|before| Some((before, find(before)?))) {
         return Some(match pass.to == Target::Image {
             true => Ok(Input::Before(before.to_owned())),
             false => Err(not_kept(before)),

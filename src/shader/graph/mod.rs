@@ -18,14 +18,14 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::annotation::Annotations;
-use super::annotation::pass::{MODEL, PassNote, Target};
+use super::annotation::pass::{MODEL, PassNote};
 use super::compile::StageKind;
 use super::contract::Texts;
 use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::primitive::Primitive;
-use super::spirv::reflect::Reflection;
+use super::spirv::reflect::{Descriptor, Reflection};
 use crate::interface::VERTEX_BINDINGS;
 use contradiction::contradiction;
 pub use pre_rasterization::{MeshStages, PreRasterization, at_main, stage_beside, unlike_neighbors};
@@ -189,8 +189,8 @@ impl Graph {
         // A pass whose image is read one frame later keeps it, whether it says so or not.
         let reflections = || stages.values().flat_map(|stage| &stage.reflection.descriptors);
         let is_read_later = |note: &PassNote| {
-            let images = note.images().map(|(name, _)| format!("before_{name}"));
-            note.to == Target::Image && images.into_iter().any(|before| reflections().any(|found| found.name == before))
+            let is_named = |found: &Descriptor| inputs::read_later(&found.name).is_some_and(|image| note.draws(image));
+            reflections().any(is_named)
         };
         let kept =
             annotations.passes.iter().map(|note| PassNote { keep: note.keep || is_read_later(note), ..note.clone() });

@@ -196,11 +196,16 @@ fn is_text(path: &TreePath) -> bool {
 /// Whether a text declares the image of a pass as a uniform, as it is or as it was one frame ago. In a declaration of several
 /// lines it is not found; such a pass is only compiled later than it could be.
 fn reads(text: &str, name: &str) -> bool {
-    let names = [name, &format!("before_{name}")];
+    let before = match name {
+        "last_picture" => "before_picture".to_owned(),
+        "last_depth" => "before_depth".to_owned(),
+        name => format!("before_{name}"),
+    };
+    let names = [name, &*before];
     let is_named = |line: &Line<'_>| {
         line.code.contains("uniform") && names.iter().any(|name| find_word(&line.code, name).is_some())
     };
-    text.contains(name) && lines(text).iter().any(is_named)
+    names.iter().any(|name| text.contains(name)) && lines(text).iter().any(is_named)
 }
 
 /// What the comment behind the output with this name says, in a stage that draws several images.
