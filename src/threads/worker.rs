@@ -151,6 +151,7 @@ impl Worker {
             panics: 0,
             thumbnails: None,
             inspected: None,
+            aside: None,
             questions: None,
             unfinished: false,
             is_shown: false,

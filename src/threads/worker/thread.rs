@@ -5,9 +5,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, RecvTimeoutError};
+use crossbeam_channel::{Receiver, RecvTimeoutError, bounded};
 
 use super::{Build, Edit, Job, Snapshot, WorkerMessage};
 use crate::file_kind::FileKind;
@@ -49,6 +50,8 @@ pub(super) struct Thread {
     pub(super) thumbnails: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
     /// The same for the inspector.
     pub(super) inspected: Option<(Arc<PipelineSet>, VecDeque<PipelineRequest>)>,
+    /// The build of a thumbnail's pipelines that runs, or was the last to run.
+    pub(super) aside: Option<JoinHandle<()>>,
     /// The picture about whose pipelines the driver is asked.
     pub(super) questions: Option<Build>,
     /// Whether the last reload has left stages to [`Thread::finish`].
@@ -70,6 +73,7 @@ impl Thread {
             // If each attempt panics, wait for the next edit, with which a new reloader compiles the whole tree.
             edit = (self.panics <= RESTARTS).then(|| Edit::new(Change::All, Instant::now()));
         }
+        self.join_aside();
     }
 
     /// First joins and compiles the waiting edits, then builds the newest request, even if an edit has failed.
@@ -287,14 +291,38 @@ impl Thread {
         if !self.has_thumbnails() {
             return;
         }
+        if self.aside.as_ref().is_some_and(|build| !build.is_finished()) {
+            // An edit may come in the meantime.
+            std::thread::sleep(Duration::from_millis(1));
+            return;
+        }
         let waiting = [&mut self.inspected, &mut self.thumbnails].into_iter().flatten();
         let Some((set, requests)) = waiting.into_iter().find(|(_, requests)| !requests.is_empty()) else { return };
         // The window shows no thumbnail, or no values, where this fails.
-        let built = requests.pop_front().map(|request| set.build_aside(&request));
-        if let Some(Err(error)) = built {
-            tracing::debug!("no thumbnails: {error}");
+        let Some((set, request)) = requests.pop_front().map(|request| (set.clone(), request)) else { return };
+        self.join_aside();
+        let outbox = self.outbox.clone();
+        let (done, ended) = bounded::<()>(0);
+        self.aside = Some(std::thread::spawn(move || {
+            if let Err(error) = set.build_aside(&request) {
+                tracing::debug!("no thumbnails: {error}");
+            }
+            outbox.send(Message::Worker(WorkerMessage::ThumbnailsBuilt));
+            drop(done);
+        }));
+        // A driver takes tens of milliseconds, for which a save need not wait.
+        while !self.is_stale() && self.inbox.is_empty() {
+            if ended.recv_timeout(Duration::from_millis(1)) != Err(RecvTimeoutError::Timeout) {
+                break;
+            }
         }
-        self.outbox.send(Message::Worker(WorkerMessage::ThumbnailsBuilt));
+    }
+
+    /// Waits for the build of a thumbnail's pipelines that runs. After a panic of that thread the thumbnail is missing.
+    fn join_aside(&mut self) {
+        if let Some(Err(panic)) = self.aside.take().map(JoinHandle::join) {
+            tracing::debug!("no thumbnails: {}", panic_text(&*panic));
+        }
     }
 
     /// Builds the modes before and after the current one, which `[` and `]` select, unless other work waits.
