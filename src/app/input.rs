@@ -105,20 +105,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             false
         }
         WindowEvent::CursorMoved { position, .. } => {
-            let at = Vec2::new(position.x as f32, position.y as f32);
-            let delta = (at - screen.mouse.at) / screen.rect.size.1.max(1) as f32;
-            let is_over = inside(screen, at);
-            let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
-            screen.mouse.at = at;
-            let [x, y] = in_picture(screen, at);
-            let (width, height) = screen.rect.size;
-            let is_inside = is_over && x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
-            viewer.playback.hover(if is_inside { [x, y] } else { BEYOND });
-            screen.mouse.click = screen.mouse.click.filter(|start| start.distance(at) <= SAME_PLACE);
-            if screen.mouse.left {
-                viewer.playback.drag(in_picture(screen, at));
-            }
-            drag(viewer, screen, delta) || was_over || screen.mouse.over
+            on_cursor_moved(viewer, screen, Vec2::new(position.x as f32, position.y as f32))
         }
         WindowEvent::CursorLeft { .. } => {
             viewer.playback.hover(BEYOND);
@@ -135,6 +122,23 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
         }
         _ => false,
     }
+}
+
+/// Moves the mouse to `at`, in pixels of the window: what it drags, and what shaders know of it. Returns whether to redraw.
+fn on_cursor_moved(viewer: &mut Viewer, screen: &mut Screen, at: Vec2) -> bool {
+    let delta = (at - screen.mouse.at) / screen.rect.size.1.max(1) as f32;
+    let is_over = inside(screen, at);
+    let was_over = std::mem::replace(&mut screen.mouse.over, is_over);
+    screen.mouse.at = at;
+    let [x, y] = in_picture(screen, at);
+    let (width, height) = screen.rect.size;
+    let is_inside = is_over && x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+    viewer.playback.hover(if is_inside { [x, y] } else { BEYOND });
+    screen.mouse.click = screen.mouse.click.filter(|start| start.distance(at) <= SAME_PLACE);
+    if screen.mouse.left {
+        viewer.playback.drag([x, y]);
+    }
+    drag(viewer, screen, delta) || was_over || screen.mouse.over
 }
 
 /// The bit of a button in `interface::Frame::mouse_buttons`.

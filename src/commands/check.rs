@@ -105,32 +105,7 @@ fn build_choices(
         problems.extend(errors.into_iter().map(|error| source.explained(error)));
         Arc::default()
     });
-    let size = args.common.size;
-    // Each pass that is off, and what each constant switches on, must fit.
-    let switches = shaders.graph.passes.iter().filter_map(|pass| pass.note.when.as_ref());
-    let switched = switches.collect::<BTreeSet<_>>().into_iter().map(|name| {
-        let constant = shaders.constants.iter().find(|constant| constant.name == *name);
-        let last = constant.and_then(|constant| constant.choices.last());
-        let mut chosen = settings.clone();
-        chosen.shader.insert(name.clone(), last.map_or(ShaderValue::Bool(true), |(_, value)| ShaderValue::Int(*value)));
-        request(&chosen)
-    });
-    let off = shaders.graph.passes.iter().filter(|pass| !pass.note.on).map(|pass| {
-        let mut chosen = settings.clone();
-        chosen.passes.insert(pass.name().to_owned(), true);
-        request(&chosen)
-    });
-    let limit = u64::from(settings.view.pass_memory) << 20;
-    let beyond = std::iter::once(plain.clone())
-        .chain(off)
-        .chain(switched)
-        .filter_map(|request| beyond_memory(&request, size, limit));
-    let beyond: Vec<Diagnostic> = beyond.collect();
-    beyond.into_iter().for_each(|error| {
-        if !problems.contains(&error) {
-            problems.push(error);
-        }
-    });
+    problems.extend(beyond_memory_when_on(shaders, &settings, args.common.size, request));
     if !problems.is_empty() {
         diagnostics.extend(problems);
         return Ok(None);
@@ -173,4 +148,35 @@ fn build_choices(
     drop(set);
     check_validation(&gpu)?;
     Ok(Some(count))
+}
+
+/// Errors of passes that take more memory than the settings allow, for a picture of this size: with the settings as they are, with each
+/// pass that is off, and with what each constant switches on.
+fn beyond_memory_when_on(
+    shaders: &ShaderSet,
+    settings: &Settings,
+    size: (u32, u32),
+    request: impl Fn(&Settings) -> PipelineRequest,
+) -> Vec<Diagnostic> {
+    let passes = &shaders.graph.passes;
+    let constants: BTreeSet<&String> = passes.iter().filter_map(|pass| pass.note.when.as_ref()).collect();
+    let switched = constants.into_iter().map(|name| {
+        let constant = shaders.constants.iter().find(|constant| constant.name == *name);
+        let last = constant.and_then(|constant| constant.choices.last());
+        let mut chosen = settings.clone();
+        chosen.shader.insert(name.clone(), last.map_or(ShaderValue::Bool(true), |(_, value)| ShaderValue::Int(*value)));
+        chosen
+    });
+    let off = passes.iter().filter(|pass| !pass.note.on).map(|pass| {
+        let mut chosen = settings.clone();
+        chosen.passes.insert(pass.name().to_owned(), true);
+        chosen
+    });
+    let limit = u64::from(settings.view.pass_memory) << 20;
+    let mut errors: Vec<Diagnostic> = Vec::new();
+    for chosen in std::iter::once(settings.clone()).chain(off).chain(switched) {
+        let error = beyond_memory(&request(&chosen), size, limit);
+        errors.extend(error.filter(|error| !errors.contains(error)));
+    }
+    errors
 }

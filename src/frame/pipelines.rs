@@ -27,7 +27,7 @@ pub struct MaterialVariant {
     pub class: PrimitiveClass,
 }
 
-/// What the pipelines of quads are made for in place of a material.
+/// Stands for a material in the pipelines of quads.
 pub(crate) const QUADS: MaterialVariant =
     MaterialVariant { alpha: interface::ALPHA_OPAQUE, features: 0, class: PrimitiveClass::Triangles };
 

@@ -99,7 +99,7 @@ pub(super) struct Layout {
     is_light: bool,
     /// Whether this arrangement belongs to an exercise or a single file, so the next window does not get it.
     is_temporary: bool,
-    /// What was arranged before a temporary arrangement, and whether the user had made it.
+    /// The arrangement before a temporary one, and whether the user had made it.
     before: Option<(Tree<Panel>, bool)>,
 }
 

@@ -25,9 +25,10 @@ use super::diagnostic::Diagnostic;
 use super::source::snapshot::Snapshot;
 use super::source::{SourceError, TreePath};
 use super::spirv::primitive::Primitive;
-use super::spirv::reflect::{Descriptor, Reflection};
+use super::spirv::reflect::Reflection;
 use crate::interface::VERTEX_BINDINGS;
 use contradiction::contradiction;
+pub use inputs::read_later;
 pub use pre_rasterization::{MeshStages, PreRasterization, at_main, stage_beside, unlike_neighbors};
 pub use roles::missing_passes;
 use textures::read_texture;
@@ -186,15 +187,7 @@ impl Graph {
         snapshot: &Snapshot<'_>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut errors = Vec::new();
-        // A pass whose image is read one frame later keeps it, whether it says so or not.
-        let reflections = || stages.values().flat_map(|stage| &stage.reflection.descriptors);
-        let is_read_later = |note: &PassNote| {
-            let is_named = |found: &Descriptor| inputs::read_later(&found.name).is_some_and(|image| note.draws(image));
-            reflections().any(is_named)
-        };
-        let kept =
-            annotations.passes.iter().map(|note| PassNote { keep: note.keep || is_read_later(note), ..note.clone() });
-        let kept: Vec<PassNote> = kept.collect();
+        let kept = with_kept_images(&annotations.passes, stages);
         let notes: Vec<&PassNote> = kept.iter().filter(|note| stages.contains_key(&note.stage)).collect();
         let names = inputs::Names { passes: &kept, textures: &annotations.textures };
         errors.extend(roles::misplaced(annotations));
@@ -362,6 +355,15 @@ impl Graph {
         let is_own = !pass.note.is_drawn_with_model() || pass.adds_to_model();
         pass.note.to_picture() && is_own && is_on(index)
     }
+}
+
+/// The passes, of which those keep their images that a stage reads one frame later, whether they say so or not.
+fn with_kept_images(passes: &[PassNote], stages: &BTreeMap<String, PassStage<'_>>) -> Vec<PassNote> {
+    let is_read_later = |note: &PassNote| {
+        let mut found = stages.values().flat_map(|stage| &stage.reflection.descriptors);
+        found.any(|found| read_later(&found.name).is_some_and(|image| note.draws(image)))
+    };
+    passes.iter().map(|note| PassNote { keep: note.keep || is_read_later(note), ..note.clone() }).collect()
 }
 
 /// The texture that an input reads.

@@ -12,9 +12,9 @@ use crate::shader::annotation::{self, Mode};
 use crate::shader::compile::include::files_of;
 use crate::shader::compile::{StageKind, declares_pass};
 use crate::shader::diagnostic::Diagnostic;
-use crate::shader::graph::{FULL_SCREEN, Graph, Part, missing_passes};
+use crate::shader::graph::{FULL_SCREEN, Graph, Part, missing_passes, read_later};
 use crate::shader::source::snapshot::Snapshot;
-use crate::shader::source::text::{Line, find_word, lines};
+use crate::shader::source::text::{find_word, lines};
 use crate::shader::source::{SourceError, TreePath};
 
 impl Library {
@@ -109,15 +109,17 @@ impl Library {
                 }
             }
         }
+        let read: Vec<(&TreePath, BTreeSet<String>)> =
+            texts.iter().map(|(path, text)| (path, read_names(text))).collect();
         // Others may share a buffer with a pass that has one.
         on.retain(|(path, _)| snapshot.read(path).is_ok_and(|text| !text.contains("buffer")));
         loop {
             let is_read = |(own, names): &(TreePath, Vec<String>)| {
-                let others = texts.iter().filter(|(path, _)| path != own && !off.contains(path));
-                others.into_iter().any(|(_, text)| names.iter().any(|name| reads(text, name)))
+                let mut others = read.iter().filter(|(path, _)| *path != own && !off.contains(*path));
+                others.any(|(_, read)| names.iter().any(|name| read.contains(name)))
             };
-            let (read, unread): (Vec<_>, Vec<_>) = on.into_iter().partition(is_read);
-            on = read;
+            let (kept, unread): (Vec<_>, Vec<_>) = on.into_iter().partition(is_read);
+            on = kept;
             if unread.is_empty() {
                 break;
             }
@@ -193,22 +195,21 @@ fn is_text(path: &TreePath) -> bool {
     path.extension() == Some("glsl") || StageKind::of(path).is_some()
 }
 
-/// Whether a text declares the image of a pass as a uniform, as it is or as it was one frame ago. In a declaration of several
-/// lines it is not found; such a pass is only compiled later than it could be.
-fn reads(text: &str, name: &str) -> bool {
-    let before = match name {
-        "last_picture" => "before_picture".to_owned(),
-        "last_depth" => "before_depth".to_owned(),
-        name => format!("before_{name}"),
-    };
-    let names = [name, &*before];
-    let is_named = |line: &Line<'_>| {
-        line.code.contains("uniform") && names.iter().any(|name| find_word(&line.code, name).is_some())
-    };
-    names.iter().any(|name| text.contains(name)) && lines(text).iter().any(is_named)
+/// The names in the lines of a text that declare uniforms, among them the images that it reads, as they are or as they were one frame ago.
+/// Declarations of several lines are missed; a pass that only they read is compiled later than it could be.
+fn read_names(text: &str) -> BTreeSet<String> {
+    if !text.contains("uniform") {
+        return BTreeSet::new();
+    }
+    let declared = lines(text).into_iter().map(|line| line.code).filter(|code| code.contains("uniform"));
+    let words = declared.flat_map(|code| {
+        let words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
+        words.flat_map(|word| [Some(word), read_later(word)]).flatten().map(str::to_owned).collect::<Vec<_>>()
+    });
+    words.collect()
 }
 
-/// What the comment behind the output with this name says, in a stage that draws several images.
+/// The comment behind the output with this name, in a stage that draws several images.
 fn doc_of_output(stage: &str, name: &str, snapshot: &Snapshot<'_>) -> String {
     let comment = |text: Arc<str>| {
         let line = lines(&text).into_iter().find(|line| {
