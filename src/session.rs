@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat, shared_features};
+use crate::frame::{Clock, FrameInputs, FrameState, PipelineRequest, Revisions, Scene, TargetFormat};
 use crate::message::did_you_mean;
 use crate::scene::{Model, environment};
 use crate::settings::Settings;
@@ -65,9 +65,7 @@ impl Session {
 
     /// `FEATURE_*` bits of the materials in use and of the light. `None` without a model.
     pub fn features(&self) -> Option<u32> {
-        let scene = self.scene()?;
-        let of_materials = scene.materials().iter().fold(0, |all, material| all | material.features);
-        Some(of_materials | shared_features(&self.settings))
+        self.scene().map(|scene| scene.features(&self.settings))
     }
 
     /// The pipelines that the settings need from `shaders`.

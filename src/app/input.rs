@@ -1,22 +1,20 @@
 //! Keys and mouse. Events that egui does not consume control the camera, the modes and the viewer. While the picture reads keys,
 //! those that type a character go to its shaders instead.
 
+mod keyboard;
+
 use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
-use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
+use winit::keyboard::ModifiersState;
 
-use super::command::{Command, CompareWith, Side};
-use super::dialog::Dialog;
-use super::keys;
+use super::command::Command;
 use super::screen::Screen;
-use super::selection::Selected;
 use super::viewer::Viewer;
 use crate::frame::BEYOND;
 use crate::scene::CameraController;
-use crate::session::Session;
-use crate::settings::LightSettings;
+use keyboard::on_keyboard;
 
 /// State of the mouse.
 #[derive(Default)]
@@ -48,40 +46,7 @@ pub(super) fn on_window_event(viewer: &mut Viewer, event: &WindowEvent, screen: 
             false
         }
         WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
-            let pressed = event.state == ElementState::Pressed;
-            if let PhysicalKey::Code(code) = event.physical_key
-                && fly_key(&mut screen.camera, code, pressed && screen.mouse.right)
-            {
-                return true;
-            }
-            let reads_keys = viewer.reads_keys();
-            let is_space = event.physical_key == PhysicalKey::Code(KeyCode::Space);
-            if is_space && !pressed && viewer.hold_reference(false) {
-                return true;
-            }
-            // The search of the palette has the keys from the moment it opens, which may be before egui knows. The key that opens
-            // it also closes it.
-            let is_open_key =
-                is_function_key(&event.logical_key) || opens_palette(&event.logical_key, screen.mouse.modifiers);
-            let taken = (taken || viewer.panels.palette.is_open()) && !is_open_key;
-            if !pressed || (reads_keys && !is_shortcut(&event.logical_key, screen.mouse.modifiers)) {
-                // A press that winit makes up when the window gets the focus is none for shaders.
-                let counts = !pressed || !(taken || event.repeat || *is_synthetic);
-                return counts && shader_key(viewer, event.physical_key, pressed) && reads_keys;
-            }
-            if is_space && !taken && !event.repeat && !*is_synthetic {
-                return viewer.hold_reference(true);
-            }
-            if let Some(side) = side(event.physical_key, screen.mouse.modifiers).filter(|_| !taken) {
-                viewer.execute(Command::ViewFrom(side));
-                return true;
-            }
-            if let Some(command) = bookmark(event.physical_key, screen.mouse.modifiers).filter(|_| !taken) {
-                viewer.execute(command);
-                return true;
-            }
-            let steps = matches!(&event.logical_key, Key::Character(text) if text == "[" || text == "]");
-            !taken && (steps || !event.repeat) && on_key(viewer, &event.logical_key, screen.mouse.modifiers)
+            on_keyboard(viewer, screen, event, *is_synthetic, taken)
         }
         WindowEvent::Focused(false) => {
             viewer.playback.keys().release_all();
@@ -237,172 +202,4 @@ fn drag(viewer: &mut Viewer, screen: &Screen, delta: Vec2) -> bool {
         _ => return false,
     }
     true
-}
-
-/// Flies with W A S D E Q while the right button is held. A key's release always counts, so that no key gets stuck.
-fn fly_key(camera: &mut CameraController, code: KeyCode, pressed: bool) -> bool {
-    let (axis, sign) = match code {
-        KeyCode::KeyD => (0, 1.0),
-        KeyCode::KeyA => (0, -1.0),
-        KeyCode::KeyE => (1, 1.0),
-        KeyCode::KeyQ => (1, -1.0),
-        KeyCode::KeyW => (2, 1.0),
-        KeyCode::KeyS => (2, -1.0),
-        _ => return false,
-    };
-    if pressed {
-        camera.fly[axis] = sign;
-    } else if camera.fly[axis] == sign {
-        camera.fly[axis] = 0.0;
-    }
-    pressed
-}
-
-/// The side of the model that a key of the numeric keypad asks for.
-fn side(key: PhysicalKey, modifiers: ModifiersState) -> Option<Side> {
-    let opposite = modifiers.control_key();
-    match key {
-        PhysicalKey::Code(KeyCode::Numpad1) => Some(if opposite { Side::Back } else { Side::Front }),
-        PhysicalKey::Code(KeyCode::Numpad3) => Some(if opposite { Side::Left } else { Side::Right }),
-        PhysicalKey::Code(KeyCode::Numpad7) => Some(if opposite { Side::Bottom } else { Side::Top }),
-        _ => None,
-    }
-}
-
-/// The camera that a digit keeps with Ctrl and Shift, or returns to with Ctrl.
-fn bookmark(key: PhysicalKey, modifiers: ModifiersState) -> Option<Command> {
-    let digits = [
-        KeyCode::Digit1,
-        KeyCode::Digit2,
-        KeyCode::Digit3,
-        KeyCode::Digit4,
-        KeyCode::Digit5,
-        KeyCode::Digit6,
-        KeyCode::Digit7,
-        KeyCode::Digit8,
-        KeyCode::Digit9,
-    ];
-    let PhysicalKey::Code(code) = key else { return None };
-    let number = digits.iter().position(|digit| *digit == code).filter(|_| modifiers.control_key())? as u32 + 1;
-    Some(if modifiers.shift_key() { Command::KeepCamera(number) } else { Command::RecallCamera(number) })
-}
-
-/// Whether a key types nothing and so is never meant for a text.
-fn is_function_key(key: &Key) -> bool {
-    matches!(key, Key::Named(NamedKey::F1 | NamedKey::F5 | NamedKey::F12))
-}
-
-/// Whether a key opens and closes the palette.
-fn opens_palette(key: &Key, modifiers: ModifiersState) -> bool {
-    modifiers.control_key() && matches!(key, Key::Character(text) if text.eq_ignore_ascii_case("p"))
-}
-
-/// Whether a key remains Specula's while the picture reads keys.
-fn is_shortcut(key: &Key, modifiers: ModifiersState) -> bool {
-    match key {
-        key if is_function_key(key) => true,
-        Key::Named(NamedKey::Space) => modifiers.control_key(),
-        Key::Named(named) => matches!(named, NamedKey::Escape | NamedKey::Home),
-        Key::Character(_) => modifiers.control_key(),
-        _ => false,
-    }
-}
-
-/// Tells the shaders that a key went down or up. Returns whether they know the key. A key's release always counts, so that no
-/// key gets stuck.
-fn shader_key(viewer: &mut Viewer, key: PhysicalKey, pressed: bool) -> bool {
-    let PhysicalKey::Code(code) = key else { return false };
-    let Some(number) = keys::number(code) else { return false };
-    let keys = viewer.playback.keys();
-    if pressed {
-        keys.press(number)
-    } else {
-        keys.release(number)
-    }
-    true
-}
-
-fn on_key(viewer: &mut Viewer, key: &Key, modifiers: ModifiersState) -> bool {
-    match key {
-        Key::Named(NamedKey::F1) => viewer.panels.show_keys ^= true,
-        Key::Named(NamedKey::F5) => viewer.execute(Command::Reload),
-        Key::Named(NamedKey::F12) => viewer.execute(Command::Screenshot),
-        Key::Named(NamedKey::Escape) if viewer.panels.show_keys => viewer.panels.show_keys = false,
-        Key::Named(NamedKey::Escape) if viewer.panels.open_gallery.is_open => {
-            viewer.panels.open_gallery.is_open = false
-        }
-        // A click pins a pixel and selects what it shows; Escape takes both back.
-        Key::Named(NamedKey::Escape) if viewer.selected != Selected::Nothing || viewer.panels.inspector.is_pinned() => {
-            viewer.panels.inspector.unpin();
-            viewer.execute(Command::Select(Selected::Nothing));
-        }
-        Key::Named(NamedKey::Escape) if viewer.panels.grid.is_on() => viewer.panels.grid.end(),
-        Key::Named(NamedKey::Escape) => set_mode(&mut viewer.session, 0),
-        Key::Named(NamedKey::Home) => viewer.execute(Command::FrameModel),
-        Key::Character(text) => {
-            let Some(key) = text.chars().next() else { return false };
-            return on_character(viewer, key.to_ascii_lowercase(), modifiers);
-        }
-        _ => return false,
-    }
-    true
-}
-
-/// A key that types a character. While the picture reads keys, Ctrl is what tells it from the picture's.
-fn on_character(viewer: &mut Viewer, key: char, modifiers: ModifiersState) -> bool {
-    let (control, shift) = (modifiers.control_key(), modifiers.shift_key());
-    let is_ignored = control && !viewer.reads_keys();
-    let session = &mut viewer.session;
-    match key {
-        'p' if control => viewer.panels.palette.toggle(),
-        'k' if control => {
-            let with = if viewer.compare.is_on() { CompareWith::Nothing } else { CompareWith::ThisPicture };
-            viewer.execute(Command::Compare(with));
-        }
-        'h' if control => viewer.execute(Command::HideSelected),
-        'h' if modifiers.alt_key() => viewer.execute(Command::ShowAll),
-        'o' if control => viewer.execute(Command::Choose(Dialog::File)),
-        'q' if control => viewer.execute(Command::Quit),
-        'z' if control => viewer.execute(if shift { Command::Redo } else { Command::Undo }),
-        'y' if control => viewer.execute(Command::Redo),
-        _ if is_ignored => return false,
-        '/' => viewer.execute(Command::IsolateSelected),
-        '?' => viewer.panels.show_keys ^= true,
-        '[' => step_mode(session, -1),
-        ']' => step_mode(session, 1),
-        'h' => viewer.panels.visible = !viewer.panels.visible,
-        'r' => viewer.execute(Command::FrameModel),
-        'l' => {
-            let lights = &mut session.settings.lights;
-            lights.spin = if lights.spin == 0.0 { 30.0 } else { LightSettings::default().spin };
-        }
-        digit @ '1'..='9' => set_mode(session, digit as usize - '1' as usize),
-        '0' => set_mode(session, 9),
-        letter => {
-            let modes = session.shaders.iter().flat_map(|shaders| &shaders.modes);
-            let Some(slug) = modes.into_iter().find(|mode| mode.key == Some(letter)).map(|mode| mode.slug.clone())
-            else {
-                return false;
-            };
-            // The key of the current mode returns to the final picture.
-            let again = slug == session.settings.mode;
-            session.settings.mode = if again { "final".into() } else { slug };
-        }
-    }
-    true
-}
-
-fn set_mode(session: &mut Session, index: usize) {
-    if let Some(mode) = session.shaders.as_ref().and_then(|shaders| shaders.modes.get(index)) {
-        session.settings.mode = mode.slug.clone();
-    }
-}
-
-fn step_mode(session: &mut Session, step: isize) {
-    let Some(shaders) = &session.shaders else { return };
-    let count = shaders.modes.len() as isize;
-    let at = shaders.modes.iter().position(|mode| mode.slug == session.settings.mode).unwrap_or(0) as isize;
-    if count > 0 {
-        set_mode(session, (at + step).rem_euclid(count) as usize);
-    }
 }

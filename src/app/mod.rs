@@ -54,8 +54,9 @@ use crate::shader::{Compiler, Source, Watcher};
 use crate::state;
 
 use crate::threads::loader::{self, Reading};
+use crate::threads::worker::WorkerMessage;
 use crate::threads::{Message, Outbox, watch_files};
-use screen::Screen;
+use screen::{Next, Screen};
 use viewer::Viewer;
 
 pub use last_session::session_to_restore;
@@ -216,6 +217,17 @@ impl App {
         Ok(Open { viewer, screen, gpu, window })
     }
 
+    /// Goes on with what is drawn between frames, until a frame is due.
+    fn go_on(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        match open.screen.go_on(&mut open.viewer) {
+            Ok(Next::Frame) => open.window.request_redraw(),
+            Ok(Next::After(wait)) => event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + wait)),
+            Ok(Next::Event) => event_loop.set_control_flow(ControlFlow::Wait),
+            Err(error) => self.end(event_loop, Err(error.into())),
+        }
+    }
+
     fn end(&mut self, event_loop: &ActiveEventLoop, result: Result<(), AppError>) {
         if let Some(mut open) = self.open.take() {
             if let Err(AppError::Gpu(GpuError::DeviceLost(_))) = &result {
@@ -258,15 +270,17 @@ impl ApplicationHandler<Message> for App {
         }
     }
 
-    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
-        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
-            open.window.request_redraw();
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
+        if let StartCause::ResumeTimeReached { .. } = cause {
+            self.go_on(event_loop);
         }
     }
 
-    fn user_event(&mut self, _: &ActiveEventLoop, message: Message) {
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, message: Message) {
         let Some(open) = &mut self.open else { return };
         match message {
+            // A frame would wait for the thumbnail that the device may be drawing.
+            Message::Worker(WorkerMessage::ThumbnailsBuilt) => return self.go_on(event_loop),
             Message::Accessibility(event) => open.screen.on_accessibility(event.window_event),
             message => open.viewer.on_message(message),
         }

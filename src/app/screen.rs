@@ -1,11 +1,13 @@
 //! The window's surface: swapchain, egui and the view. Each call of [`Screen::draw`] draws one frame.
 
+mod background;
 mod error_map;
 mod extras;
 mod gallery;
 mod grid;
 mod inspector;
 mod loops;
+mod number;
 mod pace;
 mod probe;
 mod reference;
@@ -36,9 +38,12 @@ use crate::render::tools::Outline;
 use crate::render::{BoundFrame, Output, PixelAt, Redraw, View};
 use crate::scene::{CameraController, CameraView};
 use crate::threads::Outbox;
+use background::Background;
+pub(super) use background::Next;
 use error_map::ErrorMap;
 use gallery::Gallery;
 use inspector::PixelReader;
+use number::NumberReader;
 use reference::ReferenceView;
 use shots::WindowShot;
 
@@ -59,8 +64,10 @@ pub(super) struct PictureRect {
 /// The screen. Fields drop in order, so renderers go before the swapchain and the surface.
 pub(super) struct Screen {
     ui: UiRenderer,
+    background: Background,
     gallery: Gallery,
     inspector: PixelReader,
+    number: NumberReader,
     view: View,
     frames: Frames,
     layouts: Arc<SetLayouts>,
@@ -81,7 +88,7 @@ pub(super) struct Screen {
     unchecked: [Option<Arc<FrameState>>; FRAMES_IN_FLIGHT],
     /// The attempt number of each of these pictures, see [`Viewer::record`].
     attempts: [Option<u64>; FRAMES_IN_FLIGHT],
-    /// Whether each of these frames has also drawn thumbnails or an older picture, in which a loop may not have ended.
+    /// Whether each of these frames has also drawn another picture, in which a loop may not have ended.
     has_others: [bool; FRAMES_IN_FLIGHT],
     /// Whether another frame must follow at once.
     redraws: bool,
@@ -117,6 +124,8 @@ pub(super) struct Screen {
     /// The part of the picture that no handle between it and a panel covers, in points.
     free: egui::Rect,
     last_frame: Instant,
+    /// When egui wants the next frame.
+    due: Option<Instant>,
     /// The CPU's times of the frame that is being made.
     cpu: CpuTimes,
 }
@@ -137,8 +146,10 @@ impl Screen {
             Some(gpu.max_image_size() as usize),
         );
         Ok(Self {
+            background: Background::new(gpu)?,
             gallery: Gallery::default(),
             inspector: PixelReader::default(),
+            number: NumberReader::default(),
             layouts: layouts.clone(),
             ui: UiRenderer::new(gpu, Swapchain::FORMAT, FRAMES_IN_FLIGHT)?,
             view: View::new(gpu, layouts, FRAMES_IN_FLIGHT)?,
@@ -175,6 +186,7 @@ impl Screen {
             wanted: Vec::new(),
             free: egui::Rect::NOTHING,
             last_frame: Instant::now(),
+            due: None,
             cpu: CpuTimes::default(),
         })
     }
@@ -227,11 +239,9 @@ impl Screen {
         let drawn = self.survive(drawn)?;
         if drawn.is_none() {
             self.view.forget();
-            (self.reference, self.thumbnails, self.thumbnail, self.outline) = (None, None, None, None);
+            (self.reference, self.outline) = (None, None);
             self.texture.forget();
             self.cells.clear();
-            self.gallery.forget();
-            self.inspector.forget();
         }
         let shortage = self.shortage.take();
         let wait = drawn.flatten().or(shortage.is_some().then_some(RETRY));
@@ -285,14 +295,10 @@ impl Screen {
             Some(frame) => self.view.draw(&mut encoder, slot, frame, &output, redraw)?,
             None => View::clear(&mut encoder, &output),
         }
-        let waits =
-            self.draw_extras((&mut encoder, slot), viewer, frame.as_ref(), (&acquired.image, pixels_per_point))?;
+        self.draw_extras((&mut encoder, slot), viewer, frame.as_ref(), &acquired.image)?;
         encoder.pass("ui", |encoder| self.draw_ui(encoder, &acquired.image, pixels_per_point, &primitives))?;
         self.record_window_shot(&mut encoder, slot, viewer, &acquired.image)?;
-        self.has_others[slot] |= self.reference.is_some()
-            || self.thumbnail.is_some()
-            || !self.cells.is_empty()
-            || waits.iter().any(Option::is_some);
+        self.has_others[slot] |= self.reference.is_some() || !self.cells.is_empty();
         self.attempts[slot] = viewer.record(window);
         self.cpu.record_ms = record.elapsed().as_secs_f64() * 1e3;
         self.frames.submit(encoder, acquired.submission)?;
@@ -304,6 +310,7 @@ impl Screen {
 
         viewer.answer();
         let reported = self.finished(viewer, frame.as_ref(), begin)?;
+        let wait = self.draw_background(viewer, pixels_per_point)?;
         // Both change with every frame.
         let (redraws, awaits_loops) = (std::mem::take(&mut self.redraws), self.awaits_loops());
         let changes = self.stale || moving || reported || measures || redraw == Redraw::Always;
@@ -311,7 +318,8 @@ impl Screen {
             return Ok(Some(Duration::ZERO));
         }
         let delay = delay.filter(|delay| *delay < NEVER);
-        Ok(waits.into_iter().flatten().chain(delay).min())
+        self.due = delay.map(|delay| Instant::now() + delay);
+        Ok(wait.into_iter().chain(delay).min())
     }
 
     /// Recreates the swapchain if it does not fit the window. Returns whether there is a swapchain.

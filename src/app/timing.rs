@@ -18,7 +18,7 @@ const SUMMARIZED: usize = 4096;
 /// Frames that are drawn only to measure a picture.
 const EXTRA: usize = 4;
 /// Passes that a frame has even if the picture stays.
-const NOT_OF_PICTURE: [&str; 7] = ["tone map", "ui", "thumbnails", "thumbnail", "outline", "texture", "inspector"];
+const NOT_OF_PICTURE: [&str; 4] = ["tone map", "ui", "outline", "texture"];
 
 /// Inputs of a frame. Times can be compared between frames with equal inputs.
 #[derive(Clone, Debug, PartialEq)]

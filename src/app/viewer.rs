@@ -46,8 +46,8 @@ use crate::threads::{Outbox, Threads};
 pub(super) use compare::{Compare, Difference, Reference};
 use edits::Edits;
 pub(super) use edits::NO_FOLDER;
+pub(super) use picture::readout;
 use picture::target;
-pub(super) use picture::value_text;
 pub(super) use versions::Version;
 use versions::Versions;
 
@@ -270,6 +270,11 @@ impl Viewer {
     /// Whether the device is faster than the display, so that vertical sync saves work.
     pub(super) fn gpu_is_fast(&self) -> bool {
         self.gpu.info().kind != "cpu"
+    }
+
+    /// Whether an edit is being compiled, or has not been drawn. Whatever else there is to draw waits for it.
+    pub(super) fn awaits_edit(&self) -> bool {
+        self.shader.compiling || self.threads.worker.is_compiling() || self.times_next_frame()
     }
 
     /// Whether to measure the next frame, because it is the first of a shader generation or of the model.

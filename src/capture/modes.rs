@@ -16,10 +16,7 @@ pub fn modes_of(session: &Session, names: &[String]) -> Result<Vec<Mode>, String
     let shaders = session.shaders.clone().unwrap_or_default();
     let features = session.features();
     let is_measured = !session.settings.measured.is_empty();
-    let has_data = |mode: &Mode| {
-        let has_feature = mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
-        has_feature && (is_measured || !mode.slug.starts_with("measured"))
-    };
+    let has_data = |mode: &Mode| mode.has_data(features) && (is_measured || !mode.slug.starts_with("measured"));
     let is_plain = |mode: &Mode| !mode.accumulate && !mode.traces && mode.pass.is_none() && has_data(mode);
     let has = |group: &str| names.iter().any(|name| name == group);
     let (wants_plain, wants_all, wants_paths) = (has("modes"), has("all") || names.is_empty(), has("paths"));

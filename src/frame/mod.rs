@@ -27,8 +27,8 @@ pub(crate) use formats::pass_format;
 pub use keys::{Keys, key_names};
 pub use mode_sets::{SharedMode, mode_sets};
 pub(crate) use pipeline_key::PipelineKey;
+pub(crate) use pipelines::QUADS;
 pub use pipelines::{MaterialVariant, PipelineRequest};
-pub(crate) use pipelines::{QUADS, shared_features};
 pub(crate) use scene::Appearance;
 pub use scene::Scene;
 

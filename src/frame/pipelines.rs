@@ -262,7 +262,7 @@ fn is_transmissive(material: MaterialVariant) -> bool {
 }
 
 /// The feature bits that all materials of a frame share.
-pub(crate) fn shared_features(settings: &Settings) -> u32 {
+pub(super) fn shared_features(settings: &Settings) -> u32 {
     let mut features = 0;
     if settings.environment.is_lit() {
         features |= interface::FEATURE_ENVIRONMENT;

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::MaterialVariant;
+use super::pipelines::shared_features;
 use crate::gpu::PrimitiveClass;
 use crate::interface::{self, ATTRIBUTE_COLOR, FEATURE_TRANSMISSION};
 use crate::scene::{
@@ -139,6 +140,11 @@ impl Scene {
     /// The kinds of material in use.
     pub fn materials(&self) -> &BTreeSet<MaterialVariant> {
         &self.materials
+    }
+
+    /// `FEATURE_*` bits of the materials in use, and of the light of `settings`.
+    pub fn features(&self, settings: &Settings) -> u32 {
+        self.materials.iter().fold(shared_features(settings), |all, material| all | material.features)
     }
 
     /// Whether a material is transmissive, so that the surfaces behind it must be drawn first.

@@ -53,34 +53,34 @@ impl PixelValue {
 
     /// The value of a picture's pixel as text. Unlike [`PixelValue::text`], it is a color where the picture shows one for each number.
     pub fn text_in_picture(&self, mode: &Mode) -> String {
+        match self.parts_in_picture(mode) {
+            [text, unit] if unit.is_empty() => text,
+            [text, unit] => format!("{text} {unit}"),
+        }
+    }
+
+    /// The two parts of [`PixelValue::text_in_picture`]: numbers or words, and what follows them, such as the unit.
+    pub fn parts_in_picture(&self, mode: &Mode) -> [String; 2] {
         if let Some(text) = self.words(mode) {
-            return text;
+            return [text, String::new()];
         }
         let count = usize::from(mode.components).clamp(1, 3);
         let width = count * (NUMBER_WIDTH + 1) - 1;
-        let mut unit = String::new();
-        if !mode.unit.is_empty() {
-            unit = format!(" {}", mode.unit);
-        }
-        if mode.is_displayed {
-            unit += " displayed";
-        } else if mode.tonemap {
-            unit += " before exposure";
-        }
-        let total = width + unit.chars().count();
-        let words = match self {
-            Self { not_finite: true, .. } => Some("NaN"),
-            Self { no_data: true, .. } => Some("no data"),
-            _ => None,
+        let of = match (mode.is_displayed, mode.tonemap) {
+            (true, _) => "displayed",
+            (false, true) => "before exposure",
+            (false, false) => "",
         };
-        let text = match words {
-            Some(words) => format!("{words:>width$}"),
-            None => {
+        let unit = [&mode.unit, of].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
+        let words = match self {
+            Self { not_finite: true, .. } => "NaN",
+            Self { no_data: true, .. } => "no data",
+            _ => {
                 let numbers: Vec<String> = self.value[..count].iter().map(|number| text_of(*number)).collect();
-                numbers.join(" ") + &unit
+                return [numbers.join(" "), unit];
             }
         };
-        format!("{text:<total$}")
+        [format!("{words:>width$}"), " ".repeat(unit.chars().count())]
     }
 
     /// A value that was read on its own, in JSON: null is no data, "NaN" is not finite. A number that stands for something is an integer

@@ -104,6 +104,8 @@ impl Job {
 struct Jobs {
     sender: Sender<Job>,
     edits: Arc<AtomicU64>,
+    /// How many of them the last finished reload contains.
+    reloaded: Arc<AtomicU64>,
 }
 
 impl Jobs {
@@ -139,7 +141,7 @@ impl Worker {
         outbox: &Outbox,
     ) -> Self {
         let (sender, inbox) = unbounded();
-        let edits = Arc::new(AtomicU64::new(0));
+        let (edits, reloaded) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let snapshot = Arc::new(Mutex::new(snapshot));
         let mut state = Thread {
             reloader: Reloader::new(gpu, layouts, compiler, source),
@@ -147,6 +149,7 @@ impl Worker {
             inbox,
             edits: edits.clone(),
             edits_taken: 0,
+            reloaded: reloaded.clone(),
             has_compiled: false,
             panics: 0,
             thumbnails: None,
@@ -159,7 +162,7 @@ impl Worker {
             outbox: outbox.clone(),
         };
         let thread = std::thread::spawn(move || state.run());
-        Self { jobs: Some(Jobs { sender, edits }), snapshot, asked: VecDeque::new(), thread: Some(thread) }
+        Self { jobs: Some(Jobs { sender, edits, reloaded }), snapshot, asked: VecDeque::new(), thread: Some(thread) }
     }
 
     /// Sets what the next reload builds pipelines for.
@@ -170,6 +173,12 @@ impl Worker {
     /// Compiles the stages that a change makes dirty. `since` is the time of its first file event.
     pub(crate) fn change(&self, change: Change, since: Instant) {
         self.send(Job::Edit(Edit::new(change, since)));
+    }
+
+    /// Whether an edit waits or is being compiled. Its message comes before the answer is no.
+    pub(crate) fn is_compiling(&self) -> bool {
+        let count = |edits: &AtomicU64| edits.load(Ordering::SeqCst);
+        self.jobs.as_ref().is_some_and(|jobs| count(&jobs.edits) > count(&jobs.reloaded))
     }
 
     /// [`Worker::change`] for the watcher's thread, which must end before the worker does.

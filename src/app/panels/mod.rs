@@ -3,19 +3,12 @@
 
 mod camera;
 mod capture;
-mod compare;
-mod comparison;
-pub(super) mod defaults;
 mod environment;
 pub(super) mod expression;
-mod gizmo;
-mod grid;
 mod inspector;
 mod keys;
-mod labels;
 mod learn;
 mod lights;
-mod mode_tile;
 mod model;
 mod modes;
 pub(super) mod open_gallery;
@@ -23,7 +16,6 @@ mod output;
 mod overlay;
 pub(super) mod parameters;
 pub(super) mod passes;
-mod range;
 pub(super) mod rows;
 pub(super) mod scene;
 mod shaders;
@@ -85,15 +77,15 @@ pub(super) struct PanelState {
     shaders: shaders::ShadersState,
     pub(super) scene: scene::SceneState,
     pub(super) texture: texture::TextureState,
-    gizmo: gizmo::Gizmo,
+    gizmo: overlay::Gizmo,
     pub(super) timeline: timeline::TimelineState,
     pub(super) expression: expression::ExpressionState,
-    pub(super) defaults: defaults::Asked,
+    pub(super) defaults: parameters::defaults::Asked,
     capture: capture::CaptureState,
     files: overlay::diagnostics::Files,
     pub(super) hint: Hint,
     pub(super) legend: overlay::legend::LegendState,
-    labels: labels::Labels,
+    labels: overlay::Labels,
     /// The modes that the picture shows side by side.
     pub(super) grid: Grid,
 }
@@ -124,15 +116,15 @@ impl PanelState {
             shaders: shaders::ShadersState::default(),
             scene: scene::SceneState::default(),
             texture: texture::TextureState::default(),
-            gizmo: gizmo::Gizmo::default(),
+            gizmo: overlay::Gizmo::default(),
             timeline: timeline::TimelineState::default(),
             expression: expression::ExpressionState::default(),
-            defaults: defaults::Asked::default(),
+            defaults: parameters::defaults::Asked::default(),
             capture: capture::CaptureState::default(),
             files: overlay::diagnostics::Files::default(),
             hint: Hint::restored(),
             legend: overlay::legend::LegendState::default(),
-            labels: labels::Labels::default(),
+            labels: overlay::Labels::default(),
             grid: Grid::default(),
         }
     }
@@ -140,12 +132,22 @@ impl PanelState {
 
 /// Readings of the picture under the mouse.
 pub(super) struct Readings {
-    /// Text of the value under the mouse.
-    pub(super) value: Option<String>,
+    /// The value under the mouse.
+    pub(super) value: Option<Readout>,
     /// Title over the picture.
     pub(super) title: Option<String>,
     /// Contents of the legend; `None` before the first picture.
     pub(super) legend: Option<LegendOf>,
+}
+
+/// The text of a value in the picture.
+pub(super) struct Readout {
+    /// Its numbers, or what they mean.
+    pub(super) value: String,
+    /// Unit, and whether the value is before exposure.
+    pub(super) unit: String,
+    /// Pixels from the upper left corner of the picture.
+    pub(super) at: (u32, u32),
 }
 
 /// The picture of which the legend speaks.
@@ -189,24 +191,12 @@ pub(super) fn show(ui: &mut Ui, viewer: &mut Viewer, readings: &Readings, comman
     } else {
         PictureArea { rect: whole, free: whole }
     };
-    compare::show(ui.ctx(), viewer, picture.rect);
-    inspector::marker(ui.ctx(), &viewer.panels.inspector, picture.rect);
-    gizmo::show(ui.ctx(), viewer, picture.rect);
-    grid::show(ui.ctx(), &viewer.session, &viewer.panels, picture.rect);
-    if viewer.panels.visible
-        && readings.legend.is_some()
-        && !viewer.panels.grid.is_on()
-        && let Some(model) = viewer.session.model()
-    {
-        let (labels, camera) = (&mut viewer.panels.labels, &viewer.session.settings.camera);
-        labels::show(ui.ctx(), labels, model, camera, picture.rect);
-    }
     overlay::show(ui.ctx(), viewer, readings, picture.rect, commands);
     let PanelState { key_list, show_keys, palette, .. } = &mut viewer.panels;
     keys::show(ui.ctx(), key_list, show_keys, !palette.is_open());
     open_gallery::show(ui.ctx(), viewer, commands);
     palette::show(ui.ctx(), viewer, whole, commands);
-    defaults::show(ui.ctx(), viewer, commands);
+    parameters::defaults::show(ui.ctx(), viewer, commands);
     viewer.panels.gallery.end_frame(ui.ctx());
     viewer.panels.grid.follow(&viewer.session.settings.mode);
     picture

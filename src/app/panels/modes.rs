@@ -1,18 +1,17 @@
 //! The debug modes by group, as a gallery of thumbnails or as a list, with a search. The picture previews the mode that the mouse rests
 //! on.
 
-use std::collections::HashSet;
-use std::sync::LazyLock;
+mod tile;
 
 use egui::{RichText, Ui, vec2};
 
 use super::spoken::named;
 use super::theme::icon;
-use super::{PanelState, QUIET, mode_tile};
+use super::{PanelState, QUIET};
 use crate::app::gallery::GalleryState;
 use crate::app::grid::Grid;
-use crate::shader::annotation::Mode;
-use crate::shader::{PATHS_STAGE, ShaderSet, TreePath, embedded};
+use crate::shader::annotation::{Mode, listed};
+use crate::shader::{PATHS_STAGE, ShaderSet};
 
 /// Width of the button that switches between gallery and list, points.
 const TOGGLE: f32 = 34.0;
@@ -37,18 +36,17 @@ pub(super) fn show(
     }
     let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let is_found = |mode: &Mode| words.iter().all(|word| text_of(mode).contains(word));
-    let found = shaders.modes.iter().enumerate().filter(|(_, mode)| is_found(mode)).collect();
+    let place = |mode: &Mode| shaders.modes.iter().position(|other| other.slug == mode.slug).unwrap_or(0);
+    let found =
+        listed(&shaders.modes).into_iter().filter(|mode| is_found(mode)).map(|mode| (place(mode), mode)).collect();
     let found = best_first(found, &search.trim().to_lowercase());
     if found.is_empty() {
         ui.label(RichText::new(format!("No mode matches \"{}\".", search.trim())).small().color(QUIET));
     }
     // A search shows modes without data too, and the selected mode is never folded away.
-    let has_data = |mode: &Mode| {
-        let has_feature = mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
-        has_feature || !words.is_empty() || *current == mode.slug
-    };
+    let has_data = |mode: &Mode| mode.has_data(features) || !words.is_empty() || *current == mode.slug;
     let clicked = egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let (columns, size) = mode_tile::columns(ui.available_width());
+        let (columns, size) = tile::columns(ui.available_width());
         gallery.size = size;
         let mut list = List { current, scrolled_to, gallery, columns, clicked: None };
         for modes in found.chunk_by(|a, b| a.1.group == b.1.group) {
@@ -119,7 +117,7 @@ impl<'m> List<'_, 'm> {
     /// Shows modes, each with its index in the shaders.
     fn show(&mut self, ui: &mut Ui, modes: &[(usize, &'m Mode)]) {
         match self.gallery.is_on {
-            true => mode_tile::grid(ui, self.columns, modes, |ui, mode| self.item(ui, *mode)),
+            true => tile::grid(ui, self.columns, modes, |ui, mode| self.item(ui, *mode)),
             false => modes.iter().for_each(|mode| self.item(ui, *mode)),
         }
     }
@@ -127,7 +125,7 @@ impl<'m> List<'_, 'm> {
     fn item(&mut self, ui: &mut Ui, (index, mode): (usize, &'m Mode)) {
         let is_current = self.current == mode.slug;
         let response = match self.gallery.is_on {
-            true => mode_tile::show(ui, mode, keys(index, mode).first().copied(), is_current, self.gallery),
+            true => tile::show(ui, mode, keys(index, mode).first().copied(), is_current, self.gallery),
             false => row(ui, index, mode, is_current),
         };
         let hint = "Ctrl+click to show it beside the others";
@@ -161,24 +159,9 @@ fn keys(index: usize, mode: &Mode) -> Vec<char> {
     mode.key.into_iter().chain(digit).collect()
 }
 
-/// The groups of the modes that Specula comes with.
-static BUILT_IN_GROUPS: LazyLock<HashSet<&'static str>> = LazyLock::new(|| {
-    let text = embedded::read(None, &TreePath::from("debug/modes.glsl")).unwrap_or_default();
-    let text = std::str::from_utf8(text).unwrap_or_default();
-    let notes = text.lines().filter(|line| line.trim_start().starts_with("//@mode"));
-    let groups = notes.filter_map(|line| line.split("group=\"").nth(1)?.split('"').next());
-    groups.chain(["Passes"]).collect()
-});
-
-/// Sorts found modes by how well their names match the search: those with this name first, with their group. Without a search the
-/// user's own groups follow the first one.
+/// Sorts found modes by how well their names match the search: those with this name first, with their group.
 fn best_first<'a>(mut found: Vec<(usize, &'a Mode)>, search: &str) -> Vec<(usize, &'a Mode)> {
     if search.is_empty() {
-        let first = found.first().map(|(_, mode)| mode.group.clone());
-        found.sort_by_key(|(_, mode)| {
-            let is_first = first.as_ref() == Some(&mode.group);
-            (!is_first, BUILT_IN_GROUPS.contains(mode.group.as_str()))
-        });
         return found;
     }
     let rank = |mode: &Mode| match mode.name.to_lowercase() {

@@ -1,10 +1,11 @@
 //! The panel Output: exposure, tone map, background, samples.
 
+pub(super) mod range;
+
 use clap::ValueEnum as _;
 use egui::{RichText, Ui};
 
 use super::QUIET;
-use super::range;
 use super::rows::{choice_name, choose, number, setting};
 use crate::app::command::Command;
 use crate::app::numbers::EXPOSURE;

@@ -1,14 +1,16 @@
 //! The panel Parameters: a control for each `//@ui` constant and parameter. Reloads keep their values by name.
 
+pub(in crate::app) mod defaults;
+
 use std::collections::BTreeMap;
 
 use egui::{Response, RichText, Ui};
 
+use super::QUIET;
 use super::passes::is_of_pass;
 use super::rows::{self, Row, edit_number, heading, set_option, short};
 use super::spoken::named;
 use super::theme::icon;
-use super::{QUIET, defaults};
 use crate::app::numbers::{component, of_constant, of_parameter};
 use crate::settings::ShaderValue;
 use crate::shader::annotation::ParameterType;

@@ -4,9 +4,11 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use super::LegendOf;
+use super::output::range;
 use super::overlay::legend::{self, Legend, LegendState};
-use super::{camera, capture, comparison, range, rows, theme};
+use super::timeline::comparison;
+use super::{LegendOf, Readout};
+use super::{camera, capture, rows, theme};
 use crate::app::command::{Command, CompareWith};
 use crate::app::control::Captures;
 use crate::app::dialog::Dialog;
@@ -36,10 +38,11 @@ fn the_legend_names_the_mode_and_its_switches() {
     let of = LegendOf { mode, limits: Some((2.9, 4.2)), survey: None, colormap: Colormap::None, exposure: 1.0 };
     let state = (Settings::of_window().view, LegendState::default());
     let mut harness = harness(state, move |ui, (view, state)| {
-        let legend = Legend { title: Some("Depth"), of: &of, value: Some("3.01758 m") };
+        let readout = Readout { value: "3.01758".into(), unit: "m".into(), at: (12, 34) };
+        let legend = Legend { title: Some("Depth"), of: &of, value: Some(&readout) };
         legend::show(ui, &legend, view, state, 600.0);
     });
-    for text in ["Depth  ·  m", "2.9", "4.2", "3.01758 m"] {
+    for text in ["Depth  ·  m", "2.9", "4.2", "3.01758 m   at 12, 34"] {
         harness.get_by_label(text);
     }
     harness.get_by_role_and_label(Role::Button, "auto");

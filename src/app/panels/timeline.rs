@@ -1,10 +1,12 @@
 //! The panel Timeline: the versions of the shaders, each with its picture, its times and what it changed.
 
+pub(super) mod comparison;
+
 use egui::{Label, Rect, Response, RichText, Sense, Ui, Vec2, vec2};
 
 use super::rows::elided;
 use super::theme::{ACCENT, GOOD, QUIET, STRONG, TEXT};
-use super::{EDGE, ERROR, WARNING, comparison};
+use super::{EDGE, ERROR, WARNING};
 use crate::app::command::{Command, CompareWith};
 use crate::app::difference::{Kind, Line};
 use crate::app::viewer::{Version, Viewer};

@@ -1,7 +1,6 @@
-//! Everything of a frame beside the picture and the panels: what lies over the picture, the grid, thumbnails, and values of pixels.
+//! Everything of a frame beside the picture and the panels: the grid, and what lies over the picture.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use super::Screen;
 use crate::app::viewer::Viewer;
@@ -9,15 +8,15 @@ use crate::gpu::{Encoder, GpuError, Image};
 use crate::render::BoundFrame;
 
 impl Screen {
-    /// Records them for frame slot `slot`, into the window's image. Returns when thumbnails and values of pixels want the next frame.
-    /// An out-of-memory error in the outline, the texture, the grid or a thumbnail drops that part; any other error ends the frame.
+    /// Records them for frame slot `slot`, into the window's image. An out-of-memory error in the outline, the texture or the grid drops that
+    /// part; any other error ends the frame.
     pub(super) fn draw_extras(
         &mut self,
         (encoder, slot): (&mut Encoder, usize),
         viewer: &mut Viewer,
         frame: Option<&BoundFrame>,
-        (image, pixels_per_point): (&Arc<Image>, f32),
-    ) -> Result<[Option<Duration>; 2], GpuError> {
+        image: &Arc<Image>,
+    ) -> Result<(), GpuError> {
         self.draw_reference(encoder, slot, image, self.rect.at)?;
         let outlined = self.draw_outline(encoder, viewer, frame, image);
         self.survive(outlined)?;
@@ -28,17 +27,6 @@ impl Screen {
             self.cells.clear();
             viewer.panels.grid.end();
         }
-        let recorded = self.record_thumbnail(encoder, slot, viewer);
-        if self.survive(recorded)?.is_none() {
-            // The newest picture matters more.
-            (self.thumbnails, self.thumbnail, self.shortage) = (None, None, None);
-            self.lacks_thumbnails = true;
-        }
-        let context = (&self.layouts, pixels_per_point);
-        let thumbnails = self.gallery.draw(encoder, slot, viewer, &mut self.ui, context)?;
-        self.inspector.take(&self.frames, Some(slot), viewer);
-        let of_pixel = (self.rect.size, self.mouse.over.then(|| self.mouse_pixel()).flatten());
-        let values = self.inspector.draw(encoder, slot, viewer, &self.layouts, of_pixel)?;
-        Ok([thumbnails, values])
+        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! The thumbnails of the gallery on the device: which are out of date, when they are drawn, and where.
 //!
-//! Thumbnails wait for everything else. They are drawn when the picture has come to rest, a few in each frame, those in sight alone, with
+//! Thumbnails wait for everything else. They are drawn when the picture has come to rest, a few after each frame, those in sight alone, with
 //! pipelines that the worker builds when it has nothing else to do. A failure drops them without a word.
 
 use std::collections::{HashMap, HashSet};
@@ -11,14 +11,14 @@ use crate::app::gallery::GalleryState;
 use crate::app::viewer::Viewer;
 use crate::events::{Event, emit};
 use crate::frame::mode_sets;
-use crate::gpu::{Encoder, Gpu, GpuError, SetLayouts, UiImage, UiRenderer, Use};
+use crate::gpu::{Gpu, GpuError, SetLayouts, UiImage, UiRenderer, Use};
 use crate::render::Thumbnails;
 use crate::shader::{Mode, ShaderSet};
 
-use super::FRAMES_IN_FLIGHT;
+use super::background::Background;
 use super::sets::{BoundSets, Shown, shown, time_to_rest};
 
-/// Draws of thumbnails, each of several modes, in one frame. On a GPU each takes less than a millisecond.
+/// Draws of thumbnails, each of several modes, after one frame. On a GPU each takes less than a millisecond.
 const DRAWS_PER_FRAME: usize = 3;
 /// Thumbnails in a row of the texture.
 const COLUMNS: u32 = 16;
@@ -79,13 +79,12 @@ impl Gallery {
     /// The device is lost.
     pub(super) fn draw(
         &mut self,
-        encoder: &mut Encoder,
-        slot: usize,
+        background: &mut Background,
         viewer: &mut Viewer,
         ui: &mut UiRenderer,
         (layouts, pixels_per_point): (&Arc<SetLayouts>, f32),
     ) -> Result<Option<Duration>, GpuError> {
-        self.collect(slot, viewer);
+        self.collect(viewer);
         if viewer.panels.gallery.visible.is_empty() || viewer.recorder.is_careful() {
             return Ok(None);
         }
@@ -105,14 +104,10 @@ impl Gallery {
             |mode: &&Mode| viewer.panels.gallery.visible.contains(&mode.slug) && !self.fresh.contains(&mode.slug);
         // All modes are split, not those in sight alone, so that scrolling needs no other pipelines.
         let features = viewer.session.features();
-        let has_data = |mode: &&Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
-        let is_seen = |mode: &&Mode| has_data(mode) || viewer.panels.gallery.visible.contains(&mode.slug);
+        let is_seen = |mode: &&Mode| mode.has_data(features) || viewer.panels.gallery.visible.contains(&mode.slug);
         let sets = mode_sets(shaders.modes.iter().filter(is_seen), Thumbnails::most_at_once(&viewer.gpu));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(|set| set.iter().any(is_stale)).collect();
         if stale.is_empty() {
-            if self.renderer.as_ref().is_some_and(Thumbnails::awaits) {
-                return Ok(Some(Duration::ZERO));
-            }
             if self.drawn > 0 {
                 emit(&viewer.events, &Event::Thumbnails { drawn: std::mem::take(&mut self.drawn) });
             }
@@ -121,7 +116,7 @@ impl Gallery {
         if let Some(left) = time_to_rest(viewer, self.since) {
             return Ok(Some(left));
         }
-        let drawn = self.draw_sets(encoder, slot, viewer, ui, layouts, &shaders, stale);
+        let drawn = self.draw_sets(background, viewer, ui, layouts, &shaders, stale);
         match drawn {
             Err(error) if error.is_shortage() => {
                 self.failed = true;
@@ -131,21 +126,18 @@ impl Gallery {
         }
     }
 
-    /// Reads the samples of thumbnails that this slot has drawn. Those whose range they change are drawn again.
-    fn collect(&mut self, slot: usize, viewer: &Viewer) {
+    /// Reads the samples of the last thumbnails. Those whose range they change are drawn again.
+    fn collect(&mut self, viewer: &Viewer) {
         let (Some(renderer), Some(shaders)) = (&mut self.renderer, &viewer.session.shaders) else { return };
-        let changed: Vec<u32> =
-            (0..DRAWS_PER_FRAME).flat_map(|index| renderer.collect(slot * DRAWS_PER_FRAME + index)).collect();
+        let changed: Vec<u32> = (0..DRAWS_PER_FRAME).flat_map(|index| renderer.collect(index)).collect();
         for mode in shaders.modes.iter().filter(|mode| changed.contains(&mode.id)) {
             self.fresh.remove(&mode.slug);
         }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the parts of a screen that a draw needs")]
     fn draw_sets(
         &mut self,
-        encoder: &mut Encoder,
-        slot: usize,
+        background: &mut Background,
         viewer: &mut Viewer,
         ui: &mut UiRenderer,
         layouts: &Arc<SetLayouts>,
@@ -167,6 +159,7 @@ impl Gallery {
         let (Some(renderer), Some((image, _))) = (&mut self.renderer, &self.atlas) else { return Ok(None) };
         let atlas = image.image().clone();
         let before = if std::mem::replace(&mut self.is_drawn, true) { Use::Sampled } else { Use::Undefined };
+        let encoder = background.encoder()?;
         encoder.transition(&atlas, before, Use::CopyTo);
         let mut result = Ok(());
         for (index, (set, frame)) in ready.iter().take(draws).enumerate() {
@@ -179,7 +172,7 @@ impl Gallery {
                 .collect();
             let corner = |cell: &u32| (cell % COLUMNS * size.0, cell / COLUMNS * size.1);
             let corners: Vec<(u32, u32)> = cells.iter().map(corner).collect();
-            result = renderer.draw(encoder, slot * DRAWS_PER_FRAME + index, frame, &atlas, &corners);
+            result = renderer.draw(encoder, index, frame, &atlas, &corners);
             if result.is_err() {
                 break;
             }
@@ -194,7 +187,7 @@ impl Gallery {
             self.drawn += set.len();
             gallery.texture = Some(image.texture);
         }
-        // The user interface may sample the texture in this frame.
+        // The user interface samples the texture from the next frame on.
         encoder.transition(&atlas, Use::CopyTo, Use::Sampled);
         result.map(|()| Some(Duration::ZERO))
     }
@@ -208,7 +201,7 @@ impl Gallery {
         (size, rows): ((u32, u32), u32),
     ) -> Result<(), GpuError> {
         if self.renderer.is_none() {
-            self.renderer = Some(Thumbnails::new(gpu, layouts, FRAMES_IN_FLIGHT * DRAWS_PER_FRAME)?);
+            self.renderer = Some(Thumbnails::new(gpu, layouts, DRAWS_PER_FRAME)?);
         }
         if self.atlas.is_none() {
             let image = Thumbnails::atlas(gpu, size, (COLUMNS, rows))?;
@@ -218,7 +211,7 @@ impl Gallery {
         Ok(())
     }
 
-    /// Draws all thumbnails again: the commands of a frame were not submitted.
+    /// Draws all thumbnails again: their commands were not submitted.
     pub(super) fn forget(&mut self) {
         self.fresh.clear();
         // The texture may be undefined.

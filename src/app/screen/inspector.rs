@@ -1,28 +1,26 @@
-//! The values of the inspected pixel on the device: which are out of date, when they are drawn, and which frame brings them.
+//! The values of the inspected pixel on the device: which are out of date, when they are drawn, and when they are read.
 //!
-//! Like thumbnails they wait for everything else. They are drawn when the picture has come to rest, a few sets of modes in each frame, with
+//! Like thumbnails they wait for everything else. They are drawn when the picture has come to rest, a few sets of modes after each frame, with
 //! pipelines that the worker builds when it has nothing else to do. A failure leaves the values before.
 
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::FRAMES_IN_FLIGHT;
+use super::background::Background;
 use super::sets::{BoundSets, Shown, shown, time_to_rest};
 use crate::app::viewer::Viewer;
 use crate::frame::{TargetFormat, mode_sets};
-use crate::gpu::{Encoder, Frames, GpuError, SetLayouts};
+use crate::gpu::{GpuError, SetLayouts};
 use crate::render::{PixelModes, TexelReadback, Thumbnails, texel_places};
 use crate::shader::{Mode, ShaderSet};
 
-/// Draws of sets of modes in one frame. On a GPU each takes less than a millisecond.
+/// Draws of sets of modes after one frame. On a GPU each takes less than a millisecond.
 const DRAWS_PER_FRAME: usize = 3;
 
-/// A draw whose frame may not have finished.
+/// A draw that may not have finished.
 struct Pending {
-    /// The slot of its frame.
-    slot: usize,
-    /// Its place among the draws of that frame.
+    /// Its place among the draws of its submission.
     place: usize,
     slugs: Vec<String>,
     /// The picture and pixel that it belongs to.
@@ -43,8 +41,8 @@ pub(super) struct PixelReader {
     /// The sets, by the slugs of their modes, whose pipelines the worker was asked for since the last change.
     asked: HashSet<String>,
     pending: Vec<Pending>,
-    /// The texels that are copied with the first draw of a picture: the slot of its frame, and the picture.
-    texels: Option<(usize, u64, TexelReadback)>,
+    /// The texels that are copied with the first draw of a picture, and the picture.
+    texels: Option<(u64, TexelReadback)>,
     /// The pixel under the mouse when it was last over the picture.
     under_mouse: Option<[u32; 2]>,
     /// Nothing is drawn until something changes: memory is short, or a loop did not end.
@@ -68,22 +66,16 @@ impl PixelReader {
         }
     }
 
-    /// Takes the values of finished frames. `begun`: the slot whose last frame a wait has found finished.
-    pub(super) fn take(&mut self, frames: &Frames, begun: Option<usize>, viewer: &mut Viewer) {
-        let Some(renderer) = &self.renderer else { return };
-        let is_finished = |slot: usize| begun == Some(slot) || frames.is_finished(slot);
-        if let Some((_, picture, readback)) = self.texels.take_if(|(slot, ..)| is_finished(*slot)) {
+    /// Takes the values of finished draws.
+    pub(super) fn take(&mut self, background: &Background, viewer: &mut Viewer) {
+        let Some(renderer) = self.renderer.as_ref().filter(|_| background.is_finished()) else { return };
+        if let Some((picture, readback)) = self.texels.take() {
             viewer.take_texels(picture, readback.finish());
         }
-        let (finished, pending) =
-            std::mem::take(&mut self.pending).into_iter().partition(|draw| is_finished(draw.slot));
-        self.pending = pending;
-        for Pending { slot, place, slugs, picture } in finished as Vec<Pending> {
-            if picture != self.picture {
-                continue;
+        for Pending { place, slugs, picture } in std::mem::take(&mut self.pending) {
+            if picture == self.picture {
+                viewer.take_values(picture, slugs.into_iter().zip(renderer.values(place)));
             }
-            let values = renderer.values(slot * DRAWS_PER_FRAME + place);
-            viewer.take_values(picture, slugs.into_iter().zip(values));
         }
     }
 
@@ -94,8 +86,7 @@ impl PixelReader {
     /// The device is lost.
     pub(super) fn draw(
         &mut self,
-        encoder: &mut Encoder,
-        slot: usize,
+        background: &mut Background,
         viewer: &mut Viewer,
         layouts: &Arc<SetLayouts>,
         (size, mouse): ((u32, u32), Option<(u32, u32)>),
@@ -103,9 +94,7 @@ impl PixelReader {
         let inspector = &viewer.panels.inspector;
         if !inspector.is_visible || viewer.recorder.is_careful() {
             // The device memory is free for other things while the panel is closed.
-            if self.pending.is_empty() {
-                (self.renderer, self.shown) = (None, None);
-            }
+            (self.renderer, self.shown) = (None, None);
             return Ok(None);
         }
         if let Some((x, y)) = mouse {
@@ -132,21 +121,18 @@ impl PixelReader {
             return Ok(None);
         }
         let features = viewer.session.features();
-        let has_data = |mode: &&Mode| mode.needs == 0 || features.is_none_or(|features| features & mode.needs != 0);
-        let sets = mode_sets(shaders.modes.iter().filter(has_data), Thumbnails::most_at_once(&viewer.gpu));
+        let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
+        let sets = mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu));
         let is_stale = |set: &Vec<&Mode>| set.iter().any(|mode| !self.drawn.contains(&mode.slug));
         let stale: Vec<Vec<&Mode>> = sets.into_iter().filter(is_stale).collect();
         if stale.is_empty() {
-            if self.pending.is_empty() && self.texels.is_none() {
-                // The panel shows them with the next frame.
-                return Ok(viewer.values_complete(self.picture).then_some(Duration::ZERO));
-            }
-            return Ok(Some(Duration::ZERO));
+            // The panel shows them with the next frame.
+            return Ok(viewer.values_complete(self.picture).then_some(Duration::ZERO));
         }
         if let Some(left) = time_to_rest(viewer, self.since) {
             return Ok(Some(left));
         }
-        match self.draw_sets(encoder, slot, viewer, layouts, &shaders, stale) {
+        match self.draw_sets(background, viewer, layouts, &shaders, stale) {
             Err(error) if error.is_shortage() => {
                 (self.renderer, self.stopped) = (None, true);
                 self.pending.clear();
@@ -158,8 +144,7 @@ impl PixelReader {
 
     fn draw_sets(
         &mut self,
-        encoder: &mut Encoder,
-        slot: usize,
+        background: &mut Background,
         viewer: &mut Viewer,
         layouts: &Arc<SetLayouts>,
         shaders: &Arc<ShaderSet>,
@@ -171,23 +156,24 @@ impl PixelReader {
             viewer.threads.worker.build_inspected(pipelines, missing);
         }
         if ready.is_empty() {
-            return Ok(if self.pending.is_empty() { None } else { Some(Duration::ZERO) });
+            return Ok(None);
         }
         let renderer = match &mut self.renderer {
             Some(renderer) => renderer,
-            none => none.insert(PixelModes::new(&viewer.gpu, layouts, FRAMES_IN_FLIGHT * DRAWS_PER_FRAME)?),
+            none => none.insert(PixelModes::new(&viewer.gpu, layouts, DRAWS_PER_FRAME)?),
         };
         let draws = if viewer.gpu_is_fast() { DRAWS_PER_FRAME } else { 1 };
+        let encoder = background.encoder()?;
         for (place, (set, frame)) in ready.iter().take(draws).enumerate() {
             if viewer.begin_values(self.picture, *at, &frame.state) {
                 let places = texel_places(&frame.state, (at[0], at[1]));
                 let readback = TexelReadback::record(&viewer.gpu, encoder, &viewer.resources, places)?;
-                self.texels = Some((slot, self.picture, readback));
+                self.texels = Some((self.picture, readback));
             }
-            renderer.draw(encoder, slot * DRAWS_PER_FRAME + place, frame, (at[0], at[1]))?;
+            renderer.draw(encoder, place, frame, (at[0], at[1]))?;
             let slugs: Vec<String> = set.iter().map(|mode| mode.slug.clone()).collect();
             self.drawn.extend(slugs.iter().cloned());
-            self.pending.push(Pending { slot, place, slugs, picture: self.picture });
+            self.pending.push(Pending { place, slugs, picture: self.picture });
         }
         Ok(Some(Duration::ZERO))
     }

@@ -15,7 +15,7 @@ impl Screen {
             let Some(state) = self.unchecked[slot].take() else { continue };
             let has_others = std::mem::take(&mut self.has_others[slot]);
             if self.frames.endless_loop(slot).is_some() && has_others {
-                // It may be a loop of a thumbnail or of an older picture. The picture is drawn again, alone.
+                // It may be a loop of another picture. The picture is drawn again, alone.
                 self.end_others(viewer);
                 continue;
             }
@@ -35,14 +35,10 @@ impl Screen {
 
     /// Draws nothing beside the picture until something changes.
     fn end_others(&mut self, viewer: &mut Viewer) {
-        self.gallery.stop();
-        self.inspector.stop();
+        self.end_background(viewer);
         self.cells.clear();
         viewer.panels.grid.end();
         viewer.end_comparison();
-        if let Some(number) = self.thumbnail.take().map(|pending| pending.number) {
-            viewer.versions.cut_short(number);
-        }
         self.view.forget();
         self.checks = FRAMES_IN_FLIGHT;
         self.redraws = true;

@@ -21,7 +21,6 @@ impl Screen {
             gets_better || view.is_moving(frame) || view.awaits_survey()
         };
         self.awaits_pixel()
-            || self.thumbnail.is_some()
             || self.window_shot.is_some()
             || self.error_map.awaits_copies()
             || viewer.has_unanswered()

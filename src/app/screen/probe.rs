@@ -1,8 +1,9 @@
 //! The value of the pixel under the mouse.
 
+use super::number::Pointed;
 use super::{FRAMES_IN_FLIGHT, Screen};
-use crate::app::panels::LegendOf;
-use crate::app::viewer::{Viewer, value_text};
+use crate::app::panels::{LegendOf, Readout};
+use crate::app::viewer::{Viewer, readout};
 use crate::frame::FrameState;
 use crate::render::View;
 
@@ -58,12 +59,23 @@ impl Screen {
         }
     }
 
-    /// The text of the value under the mouse.
-    pub(super) fn value_text(&self, viewer: &Viewer) -> Option<String> {
+    /// The value under the mouse.
+    pub(super) fn readout(&self, viewer: &Viewer) -> Option<Readout> {
         let (pixel, is_of_reference) = self.pixel.filter(|_| self.mouse.over)?;
         let reference = self.reference.as_ref().filter(|_| is_of_reference).map(|reference| &*reference.frame.state);
         let state = reference.or_else(|| self.pointed_at(viewer))?;
-        value_text(state, &pixel)
+        let number = self.pointed_number(viewer).filter(|_| !is_of_reference);
+        let number = number.filter(|pointed| (pointed.at[0], pointed.at[1]) == pixel.at);
+        readout(state, &pixel, number.map(|pointed| self.number.value(&pointed)))
+    }
+
+    /// The pixel under the mouse, if its mode shows colors for numbers.
+    pub(super) fn pointed_number(&self, viewer: &Viewer) -> Option<Pointed> {
+        let of_cell = self.cells.iter().find_map(|cell| cell.view.probe);
+        let (x, y) = of_cell.or(self.view.probe).filter(|_| self.mouse.over)?;
+        let state = self.pointed_at(viewer)?;
+        let mode = state.mode().filter(|mode| mode.numbers.is_some())?;
+        Some(Pointed { mode: mode.slug.clone(), at: [x, y], size: state.size })
     }
 
     /// The state of the picture under the mouse: that of a cell of the grid, or of the selected mode.

@@ -89,8 +89,8 @@ pub(super) fn time_to_rest(viewer: &Viewer, since: Option<Instant>) -> Option<Du
 pub(super) fn shown(viewer: &Viewer, size: (u32, u32)) -> Option<(Arc<ShaderSet>, Shown)> {
     let state = viewer.shown()?;
     let shaders = viewer.session.shaders.clone()?;
-    let is_current = state.shaders.generation == shaders.generation && !viewer.shader.compiling;
-    if !is_current || !shaders.is_complete() || viewer.times_next_frame() {
+    let is_current = state.shaders.generation == shaders.generation;
+    if !is_current || !shaders.is_complete() || viewer.awaits_edit() {
         return None;
     }
     let environment: *const GpuEnvironment = Arc::as_ptr(viewer.resources.environment());

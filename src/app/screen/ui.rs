@@ -19,20 +19,20 @@ impl Screen {
     ) -> Result<(Vec<egui::ClippedPrimitive>, f32, Option<Duration>), GpuError> {
         self.read_pixel();
         self.read_survey();
-        self.take_thumbnail(viewer);
-        self.inspector.take(&self.frames, None, viewer);
+        self.show_background(viewer);
         self.take_copies(viewer);
         self.finish_window_shot(viewer);
         if self.gallery.is_misfit(&viewer.gpu, &viewer.panels.gallery, self.egui.pixels_per_point()) {
             // SYNC: rare, because thumbnails change their size only with the width of their panel.
             self.frames.wait_all()?;
+            self.background.wait()?;
             self.gallery.drop_texture(&mut self.ui, &mut viewer.panels.gallery);
         }
         self.take_times(viewer);
         let prepared = self.prepare_texture(viewer);
         self.survive(prepared)?;
         let readings = Readings {
-            value: self.value_text(viewer),
+            value: self.readout(viewer),
             title: viewer.title(self.view.accumulated()),
             legend: self.legend(viewer),
         };

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::{LastComplete, Viewer};
+use crate::app::panels::Readout;
 use crate::app::status::title;
 use crate::events::{Event, emit};
 use crate::frame::{Clock, FrameInputs, FrameState, TargetFormat};
 use crate::gpu::{Gpu, GpuError};
 use crate::render::{BoundFrame, PixelAt, View};
 use crate::settings::Settings;
-use crate::shader::expression;
+use crate::shader::{PixelValue, expression};
 use crate::threads::worker::Snapshot;
 
 impl Viewer {
@@ -217,12 +218,22 @@ impl Viewer {
     }
 }
 
-/// The text of the value of a pixel in a picture; `None` where nothing covers the pixel.
-pub(in crate::app) fn value_text(state: &FrameState, pixel: &PixelAt) -> Option<String> {
-    let PixelAt { at: (x, y), value, .. } = pixel;
+/// The value of a pixel in a picture; `None` where nothing covers the pixel. `number` is what the pixel's color stands
+/// for, if that is read, or `None` in it until then.
+pub(in crate::app) fn readout(
+    state: &FrameState,
+    pixel: &PixelAt,
+    number: Option<Option<PixelValue>>,
+) -> Option<Readout> {
+    let PixelAt { at, value, .. } = pixel;
     let covered = value.value[3] > 0.0 || value.no_data || value.not_finite;
     let mode = state.mode().filter(|_| covered)?;
-    Some(format!("{}   at {x}, {y}", value.text_in_picture(mode)))
+    let [value, unit] = match number {
+        Some(Some(number)) => [number.text(mode), String::new()],
+        Some(None) => ["…".to_owned(), String::new()],
+        None => value.parts_in_picture(mode),
+    };
+    Some(Readout { value, unit, at: *at })
 }
 
 /// Half floats with the samples of the settings, or 1 if the device does not support them.

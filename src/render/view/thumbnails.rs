@@ -62,11 +62,6 @@ impl Thumbnails {
         changed
     }
 
-    /// Whether samples have not been read.
-    pub fn awaits(&self) -> bool {
-        !self.pending.is_empty()
-    }
-
     /// Draws the modes of `frame`, a state of [`crate::frame::FrameState::of_modes`], and copies the thumbnail of each to its corner in
     /// `atlas`. `slot` is one of those in flight. The atlas is in [`Use::CopyTo`] before and after.
     ///

@@ -17,6 +17,7 @@
 
 mod cursor;
 mod mode;
+mod mode_list;
 mod name;
 mod parameter;
 mod parse;
@@ -43,6 +44,7 @@ use texture::TextureNote;
 use ui::Ui;
 
 pub use mode::{DrawAs, Encode, Mode, Numbers, PATHS_STAGE};
+pub use mode_list::{listed, neighbors};
 pub use parameter::{Constant, Parameter, ParameterType};
 
 /// All annotations of a tree.
@@ -92,7 +94,7 @@ pub fn read<'p>(
         errors.extend(bad);
         for found in found {
             let added = match found {
-                Found::Mode(mode, place) => seen.mode(&mode, &place).map(|()| out.modes.push(mode)),
+                Found::Mode(mode, places) => seen.mode(&mode, &places).map(|()| out.modes.push(mode)),
                 Found::Ui(ui) => {
                     places.insert((ui.place.file.clone(), ui.place.line), ui.place.clone());
                     seen.ui(&ui).and_then(|()| resolve(ui, modules, &mut out))
@@ -157,9 +159,9 @@ struct Seen {
 }
 
 impl Seen {
-    fn mode(&mut self, mode: &Mode, place: &Place) -> Result<(), Box<Diagnostic>> {
+    fn mode(&mut self, mode: &Mode, [place, number]: &[Place; 2]) -> Result<(), Box<Diagnostic>> {
         self.first("mode slug", &mode.slug, place)?;
-        self.first("mode id", &mode.id.to_string(), place)?;
+        self.first("mode id", &mode.id.to_string(), number)?;
         self.first("mode name", &mode.name, place)?;
         match mode.key {
             Some(key) => self.first("mode key", &key.to_string(), place),

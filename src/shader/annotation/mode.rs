@@ -6,6 +6,7 @@ use clap::ValueEnum as _;
 use serde::Serialize;
 
 use super::cursor::Cursor;
+use super::place::Place;
 use super::value;
 use crate::interface;
 use crate::message::{did_you_mean, either};
@@ -31,6 +32,11 @@ pub enum Encode {
 }
 
 impl Mode {
+    /// Whether a model with these `FEATURE_*` bits has data for the mode. True without a model.
+    pub fn has_data(&self, features: Option<u32>) -> bool {
+        self.needs == 0 || features.is_none_or(|features| features & self.needs != 0)
+    }
+
     /// Whether the value comes from random paths or from rays through the model, which take seconds a frame on a software device.
     pub fn follows_paths(&self) -> bool {
         self.accumulate || self.traces || self.stage == PATHS_STAGE
@@ -137,8 +143,8 @@ pub struct Mode {
     pub line: u32,
 }
 
-/// Parses the rest of a `//@mode`, whose id stands in `declaration`.
-pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<Mode, Box<Diagnostic>> {
+/// Parses the rest of a `//@mode`, whose id stands in `declaration`. Returns where the id stands, too.
+pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(Mode, Place), Box<Diagnostic>> {
     let (bytes, slug) = cursor.word();
     let valid = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if slug.is_empty() || !slug.chars().all(valid) {
@@ -148,8 +154,9 @@ pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> R
     let Some(name) = cursor.string()? else {
         return Err(cursor.expected("the mode's name in quotes"));
     };
+    let (id, number) = mode_id(cursor, declaration)?;
     let mut mode = Mode {
-        id: mode_id(cursor, declaration)?,
+        id,
         slug: slug.to_owned(),
         name,
         components: 3,
@@ -170,7 +177,7 @@ pub(super) fn mode(cursor: &mut Cursor<'_>, declaration: Option<&Line<'_>>) -> R
     if mode.traces && mode.stage != PATHS_STAGE {
         return Err(cursor.expected("stage=paths beside `traces`: only paths.frag can trace rays"));
     }
-    Ok(mode)
+    Ok((mode, number))
 }
 
 /// Sets the property `key` of a mode, with the value that follows if it has one.
@@ -290,17 +297,19 @@ fn check_key(key: char) -> Result<(), String> {
     ))
 }
 
-/// The number of `const uint MODE_X = 120u;`.
-fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<u32, Box<Diagnostic>> {
-    let words: Vec<&str> = declaration.map(|line| tokens(&line.code)).unwrap_or_default().iter().map(|t| t.1).collect();
-    if let ["const", "uint", _, "=", literal, ";", ..] = words.as_slice() {
+/// The number of `const uint MODE_X = 120u;`, and where it stands.
+fn mode_id(cursor: &Cursor<'_>, declaration: Option<&Line<'_>>) -> Result<(u32, Place), Box<Diagnostic>> {
+    let found = declaration.map(|line| (line, tokens(&line.code)));
+    let words: Vec<&str> = found.iter().flat_map(|(_, tokens)| tokens).map(|(_, word)| *word).collect();
+    if let (["const", "uint", _, "=", literal, ";", ..], Some((line, tokens))) = (words.as_slice(), &found) {
         let digits = literal.trim_end_matches(['u', 'U']);
         let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
             Some(digits) => u32::from_str_radix(digits, 16),
             None => digits.parse(),
         };
         if let Ok(number) = number {
-            return Ok(number);
+            let (file, raw) = (cursor.place().file.clone(), line.raw.to_owned());
+            return Ok((number, Place { file, line: line.number, raw, bytes: tokens[4].0.clone() }));
         }
     }
     let found = declaration.map_or("the end of the file", |line| line.raw.trim());

@@ -13,8 +13,8 @@ use crate::shader::source::text::{Line, lines};
 /// A parsed annotation.
 #[derive(Debug)]
 pub enum Found {
-    /// `//@mode`
-    Mode(Mode, Place),
+    /// `//@mode`, where it stands, and where its number stands.
+    Mode(Mode, [Place; 2]),
     /// `//@ui`
     Ui(Ui),
     /// `//@pass`
@@ -50,8 +50,8 @@ fn parse(place: Place, start: usize, declaration: Option<&Line<'_>>) -> Result<F
     let (bytes, kind) = cursor.word();
     match kind {
         "mode" => {
-            let mode = mode(&mut cursor, declaration)?;
-            Ok(Found::Mode(mode, place))
+            let (mode, number) = mode(&mut cursor, declaration)?;
+            Ok(Found::Mode(mode, [place, number]))
         }
         "ui" => {
             let ui = ui(&mut cursor, declaration)?;

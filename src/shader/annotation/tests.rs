@@ -271,6 +271,8 @@ fn what_is_given_twice_names_both_places() {
     let errors = read_text(text).unwrap_err();
     assert_eq!(errors[0].one_line(), "m.frag:4:28: error: mode slug `a` is given twice");
     assert_eq!(errors[0].notes, ["the other is at m.frag:3"]);
-    let text = "const uint A = 1u; //@mode a \"A\"\nconst uint B = 1u; //@mode b \"B\"";
-    assert_eq!(read_text(text).unwrap_err()[0].message, "mode id `1` is given twice");
+    let text = "const uint A = 1u; //@mode a \"A\"\n//@mode b \"B\"\nconst uint B = 0x1;";
+    let errors = read_text(text).unwrap_err();
+    assert_eq!(errors[0].one_line(), "m.frag:5:16: error: mode id `1` is given twice");
+    assert_eq!((errors[0].length, &*errors[0].notes), (3, &["the other is at m.frag:3".to_owned()][..]));
 }

@@ -18,6 +18,7 @@ use crate::message::panic_text;
 use crate::pipeline::{Outcome, PipelineSet, Reloader};
 use crate::recovery::Recorder;
 use crate::settings::Settings;
+use crate::shader::annotation::neighbors;
 use crate::shader::{Change, ShaderSet, Source, TreePath, text_hash};
 use crate::threads::{Message, Outbox, Role};
 
@@ -42,6 +43,8 @@ pub(super) struct Thread {
     pub(super) edits: Arc<AtomicU64>,
     /// How many of `edits` were taken out of the inbox.
     pub(super) edits_taken: u64,
+    /// How many of `edits` the last finished reload contains.
+    pub(super) reloaded: Arc<AtomicU64>,
     /// Whether the first reload has begun.
     pub(super) has_compiled: bool,
     /// Panics since the last reload that ended.
@@ -178,6 +181,7 @@ impl Thread {
         let detect_ms = edit.settled.duration_since(edit.since).as_secs_f64() * 1e3;
         let message = WorkerMessage::Reloaded { reload: Box::new(reload), detect_ms, source };
         self.outbox.send(Message::Worker(message));
+        self.reloaded.store(taken, Ordering::SeqCst);
         if let Some(set) = &set {
             self.build_ahead(set);
         }
@@ -327,18 +331,19 @@ impl Thread {
 
     /// Builds the modes before and after the current one, which `[` and `]` select, unless other work waits.
     fn build_ahead(&self, set: &Arc<PipelineSet>) {
-        let (snapshot, modes) = (self.snapshot(), &set.shaders.modes);
+        let snapshot = self.snapshot();
         // Until there is a model, leave the CPU to the loader. The window requests a build once the model is on screen.
-        if snapshot.scene.is_none() || !set.shaders.is_complete() || self.recorder.is_careful() {
+        let Some(scene) = &snapshot.scene else { return };
+        if !set.shaders.is_complete() || self.recorder.is_careful() {
             return;
         }
-        let request = snapshot.request(&set.shaders);
-        let Some(at) = modes.iter().position(|mode| mode.id == request.mode) else { return };
-        for neighbor in [(at + 1) % modes.len(), (at + modes.len() - 1) % modes.len()] {
+        let features = Some(scene.features(&snapshot.settings));
+        let Some([before, after]) = neighbors(&set.shaders.modes, &snapshot.settings.mode, features) else { return };
+        for mode in [after, before] {
             if !self.inbox.is_empty() || self.is_stale() {
                 return;
             }
-            let settings = Settings { mode: modes[neighbor].slug.clone(), ..snapshot.settings.clone() };
+            let settings = Settings { mode: mode.slug.clone(), ..snapshot.settings.clone() };
             let (scene, target) = (snapshot.scene.clone(), snapshot.target);
             // An error is reported when the user selects the mode.
             let _ = set.build(&Snapshot { settings, scene, target }.request(&set.shaders));

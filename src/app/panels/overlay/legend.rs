@@ -7,10 +7,10 @@ use clap::ValueEnum as _;
 use egui::{Button, Color32, Galley, Mesh, Rect, RichText, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::wrapped;
-use crate::app::panels::LegendOf;
 use crate::app::panels::rows::choice_name;
 use crate::app::panels::spoken::named;
 use crate::app::panels::theme::{QUIET, icon};
+use crate::app::panels::{LegendOf, Readout};
 use crate::frame::Limits;
 use crate::interface::COLORMAP_STEPS;
 use crate::settings::{Channels, Colormap, ViewRange, ViewSettings};
@@ -31,7 +31,7 @@ pub(in crate::app) struct Legend<'a> {
     pub(in crate::app) title: Option<&'a str>,
     pub(in crate::app) of: &'a LegendOf,
     /// The value under the mouse.
-    pub(in crate::app) value: Option<&'a str>,
+    pub(in crate::app) value: Option<&'a Readout>,
 }
 
 /// State of the legend between frames.
@@ -106,14 +106,15 @@ pub(in crate::app) fn show(
             histogram(ui, legend, view, state);
         }
     }
-    if let Some(value) = legend.value {
+    if let Some(Readout { value, unit, at: (x, y) }) = legend.value {
         let (mono, color) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
         // The position of the pixel goes to the next line as a whole, and so does the unit where numbers and unit do not fit.
-        let (unit, at_below) = (&legend.of.mode.unit, value.replacen("   at ", "\nat ", 1));
-        let unit_below = at_below.replacen(&format!(" {unit}"), &format!("\n{unit}"), usize::from(!unit.is_empty()));
+        let with_unit = |gap: &str| if unit.is_empty() { value.clone() } else { format!("{value}{gap}{unit}") };
+        let one_line = format!("{}   at {x}, {y}", with_unit(" "));
+        let [at_below, unit_below] = [" ", "\n"].map(|gap| format!("{}\nat {x}, {y}", with_unit(gap)));
         let lines = |text: &str| (text.lines().count(), wrapped(ui, text, mono.clone(), color, width));
         let fits = |(count, galley): &(usize, Arc<Galley>)| galley.rows.len() == *count;
-        let mut forms = [value, &at_below].into_iter().map(lines);
+        let mut forms = [&*one_line, &*at_below].into_iter().map(lines);
         let (_, galley) = forms.find(fits).unwrap_or_else(|| lines(&unit_below));
         ui.label(galley);
     }

@@ -1,7 +1,11 @@
-//! The overlay: diagnostics, messages, loading state, the legend of the mode.
+//! The overlay: diagnostics, messages, loading state, the legend of the mode, handles, and names over the picture.
 
+mod compare;
 pub(super) mod diagnostics;
+mod gizmo;
+mod grid;
 mod hint;
+mod labels;
 pub(in crate::app) mod legend;
 mod restore;
 
@@ -10,11 +14,14 @@ use std::sync::Arc;
 use egui::{Align2, Area, Color32, CornerRadius, FontId, Frame, Galley, Id, Margin, Order, Rect, RichText, Stroke};
 use egui::{TextStyle, Ui};
 
+use super::inspector::marker;
 use super::theme::{CARD, LINE};
 use super::{Readings, WARNING};
 use crate::app::command::Command;
 use crate::app::viewer::Viewer;
 use diagnostics::Shown;
+pub(super) use gizmo::Gizmo;
+pub(super) use labels::Labels;
 use legend::Legend;
 
 /// Maximum number of model warnings to show. The rest is counted.
@@ -34,6 +41,7 @@ pub(super) fn show(
     picture: Rect,
     commands: &mut Vec<Command>,
 ) {
+    in_picture(egui, viewer, readings, picture);
     let cut_short = viewer.is_cut_short();
     let mut free = picture;
     if !viewer.session.diagnostics.is_empty() {
@@ -52,6 +60,18 @@ pub(super) fn show(
     notice(egui, viewer, picture, free);
     if viewer.panels.visible {
         label(egui, viewer, readings, picture);
+    }
+}
+
+/// Shows what belongs to places of the picture.
+fn in_picture(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: Rect) {
+    compare::show(egui, viewer, picture);
+    marker(egui, &viewer.panels.inspector, picture);
+    gizmo::show(egui, viewer, picture);
+    grid::show(egui, &viewer.session, &viewer.panels, picture);
+    let has_labels = viewer.panels.visible && readings.legend.is_some() && !viewer.panels.grid.is_on();
+    if let Some(model) = viewer.session.model().filter(|_| has_labels) {
+        labels::show(egui, &mut viewer.panels.labels, model, &viewer.session.settings.camera, picture);
     }
 }
 
@@ -109,7 +129,7 @@ fn notice(egui: &egui::Context, viewer: &Viewer, picture: Rect, free: Rect) {
 /// The legend of the mode, and the value under the mouse.
 fn label(egui: &egui::Context, viewer: &mut Viewer, readings: &Readings, picture: Rect) {
     let Some(of) = &readings.legend else { return };
-    let legend = Legend { title: readings.title.as_deref(), of, value: readings.value.as_deref() };
+    let legend = Legend { title: readings.title.as_deref(), of, value: readings.value.as_ref() };
     let (view, state) = (&mut viewer.session.settings.view, &mut viewer.panels.legend);
     if legend.value.is_none() && !legend.is_whole(view, state) {
         return;

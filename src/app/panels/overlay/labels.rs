@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Align2, FontId, Galley, Id, LayerId, Order, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
-use super::theme::{CARD, TEXT};
+use crate::app::panels::theme::{CARD, TEXT};
 use crate::scene::{BUILT_IN, Bounds, CameraView, Model, frame};
 use crate::settings::CameraSettings;
 
@@ -16,7 +16,7 @@ const FEWEST: usize = 4;
 
 /// Where each named object of a chart is. Empty for other models.
 #[derive(Default)]
-pub(super) struct Labels {
+pub(in crate::app::panels) struct Labels {
     /// Address of the model.
     of: usize,
     /// Name and bounds in the world.

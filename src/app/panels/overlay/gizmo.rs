@@ -6,7 +6,7 @@ use egui::{
 };
 use glam::Vec3;
 
-use super::theme::SELECTION;
+use crate::app::panels::theme::SELECTION;
 use crate::app::selection::{LightId, Selected};
 use crate::app::viewer::Viewer;
 use crate::scene::{Bounds, CameraView, light_direction, ray};
@@ -23,7 +23,7 @@ const DOUBLE: f32 = 120.0;
 
 /// State of the light handles: the drag in progress, and where earlier drags have left handles.
 #[derive(Default)]
-pub(super) struct Gizmo {
+pub(in crate::app::panels) struct Gizmo {
     drag: Option<Drag>,
     /// Handles that stay where they were dropped, as long as the camera and the light's distance are the same.
     kept: Vec<Kept>,

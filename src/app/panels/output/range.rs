@@ -3,8 +3,8 @@
 use clap::ValueEnum;
 use egui::{DragValue, Ui};
 
-use super::rows::{Value, check, choice_name, choose, setting};
-use super::spoken::named;
+use crate::app::panels::rows::{Value, check, choice_name, choose, setting};
+use crate::app::panels::spoken::named;
 use crate::settings::{Channels, Colormap, Settings, ViewRange, ViewSettings};
 
 impl Value for ViewRange {
@@ -26,7 +26,7 @@ impl Value for Colormap {
 }
 
 /// Shows the rows.
-pub(super) fn show(ui: &mut Ui, view: &mut ViewSettings) {
+pub(in crate::app::panels) fn show(ui: &mut Ui, view: &mut ViewSettings) {
     let default = Settings::of_window().view;
     range(ui, view, default.range);
     let doc = "Channels that the picture shows. A single channel is shown in gray; a is coverage";

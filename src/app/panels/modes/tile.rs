@@ -2,9 +2,9 @@
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use super::QUIET;
-use super::theme::{ACCENT, EDGE, LINE};
 use crate::app::gallery::GalleryState;
+use crate::app::panels::QUIET;
+use crate::app::panels::theme::{ACCENT, EDGE, LINE};
 use crate::shader::Mode;
 
 /// The smallest width of a tile, points.
@@ -42,7 +42,7 @@ pub(super) fn show(
 ) -> Response {
     let size = gallery.size;
     let (rect, response) = ui.allocate_exact_size(size + vec2(0.0, NAME), Sense::click());
-    super::spoken::button(&response, &mode.name);
+    crate::app::panels::spoken::button(&response, &mode.name);
     if !ui.is_rect_visible(rect) {
         return response;
     }

@@ -2,9 +2,9 @@
 
 use egui::{Align2, FontId, Id, LayerId, Order, Rect, Stroke, StrokeKind, pos2, vec2};
 
-use super::PanelState;
-use super::theme::{ACCENT, CARD, STRONG};
 use crate::app::grid::cells;
+use crate::app::panels::PanelState;
+use crate::app::panels::theme::{ACCENT, CARD, STRONG};
 use crate::app::screen::PictureRect;
 use crate::session::Session;
 

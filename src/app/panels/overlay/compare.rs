@@ -4,7 +4,7 @@ use egui::{
     Align2, Area, Color32, CursorIcon, FontId, Id, LayerId, Order, Painter, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2,
 };
 
-use super::ACCENT;
+use crate::app::panels::ACCENT;
 use crate::app::viewer::{Compare, Difference, Viewer};
 
 /// Width of the strip that the mouse takes hold of, in points.

@@ -2,10 +2,10 @@
 
 use egui::{Label, RichText, Ui};
 
-use super::theme::QUIET;
-use super::timeline::monospace;
 use crate::app::command::{Command, CompareWith};
 use crate::app::dialog::Dialog;
+use crate::app::panels::theme::QUIET;
+use crate::app::panels::timeline::monospace;
 use crate::app::viewer::{Compare, Difference};
 
 /// The meaning of the numbers of a comparison.
@@ -13,7 +13,7 @@ const FLIP: &str = "Mean FLIP (Andersson et al. 2020), 0 to 1: how different the
     them, 0.7 m from a 4K screen. Largest: the largest difference of a channel of the display";
 
 /// Shows the buttons that begin and end a comparison, and its numbers.
-pub(super) fn show(ui: &mut Ui, compare: &mut Compare, commands: &mut Vec<Command>) {
+pub(in crate::app::panels) fn show(ui: &mut Ui, compare: &mut Compare, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if compare.is_on() {
             if ui.button("Stop comparing").on_hover_text("Show the newest picture alone (Ctrl+K)").clicked() {

@@ -3,8 +3,8 @@
 
 use egui::{Button, Grid, Id, Label, Modal, RichText, ScrollArea, Ui};
 
-use super::{ACCENT, ERROR, QUIET};
 use crate::app::command::Command;
+use crate::app::panels::{ACCENT, ERROR, QUIET};
 use crate::app::viewer::{NO_FOLDER, Viewer};
 
 /// State of the confirmation dialog.
@@ -49,7 +49,7 @@ pub(super) fn menu(ui: &mut Ui, name: &str, is_enabled: bool) {
 }
 
 /// Shows the dialog while it is open.
-pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec<Command>) {
+pub(in crate::app) fn show(egui: &egui::Context, viewer: &mut Viewer, commands: &mut Vec<Command>) {
     if let Some(only) = egui.data_mut(|data| data.remove_temp::<Option<String>>(wish())) {
         viewer.panels.defaults.ask(only);
     }

@@ -1,0 +1,139 @@
+//! The number under the mouse, in a mode whose picture shows a color for each number. The color tells nobody the number, so the pixel is
+//! drawn once more, with numbers, where the mouse rests.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::background::Background;
+use super::sets::{BoundSets, Shown, shown, time_to_rest};
+use crate::app::viewer::Viewer;
+use crate::frame::{TargetFormat, mode_sets};
+use crate::gpu::{GpuError, SetLayouts};
+use crate::render::{PixelModes, Thumbnails};
+use crate::shader::{Mode, PixelValue};
+
+/// A pixel of a mode that shows colors for numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Pointed {
+    /// Slug of the mode.
+    pub(super) mode: String,
+    /// Pixels from the upper left corner of its picture.
+    pub(super) at: [u32; 2],
+    /// Width and height of the picture, pixels.
+    pub(super) size: (u32, u32),
+}
+
+/// How far the number of the pixel is.
+#[derive(Default)]
+enum Progress {
+    #[default]
+    Missing,
+    /// On the way from the device, at this place of its set.
+    Drawn(usize),
+    Read(PixelValue),
+    /// Memory is short, or a loop did not end.
+    Failed,
+}
+
+/// Reads the number under the mouse.
+#[derive(Default)]
+pub(super) struct NumberReader {
+    renderer: Option<PixelModes>,
+    /// The pixel and its picture.
+    shown: Option<(Shown, Pointed)>,
+    since: Option<Instant>,
+    progress: Progress,
+    /// The sets of modes whose pipelines the worker was asked for, by their slugs.
+    asked: HashSet<String>,
+}
+
+impl NumberReader {
+    /// Draws nothing until the mouse moves or something changes.
+    pub(super) fn stop(&mut self) {
+        self.progress = Progress::Failed;
+        if let Some(renderer) = &mut self.renderer {
+            renderer.forget();
+        }
+    }
+
+    /// Takes the number of a finished draw.
+    pub(super) fn take(&mut self, background: &Background) {
+        let Progress::Drawn(place) = self.progress else { return };
+        let Some(renderer) = self.renderer.as_ref().filter(|_| background.is_finished()) else { return };
+        self.progress = renderer.values(0).into_iter().nth(place).map_or(Progress::Failed, Progress::Read);
+    }
+
+    /// The value at a pixel, if it was read.
+    pub(super) fn value(&self, pointed: &Pointed) -> Option<PixelValue> {
+        let (_, shown) = self.shown.as_ref()?;
+        match &self.progress {
+            Progress::Read(value) if shown == pointed => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// Draws the pixel under the mouse, `pointed`, if its number is out of date and the picture rests. Returns the time until the next
+    /// frame is needed.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub(super) fn draw(
+        &mut self,
+        background: &mut Background,
+        viewer: &mut Viewer,
+        layouts: &Arc<SetLayouts>,
+        pointed: Option<Pointed>,
+    ) -> Result<Option<Duration>, GpuError> {
+        let Some(pointed) = pointed.filter(|_| !viewer.recorder.is_careful()) else {
+            *self = Self::default();
+            return Ok(None);
+        };
+        let Some((shaders, mut now)) = shown(viewer, pointed.size) else { return Ok(None) };
+        (now.target, now.gives_numbers) = (TargetFormat::full(1), true);
+        let now = (now, pointed);
+        if self.shown.as_ref() != Some(&now) {
+            if self.shown.as_ref().is_none_or(|(before, _)| *before != now.0) {
+                self.asked.clear();
+            }
+            (self.shown, self.since, self.progress) = (Some(now), Some(Instant::now()), Progress::Missing);
+        }
+        if !matches!(self.progress, Progress::Missing) {
+            return Ok(None);
+        }
+        if let Some(left) = time_to_rest(viewer, self.since) {
+            return Ok(Some(left));
+        }
+        let Some((shown, pointed)) = &self.shown else { return Ok(None) };
+        // The set that the inspector draws, so that both need the same pipelines.
+        let features = viewer.session.features();
+        let with_data = shaders.modes.iter().filter(|mode| mode.has_data(features));
+        let sets = mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu));
+        let place = |set: &Vec<_>| set.iter().position(|mode: &&Mode| mode.slug == pointed.mode);
+        let Some((set, place)) = sets.into_iter().find_map(|set| place(&set).map(|place| (set, place))) else {
+            return Ok(None);
+        };
+        let drawn = shown.bind(viewer, &shaders, vec![set], &mut self.asked).and_then(|bound| {
+            let BoundSets { ready, missing, is_new } = bound;
+            // The open inspector asks for it, too.
+            let is_asked = viewer.panels.inspector.is_visible && viewer.panels.inspector.reading.is_some();
+            if let Some(pipelines) = viewer.resources.pipelines().filter(|_| is_new && !is_asked) {
+                viewer.threads.worker.build_inspected(pipelines, missing);
+            }
+            let Some((_, frame)) = ready.first() else { return Ok(false) };
+            let renderer = match &mut self.renderer {
+                Some(renderer) => renderer,
+                none => none.insert(PixelModes::new(&viewer.gpu, layouts, 1)?),
+            };
+            renderer.draw(background.encoder()?, 0, frame, (pointed.at[0], pointed.at[1]))?;
+            Ok(true)
+        });
+        match drawn {
+            Ok(true) => self.progress = Progress::Drawn(place),
+            Ok(false) => {}
+            Err(error) if error.is_shortage() => (self.renderer, self.progress) = (None, Progress::Failed),
+            Err(error) => return Err(error),
+        }
+        Ok(None)
+    }
+}
