@@ -32,7 +32,7 @@ enum Progress {
     /// On the way from the device, at this place of its set.
     Drawn(usize),
     Read(PixelValue),
-    /// Memory is short, or a loop did not end.
+    /// The model has no data for the mode, memory is short, or a loop did not end.
     Failed,
 }
 
@@ -64,12 +64,13 @@ impl NumberReader {
         self.progress = renderer.values(0).into_iter().nth(place).map_or(Progress::Failed, Progress::Read);
     }
 
-    /// The value at a pixel, if it was read.
-    pub(super) fn value(&self, pointed: &Pointed) -> Option<PixelValue> {
-        let (_, shown) = self.shown.as_ref()?;
-        match &self.progress {
-            Progress::Read(value) if shown == pointed => Some(*value),
-            _ => None,
+    /// The value at a pixel, or `None` in it until it is read. `None` if it cannot be read.
+    pub(super) fn value(&self, pointed: &Pointed) -> Option<Option<PixelValue>> {
+        let is_same = self.shown.as_ref().is_some_and(|(_, shown)| shown == pointed);
+        match self.progress {
+            Progress::Failed => None,
+            Progress::Read(value) if is_same => Some(Some(value)),
+            _ => Some(None),
         }
     }
 
@@ -86,7 +87,7 @@ impl NumberReader {
         pointed: Option<Pointed>,
     ) -> Result<Option<Duration>, GpuError> {
         let Some(pointed) = pointed.filter(|_| !viewer.recorder.is_careful()) else {
-            *self = Self::default();
+            *self = Self { progress: Progress::Failed, ..Self::default() };
             return Ok(None);
         };
         let Some((shaders, mut now)) = shown(viewer, pointed.size) else { return Ok(None) };
@@ -111,6 +112,7 @@ impl NumberReader {
         let sets = mode_sets(with_data, Thumbnails::most_at_once(&viewer.gpu));
         let place = |set: &Vec<_>| set.iter().position(|mode: &&Mode| mode.slug == pointed.mode);
         let Some((set, place)) = sets.into_iter().find_map(|set| place(&set).map(|place| (set, place))) else {
+            self.progress = Progress::Failed;
             return Ok(None);
         };
         let drawn = shown.bind(viewer, &shaders, vec![set], &mut self.asked).and_then(|bound| {

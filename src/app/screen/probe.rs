@@ -66,7 +66,7 @@ impl Screen {
         let state = reference.or_else(|| self.pointed_at(viewer))?;
         let number = self.pointed_number(viewer).filter(|_| !is_of_reference);
         let number = number.filter(|pointed| (pointed.at[0], pointed.at[1]) == pixel.at);
-        readout(state, &pixel, number.map(|pointed| self.number.value(&pointed)))
+        readout(state, &pixel, number.and_then(|pointed| self.number.value(&pointed)))
     }
 
     /// The pixel under the mouse, if its mode shows colors for numbers.

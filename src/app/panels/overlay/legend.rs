@@ -100,7 +100,10 @@ pub(in crate::app) fn show(
 ) {
     if legend.is_whole(view, state) {
         heading(ui, legend, width);
-        ui.horizontal(|ui| range(ui, legend, view));
+        // Colors that stand for numbers have no range.
+        if legend.of.mode.numbers.is_none() {
+            ui.horizontal(|ui| range(ui, legend, view));
+        }
         ui.horizontal(|ui| channels(ui, legend, view, state));
         if state.shows_histogram {
             histogram(ui, legend, view, state);
