@@ -106,6 +106,8 @@ pub(super) enum Command {
     Say(String),
     /// Show the picture beside another one.
     Compare(CompareWith),
+    /// Show a version of the shaders in place of the newest, or none.
+    ShowVersion(Option<u64>),
     /// Write the texts of a version of the shaders over the files of the tree.
     WriteVersion(u64),
     /// Show the picture with these numbers in the texts, without a change of the files; none goes back to the files.

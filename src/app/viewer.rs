@@ -9,6 +9,7 @@ mod loaded;
 mod messages;
 mod picture;
 mod recording;
+mod restored;
 mod select;
 mod session;
 mod stages;

@@ -53,8 +53,8 @@ pub const COMMANDS: [Described; 25] = [
     ),
     row(
         "versions",
-        r#""write"?: number"#,
-        "Versions of the shaders since the start; write puts one back into the files, and is done when they are written",
+        r#""show"?: number | "newest", "write"?: number"#,
+        "Versions of the shaders since the start; show puts one in place of the newest until a file is saved, write puts it into the files",
     ),
     row("undo", "", "Takes the last change of a setting back"),
     row("redo", "", "Takes the last undo back"),

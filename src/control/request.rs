@@ -24,7 +24,7 @@ pub enum Request {
     Open(Open),
     Compare(Compare),
     /// The number of the version to write to the files, if any.
-    Versions(Option<u64>),
+    Versions(VersionsRequest),
     Undo,
     Redo,
     Pass(String, Option<bool>),
@@ -82,6 +82,19 @@ pub enum Open {
     Tree(PathBuf),
     Look(PathBuf),
     Measured(PathBuf),
+}
+
+/// What `versions` does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VersionsRequest {
+    /// Lists them.
+    List,
+    /// Writes one over the files.
+    Write(u64),
+    /// Shows one in place of the newest.
+    Show(u64),
+    /// Goes back to the newest.
+    ShowNewest,
 }
 
 /// Fields of `compare`.
@@ -202,9 +215,17 @@ fn request(command: &str, mut fields: Map<String, Value>) -> Result<Request, Str
         "open" => Request::Open(open(&fields)?),
         "compare" => Request::Compare(of(command, fields, &[])?),
         "versions" => {
-            let write = fields.remove("write").filter(|write| !write.is_null());
-            let number = write.map(|write| write.as_u64().ok_or(format!("`write` is no number of a version: {write}")));
-            nothing(Request::Versions(number.transpose()?), fields)?
+            let mut take = |field: &str| fields.remove(field).filter(|value| !value.is_null());
+            let number = |field: &str, value: Value| {
+                value.as_u64().ok_or_else(|| format!("`{field}` is no number of a version: {value}"))
+            };
+            let request = match (take("write"), take("show")) {
+                (None, None) => VersionsRequest::List,
+                (Some(write), _) => VersionsRequest::Write(number("write", write)?),
+                (None, Some(show)) if show == "newest" => VersionsRequest::ShowNewest,
+                (None, Some(show)) => VersionsRequest::Show(number("show", show)?),
+            };
+            nothing(Request::Versions(request), fields)?
         }
         "undo" => nothing(Request::Undo, fields)?,
         "redo" => nothing(Request::Redo, fields)?,

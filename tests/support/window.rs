@@ -284,6 +284,19 @@ impl Viewer {
         self.display.xdotool(&["mouseup", "1"]);
     }
 
+    /// Takes the window off the screen, as minimizing it does.
+    #[track_caller]
+    pub fn hide(&self) {
+        self.display.xdotool(&["windowunmap", "--sync", &self.window]);
+    }
+
+    /// Puts the window back on the screen.
+    #[track_caller]
+    pub fn unhide(&self) {
+        self.display.xdotool(&["windowmap", "--sync", &self.window]);
+        self.give_focus();
+    }
+
     /// Resizes the window.
     #[track_caller]
     pub fn resize(&self, width: u32, height: u32) {

@@ -153,6 +153,47 @@ fn a_program_drives_the_window_by_standard_input() {
 }
 
 #[test]
+fn an_older_version_is_shown_in_place_of_the_newest() {
+    let mut viewer = Viewer::driven(Tree::new(), &["sphere-grid"]);
+    viewer.running.event("ready");
+    let first = viewer.screenshot();
+    let original = viewer.tree.read(NDF);
+    let edit = |factor: &str| original.replace("alpha * alpha;", &format!("alpha * alpha * {factor};"));
+    for factor in ["0.5", "6.0"] {
+        viewer.tree.write(NDF, &edit(factor));
+        viewer.running.reload(true);
+    }
+    viewer.until("the newest version", |shot| difference(shot, &first) > 1.0);
+    let newest = viewer.screenshot();
+    let versions = viewer.running.done(json!({"command": "versions"}));
+    let numbers: Vec<u64> = versions.as_array().unwrap().iter().filter_map(|row| row["number"].as_u64()).collect();
+    assert_eq!(numbers.len(), 3, "{versions}");
+    let oldest = *numbers.iter().min().unwrap();
+    let is_like =
+        |shot: &RgbaImage, one: &RgbaImage, other: &RgbaImage| difference(shot, one) < 0.1 * difference(shot, other);
+
+    viewer.running.done(json!({"command": "versions", "show": oldest}));
+    viewer.until("the first version", |shot| is_like(shot, &first, &newest));
+    assert_eq!(viewer.tree.read(NDF), edit("6.0"), "the file was changed");
+    viewer.running.done(json!({"command": "versions", "show": "newest"}));
+    viewer.until("the newest version", |shot| is_like(shot, &newest, &first));
+
+    // A save ends it.
+    viewer.running.done(json!({"command": "versions", "show": oldest}));
+    viewer.until("the first version again", |shot| is_like(shot, &first, &newest));
+    viewer.tree.write(NDF, &edit("6.1"));
+    viewer.until("the saved text", |shot| is_like(shot, &newest, &first));
+    viewer.running.end_input();
+    viewer.quit();
+}
+
+/// The mean difference of two pictures' channels, 0 to 255.
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let sum: u64 = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / a.as_raw().len() as f64
+}
+
+#[test]
 fn clients_of_a_socket_drive_the_window() {
     let mut viewer = Viewer::open(Tree::new(), &["sphere-grid", "--socket", "test"]);
     let path = viewer.tree.beside("runtime/specula/test.sock");

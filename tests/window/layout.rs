@@ -178,3 +178,40 @@ fn files_that_were_open_are_offered() {
     viewer.until("the list of models", |_| models() == json!([model, other]));
     viewer.quit();
 }
+
+#[test]
+fn a_panel_is_docked_beside_the_picture() {
+    let mut viewer = open(None);
+    let first = viewer.screenshot().dimensions();
+    // The tab Passes, in the upper group of the right column, goes to the lower part of the picture.
+    viewer.move_mouse((782, 42));
+    viewer.screenshot();
+    viewer.display.xdotool(&["mousedown", "1"]);
+    viewer.screenshot();
+    for at in [(770, 60), (500, 360), (460, 420)] {
+        viewer.move_mouse(at);
+        viewer.screenshot();
+    }
+    viewer.display.xdotool(&["mouseup", "1"]);
+    viewer.until("a picture that has made room", |shot| shot.dimensions() != first);
+    let docked = viewer.screenshot().dimensions();
+    let text = stored(&mut viewer, "");
+    viewer.quit();
+    let mut viewer = open(Some(&text));
+    assert_eq!(viewer.screenshot().dimensions(), docked, "the arrangement is forgotten");
+    choose(&viewer, "reset arrangement");
+    viewer.until("the first arrangement", |shot| shot.dimensions() == first);
+    viewer.quit();
+}
+
+#[test]
+fn an_edit_while_the_window_is_hidden_shows_once_it_is_back() {
+    let mut viewer = open(None);
+    let picture = viewer.screenshot();
+    viewer.hide();
+    let text = viewer.tree.read("brdf/ndf.glsl");
+    viewer.tree.write("brdf/ndf.glsl", &text.replace("alpha * alpha;", "alpha;"));
+    viewer.unhide();
+    viewer.until("the edit", |shot| *shot != picture);
+    viewer.quit();
+}

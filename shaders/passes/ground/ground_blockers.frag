@@ -1,4 +1,4 @@
-//@pass ground_blockers "Ground: blockers" draw=model size=128x128 format=r32f doc="Height of the lowest surface over the ground: 1 at the ground, 0 where there is none"
+//@pass ground_blockers "Ground: blockers" draw=model size=128x128 format=rg32f mips doc="Red: 1 under a surface; green: the height of the lowest one over the ground, in widths of the ground"
 #version 460
 #include "interface.glsl"
 #include "common/fragment.glsl"
@@ -9,5 +9,5 @@ layout(location = 0) out vec4 color;
 
 void main() {
     if (ALPHA_MODE == ALPHA_BLEND || (FEATURES & FEATURE_TRANSMISSION) != 0u) discard;
-    color = vec4(1.0 - (fragment.position_ws.y - ground_height()) / ground_width(), 0.0, 0.0, 1.0);
+    color = vec4(1.0, (fragment.position_ws.y - ground_height()) / ground_width(), 0.0, 1.0);
 }

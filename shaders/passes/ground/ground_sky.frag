@@ -25,11 +25,12 @@ void main() {
         for (int step = 0; step < STEPS; ++step) {
             // Distances grow, as near blockers hide the most: 0.4 % to 36 % of the ground.
             float far = 0.36 * pow((float(step) + 0.6) / (float(STEPS) - 0.4), 2.0);
-            vec2 at = clamp(uv + far * direction, 0.0, 1.0) * (pass.size_px - 1.0);
-            float blocker = texelFetch(ground_blockers, ivec2(at + 0.5), 0).r;
-            if (blocker <= 0.0) continue;
-            float height = max(1.0 - blocker, 0.0);
-            open = min(open, height * height / (height * height + far * far));
+            // The mean over an area as wide as the step, so that no thin wall is missed and none stands out.
+            float level = log2(max(0.5 * far * pass.size_px.x, 1.0));
+            vec2 blockers = textureLod(ground_blockers, clamp(uv + far * direction, 0.0, 1.0), level).rg;
+            if (blockers.r <= 0.0) continue;
+            float height = max(blockers.g / blockers.r, 0.0);
+            open = min(open, 1.0 - blockers.r * (1.0 - height * height / (height * height + far * far)));
         }
         sky += open;
     }

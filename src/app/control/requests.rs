@@ -9,7 +9,7 @@ use crate::app::command::{Command, Side, open_as};
 use crate::app::palette;
 use crate::app::viewer::Viewer;
 use crate::capture::modes_of;
-use crate::control::{COMMANDS, Camera, Capture, Open, Playback, Probe, Request, Run};
+use crate::control::{COMMANDS, Camera, Capture, Open, Playback, Probe, Request, Run, VersionsRequest};
 use crate::message::did_you_mean;
 use crate::picture;
 use crate::scene::BUILT_IN;
@@ -51,8 +51,19 @@ impl Viewer {
             }
             Request::Open(open) => Next::Wait(self.open(open)?),
             Request::Compare(compare) => self.compare_as(compare)?,
-            Request::Versions(None) => Next::Done(self.versions_json()),
-            Request::Versions(Some(number)) => {
+            Request::Versions(VersionsRequest::List) => Next::Done(self.versions_json()),
+            Request::Versions(VersionsRequest::ShowNewest) => {
+                self.execute(Command::ShowVersion(None));
+                Next::Wait(Until::Reloaded)
+            }
+            Request::Versions(VersionsRequest::Show(number)) => {
+                if self.versions.get(number).is_none() {
+                    return Err(format!("version {number} is no longer kept"));
+                }
+                self.execute(Command::ShowVersion(Some(number)));
+                Next::Wait(Until::Reloaded)
+            }
+            Request::Versions(VersionsRequest::Write(number)) => {
                 if self.files_of_version(number).is_empty() {
                     return Err(format!(
                         "version {number} has the same files as the picture on screen, or is no longer kept"

@@ -57,6 +57,30 @@ impl Panel {
         self != Self::Texture
     }
 
+    /// Words for what the panel does, by which it is found.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Viewport => "picture",
+            Self::Modes => "debug gallery thumbnails side by side grid",
+            Self::Scene => "nodes meshes materials textures cameras lights",
+            Self::Texture => "channels mip levels UV",
+            Self::Model => "variant statistics transform rotation scale material override",
+            Self::Shaders => "files includes stages problems driver registers",
+            Self::Timeline => "versions history compare difference restore",
+            Self::Timing => "GPU ms frame time memory",
+            Self::Expression => "watch variable numbers of a line sliders",
+            Self::Parameters => "sliders values defaults",
+            Self::Passes => "clock time effects switch",
+            Self::Inspector => "pixel values texels BRDF lobe albedo furnace plot",
+            Self::Environment => "HDR map rotation background blur",
+            Self::Lights => "color orbit rectangle ambient",
+            Self::Output => "exposure tone map range channels colors samples",
+            Self::Camera => "field of view bookmarks",
+            Self::Learn => "exercises lessons",
+            Self::Capture => "contact sheet turntable video timeline GIF WebP MP4 EXR size",
+        }
+    }
+
     pub(super) fn title(self) -> &'static str {
         match self {
             Self::Viewport => "Viewport",

@@ -13,8 +13,13 @@ pub(super) fn act(viewer: &mut Viewer, action: Action, commands: &mut Vec<Comman
         Action::Mode(slug) => settings.mode = slug,
         Action::Do(command) => commands.push(command),
         Action::Environment(name) => settings.environment.name = name,
-        Action::Lights(source) => settings.lights.source = source,
-        Action::Tonemap(tonemap) => settings.view.tonemap = tonemap,
+        Action::Assign(assignment) => {
+            if let Err(message) = settings.assign(&assignment) {
+                viewer.say(message);
+            }
+        }
+        Action::ToggleHistogram => viewer.panels.legend.shows_histogram ^= true,
+        Action::ToggleDifference => viewer.compare.shows_map ^= true,
         Action::Value(name, value) => drop(settings.shader.insert(name, value)),
         Action::Number(ask) => ask.set(settings),
         Action::Pass(name, on) => drop(settings.passes.insert(name, on)),

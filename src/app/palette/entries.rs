@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum as _;
-
+use super::settings::of_settings;
 use crate::app::command::{Command, CompareWith, Side};
 use crate::app::dialog::Dialog;
 use crate::app::layout::{Panel, Preset};
@@ -11,13 +10,12 @@ use crate::app::learn::LearnCommand;
 use crate::app::numbers::{self, Number, Scale, of_constant, of_parameter};
 use crate::app::panels::parameters::default_of;
 use crate::app::panels::passes::{internal, is_of_pass, is_switch};
-use crate::app::panels::rows::choice_name;
 use crate::app::recent::Kind;
 use crate::app::selection::{LightId, Selected, name_or};
 use crate::app::viewer::Viewer;
 use crate::learn::exercises;
 use crate::scene::environment::BUILT_IN;
-use crate::settings::{LightSource, Settings, ShaderValue, Tonemap};
+use crate::settings::{Settings, ShaderValue};
 use crate::shader::annotation::ParameterType;
 use crate::shader::spirv::reflect::Scalar;
 use crate::shader::values::number;
@@ -29,8 +27,12 @@ pub(super) enum Action {
     Mode(String),
     Do(Command),
     Environment(String),
-    Lights(LightSource),
-    Tonemap(Tonemap),
+    /// Sets a setting of the command line, `PATH=VALUE`.
+    Assign(String),
+    /// Shows or hides the histogram of the picture's values.
+    ToggleHistogram,
+    /// Shows or hides the map of a comparison's differences.
+    ToggleDifference,
     /// Sets a value of a parameter or constant of the shaders.
     Value(String, ShaderValue),
     /// Asks for a number, and sets it.
@@ -151,19 +153,7 @@ pub(super) fn entries(viewer: &Viewer) -> Vec<Entry> {
     let settings = &viewer.session.settings;
     entries.extend(files(viewer));
     entries.extend(lessons());
-    let has_lights = viewer.session.model().is_some_and(|model| !model.lights.is_empty());
-    let is_offered = |source: &&LightSource| has_lights || **source != LightSource::Model;
-    entries.extend(
-        LightSource::value_variants()
-            .iter()
-            .filter(is_offered)
-            .map(|source| Entry::new("Lights", format!("Lights: {}", choice_name(source)), Action::Lights(*source))),
-    );
-    entries.extend(
-        Tonemap::value_variants().iter().map(|tonemap| {
-            Entry::new("Output", format!("Tone map: {}", choice_name(tonemap)), Action::Tonemap(*tonemap))
-        }),
-    );
+    entries.extend(of_settings(viewer));
     let (used, mut copy) = (numbers::all(settings).filter(|number| number.is_used(settings)), settings.clone());
     entries.extend(used.map(|number| Ask::of_setting(&number, &mut copy).entry()));
     entries.extend(of_picture(viewer));
@@ -207,7 +197,13 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
     let compare = |title: String, with| Entry::new("Compare", title, Action::Do(Command::Compare(with)));
     let newest = viewer.shown_generation();
     let mut entries = match viewer.compare.is_on() {
-        true => vec![compare("Stop comparing".to_owned(), CompareWith::Nothing)],
+        true => vec![
+            compare("Stop comparing".to_owned(), CompareWith::Nothing),
+            Entry {
+                words: "FLIP map heat".to_owned(),
+                ..Entry::new("Compare", "Show or hide the differences".to_owned(), Action::ToggleDifference)
+            },
+        ],
         false => vec![compare("Keep this picture and compare".to_owned(), CompareWith::ThisPicture)],
     };
     entries[0].key = "Ctrl+K".to_owned();
@@ -220,6 +216,15 @@ fn of_picture(viewer: &Viewer) -> Vec<Entry> {
     for version in viewer.versions.iter().filter(|version| viewer.versions.can_show(version, newest)) {
         let title = format!("Compare with version {}: {}", version.number, version.title());
         entries.push(compare(title, CompareWith::Version(version.number)));
+    }
+    let mut show = |title: String, version| {
+        entries.push(Entry::new("Compare", title, Action::Do(Command::ShowVersion(version))));
+    };
+    if viewer.edits.restored.is_some() {
+        show("Go back to the newest version".to_owned(), None);
+    }
+    for version in viewer.versions.iter().filter(|version| viewer.versions.can_show(version, newest)) {
+        show(format!("Show version {} alone: {}", version.number, version.title()), Some(version.number));
     }
     for version in viewer.versions.iter().filter(|version| !viewer.files_of_version(version.number).is_empty()) {
         let title = format!("Write version {} to the files…", version.number);
@@ -280,6 +285,8 @@ pub(super) fn commands() -> Vec<Entry> {
         ("Redo", "", "Ctrl+Shift+Z", Action::Do(Command::Redo)),
         ("Screenshot", "capture PNG", "F12", Action::Do(Command::Screenshot)),
         ("Keys", "shortcuts help", "F1", Action::ShowKeys),
+        ("Show or hide the histogram", "distribution values", "", Action::ToggleHistogram),
+        ("Reset the arrangement of the panels", "default layout restore tiles", "", Action::Arrange(Preset::Debug)),
         ("Hide or show the panels", "", "H", Action::TogglePanels),
         ("Light or dark theme", "colors appearance", "", Action::ToggleTheme),
         ("Hide the selection", "scene node primitive", "Ctrl+H", Action::Do(Command::HideSelected)),
@@ -297,7 +304,10 @@ pub(super) fn commands() -> Vec<Entry> {
         let entry = Entry::new("Layout", format!("Layout: {}", preset.title()), Action::Arrange(preset));
         Entry { words: preset.doc().to_owned(), ..entry }
     };
-    let panel = |panel: Panel| Entry::new("Panel", format!("Panel: {}", panel.title()), Action::Open(panel));
+    let panel = |panel: Panel| {
+        let entry = Entry::new("Panel", format!("Panel: {}", panel.title()), Action::Open(panel));
+        Entry { words: panel.words().to_owned(), ..entry }
+    };
     let presets = Preset::ALL.into_iter().map(preset);
     commands.into_iter().map(command).chain(presets).chain(Panel::GROUPS.concat().into_iter().map(panel)).collect()
 }

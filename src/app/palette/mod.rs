@@ -5,6 +5,7 @@ mod act;
 mod entries;
 mod row;
 mod search;
+mod settings;
 
 use egui::{Align2, Area, Id, Key, Order, RichText, TextEdit, Ui, vec2};
 

@@ -299,7 +299,7 @@ fn panel(ui: &mut Ui, panel: Panel, viewer: &mut Viewer, commands: &mut Vec<Comm
             environment::show(ui, settings, viewer.panels.recent.of(Kind::Environment), progress, report);
         }
         Panel::Lights => lights::show(ui, settings, model.lights.len(), commands),
-        Panel::Output => output::show(ui, settings, commands),
+        Panel::Output => output::show(ui, settings, &mut viewer.panels.legend.shows_histogram, commands),
         Panel::Camera => camera::show(ui, settings, &model, commands),
     }
 }

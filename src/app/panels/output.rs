@@ -6,12 +6,13 @@ use clap::ValueEnum as _;
 use egui::{RichText, Ui};
 
 use super::QUIET;
-use super::rows::{choice_name, choose, number, setting};
+use super::rows::{Row, check, choice_name, choose, number, setting};
 use crate::app::command::Command;
 use crate::app::numbers::EXPOSURE;
 use crate::settings::{Settings, Tonemap, ViewSettings};
 
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Command>) {
+/// Shows the panel. `shows_histogram`: whether the legend over the picture has the histogram of its values.
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings, shows_histogram: &mut bool, commands: &mut Vec<Command>) {
     number(ui, settings, &EXPOSURE);
     let view = &mut settings.view;
     let doc = "Curve that maps exposed light to the range of the display";
@@ -24,6 +25,9 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, commands: &mut Vec<Comm
     });
     background(ui, view);
     range::show(ui, view);
+    let doc = "How often each value occurs in the picture, over its upper left corner";
+    let row = Row { name: "Histogram", doc, option: String::new(), is_changed: false, is_indented: false };
+    row.show(ui, |ui| check(ui, shows_histogram));
     let doc = "Multisampling: samples per pixel";
     setting(ui, ("Samples", doc, "view.msaa"), &mut view.msaa, ViewSettings::default().msaa, |ui, samples| {
         ui.selectable_value(samples, 1, "1×").union(ui.selectable_value(samples, 4, "4×"))

@@ -91,18 +91,19 @@ fn search(ui: &mut Ui) -> Vec<String> {
 
 /// Shows the row of a constant.
 pub(super) fn show_constant(ui: &mut Ui, constant: &Constant, values: &mut Values) {
-    let Constant { name, label, doc, choices, .. } = constant;
+    let Constant { name, label, doc, choices, choice_docs, .. } = constant;
     let (default, is_switch) = (&[default_of(constant)], constant.scalar == Scalar::Bool);
-    let about = About { name, label, doc, choices, default, is_switch, is_indented: false };
+    let about = About { name, label, doc, choices, choice_docs, default, is_switch, is_indented: false };
     setting(ui, &about, values, |ui, value| edit_constant(ui, constant, value));
 }
 
 /// Shows the row of a parameter. `effect`: the label of the row above to which it belongs.
 pub(super) fn show_parameter(ui: &mut Ui, parameter: &Parameter, values: &mut Values, effect: Option<&str>) {
-    let Parameter { name, label, doc, choices, .. } = parameter;
+    let Parameter { name, label, doc, choices, choice_docs, .. } = parameter;
     let label = label_below(label, effect.unwrap_or_default());
     let (default, is_switch) = (&parameter.default, parameter.kind == ParameterType::Bool);
-    let about = About { name, label: &label, doc, choices, default, is_switch, is_indented: effect.is_some() };
+    let about =
+        About { name, label: &label, doc, choices, choice_docs, default, is_switch, is_indented: effect.is_some() };
     setting(ui, &about, values, |ui, value| edit_parameter(ui, parameter, value));
 }
 
@@ -120,10 +121,24 @@ struct About<'a> {
     label: &'a str,
     doc: &'a str,
     choices: &'a [(String, i64)],
+    choice_docs: &'a [String],
     /// A number for each component.
     default: &'a [f64],
     is_switch: bool,
     is_indented: bool,
+}
+
+impl About<'_> {
+    /// What the setting means, and what the choice with this number means.
+    fn doc_with(&self, number: Option<f64>) -> String {
+        let at = self.choices.iter().position(|(_, value)| Some(*value as f64) == number);
+        let of_choice = at.and_then(|at| Some((&self.choices[at].0, self.choice_docs.get(at)?)));
+        match of_choice.filter(|(_, doc)| !doc.is_empty()) {
+            Some((choice, doc)) if !self.doc.is_empty() => format!("{}\n\n{choice}: {doc}", self.doc),
+            Some((choice, doc)) => format!("{choice}: {doc}"),
+            None => self.doc.to_owned(),
+        }
+    }
 }
 
 /// Shows the row of a setting of the shaders.
@@ -133,8 +148,10 @@ fn setting(
     values: &mut Values,
     control: impl FnOnce(&mut Ui, Option<&ShaderValue>) -> (Option<ShaderValue>, Response),
 ) {
-    let About { name, label, doc, is_indented, .. } = *about;
+    let About { name, label, choices, is_indented, .. } = *about;
     let value = values.get(name).cloned();
+    let number = value.as_ref().and_then(|value| number(value, choices)).or(about.default.first().copied());
+    let doc = &about.doc_with(number);
     let now = value.as_ref().map_or_else(|| default_text(about), |value| option_of(value, about));
     let row = Row { name: label, doc, option: set_option(name, &now), is_changed: value.is_some(), is_indented };
     let mut new = None;
@@ -265,18 +282,14 @@ fn choose(ui: &mut Ui, id: &str, (choices, docs): (&[(String, i64)], &[String]),
     let current = choices.iter().position(|(_, value)| *value as f64 == *number);
     let text = current.map_or_else(|| number.to_string(), |at| choices[at].0.clone());
     let doc = |at: usize| docs.get(at).filter(|doc| !doc.is_empty());
-    let response = rows::choose(ui, id, text, |ui| {
+    rows::choose(ui, id, text, |ui| {
         for (at, (name, value)) in choices.iter().enumerate() {
             let choice = ui.selectable_value(number, *value as f64, name);
             if let Some(doc) = doc(at) {
                 choice.on_hover_text(doc);
             }
         }
-    });
-    match current.and_then(doc) {
-        Some(doc) => response.on_hover_text(doc),
-        None => response,
-    }
+    })
 }
 
 #[cfg(test)]
@@ -287,7 +300,16 @@ mod tests {
     fn an_untouched_setting_has_the_option_of_its_default() {
         let choices = [("GGX".to_owned(), 0), ("Beckmann".to_owned(), 1)];
         let text = |default: &[f64], choices, is_switch| {
-            default_text(&About { name: "x", label: "", doc: "", choices, default, is_switch, is_indented: false })
+            default_text(&About {
+                name: "x",
+                label: "",
+                doc: "",
+                choices,
+                choice_docs: &[],
+                default,
+                is_switch,
+                is_indented: false,
+            })
         };
         assert_eq!(text(&[1.0], &choices, false), "Beckmann");
         assert_eq!(text(&[1.0], &[], true), "true");

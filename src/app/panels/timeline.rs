@@ -140,27 +140,28 @@ impl Entry<'_> {
     /// Number and files, the times of the reload, and when it was.
     fn texts(&self, ui: &mut Ui, rect: Rect) {
         let Version { reload, since, device_ms, .. } = self.version;
-        ui.scope_builder(
-            egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::top_down(egui::Align::Min)),
-            |ui| {
-                ui.spacing_mut().item_spacing.y = 2.0;
-                let quiet = if self.is_chosen() { STRONG } else { QUIET };
-                ui.add(elided(RichText::new(self.title()).strong()).selectable(false));
-                let times =
-                    format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
-                let gpu = device_ms.map_or_else(String::new, |ms| format!(" {ms:.0} ms GPU"));
-                for line in [times, format!("{}{gpu}", since.format("%H:%M:%S"))] {
-                    ui.add(elided(monospace(line).color(quiet)).selectable(false));
-                }
-            },
-        );
+        // A child of its own, which does not move the next entry.
+        let layout = egui::Layout::top_down(egui::Align::Min);
+        let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+        ui.set_clip_rect(rect.intersect(ui.clip_rect()));
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let quiet = if self.is_chosen() { STRONG } else { QUIET };
+        ui.add(elided(RichText::new(self.title()).strong()).selectable(false));
+        let times = format!("{:.0} + {:.0} + {:.0} ms", reload.compile_ms, reload.pipeline_ms, reload.first_frame_ms);
+        let gpu = device_ms.map_or_else(String::new, |ms| format!(" {ms:.0} ms GPU"));
+        for line in [times, format!("{}{gpu}", since.format("%H:%M:%S"))] {
+            ui.add(elided(monospace(line).color(quiet)).selectable(false));
+        }
     }
 
-    /// A click compares the picture with the version; the menu copies what it changed, or writes it to the files.
+    /// A click compares the picture with the version, a double click shows it alone; the menu copies what it changed, or writes it to the
+    /// files.
     fn respond(&self, response: Response, asked: &mut Option<u64>, commands: &mut Vec<Command>) {
         let Self { viewer, version, newest } = self;
         let (is_chosen, can_show) = (self.is_chosen(), self.can_show());
-        if response.clicked() && can_show {
+        if response.double_clicked() && can_show {
+            commands.extend([Command::Compare(CompareWith::Nothing), Command::ShowVersion(Some(version.number))]);
+        } else if response.clicked() && can_show {
             let with = if is_chosen { CompareWith::Nothing } else { CompareWith::Version(version.number) };
             commands.push(Command::Compare(with));
         } else if response.clicked() && viewer.compare.is_on() {
@@ -173,6 +174,12 @@ impl Entry<'_> {
                 ui.ctx().copy_text(text.join("\n"));
                 ui.close();
             }
+            let show = egui::Button::new("Show alone");
+            let hint = "Show this version in the whole window, without a change of your files. Then click on another one to compare the two";
+            if ui.add_enabled(can_show, show).on_hover_text(hint).clicked() {
+                commands.push(Command::ShowVersion(Some(version.number)));
+                ui.close();
+            }
             let can_write = !viewer.files_of_version(version.number).is_empty();
             if ui.add_enabled(can_write, egui::Button::new("Write to the files…")).clicked() {
                 *asked = Some(version.number);
@@ -180,8 +187,8 @@ impl Entry<'_> {
             }
         });
         let hint = match (can_show, version.number == *newest) {
-            (true, _) if is_chosen => "Click to stop comparing",
-            (true, _) => "Click to compare the picture with this version",
+            (true, _) if is_chosen => "Click to stop comparing, double click to show it alone",
+            (true, _) => "Click to compare the picture with this version, double click to show it alone",
             (false, true) => "The picture on screen",
             (false, false) => "A loop did not end in this version, so it is not shown again",
         };

@@ -6,8 +6,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::Viewer;
+use super::restored::Restored;
 use crate::settings::{ExpressionSettings, ShaderValue};
 use crate::shader::rewrite::{Edit, applied, defaults};
+use crate::shader::source::draft::DraftText;
 use crate::shader::values::is_default;
 use crate::shader::{Change, Expression, ShaderSet, TreePath};
 use crate::threads::Message;
@@ -23,7 +25,9 @@ pub(in crate::app) struct Edits {
     /// The expression that the worker knows of.
     watched: ExpressionSettings,
     /// Numbers of a line that are dragged.
-    draft: Option<Draft>,
+    pub(super) draft: Option<Draft>,
+    /// The older version that is shown in place of the newest.
+    pub(in crate::app) restored: Option<Restored>,
     /// Values that were written to the files. Each setting is dropped once a reload has made its value the default.
     written: BTreeMap<String, ShaderValue>,
 }
@@ -31,9 +35,9 @@ pub(in crate::app) struct Edits {
 /// Numbers that are dragged, and not in the file yet.
 pub(in crate::app) struct Draft {
     pub(in crate::app) edits: Vec<Edit>,
-    path: TreePath,
+    pub(super) path: TreePath,
     line: u32,
-    base: Arc<str>,
+    pub(super) base: Arc<str>,
 }
 
 impl Draft {
@@ -58,9 +62,9 @@ impl Edits {
         self.draft.as_ref()
     }
 
-    /// Forgets numbers that are dragged: another tree is opened.
+    /// Forgets numbers that are dragged, and the version that is shown: another tree is opened.
     pub(super) fn forget_draft(&mut self) {
-        self.draft = None;
+        (self.draft, self.restored) = (None, None);
     }
 }
 
@@ -78,6 +82,10 @@ impl Viewer {
     pub(super) fn draft(&mut self, edits: Vec<Edit>) {
         let Some(shaders) = &self.session.shaders else { return };
         let Some(path) = edits.first().map(|edit| edit.path.clone()) else { return self.end_draft() };
+        if let Some(restored) = &self.edits.restored {
+            return self
+                .say(format!("Version {} is shown; go back to the newest one to drag numbers", restored.number));
+        }
         let line = edits.first().map_or(0, |edit| edit.line);
         let base = match &self.edits.draft {
             Some(draft) if draft.path == path && draft.line == line => Some(draft.base.clone()),
@@ -92,7 +100,8 @@ impl Viewer {
         let Some(text) = text else {
             return self.say(format!("{path} has changed; choose the number again"));
         };
-        let source = self.source.with_draft(&path, &base, &text.into());
+        let texts = BTreeMap::from([(path.clone(), DraftText { base: base.clone(), text: text.into() })]);
+        let source = self.source.with_draft(texts);
         self.edits.draft = Some(Draft { edits, path: path.clone(), line, base });
         self.threads.worker.read_from(source, BTreeSet::from([path]));
     }
@@ -111,6 +120,7 @@ impl Viewer {
         if self.edits.draft.as_ref().is_some_and(is_other) {
             self.end_draft();
         }
+        self.follow_restored(shaders);
         let expression = &mut self.session.settings.expression;
         let watched = Expression::parse(&expression.at, expression.evaluation).ok();
         if let Some((of_set, line)) = shaders.watched.as_ref().filter(|(of_set, _)| Some(of_set) == watched.as_ref()) {

@@ -72,6 +72,8 @@ impl Viewer {
             Command::Ask(request) => self.ask_self(*request),
             Command::CancelCaptures => self.cancel_captures(),
             Command::Compare(with) => self.compare_with(with),
+            Command::ShowVersion(Some(number)) => self.show_version(number),
+            Command::ShowVersion(None) => self.show_newest(),
             Command::WriteVersion(number) => self.write_version(number),
             Command::NewTree(_) if self.choosing.is_some() => self.say("The file dialog is already open"),
             Command::NewTree(folder) => {

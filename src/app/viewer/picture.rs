@@ -117,7 +117,8 @@ impl Viewer {
         if let Some(set) = self.resources.pipelines().filter(|set| has_model && !self.versions.has(set)) {
             let edit = self.first_frame.as_ref().filter(|first| first.generation == generation);
             let reload = edit.map(|first| first.event.clone()).or_else(|| self.shader.last.clone()).unwrap_or_default();
-            self.versions.add(set, reload, self.edits.draft().is_some());
+            let again = self.edits.restored.as_ref().map(|restored| restored.number);
+            self.versions.add(set, reload, again.is_some() || self.edits.draft().is_some(), again);
         }
     }
 

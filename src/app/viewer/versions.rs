@@ -32,15 +32,20 @@ pub(in crate::app) struct Version {
     pub(super) picture: Option<LastComplete>,
     /// Whether a loop did not end in its picture.
     is_cut_short: bool,
-    /// Whether it has numbers that are dragged. The next version takes its place.
+    /// Whether the files have other texts: numbers are dragged, or it is an older version again. The next version takes its place.
     is_draft: bool,
+    /// The older version that it is again.
+    again: Option<u64>,
     /// Its texts compared with those of the version before.
     difference: OnceCell<Vec<Line>>,
 }
 
 impl Version {
-    /// The names of the changed files without folders, or "whole tree".
+    /// The names of the changed files without folders, "whole tree", or the version that it is again.
     pub(in crate::app) fn title(&self) -> String {
+        if let Some(number) = self.again {
+            return format!("version {number} again");
+        }
         let names: Vec<&str> = self.reload.changed.iter().map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
         if names.is_empty() { "whole tree".to_owned() } else { names.join(", ") }
     }
@@ -68,7 +73,7 @@ impl Versions {
 
     /// Adds the version that has just come on screen. Generations count from 1 again after another tree was opened or the worker has
     /// started again; the versions before are then dropped.
-    pub(super) fn add(&mut self, set: &Arc<PipelineSet>, reload: ReloadEvent, is_draft: bool) {
+    pub(super) fn add(&mut self, set: &Arc<PipelineSet>, reload: ReloadEvent, is_draft: bool, again: Option<u64>) {
         if self.list.back().is_some_and(|last| last.number >= set.shaders.generation) {
             self.list.clear();
         }
@@ -97,6 +102,7 @@ impl Versions {
             picture,
             is_cut_short,
             is_draft,
+            again,
             difference,
         });
         self.list.drain(..self.list.len().saturating_sub(MOST));

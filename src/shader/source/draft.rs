@@ -1,26 +1,32 @@
-//! A shader tree, one of whose files has another text in memory: a number that is being dragged.
+//! A shader tree, some of whose files have other texts in memory: a number that is being dragged, or an older version.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{Source, SourceError, TreePath};
 
-/// A tree and the text that is read instead of one of its files.
+/// A text in memory, and the text of the file that it was made from.
+#[derive(Clone, Debug)]
+pub struct DraftText {
+    /// The text of the file.
+    pub base: Arc<str>,
+    /// The text in memory.
+    pub text: Arc<str>,
+}
+
+/// A tree and the texts that are read instead of some of its files.
 #[derive(Debug)]
 pub struct Draft {
     tree: Source,
-    path: TreePath,
-    /// The text that the draft was made from.
-    base: Arc<str>,
-    text: Arc<str>,
+    texts: BTreeMap<TreePath, DraftText>,
 }
 
 impl Source {
-    /// The tree, in which the file `path` has another text as long as its own text is `base`: an edit of the file wins. Replaces an
+    /// The tree with other texts of these files, each as long as the file's own text is `base`: an edit of the file wins. Replaces an
     /// earlier draft.
     #[must_use]
-    pub fn with_draft(&self, path: &TreePath, base: &Arc<str>, text: &Arc<str>) -> Self {
-        let (tree, path) = (self.without_draft().clone(), path.clone());
-        Self::Draft(Arc::new(Draft { tree, path, base: base.clone(), text: text.clone() }))
+    pub fn with_draft(&self, texts: BTreeMap<TreePath, DraftText>) -> Self {
+        Self::Draft(Arc::new(Draft { tree: self.without_draft().clone(), texts }))
     }
 
     /// The tree without a draft.
@@ -38,8 +44,11 @@ impl Draft {
     }
 
     pub(super) fn read(&self, path: &TreePath) -> Result<String, SourceError> {
-        let text = self.tree.read(path)?;
-        Ok(if *path == self.path && *text == *self.base { self.text.to_string() } else { text })
+        let own = self.tree.read(path)?;
+        Ok(match self.texts.get(path).filter(|draft| *own == *draft.base) {
+            Some(draft) => draft.text.to_string(),
+            None => own,
+        })
     }
 }
 
@@ -55,8 +64,8 @@ mod tests {
         std::fs::write(directory.path().join("b.glsl"), "old").unwrap();
         let source = Source::Disk(directory.path().to_owned());
         let (a, b) = (TreePath::from("a.glsl"), TreePath::from("b.glsl"));
-        let draft = source.with_draft(&a, &"old".into(), &"first".into());
-        let draft = draft.with_draft(&a, &"old".into(), &"draft".into());
+        let of_a = |text: &str| BTreeMap::from([(a.clone(), DraftText { base: "old".into(), text: text.into() })]);
+        let draft = source.with_draft(of_a("first")).with_draft(of_a("draft"));
         assert_eq!((draft.read(&a), draft.read(&b)), (Ok("draft".to_owned()), Ok("old".to_owned())));
         assert_eq!((draft.root(), draft.list()), (source.root(), source.list()));
         write("edited");

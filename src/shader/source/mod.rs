@@ -147,7 +147,7 @@ pub enum Source {
     Disk(PathBuf),
     /// A directory, some of whose files are held back: see [`Source::held`].
     Held(Arc<Held>),
-    /// A tree with another text of one file in memory: see [`Source::with_draft`].
+    /// A tree with other texts of some files in memory: see [`Source::with_draft`].
     Draft(Arc<Draft>),
     /// The tree inside the binary, or that of an example.
     Embedded(Option<Example>),

@@ -22,6 +22,8 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
     if viewer.compare.is_held() {
         return name(&painter, bottom, Align2::CENTER_BOTTOM, &earlier);
     }
+    let restored = viewer.edits.restored.as_ref();
+    let now = restored.map_or_else(|| "now".to_owned(), |restored| format!("version {}", restored.number));
     let compare = &mut viewer.compare;
     if compare.shows_map {
         map(&painter, compare, picture);
@@ -48,7 +50,7 @@ pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect) {
     response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     let beside = |side: f32| pos2(x + side * 10.0, bottom.y);
     name(&painter, beside(-1.0), Align2::RIGHT_BOTTOM, &earlier);
-    name(&painter, beside(1.0), Align2::LEFT_BOTTOM, "now");
+    name(&painter, beside(1.0), Align2::LEFT_BOTTOM, &now);
 }
 
 /// Covers the picture with the map of the difference.

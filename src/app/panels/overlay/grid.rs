@@ -24,8 +24,10 @@ pub(super) fn show(egui: &egui::Context, session: &Session, state: &PanelState, 
     for (slug, cell) in grid.modes().iter().zip(cells(grid.modes().len(), whole)) {
         let corner = pos2(cell.at.0 as f32, cell.at.1 as f32) / scale;
         let rect = Rect::from_min_size(corner, vec2(cell.size.0 as f32, cell.size.1 as f32) / scale);
-        let name = shaders.modes.iter().find(|mode| mode.slug == *slug).map_or(slug.as_str(), |mode| &mode.name);
         let is_selected = *slug == session.settings.mode;
+        // The selected one previews the mode that the mouse rests on.
+        let slug = state.gallery.preview().filter(|_| is_selected).unwrap_or(slug);
+        let name = shaders.modes.iter().find(|mode| mode.slug == slug).map_or(slug, |mode| &mode.name);
         let text = painter.layout_no_wrap(name.to_owned(), FontId::proportional(11.0), STRONG.color());
         let card = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom() + vec2(6.0, -6.0), text.size() + vec2(14.0, 6.0));
         painter.rect_filled(card, 4.0, CARD.color().gamma_multiply(0.9));

@@ -8,6 +8,7 @@ mod hint;
 mod labels;
 pub(in crate::app) mod legend;
 mod restore;
+mod version;
 
 use std::sync::Arc;
 
@@ -56,6 +57,7 @@ pub(super) fn show(
         hint::show(egui, viewer, picture, commands);
     }
     restore::show(egui, viewer, picture, commands);
+    version::show(egui, viewer, picture, commands);
     warnings(egui, viewer, picture);
     notice(egui, viewer, picture, free);
     if viewer.panels.visible {

@@ -11,25 +11,23 @@ use crate::shader::TreePath;
 use crate::threads::Message;
 
 impl Viewer {
-    /// The files in which a version differs from the version on screen, with its text of each. Empty for a tree without a folder.
+    /// The files that differ from a version, with its text of each. Empty for a tree without a folder.
     pub(in crate::app) fn files_of_version(&self, number: u64) -> Vec<(PathBuf, Arc<str>)> {
-        let newest = self.session.shaders.as_ref().map(|shaders| &shaders.texts);
-        let all = self.source.root().zip(self.versions.get(number)).zip(newest);
-        let Some(((root, version), newest)) = all else { return Vec::new() };
-        let differs = |(path, text): &(&TreePath, &Arc<str>)| newest.get(*path) != Some(*text);
+        let all = self.source.root().zip(self.versions.get(number)).zip(self.texts_of_files());
+        let Some(((root, version), files)) = all else { return Vec::new() };
+        let differs = |(path, text): &(&TreePath, &Arc<str>)| files.get(*path) != Some(*text);
         let texts = version.set.shaders.texts.iter().filter(differs);
         texts.map(|(path, text)| (root.join(path.as_str()), text.clone())).collect()
     }
 
-    /// Writes the texts of a version over the files in which it differs from the version on screen, on a thread of its own. What is
-    /// on disk and was never shown, such as an edit with an error, is kept beside each file.
+    /// Writes the texts of a version over the files that differ from it, on a thread of its own. What is on disk and was never shown, such as an edit with an error, is kept beside each file.
     pub(in crate::app::viewer) fn write_version(&mut self, number: u64) {
-        let (files, newest) = (self.files_of_version(number), self.session.shaders.clone());
-        let Some((newest, root)) = newest.zip(self.source.root().map(Path::to_owned)) else { return };
+        let (files, known) = (self.files_of_version(number), self.texts_of_files());
+        let Some((known, root)) = known.zip(self.source.root().map(Path::to_owned)) else { return };
         self.threads.wait(move || {
             let shown = |path: &Path| {
                 let path = path.strip_prefix(&root).ok()?.to_str()?;
-                newest.texts.get(&TreePath::from(path)).cloned()
+                known.get(&TreePath::from(path)).cloned()
             };
             let files: Vec<_> = files.into_iter().map(|(path, text)| (shown(&path), path, text)).collect();
             let names: Vec<&str> = files.iter().filter_map(|(_, path, _)| path.file_name()?.to_str()).collect();
@@ -41,6 +39,10 @@ impl Viewer {
     /// Tells that a version has been written, or why not.
     pub(in crate::app::viewer) fn on_version_written(&mut self, number: u64, written: &Result<String, String>) {
         self.answer_written(number, written.as_ref().err().map(String::as_str));
+        if written.is_ok() {
+            // The files have its texts now, so nothing is compiled.
+            self.show_newest();
+        }
         self.say(written.clone().unwrap_or_else(|message| message));
     }
 }

@@ -1,0 +1,30 @@
+//! Says that an older version of the shaders is shown, and offers the way back.
+
+use egui::{Align2, Id, Rect, RichText};
+
+use super::{area, card};
+use crate::app::command::Command;
+use crate::app::layout::Panel;
+use crate::app::panels::theme::{ACCENT, QUIET};
+use crate::app::viewer::Viewer;
+
+/// Shows the card over the picture while an older version is shown.
+pub(super) fn show(egui: &egui::Context, viewer: &mut Viewer, picture: Rect, commands: &mut Vec<Command>) {
+    let Some(number) = viewer.edits.restored.as_ref().map(|restored| restored.number) else { return };
+    area(Id::new(("version", number)), Align2::RIGHT_TOP, picture).fade_in(false).show(egui, |ui| {
+        card(ACCENT).show(ui, |ui| {
+            ui.set_max_width((picture.width() - 60.0).clamp(160.0, 240.0));
+            ui.label(RichText::new(format!("Version {number} of the shaders")).strong());
+            ui.label(RichText::new("Your files are as they were; a save ends it").small().color(QUIET));
+            ui.horizontal_wrapped(|ui| {
+                if ui.button("Back to the newest").on_hover_text("Show the files again").clicked() {
+                    commands.push(Command::ShowVersion(None));
+                }
+                if ui.button("Write to the files…").on_hover_text("Asks first, in the panel Timeline").clicked() {
+                    commands.push(Command::OpenPanel(Panel::Timeline));
+                    viewer.panels.timeline.ask(number);
+                }
+            });
+        });
+    });
+}

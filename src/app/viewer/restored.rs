@@ -1,0 +1,83 @@
+//! An older version of the shaders in place of the newest one, in the whole window and without a change of the files. A save ends it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::Viewer;
+use crate::shader::source::draft::DraftText;
+use crate::shader::{ShaderSet, TreePath};
+
+/// Texts of the files of a tree.
+type Texts = BTreeMap<TreePath, Arc<str>>;
+
+/// The version that is shown.
+pub(in crate::app) struct Restored {
+    /// Its number when it was the newest.
+    pub(in crate::app) number: u64,
+    /// The texts of the files.
+    files: Texts,
+    /// The texts that are shown.
+    shown: Texts,
+    /// The files that differ.
+    changed: BTreeSet<TreePath>,
+}
+
+impl Restored {
+    /// Whether these shaders have a text that neither the version nor its restoring explains: a file was saved.
+    fn is_edited(&self, shaders: &ShaderSet) -> bool {
+        shaders.texts.iter().any(|(path, text)| self.shown.get(path).is_some_and(|shown| shown != text))
+    }
+}
+
+impl Viewer {
+    /// Shows a version in place of the newest, until a file is saved.
+    pub(super) fn show_version(&mut self, number: u64) {
+        let Some((files, version)) = self.texts_of_files().zip(self.versions.get(number)) else { return };
+        let texts = &version.set.shaders.texts;
+        let differs = |(path, text): &(&TreePath, &Arc<str>)| files.get(*path).is_some_and(|file| file != *text);
+        let changed: BTreeSet<TreePath> = texts.iter().filter(differs).map(|(path, _)| path.clone()).collect();
+        if changed.is_empty() {
+            return self.show_newest();
+        }
+        let draft = changed.iter().filter_map(|path| {
+            let (base, text) = (files.get(path)?.clone(), texts.get(path)?.clone());
+            Some((path.clone(), DraftText { base, text }))
+        });
+        let source = self.source.with_draft(draft.collect());
+        let mut shown = files.clone();
+        shown.extend(texts.iter().map(|(path, text)| (path.clone(), text.clone())));
+        let before = self.edits.restored.take().map(|restored| restored.changed).unwrap_or_default();
+        let before = before.into_iter().chain(self.edits.draft.take().map(|draft| draft.path));
+        let paths = changed.iter().cloned().chain(before).collect();
+        self.edits.restored = Some(Restored { number, files, shown, changed });
+        self.shader.compiling = true;
+        self.threads.worker.read_from(source, paths);
+    }
+
+    /// Goes back to the texts of the files.
+    pub(super) fn show_newest(&mut self) {
+        if let Some(restored) = self.edits.restored.take() {
+            let source = self.source.without_draft().clone();
+            self.shader.compiling = true;
+            self.threads.worker.read_from(source, restored.changed);
+        }
+    }
+
+    /// Goes back to the files if one of them was saved.
+    pub(super) fn follow_restored(&mut self, shaders: &ShaderSet) {
+        if let Some(restored) = self.edits.restored.as_ref().filter(|restored| restored.is_edited(shaders)) {
+            self.say(format!("A file was saved, so version {} is no longer shown", restored.number));
+            self.show_newest();
+        }
+    }
+
+    /// The texts of the files, as they were last compiled; `None` without shaders.
+    pub(super) fn texts_of_files(&self) -> Option<Texts> {
+        if let Some(restored) = &self.edits.restored {
+            return Some(restored.files.clone());
+        }
+        let mut texts = self.session.shaders.as_ref()?.texts.clone();
+        texts.extend(self.edits.draft().map(|draft| (draft.path.clone(), draft.base.clone())));
+        Some(texts)
+    }
+}
