@@ -143,7 +143,7 @@ mod tests {
     fn words_are_found_in_any_order_and_titles_first() {
         let commands = commands();
         assert_eq!(titles(&commands, "panel output"), ["Panel: Output"]);
-        assert_eq!(titles(&commands, "OUT panel"), ["Panel: Output"]);
+        assert_eq!(titles(&commands, "OUT panel")[0], "Panel: Output", "a title comes before further words");
         assert_eq!(titles(&commands, "undo")[0], "Undo");
         assert_eq!(titles(&commands, "f12"), ["Screenshot"]);
         assert_eq!(titles(&commands, "camera")[0], "Panel: Camera", "a title comes before a word of another entry");
