@@ -84,7 +84,7 @@ pub enum Open {
     Measured(PathBuf),
 }
 
-/// What `versions` does.
+/// The uses of `versions`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VersionsRequest {
     /// Lists them.

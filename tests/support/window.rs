@@ -273,6 +273,20 @@ impl Viewer {
         self.display.xdotool(&["click", "1"]);
     }
 
+    /// Drags along pixels of the window, with a frame at each.
+    #[track_caller]
+    pub fn drag_along(&mut self, places: &[(u32, u32)]) {
+        for (index, at) in places.iter().enumerate() {
+            self.move_mouse(*at);
+            if index == 0 {
+                self.screenshot();
+                self.display.xdotool(&["mousedown", "1"]);
+            }
+            self.screenshot();
+        }
+        self.display.xdotool(&["mouseup", "1"]);
+    }
+
     /// Drags from one pixel of the window to another. A frame is drawn in between: a press and a release in the same frame drag
     /// nothing.
     #[track_caller]

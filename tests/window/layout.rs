@@ -35,12 +35,7 @@ fn the_arrangement_of_the_panels_lasts() {
     let first = viewer.screenshot().width();
     // Between the picture and the panels on its right.
     let edge = 236 + 3 + first;
-    viewer.move_mouse((edge, 200));
-    viewer.display.xdotool(&["mousedown", "1"]);
-    viewer.screenshot();
-    viewer.move_mouse((edge - 80, 200));
-    viewer.screenshot();
-    viewer.display.xdotool(&["mouseup", "1"]);
+    viewer.drag_along(&[(edge, 200), (edge - 80, 200)]);
     viewer.until("a narrower picture", |shot| shot.width().abs_diff(first - 80) < 6);
     let narrow = viewer.screenshot().width();
     let text = stored(&mut viewer, "");
@@ -184,15 +179,7 @@ fn a_panel_is_docked_beside_the_picture() {
     let mut viewer = open(None);
     let first = viewer.screenshot().dimensions();
     // The tab Passes, in the upper group of the right column, goes to the lower part of the picture.
-    viewer.move_mouse((782, 42));
-    viewer.screenshot();
-    viewer.display.xdotool(&["mousedown", "1"]);
-    viewer.screenshot();
-    for at in [(770, 60), (500, 360), (460, 420)] {
-        viewer.move_mouse(at);
-        viewer.screenshot();
-    }
-    viewer.display.xdotool(&["mouseup", "1"]);
+    viewer.drag_along(&[(782, 42), (770, 60), (500, 360), (460, 420)]);
     viewer.until("a picture that has made room", |shot| shot.dimensions() != first);
     let docked = viewer.screenshot().dimensions();
     let text = stored(&mut viewer, "");

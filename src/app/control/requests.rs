@@ -51,27 +51,7 @@ impl Viewer {
             }
             Request::Open(open) => Next::Wait(self.open(open)?),
             Request::Compare(compare) => self.compare_as(compare)?,
-            Request::Versions(VersionsRequest::List) => Next::Done(self.versions_json()),
-            Request::Versions(VersionsRequest::ShowNewest) => {
-                self.execute(Command::ShowVersion(None));
-                Next::Wait(Until::Reloaded)
-            }
-            Request::Versions(VersionsRequest::Show(number)) => {
-                if self.versions.get(number).is_none() {
-                    return Err(format!("version {number} is no longer kept"));
-                }
-                self.execute(Command::ShowVersion(Some(number)));
-                Next::Wait(Until::Reloaded)
-            }
-            Request::Versions(VersionsRequest::Write(number)) => {
-                if self.files_of_version(number).is_empty() {
-                    return Err(format!(
-                        "version {number} has the same files as the picture on screen, or is no longer kept"
-                    ));
-                }
-                self.execute(Command::WriteVersion(number));
-                Next::Wait(Until::Written(number))
-            }
+            Request::Versions(versions) => self.versions_as(versions)?,
             Request::Undo if !self.history.undo(&mut self.session.settings) => {
                 return Err("there is nothing to undo".into());
             }
@@ -207,6 +187,31 @@ impl Viewer {
             command => command,
         });
         Ok(until)
+    }
+
+    /// Lists the versions of the shaders, shows one, or writes one into the files.
+    fn versions_as(&mut self, request: VersionsRequest) -> Result<Next, String> {
+        Ok(match request {
+            VersionsRequest::List => Next::Done(self.versions_json()),
+            VersionsRequest::ShowNewest => {
+                self.execute(Command::ShowVersion(None));
+                Next::Wait(Until::Reloaded)
+            }
+            VersionsRequest::Show(number) => {
+                if self.versions.get(number).is_none() {
+                    return Err(format!("version {number} is no longer kept"));
+                }
+                self.execute(Command::ShowVersion(Some(number)));
+                Next::Wait(Until::Reloaded)
+            }
+            VersionsRequest::Write(number) => {
+                if self.files_of_version(number).is_empty() {
+                    return Err(format!("the files are those of version {number}, or it is no longer kept"));
+                }
+                self.execute(Command::WriteVersion(number));
+                Next::Wait(Until::Written(number))
+            }
+        })
     }
 
     fn versions_json(&self) -> Value {

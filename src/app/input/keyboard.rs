@@ -1,4 +1,4 @@
-//! What keys do.
+//! Keys: each sets a mode, moves the camera, or carries out a command.
 
 use winit::event::{ElementState, KeyEvent};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
@@ -89,19 +89,8 @@ fn side(key: PhysicalKey, modifiers: ModifiersState) -> Option<Side> {
 
 /// The camera that a digit keeps with Ctrl and Shift, or returns to with Ctrl.
 fn bookmark(key: PhysicalKey, modifiers: ModifiersState) -> Option<Command> {
-    let digits = [
-        KeyCode::Digit1,
-        KeyCode::Digit2,
-        KeyCode::Digit3,
-        KeyCode::Digit4,
-        KeyCode::Digit5,
-        KeyCode::Digit6,
-        KeyCode::Digit7,
-        KeyCode::Digit8,
-        KeyCode::Digit9,
-    ];
     let PhysicalKey::Code(code) = key else { return None };
-    let number = digits.iter().position(|digit| *digit == code).filter(|_| modifiers.control_key())? as u32 + 1;
+    let number = keys::digit(code).filter(|digit| *digit > 0 && modifiers.control_key())?;
     Some(if modifiers.shift_key() { Command::KeepCamera(number) } else { Command::RecallCamera(number) })
 }
 

@@ -326,7 +326,13 @@ fn of_mode(index: usize, mode: &Mode) -> Entry {
 }
 
 /// An entry that switches something on or off.
-fn switch(group: &'static str, label: &str, name: &str, is_on: bool, action: impl Fn(bool) -> Action) -> Entry {
+pub(super) fn switch(
+    group: &'static str,
+    label: &str,
+    name: &str,
+    is_on: bool,
+    action: impl Fn(bool) -> Action,
+) -> Entry {
     let turns = if is_on { "off" } else { "on" };
     Entry { words: name.to_owned(), ..Entry::new(group, format!("{label}: turn {turns}"), action(!is_on)) }
 }

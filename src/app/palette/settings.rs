@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use super::entries::{Action, Entry};
+use super::entries::{Action, Entry, switch};
 use crate::app::command::Command;
 use crate::app::panels::rows::choice_name;
 use crate::app::viewer::Viewer;
@@ -42,8 +42,7 @@ pub(super) fn of_settings(viewer: &Viewer) -> Vec<Entry> {
         entries.push(assign("Environment", format!("Background: {name}"), "view.background", value));
     }
     for (group, title, path, is_on) in switches(settings) {
-        let turns = if is_on { "off" } else { "on" };
-        entries.push(assign(group, format!("{title}: turn {turns}"), path, if is_on { "false" } else { "true" }));
+        entries.push(switch(group, title, path, is_on, |on| Action::Assign(format!("{path}={on}"))));
     }
     for number in 1..=9 {
         let entry = |title: String, command| {

@@ -129,7 +129,7 @@ struct About<'a> {
 }
 
 impl About<'_> {
-    /// What the setting means, and what the choice with this number means.
+    /// The meaning of the setting, and of the choice with this number.
     fn doc_with(&self, number: Option<f64>) -> String {
         let at = self.choices.iter().position(|(_, value)| Some(*value as f64) == number);
         let of_choice = at.and_then(|at| Some((&self.choices[at].0, self.choice_docs.get(at)?)));

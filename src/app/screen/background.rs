@@ -1,5 +1,5 @@
-//! What is drawn between frames: thumbnails, and values of pixels. Each submission follows a frame, and waits until the device has run
-//! the one before. So no frame waits for more than one of them, and the window's thread for none.
+//! Thumbnails and values of pixels, which are drawn between frames. Each submission waits until the device has run the one before. So no
+//! frame waits for more than one of them, and the window's thread for none.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ const POLL: Duration = Duration::from_millis(2);
 /// How long a software device goes on between frames. Showing a thumbnail takes it longer than drawing one.
 const UNSEEN: Duration = Duration::from_millis(200);
 
-/// What the window does next.
+/// The next step of the window.
 pub(in crate::app) enum Next {
     /// Draws a frame.
     Frame,

@@ -1,6 +1,6 @@
 //! The thumbnails of the gallery on the device: which are out of date, when they are drawn, and where.
 //!
-//! Thumbnails wait for everything else. They are drawn when the picture has come to rest, a few after each frame, those in sight alone, with
+//! Thumbnails wait for everything else. They are drawn when the picture has come to rest, a few at a time, those in sight alone, with
 //! pipelines that the worker builds when it has nothing else to do. A failure drops them without a word.
 
 use std::collections::{HashMap, HashSet};

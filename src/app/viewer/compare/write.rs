@@ -20,7 +20,8 @@ impl Viewer {
         texts.map(|(path, text)| (root.join(path.as_str()), text.clone())).collect()
     }
 
-    /// Writes the texts of a version over the files that differ from it, on a thread of its own. What is on disk and was never shown, such as an edit with an error, is kept beside each file.
+    /// Writes the texts of a version over the files that differ from it, on a thread of its own. A text on disk that was never shown, such
+    /// as an edit with an error, is kept beside its file.
     pub(in crate::app::viewer) fn write_version(&mut self, number: u64) {
         let (files, known) = (self.files_of_version(number), self.texts_of_files());
         let Some((known, root)) = known.zip(self.source.root().map(Path::to_owned)) else { return };
