@@ -15,7 +15,7 @@
 uniform sampler2D ground_light;
 
 uniform Ground {
-    float ground_strength;     //@ui "Ground shadow" 0..1 = 0.8
+    float ground_strength;     //@ui "Ground shadow" 0..1 = 1.0
 };
 
 layout(location = 0) in vec3 position_ws;

@@ -1,23 +1,38 @@
-//@pass ground_sky "Ground: sky" size=128x128 format=r16f doc="Part of the sky that the ground sees, weighted by the cosine"
+//@pass ground_sky "Ground: sky" size=64x64 format=r16f doc="Part of the sky's irradiance that reaches the ground"
 #version 460
 #include "pass.glsl"
+#include "common/color.glsl"
 #include "common/math.glsl"
+#include "lighting/environment.glsl"
 #include "lighting/shadows/ground.glsl"
 
-// In each direction of the compass the model hides the sky above some angle: that of the lowest surface over the ground, as if the
-// model were solid above it. Below that angle t the sky lights the ground with the integral of 2 sin cos from 0 to t, sin^2 t.
-
+// In each direction of the compass the model hides the sky above some elevation: that of the lowest surface over the ground, as if
+// the model were solid above it. The sky up to an elevation t has the integral of 2 sin cos from 0 to t, sin^2 t, of the
+// irradiance of its direction, if its radiance is constant. Below and above t that radiance is the environment's, prefiltered,
+// at the elevation which divides the irradiance of this part in half. So a softbox above throws a shadow to the other side.
+//
 // Horizons of a height field hide the sky in the same way (Max 1988, "Horizon Mapping: Shadows for Bump-Mapped Surfaces").
 //
-// Limits: light that passes under an overhang of the model is lost.
+// Limits: light that passes over an overhang of the model, or through it, is lost.
 
 uniform sampler2D ground_blockers;
 
 const int DIRECTIONS = 24;
 const int STEPS = 6;
 
+// Roughness of the lookups: their lobes are about as wide as the parts of the sky that they stand for.
+const float ROUGHNESS = 0.6;
+
+// Luminance of the sky in a direction of the compass, where the sky below has this part of the irradiance, sin^2 of the elevation.
+float sky_luminance(vec2 direction, float irradiance_below) {
+    vec3 d = vec3(0.0, sqrt(irradiance_below), 0.0);
+    d.xz = sqrt(1.0 - irradiance_below) * vec2(direction.x, -direction.y);   // ground_uv: -z is up in the image
+    return luminance(prefiltered_radiance(d, ROUGHNESS));
+}
+
 void main() {
-    float sky = 0.0;
+    float whole = 0.0;
+    float left = 0.0;
     for (int i = 0; i < DIRECTIONS; ++i) {
         float angle = 2.0 * PI * (float(i) + 0.5) / float(DIRECTIONS);
         vec2 direction = vec2(cos(angle), sin(angle));
@@ -32,7 +47,10 @@ void main() {
             float height = max(blockers.g / blockers.r, 0.0);
             open = min(open, 1.0 - blockers.r * (1.0 - height * height / (height * height + far * far)));
         }
-        sky += open;
+        float seen = open * sky_luminance(direction, 0.5 * open);
+        whole += seen + (1.0 - open) * sky_luminance(direction, 0.5 + 0.5 * open);
+        left += seen;
     }
-    color = vec4(sky / float(DIRECTIONS), 0.0, 0.0, 1.0);
+    // Without light there is no shadow.
+    color = vec4(whole > 0.0 ? left / whole : 1.0, 0.0, 0.0, 1.0);
 }
